@@ -5,14 +5,11 @@
 //! slot time and the [`report`] show it, the [`store`] makes tables of it for queries. [`study`] is the
 //! loop from the first proposal to the comparison of the result, [`cli`] the commands around it, the
 //! crate `launch` what starts workers elsewhere. Nothing here links the dynamics.
-pub mod account;
 pub mod cli;
 mod digest;
-mod external;
 mod kind;
 #[cfg(test)]
 #[path = "../study/src/oracle.rs"]
 mod oracle;
 pub mod pumping_unit;
-pub mod report;
 pub mod store;

@@ -3,7 +3,7 @@ use crate::words::sources;
 use std::{fs, path::Path};
 
 /// Sources of the product.
-const HOUSE: [&str; 11] = [
+const HOUSE: [&str; 12] = [
     "protocol/src",
     "protocol/link/src",
     "worker/src",
@@ -13,16 +13,18 @@ const HOUSE: [&str; 11] = [
     "coordinator/case/src",
     "coordinator/dispatch/src",
     "coordinator/launch/src",
+    "coordinator/report/src",
     "coordinator/study/src",
     "tests/oscillator",
 ];
 
 /// Its own folders, and the lines that register it.
-const KNOW_IT: [&str; 13] = [
+const KNOW_IT: [&str; 17] = [
     "protocol/src/pumping_unit",
     "worker/src/pumping_unit",
     "coordinator/src/pumping_unit",
     "coordinator/case/src/pumping_unit",
+    "coordinator/report/src/pumping_unit",
     // an evaluator for tests, which takes the shipped case for an example
     "coordinator/study/src/oracle.rs",
     // the folders' names
@@ -30,9 +32,12 @@ const KNOW_IT: [&str; 13] = [
     "worker/src/lib.rs",
     "coordinator/src/lib.rs",
     "coordinator/case/src/lib.rs",
+    "coordinator/report/src/lib.rs",
     // the list of kinds, the command that reduces its head, the template that `case new` writes
     "coordinator/src/kind",
     "coordinator/case/src/kind.rs",
+    "coordinator/report/src/kind.rs",
+    "coordinator/report/src/failure.rs",
     "coordinator/src/cli/command/mod.rs",
     "coordinator/src/cli/command/case.rs",
 ];

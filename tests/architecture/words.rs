@@ -24,6 +24,7 @@ const GENERAL: &[&str] = &[
     "coordinator/case/src",
     "coordinator/dispatch/src",
     "coordinator/launch/src",
+    "coordinator/report/src",
     "coordinator/study/src",
     "coordinator/src",
 ];
@@ -50,6 +51,7 @@ const RULES: &[Rule] = &[
             "worker/src/pumping_unit",
             "coordinator/src/pumping_unit",
             "coordinator/case/src/pumping_unit",
+            "coordinator/report/src/pumping_unit",
             "coordinator/case/src/pumping_unit",
             // tests that take the shipped case or its effects for an example
             "coordinator/case/src/effect_text.rs",

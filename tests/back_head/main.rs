@@ -6,8 +6,7 @@
 )]
 mod tetrahedra;
 
-use case::pumping_unit::{QuasiStatic, load_head, mesh, quasi_static};
-use coordinator::pumping_unit::{self};
+use case::pumping_unit::{self, QuasiStatic, load_head, mesh, quasi_static};
 use protocol::pumping_unit::{ElementKind as ReadKind, Influence};
 use simulation::flexible::{
     ElementKind, Family, Gauge, Mesh, Mode, Reduction, Request, Steel, reduce,

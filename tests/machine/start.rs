@@ -1,7 +1,6 @@
 //! The machine at rest at several crank angles: in equilibrium, and its gauges as statics have them.
 use super::{individuals, unit};
-use case::pumping_unit::QuasiStatic;
-use coordinator::pumping_unit::wrapped_turn;
+use case::pumping_unit::{QuasiStatic, wrapped_turn};
 use protocol::pumping_unit;
 use simulation::{
     drive::Drive,

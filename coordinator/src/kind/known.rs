@@ -1,7 +1,6 @@
 //! What the coordinator may know of a kind of model beside what its cases say: all that the general form
 //! says already stands here.
 use crate::digest::Digest;
-use crate::report::{Drawing, General};
 use discrepancy::identify::Band;
 use protocol::{
     case::{Case, Channel},
@@ -14,11 +13,6 @@ use serde_json::{Map, Value, json};
 pub(crate) trait Kind: Sync {
     /// As cases name it.
     fn name(&self) -> &'static str;
-
-    /// What it shows in reports.
-    fn drawing(&self) -> &'static dyn Drawing {
-        &General
-    }
 
     /// Hash of all result bits: 64 hexadecimal digits. Wall time is left out.
     ///

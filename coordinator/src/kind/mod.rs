@@ -1,16 +1,14 @@
 //! The kinds of models of which the coordinator knows more than their cases say: one line each. Every
 //! other kind is read, computed, shown and written down by the general form alone.
-mod failure;
 mod known;
 
-pub(crate) use failure::failure;
 use known::AnyKind;
 pub(crate) use known::Kind;
 
-use crate::{external::kind::Externals, pumping_unit::kind::PumpingUnits};
+use crate::pumping_unit::kind::PumpingUnits;
 use protocol::case::Case;
 
-const ALL: &[&dyn Kind] = &[&PumpingUnits, &Externals];
+const ALL: &[&dyn Kind] = &[&PumpingUnits];
 
 /// The kind of a name.
 pub(crate) fn named(name: &str) -> &'static dyn Kind {

@@ -1,22 +1,20 @@
 //! `horsehead head`: the flexible back head from its mesh.
 use super::{
-    head_comparison::{compare_head, reduce_head, wrapped_turn},
     output::{self, files},
-    report::{HeadPicture, head_mode_table, head_pair, head_statics, write_head_modes},
+    reduce_head::reduce_head,
 };
-use crate::{
-    cli::{
-        argument::{case::case_folder, individual::condition, output::OutputChoice},
-        output::{
-            problem::{EXIT_CODES, Usage},
-            terminal,
-        },
-        run::once::in_scratch,
+use crate::cli::{
+    argument::{case::case_folder, individual::condition, output::OutputChoice},
+    output::{
+        problem::{EXIT_CODES, Usage},
+        terminal,
     },
-    report::table,
+    run::once::in_scratch,
 };
 use anyhow::Context as _;
-use case::pumping_unit::{HeadSource, QuasiStatic, load_head, mesh, quasi_static};
+use case::pumping_unit::{
+    HeadSource, QuasiStatic, compare_head, load_head, mesh, quasi_static, wrapped_turn,
+};
 use clap::{Args, ValueEnum};
 use protocol::{
     pumping_unit::{
@@ -24,6 +22,10 @@ use protocol::{
     },
     wire,
 };
+use report::pumping_unit::{
+    HeadPicture, head_mode_table, head_pair, head_statics, write_head_modes,
+};
+use report::table;
 use std::path::PathBuf;
 
 /// Reduce the flexible back head from its mesh: modes, influence lines, gauge stress.

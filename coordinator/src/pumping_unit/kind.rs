@@ -5,9 +5,8 @@ use super::{
         curves::{CurvesOutput, derivative, predicted},
         score,
     },
-    report::Dhh,
 };
-use crate::{kind::Kind, report::Drawing};
+use crate::kind::Kind;
 use discrepancy::identify::Band;
 use protocol::{
     case::{Case, Channel},
@@ -23,10 +22,6 @@ pub(crate) struct PumpingUnits;
 impl Kind for PumpingUnits {
     fn name(&self) -> &'static str {
         Machine::KIND
-    }
-
-    fn drawing(&self) -> &'static dyn Drawing {
-        &Dhh
     }
 
     fn digest(&self, drawn: &Curves) -> Result<String, WireError> {

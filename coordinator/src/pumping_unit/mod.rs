@@ -2,12 +2,9 @@
 //! asks for it by the kind that a case names.
 pub(crate) mod command;
 mod digest;
-mod head_comparison;
 pub(crate) mod kind;
 mod output;
-pub mod report;
+mod reduce_head;
 
 pub use digest::simulation_digest;
-pub use head_comparison::{
-    HalfRanges, HeadComparison, ModeMatch, WrappedTurn, compare_head, reduce_head, wrapped_turn,
-};
+pub use reduce_head::reduce_head;

@@ -6,7 +6,7 @@ use super::{
     table::Tables,
     target::{Draft, Target},
 };
-use crate::account::Folding;
+use dispatch::account::Folding;
 use dispatch::journal::{Damage, Entry, Recording};
 use protocol::{
     case::Case,

@@ -1,9 +1,9 @@
 //! Error against work as SVG, one curve per method of integration: Newton iterations on the left, wall
 //! time on the right, both axes logarithmic.
 use crate::work::{Comparison, Point};
-use coordinator::pumping_unit::report::integrator_name;
 use maud::{Markup, html};
 use protocol::pumping_unit::Integrator;
+use report::pumping_unit::integrator_name;
 
 const WIDTH: f64 = 960.0;
 const HEIGHT: f64 = 400.0;

@@ -6,9 +6,9 @@ use crate::work::{Comparison, Plan, Point, compare};
 use case::read_genes;
 use clap::Args;
 use comfy_table::Table;
-use coordinator::pumping_unit::report::integrator_name;
-use coordinator::report::words;
 use protocol::pumping_unit::Integrator;
+use report::pumping_unit::integrator_name;
+use report::words;
 use std::path::PathBuf;
 
 /// Compare methods of integration: error of the gauge curves against Newton iterations and time.

@@ -10,6 +10,7 @@ mod flexible;
 mod genes;
 mod geometry;
 mod head;
+mod head_comparison;
 mod head_source;
 pub(crate) mod kind;
 mod machine;
@@ -28,6 +29,9 @@ pub use figures::{ConditionFigures, Figures, RecordFigures, figures};
 pub use genes::unknown;
 pub use geometry::{Envelope, QuasiStatic, quasi_static};
 pub use head::GaugePlace;
+pub use head_comparison::{
+    HalfRanges, HeadComparison, ModeMatch, WrappedTurn, compare_head, wrapped_turn,
+};
 pub use head_source::{HeadSource, load_head};
 pub use record::{RecordFacts, count_samples};
 pub use twin::TwinFile;

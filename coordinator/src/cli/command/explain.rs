@@ -1,16 +1,14 @@
 //! `horsehead explain`: why workers were idle, from the journal of a run.
-use crate::{
-    account::{self, HostUse, JobUse, RunAccount},
-    cli::{
-        argument::output::OutputChoice,
-        output::{problem::EXIT_CODES, terminal},
-        run::folder::RunFolder,
-    },
-    report::table::{self, Table},
+use crate::cli::{
+    argument::output::OutputChoice,
+    output::{problem::EXIT_CODES, terminal},
+    run::folder::RunFolder,
 };
 use clap::Args;
+use dispatch::account::{self, HostUse, JobUse, RunAccount};
 use dispatch::journal;
 use protocol::event::Spent;
+use report::table::{self, Table};
 use serde::Serialize;
 use std::{collections::BTreeMap, path::PathBuf};
 

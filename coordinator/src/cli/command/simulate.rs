@@ -11,11 +11,11 @@ use crate::{
         run::{bus, command_line::command_line, once::compare_once},
     },
     kind,
-    report::{self, Origin, SingleRun, table, words},
 };
 use anyhow::Context as _;
 use clap::Args;
 use protocol::{case::Case, job::Verdict};
+use report::{self, Origin, SingleRun, table, words};
 use std::path::PathBuf;
 use study::{self, Compared, Curves, EvaluatorError, PICTURES, Wanted};
 

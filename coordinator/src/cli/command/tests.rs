@@ -131,7 +131,7 @@ fn every_command_shows_an_example_that_parses_and_its_exit_codes() {
 
 #[test]
 fn every_command_that_a_report_advises_parses() {
-    for advised in crate::report::words::command::ALL {
+    for advised in ::report::words::command::ALL {
         let parsed = Cli::try_parse_from(advised.split_whitespace());
         assert!(parsed.is_ok(), "{advised}");
     }

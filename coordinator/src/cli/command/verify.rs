@@ -1,29 +1,27 @@
 //! `horsehead verify`: the parameters of a run under a condition that took no part in the fit.
-use crate::{
-    cli::{
-        argument::{
-            case::load_case,
-            individual::condition,
-            output::OutputChoice,
-            workers::{cores, worker_count},
-        },
-        output::{
-            calibration::condition_result,
-            object::{calibration::VerifyOutput, score},
-            problem::{EXIT_CODES, Usage},
-            terminal,
-        },
-        run::{
-            calibration::{Calibration, pair},
-            folder::GENES,
-            once::compare_once,
-        },
+use crate::cli::{
+    argument::{
+        case::load_case,
+        individual::condition,
+        output::OutputChoice,
+        workers::{cores, worker_count},
     },
-    report::table,
+    output::{
+        calibration::condition_result,
+        object::{calibration::VerifyOutput, score},
+        problem::{EXIT_CODES, Usage},
+        terminal,
+    },
+    run::{
+        calibration::{Calibration, pair},
+        folder::GENES,
+        once::compare_once,
+    },
 };
 use anyhow::Context as _;
 use case::{read_genes, require_record};
 use clap::Args;
+use report::table;
 use std::{path::PathBuf, time::Instant};
 use study::Wanted;
 

@@ -6,23 +6,21 @@ use super::{
     },
     terminal,
 };
-use crate::{
-    account,
-    cli::{
-        argument::output::Output,
-        run::{
-            calibration::{Calibration as Run, Found},
-            folder::{GENES, RESULT, SEEN},
-            tables,
-        },
+use crate::cli::{
+    argument::output::Output,
+    run::{
+        calibration::{Calibration as Run, Found},
+        folder::{GENES, RESULT, SEEN},
+        tables,
     },
-    report::{self, Calibration, ConditionResult, HistoryPoint, Individual, WorkerUse},
 };
+use dispatch::account;
 use dispatch::journal;
 use protocol::{
     event::WorkerAccount,
     job::{Counters, Evaluation, Verdict},
 };
+use report::{self, Calibration, ConditionResult, HistoryPoint, Individual, WorkerUse};
 use search::strategy::Finish;
 use std::collections::BTreeMap;
 use study::{self, Calibrated, Compared, Curves};

@@ -3,17 +3,15 @@ use super::{
     object::diagnosis::answer::{DiagnoseOutput, object},
     terminal,
 };
-use crate::{
-    cli::{
-        argument::output::Output,
-        run::{
-            command_line::quote_path,
-            diagnosis::{Diagnosis, Found},
-            folder::{GENES, RESULT},
-        },
+use crate::cli::{
+    argument::output::Output,
+    run::{
+        command_line::quote_path,
+        diagnosis::{Diagnosis, Found},
+        folder::{GENES, RESULT},
     },
-    report::{diagnosis as report, text},
 };
+use ::report::{diagnosis as report, text};
 use case::{Loaded, append_effects, write_starts};
 use std::path::Path;
 

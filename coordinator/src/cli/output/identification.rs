@@ -1,15 +1,13 @@
 //! The files and the output of a finished identification.
 use super::{object::identification::object, terminal};
-use crate::{
-    cli::{
-        argument::output::Output,
-        run::{
-            folder::RESULT,
-            identification::{Found, Identification},
-        },
+use crate::cli::{
+    argument::output::Output,
+    run::{
+        folder::RESULT,
+        identification::{Found, Identification},
     },
-    report::{identification as report, text},
 };
+use ::report::{identification as report, text};
 
 /// Writes the files of a finished run and prints its result.
 ///

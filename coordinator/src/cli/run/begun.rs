@@ -4,9 +4,10 @@ use super::{
     folder::{CASE, MANIFEST, RunFolder},
     manifest::{Decides, Manifest},
 };
-use crate::{cli::output::problem::Usage, report::Origin};
+use crate::cli::output::problem::Usage;
 use case::{Loaded, Overrides, difference::differences, load_with_notes};
 use protocol::case::Case;
+use report::Origin;
 use std::path::{Path, PathBuf};
 
 /// A run of one kind; `S` is what decides its result beside case, seed and start.

@@ -5,14 +5,12 @@ use super::{
     folder::RunFolder,
     manifest::Decides,
 };
-use crate::{
-    account,
-    cli::{
-        argument::{door::Door, settings},
-        output::{problem::Usage, terminal},
-    },
+use crate::cli::{
+    argument::{door::Door, settings},
+    output::{problem::Usage, terminal},
 };
 use anyhow::Context as _;
+use dispatch::account;
 use dispatch::journal;
 use dispatch::runtime::{self, BenchPlan, BenchWorkers, processor_time, sleep_through};
 use dispatch::simulated::Search as Source;

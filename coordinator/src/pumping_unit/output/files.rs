@@ -1,9 +1,9 @@
 //! The files that a reduced head becomes: the case's two tables, and a picture for `ParaView`.
 use crate::cli::run::bus::PROGRAM;
-use crate::pumping_unit::report::vtu::{self, Field};
 use anyhow::Context as _;
 use case::pumping_unit::{GaugePlace, HeadSource, TwinFile};
 use protocol::pumping_unit::{HeadMesh, Machine, ModeFamily, ReducedHead, TwinHead};
+use report::pumping_unit::vtu::{self, Field};
 use serde::Serialize;
 use std::{
     collections::BTreeMap,

@@ -1,5 +1,5 @@
 //! The object of `horsehead head`.
-use crate::pumping_unit::HeadComparison;
+use case::pumping_unit::HeadComparison;
 use protocol::{
     case::Case,
     pumping_unit::{LeftOutMode, ModeFamily, ReducedHead},

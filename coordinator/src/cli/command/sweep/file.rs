@@ -1,36 +1,34 @@
 //! `horsehead sweep FILE`: every search of a grid, or every individual of a table.
 use super::grid::{Grid, rows};
-use crate::{
-    cli::{
-        argument::{
-            case::{LoadedCase, case_folder, load_case},
-            individuals::Individuals,
-            output::OutputChoice,
-            workers::WorkersChoice,
-        },
-        output::{
-            object::{
-                orthogonal::{GridOutput, runs_table},
-                scored::{self, IndividualsOutput},
-            },
-            problem::Usage,
-            progress::Display,
-            terminal,
-        },
-        run::{
-            begun::Run,
-            bus,
-            folder::{RESULT, RunFolder},
-            manifest::Manifest,
-            searches::Searches,
-            session::Session,
-            swept::{Holds, Swept},
-        },
+use crate::cli::{
+    argument::{
+        case::{LoadedCase, case_folder, load_case},
+        individuals::Individuals,
+        output::OutputChoice,
+        workers::WorkersChoice,
     },
-    report::{orthogonal::runs, table},
+    output::{
+        object::{
+            orthogonal::{GridOutput, runs_table},
+            scored::{self, IndividualsOutput},
+        },
+        problem::Usage,
+        progress::Display,
+        terminal,
+    },
+    run::{
+        begun::Run,
+        bus,
+        folder::{RESULT, RunFolder},
+        manifest::Manifest,
+        searches::Searches,
+        session::Session,
+        swept::{Holds, Swept},
+    },
 };
 use case::{document::Document, require_record};
 use clap::Args;
+use report::{orthogonal::runs, table};
 use search::space::Space;
 use std::path::{Path, PathBuf};
 use study::{Sweep, Watch as _, score_all};

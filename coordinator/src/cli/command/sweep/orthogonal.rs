@@ -1,30 +1,28 @@
 //! `horsehead sweep orthogonal`: which levels of a search's settings are best, by a few of all combinations.
-use crate::{
-    cli::{
-        argument::{
-            case::{CaseChoice, LoadedCase},
-            factor,
-            output::OutputChoice,
-            settings::SettingsChoice,
-            workers::WorkersChoice,
-        },
-        output::{
-            object::orthogonal::OrthogonalOutput,
-            problem::{EXIT_CODES, Usage},
-            progress::Display,
-            terminal,
-        },
-        run::{
-            begun::Run,
-            folder::{RESULT, RunFolder},
-            manifest::{Decides as _, Manifest},
-            orthogonal::{Orthogonal, test},
-            searches::Searches,
-            session::Session,
-        },
+use crate::cli::{
+    argument::{
+        case::{CaseChoice, LoadedCase},
+        factor,
+        output::OutputChoice,
+        settings::SettingsChoice,
+        workers::WorkersChoice,
     },
-    report::{orthogonal as report, text},
+    output::{
+        object::orthogonal::OrthogonalOutput,
+        problem::{EXIT_CODES, Usage},
+        progress::Display,
+        terminal,
+    },
+    run::{
+        begun::Run,
+        folder::{RESULT, RunFolder},
+        manifest::{Decides as _, Manifest},
+        orthogonal::{Orthogonal, test},
+        searches::Searches,
+        session::Session,
+    },
 };
+use ::report::{orthogonal as report, text};
 use anyhow::Context as _;
 use case::require_record;
 use clap::{

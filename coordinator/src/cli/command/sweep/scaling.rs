@@ -1,27 +1,25 @@
 //! `horsehead sweep scaling`: how much faster searches are on more slots, and where slot time goes.
-use crate::{
-    cli::{
-        argument::{
-            case::{CaseChoice, LoadedCase},
-            output::OutputChoice,
-            workers::cores,
-        },
-        output::{
-            problem::{EXIT_CODES, Usage},
-            progress::Display,
-            terminal,
-        },
-        run::{
-            begun::Run,
-            bus,
-            folder::{RESULT, RunFolder},
-            interrupt,
-            manifest::{Decides as _, Manifest},
-            scaled::{Scaling, scale},
-        },
+use crate::cli::{
+    argument::{
+        case::{CaseChoice, LoadedCase},
+        output::OutputChoice,
+        workers::cores,
     },
-    report::{scaling as report, text},
+    output::{
+        problem::{EXIT_CODES, Usage},
+        progress::Display,
+        terminal,
+    },
+    run::{
+        begun::Run,
+        bus,
+        folder::{RESULT, RunFolder},
+        interrupt,
+        manifest::{Decides as _, Manifest},
+        scaled::{Scaling, scale},
+    },
 };
+use ::report::{scaling as report, text};
 use anyhow::Context as _;
 use case::require_record;
 use clap::{Args, builder::PossibleValuesParser};

@@ -1,11 +1,8 @@
 //! `workers list`, `drain` and `down`: asking the process that works on a run.
-use crate::{
-    cli::{
-        argument::{nodes::HostsChoice, output::OutputChoice},
-        output::{problem::Usage, terminal},
-        run::launch::{carry, refuse},
-    },
-    report::table::{Row, Table, text},
+use crate::cli::{
+    argument::{nodes::HostsChoice, output::OutputChoice},
+    output::{problem::Usage, terminal},
+    run::launch::{carry, refuse},
 };
 use clap::Args;
 use dispatch::runtime::control::{
@@ -13,6 +10,7 @@ use dispatch::runtime::control::{
     words::{Question, State, Worker},
 };
 use launch::ssh;
+use report::table::{Row, Table, text};
 use serde::Serialize;
 use std::{
     fs,

@@ -5,12 +5,12 @@ use super::{
     place::{WhereOutput, whereabouts},
     wander::{WanderedOutput, wandered},
 };
-use crate::report::diagnosis::Subject;
 use discrepancy::{
     diagnose::{Absorbed, Diagnosis, Estimate, Limit, LookAlikes, NeverExact},
     ground::preflight::Preflight,
     verdict::Verdict,
 };
+use report::diagnosis::Subject;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -1,6 +1,6 @@
 //! Where simulation and record part: windows of the abscissa, orders of the period, joints.
-use crate::report::diagnosis::Subject;
 use discrepancy::place::joint::Harmonic;
+use report::diagnosis::Subject;
 use serde::Serialize;
 
 /// Where simulation and record part.

@@ -1,6 +1,5 @@
 //! The contract of `horsehead diagnose CASE --output json`: fields by name, for every verdict.
 use super::{answer::object, times::Times};
-use crate::report::{Origin, diagnosis::Subject};
 use discrepancy::{
     diagnose::{Diagnosis, Estimate, Force, Limit, LookAlikes, ParameterEstimate, Round},
     laboratory::Stage,
@@ -19,6 +18,7 @@ use discrepancy::{
     verdict::Verdict,
 };
 use protocol::case::Case;
+use report::{Origin, diagnosis::Subject};
 use search::{
     least_squares::{LeastSquares, Settings},
     space::Space,

@@ -1,9 +1,9 @@
 //! Genes that would have to wander along the turn or between conditions.
-use crate::report::diagnosis::Subject;
 use discrepancy::{
     model::Fit,
     place::wander::{Part, Shift, Wander},
 };
+use report::diagnosis::Subject;
 use serde::Serialize;
 
 /// Genes that would have to wander under the recalibrated model, and under the answer; empty where

@@ -1,10 +1,11 @@
 //! Of `horsehead identify`.
-use crate::{kind, report::identification::Subject};
+use crate::kind;
 use discrepancy::{
     diagnose::NeverExact,
     identify::{Direction, Further, Seen, UnknownEstimate},
     laboratory::Stage,
 };
+use report::identification::Subject;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;

@@ -1,12 +1,12 @@
 //! The contract of `horsehead identify CASE --output json`: fields by name.
 use super::*;
-use crate::report::{Origin, identification::report};
 use case::{Overrides, load};
 use discrepancy::{
     identify::{Band, Curve, End, Identified, Part, Pin},
     record::noise::Known,
 };
 use protocol::case::Case;
+use report::{Origin, identification::report};
 use std::path::Path;
 
 /// Four unknowns, one seen in each way.
@@ -119,7 +119,7 @@ fn fields_are_a_contract() {
     );
     assert_eq!(said["diagnose_first"], true);
     assert_eq!(said["assumed_noise"], true);
-    let page = crate::report::text(&report(&subject), false);
+    let page = report::text(&report(&subject), false);
     for words in [
         "sees 1 of 4 unknowns",
         "at least",

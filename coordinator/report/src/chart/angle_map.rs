@@ -1,0 +1,121 @@
+//! Abscissa x channel: where along a record the residual is no noise.
+use super::axis::Axis;
+use super::canvas::{Canvas, Pen, WIDTH, render};
+use super::panel::Panel;
+use super::rows::{self, Key};
+use crate::color::{Color, INK, SIGNED};
+use crate::document::Figure;
+use crate::number::{fixed, plain, range, unit};
+use crate::words::counted;
+use discrepancy::place::along::{AlongMap, Bins, WIDTHS, Window};
+use protocol::case::Abscissa;
+
+/// The colour scale ends here at the earliest (standard deviations): noise stays pale.
+const LEAST: f64 = 5.0;
+
+/// Draws the map; rows are `channels`, in the map's order, over the abscissa and the axis of the first.
+/// None of an empty map, nor where channels stand over several abscissas.
+pub(crate) fn angle_map(
+    map: &AlongMap,
+    channels: &[String],
+    (abscissa, axis): (&Abscissa, &Axis),
+) -> Option<Figure> {
+    let bins = map.bins.first()?;
+    let rows = map.strength.len();
+    if rows == 0 || rows != channels.len() || map.bins.iter().any(|other| other != bins) {
+        return None;
+    }
+    let end =
+        range(map.strength.iter().flatten().map(|s| s.abs())).map_or(LEAST, |(_, s)| s.max(LEAST));
+    let height = rows::height(rows);
+    let title = format!(
+        "Residual over its uncertainty, by {} and channel",
+        counted(abscissa)
+    );
+    let svg = render((WIDTH, height), &title, |canvas| {
+        let panel = rows::panel(rows, axis.scale);
+        let high = format!("simulated too high  −{}", fixed(end, 0));
+        let low = format!("+{}  too low", fixed(end, 0));
+        let key = Key {
+            before: &high,
+            behind: &low,
+            room: 120.0,
+        };
+        rows::key(canvas, &SIGNED, &key);
+        for (row, strengths) in map.strength.iter().enumerate() {
+            let shares = strengths.iter().map(|strength| strength / end);
+            cells(canvas, &panel, row, bins, shares);
+        }
+        for window in &map.windows {
+            outline(canvas, &panel, bins, window);
+        }
+        rows::names(canvas, &panel, channels);
+        panel.lower_axis(canvas, true, &axis.title);
+    });
+    Some(Figure {
+        name: "where_angle".to_owned(),
+        caption: format!(
+            "{title}: mean of the recalibrated model's residual over {} {}, in its own standard \
+             deviations; what a channel shares with the noise of those above it is taken out. Framed: \
+             windows that noise alone would show in fewer than one record of twenty.",
+            plain(WIDTHS[0] as f64 * bins.width),
+            unit(&abscissa.unit)
+        ),
+        svg,
+    })
+}
+
+/// One channel: a cell per bin, at the centre of the window that begins there.
+fn cells(
+    canvas: &mut Canvas,
+    panel: &Panel,
+    row: usize,
+    bins: &Bins,
+    shares: impl Iterator<Item = f64>,
+) {
+    let (top, bottom) = (panel.at_y(row as f64), panel.at_y(row as f64 + 1.0));
+    for (bin, share) in shares.enumerate() {
+        // windows of what is not periodic all have their centres before the end
+        let centre = (bin + WIDTHS[0] / 2) % bins.count;
+        let from = panel.at_x(bins.begin(centre));
+        let to = panel.at_x(bins.begin(centre + 1));
+        canvas.rectangle(
+            (from, top),
+            ((to + rows::OVERLAP).min(panel.right()), bottom),
+            deviation(share),
+        );
+    }
+}
+
+/// Colour of a deviation, as a share of the scale to either side; none for what is no number.
+fn deviation(share: f64) -> Color {
+    let share = if share.is_finite() { share } else { 0.0 };
+    SIGNED.at(0.5 + 0.5 * share)
+}
+
+/// A significant window; in two parts where it runs into the next period.
+fn outline(canvas: &mut Canvas, panel: &Panel, bins: &Bins, window: &Window) {
+    const INSET: f64 = 2.5;
+    let pen = Pen::new(INK, 1.3);
+    let top = panel.at_y(window.channel as f64) + INSET;
+    let bottom = panel.at_y(window.channel as f64 + 1.0) - INSET;
+    let (from, to) = (window.from, window.to);
+    let (first, last) = (bins.begin(0), bins.begin(bins.count));
+    let parts = if to > last {
+        vec![(from, last), (first, first + to - last)]
+    } else {
+        vec![(from, to)]
+    };
+    for (from, to) in parts {
+        let (left, right) = (panel.at_x(from), panel.at_x(to));
+        canvas.line(&[(left, top), (right, top)], pen);
+        canvas.line(&[(left, bottom), (right, bottom)], pen);
+        // a part that goes on in the next period stays open there
+        if from > first || window.from <= first {
+            canvas.line(&[(left, top), (left, bottom)], pen);
+        }
+        if to < last || window.to <= last {
+            canvas.line(&[(right, top), (right, bottom)], pen);
+        }
+    }
+}

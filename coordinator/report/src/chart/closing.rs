@@ -1,0 +1,159 @@
+//! One channel before and after: the measured mean, both simulated curves, and the residuals of
+//! before, after and the best rejected rival on one scale.
+use super::axis::Axis;
+use super::scale::Scale;
+use super::strip::{Curve, Strip, curve, stack, strip};
+use crate::color::{BLUE, GREEN, INK, VERMILLION};
+use crate::document::Figure;
+use crate::number::{figure, range, unit};
+use crate::words::{capitalised, headed};
+
+/// What is compared of one channel under one condition; all curves on the grid of `at`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Closing<'a> {
+    /// Condition, as `5rpm`.
+    pub condition: &'a str,
+    /// Channel, as `force`.
+    pub channel: &'a str,
+    /// Unit of its values.
+    pub unit: &'a str,
+    /// Where the values stand.
+    pub at: &'a [f64],
+    /// The axis along which they do.
+    pub axis: &'a Axis,
+    /// Mean of the measured cycles.
+    pub measured: &'a [f64],
+    /// Standard deviation of one cycle about it; empty where there is one cycle only.
+    pub spread: &'a [f64],
+    /// Cycles in the mean.
+    pub cycles: usize,
+    /// The recalibrated model without what was found.
+    pub before: &'a [f64],
+    /// The model with it, if anything was added.
+    pub after: Option<&'a [f64]>,
+    /// The model with the best rejected rival instead, with that rival's name.
+    pub rival: Option<(&'a str, &'a [f64])>,
+    /// Whether a constant between measured and simulated counts for nothing.
+    pub free_offset: bool,
+}
+
+impl Closing<'_> {
+    /// Measured less simulated mean, where that is free.
+    pub(crate) fn shift(&self, simulated: &[f64]) -> f64 {
+        let n = self.measured.len().min(simulated.len()).max(1) as f64;
+        let difference = self.measured.iter().zip(simulated).map(|(m, s)| m - s);
+        if self.free_offset {
+            difference.sum::<f64>() / n
+        } else {
+            0.0
+        }
+    }
+
+    /// Measured less simulated, shifted.
+    pub(crate) fn residual(&self, simulated: &[f64]) -> Vec<f64> {
+        let shift = self.shift(simulated);
+        let pairs = self.measured.iter().zip(simulated);
+        pairs.map(|(m, s)| m - s - shift).collect()
+    }
+
+    /// Root mean square of a residual.
+    fn rms(&self, simulated: &[f64]) -> f64 {
+        let residual = self.residual(simulated);
+        let square: f64 = residual.iter().map(|r| r * r).sum();
+        (square / residual.len().max(1) as f64).sqrt()
+    }
+}
+
+/// Draws one channel. None without a curve.
+pub(crate) fn closing(of: &Closing<'_>) -> Option<Figure> {
+    if of.measured.len() < 2 || of.before.len() != of.measured.len() {
+        return None;
+    }
+    let shifted = |simulated: &[f64]| -> Vec<f64> {
+        let shift = of.shift(simulated);
+        simulated.iter().map(|s| s + shift).collect()
+    };
+    let mut curves = vec![
+        curve("measured", INK, of.at, of.measured, 1.0),
+        curve("before", BLUE, of.at, &shifted(of.before), 1.0),
+    ];
+    if let Some(after) = of.after {
+        curves.push(curve("after", VERMILLION, of.at, &shifted(after), 1.0));
+    }
+    let rows = of.at.iter().zip(of.measured.iter().zip(of.spread));
+    let mut strips = vec![Strip {
+        title: headed("value", &unit(of.unit)),
+        height: 170.0,
+        curves,
+        band: rows.map(|(&x, (m, s))| (x, m - s, m + s)).collect(),
+        scale: None,
+    }];
+    strips.extend(residuals(of));
+    let title = format!("{}, condition {}", capitalised(of.channel), of.condition);
+    Some(stack(
+        format!("proof_{}_{}", of.condition, of.channel.replace(' ', "_")),
+        &title,
+        caption(of, &title),
+        of.axis,
+        &strips,
+    ))
+}
+
+/// Strips of the residuals, on one scale, over the standard error of the measured mean.
+fn residuals(of: &Closing<'_>) -> Vec<Strip> {
+    let mut all = vec![("without it", BLUE, of.before)];
+    all.extend(of.after.map(|after| ("with it", VERMILLION, after)));
+    all.extend(of.rival.map(|(_, rival)| ("with the rival", GREEN, rival)));
+    let values: Vec<Vec<f64>> = all.iter().map(|(.., s)| of.residual(s)).collect();
+    let error = (of.cycles.max(1) as f64).sqrt();
+    let errors = of.spread.iter().map(|s| s / error);
+    let band: Vec<(f64, f64, f64)> = of.at.iter().zip(errors).map(|(&x, e)| (x, -e, e)).collect();
+    let scale = Scale::symmetric(values.iter().flatten().copied());
+    all.iter()
+        .zip(&values)
+        .map(|((label, color, _), values)| {
+            let curves: Vec<Curve> = vec![curve(*label, *color, of.at, values, 1.0)];
+            Strip {
+                band: band.clone(),
+                scale: Some(scale),
+                ..strip("residual", 58.0, curves)
+            }
+        })
+        .collect()
+}
+
+fn caption(of: &Closing<'_>, title: &str) -> String {
+    let mut said = vec![format!(
+        "without the effect {} {}",
+        figure(of.rms(of.before)),
+        of.unit
+    )];
+    if let Some(after) = of.after {
+        said.push(format!("with it {}", figure(of.rms(after))));
+    }
+    if let Some((name, rival)) = of.rival {
+        said.push(format!(
+            "with the best rejected rival, {name}, {}",
+            figure(of.rms(rival))
+        ));
+    }
+    let noise = range(of.spread.iter().copied()).map_or_else(
+        || "One cycle: there is no band of scatter.".to_owned(),
+        |_| {
+            format!(
+                "Bands: one standard deviation of a cycle above, of the mean of {} cycles below.",
+                of.cycles
+            )
+        },
+    );
+    let free = if of.free_offset {
+        " Simulated curves are shifted to the measured mean."
+    } else {
+        ""
+    };
+    format!(
+        "{title}: measured, and simulated by the recalibrated model. Below, measured minus simulated on \
+         one scale; root mean square {}. {noise}{free}",
+        said.join(", ")
+    )
+}

@@ -1,0 +1,63 @@
+//! The periodic force that would explain the residual, over its period, at the likeliest joints.
+use super::axis::Axis;
+use super::strip::{curve, stack, strip};
+use crate::color::BLUE;
+use crate::document::Figure;
+use discrepancy::place::joint::JointEvidence;
+use protocol::case::Abscissa;
+
+/// Joints that are drawn at most.
+const DRAWN: usize = 3;
+/// Spacing of the curves (360 a period).
+const STEP: usize = 2;
+
+/// Draws the forces at the first `equivalent` joints of a ranking, which are not told apart, over a period
+/// of the abscissa; those that explain anything. None where no force does.
+pub(crate) fn latent_forces(
+    ranked: &[JointEvidence],
+    equivalent: usize,
+    (abscissa, axis): (&Abscissa, &Axis),
+) -> Option<Figure> {
+    let period = abscissa.period?;
+    let phases: Vec<f64> = (0..=360).step_by(STEP).map(f64::from).collect();
+    let at: Vec<f64> = phases
+        .iter()
+        .map(|phase| period * (phase / 360.0))
+        .collect();
+    let drawn: Vec<(String, &JointEvidence)> = ranked
+        .iter()
+        .take(equivalent)
+        .filter(|one| one.log_bayes > 0.0 && !one.force.is_empty())
+        .take(DRAWN)
+        .map(|one| {
+            (
+                format!("{} [{}]", one.joint.replace('_', " "), one.unit),
+                one,
+            )
+        })
+        .collect();
+    if drawn.is_empty() {
+        return None;
+    }
+    let strips: Vec<_> = drawn
+        .iter()
+        .map(|(title, one)| {
+            let force: Vec<f64> = phases.iter().map(|phase| one.force_at(*phase)).collect();
+            let line = curve("likeliest", BLUE, &at, &force, 1.0);
+            strip(title, 110.0, vec![line])
+        })
+        .collect();
+    let title = "The periodic force that would explain the residual";
+    let figure = stack(
+        "where_force",
+        title,
+        format!(
+            "{title}, were it at that joint: the likeliest amplitudes of its first harmonics, each alone \
+             explaining what is left. Its shape says more than its place: a step where the motion turns is \
+             friction, a bump at one angle a spot, a wave with the load a stiffness."
+        ),
+        axis,
+        &strips,
+    );
+    Some(figure)
+}

@@ -1,0 +1,236 @@
+//! Measured against simulated curves of one channel, recommended beside optimised on shared scales,
+//! with the residual below (paper, Figs. 7, 9 and 10).
+use super::axis::Axis;
+use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
+use super::panel::Panel;
+use super::points::points;
+use super::scale::Scale;
+use crate::color::{BAND, GREY, INK, VERMILLION};
+use crate::data::{ConditionResult, Run};
+use crate::document::Figure;
+use crate::number::{fixed, percent, unit};
+use crate::{kind, words};
+use protocol::case::{Case, Channel, ChannelRecord, Offset};
+use protocol::job::{ChannelScore, Verdict};
+
+const LEFT: f64 = 62.0;
+const BETWEEN: f64 = 26.0;
+const TOP: f64 = 62.0;
+const VALUES_HEIGHT: f64 = 200.0;
+const RESIDUAL_TOP: f64 = TOP + VALUES_HEIGHT + 16.0;
+const RESIDUAL_HEIGHT: f64 = 62.0;
+const HEIGHT: f64 = RESIDUAL_TOP + RESIDUAL_HEIGHT + 42.0;
+
+/// What is drawn of one parameter set.
+struct Side {
+    heading: &'static str,
+    remark: String,
+    simulated: Vec<(f64, f64)>,
+    residual: Vec<(f64, f64)>,
+}
+
+/// Shift that the objective gives a simulated curve before it is compared.
+const fn shift(offset: Offset, score: Option<&ChannelScore>) -> f64 {
+    match (offset, score) {
+        (Offset::Free, Some(score)) if score.offset.is_finite() => score.offset,
+        (Offset::Free | Offset::Fixed, _) => 0.0,
+    }
+}
+
+impl Side {
+    fn new(
+        heading: &'static str,
+        (run, values): (&Run, &[f64]),
+        (at, channel): (usize, &Channel),
+        record: &ChannelRecord,
+    ) -> Self {
+        let grid = &channel.abscissa.points;
+        let mut scores = run.evaluation.channels.iter();
+        let score = scores.find(|score| score.channel == at);
+        let shift = shift(channel.offset, score);
+        let simulated = points(grid, values)
+            .into_iter()
+            .map(|(x, y)| (x, y + shift))
+            .collect();
+        // measured and simulated values stand at the same places
+        let rows = grid.iter().zip(record.mean.iter().zip(values));
+        let residual = rows
+            .map(|(&x, (measured, simulated))| (x, measured - simulated - shift))
+            .collect();
+        let remark = match (run.curves.verdict, score) {
+            (verdict @ Verdict::Failed { .. }, _) => {
+                format!("{}; not shifted", words::verdict(&verdict))
+            }
+            (Verdict::Complete, Some(score)) => {
+                let unit = unit(&channel.unit);
+                format!(
+                    "rms error {} {unit}, {} of half the range; shifted by {} {unit}",
+                    fixed(score.mse.sqrt(), 2),
+                    percent(score.rmse_over_half_range),
+                    fixed(shift, 2),
+                )
+            }
+            (Verdict::Complete, None) => String::new(),
+        };
+        Self {
+            heading,
+            remark,
+            simulated,
+            residual,
+        }
+    }
+}
+
+/// Draws the overlay of one channel, by its place in the case, under its condition; none if it was
+/// not measured.
+pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figure> {
+    let condition = case.conditions.get(result.condition)?;
+    let channel = case.channels.get(at)?;
+    let record = channel.record.as_ref()?;
+    let sides = [
+        ("Recommended parameters", &result.recommended),
+        ("Optimised parameters", &result.optimised),
+    ]
+    .map(|(heading, run)| {
+        let values = run.shown(case, result.condition).channel(channel);
+        Side::new(heading, (run, values), (at, channel), record)
+    });
+    let cycles = record.cycles;
+    let grid = &channel.abscissa.points;
+    let band: Vec<_> = grid
+        .iter()
+        .zip(record.mean.iter().zip(&record.spread))
+        .map(|(&x, (&mean, &spread))| (x, mean - spread, mean + spread))
+        .collect();
+    let curves = sides.iter().flat_map(|side| &side.simulated);
+    let values = Scale::linear(
+        curves
+            .map(|&(_, y)| y)
+            .chain(band.iter().flat_map(|&(_, low, high)| [low, high])),
+        5.0,
+    );
+    let residuals = sides.iter().flat_map(|side| &side.residual);
+    let residuals = Scale::symmetric(residuals.map(|&(_, y)| y));
+    let heading = words::capitalised(&channel.title);
+    let title = format!("{heading}, condition {}", condition.name);
+    let measured = Measured {
+        mean: points(grid, &record.mean),
+        band,
+        values,
+        residuals,
+        axis: kind::axis(case, &channel.abscissa),
+        unit: unit(&channel.unit),
+    };
+    let svg = render((WIDTH, HEIGHT), &title, |canvas| {
+        key(canvas, &heading, cycles);
+        let [recommended, optimised] = &sides;
+        column(canvas, &measured, recommended, true);
+        column(canvas, &measured, optimised, false);
+    });
+    let free = match channel.offset {
+        Offset::Free => {
+            " Complete simulated curves are shifted to the measured mean, because the sensor has no \
+             absolute zero."
+        }
+        Offset::Fixed => "",
+    };
+    Some(Figure {
+        name: format!("overlay_{}_{}", condition.name, channel.name),
+        caption: format!(
+            "{title}: measured and simulated, on shared scales; below, \
+             measured minus simulated.{free}"
+        ),
+        svg,
+    })
+}
+
+/// The measured side of both columns, and the scales they share.
+struct Measured {
+    mean: Vec<(f64, f64)>,
+    /// Rows of (abscissa, low, high).
+    band: Vec<(f64, f64, f64)>,
+    values: Scale,
+    residuals: Scale,
+    axis: Axis,
+    unit: String,
+}
+
+/// One parameter set: curves above, residual below. Only the first column labels its scales.
+fn column(canvas: &mut Canvas, measured: &Measured, side: &Side, first: bool) {
+    let width = 0.5 * (WIDTH - LEFT - BETWEEN - 10.0);
+    let left = if first { LEFT } else { LEFT + width + BETWEEN };
+    let panel = Panel {
+        left,
+        top: TOP,
+        width,
+        height: VALUES_HEIGHT,
+        x: measured.axis.scale,
+        y: measured.values,
+    };
+    let title = |what: &str| {
+        if first {
+            format!("{what} [{}]", measured.unit)
+        } else {
+            String::new()
+        }
+    };
+    panel.guides(canvas);
+    panel.band(canvas, &measured.band, BAND);
+    panel.curve(canvas, &measured.mean, MEASURED);
+    panel.curve(canvas, &side.simulated, SIMULATED);
+    panel.left_axis(canvas, first, &title("value"));
+    panel.lower_axis(canvas, false, "");
+    if side.simulated.len() < 2 {
+        panel.remark(canvas, "no simulated curve: the run failed before it");
+    }
+    let heading = Lettering::new(12.0, INK).bold();
+    canvas.text((left, TOP - 27.0), side.heading, heading);
+    canvas.text((left, TOP - 12.0), &side.remark, Lettering::new(10.5, GREY));
+    let strip = Panel {
+        top: RESIDUAL_TOP,
+        height: RESIDUAL_HEIGHT,
+        y: measured.residuals,
+        ..panel
+    };
+    strip.guides(canvas);
+    strip.curve(canvas, &side.residual, RESIDUAL);
+    strip.left_axis(canvas, first, &title("residual"));
+    strip.lower_axis(canvas, true, &measured.axis.title);
+}
+
+const MEASURED: Pen = Pen::new(INK, 1.3);
+const SIMULATED: Pen = Pen::new(VERMILLION, 1.1);
+const RESIDUAL: Pen = Pen::new(INK, 0.8);
+
+/// The key above both panels: each mark before its words, with room for the widest typeface, since the
+/// width of a text is not known here.
+fn key(canvas: &mut Canvas, title: &str, cycles: usize) {
+    const LETTER: f64 = 6.4;
+    const MARK: f64 = 22.0;
+    let y = 12.0;
+    let heading = Lettering::new(13.0, INK).bold();
+    canvas.text((LEFT, y), title, heading);
+    let measured = match cycles {
+        0 | 1 => "measured, one cycle".to_owned(),
+        _ => format!("measured, mean of {cycles} cycles ± one standard deviation"),
+    };
+    let text = Lettering::new(10.5, INK);
+    let place = |text: &str, right: f64| right - LETTER * text.chars().count() as f64;
+    let x = place("simulated", WIDTH - 10.0);
+    canvas.text((x, y), "simulated", text);
+    canvas.line(&[(x - 6.0 - MARK, y), (x - 6.0, y)], SIMULATED);
+    let x = place(&measured, x - MARK - 24.0);
+    canvas.text((x, y), &measured, text);
+    canvas.rectangle((x - 6.0 - MARK, y - 4.0), (x - 6.0, y + 4.0), BAND);
+    canvas.line(&[(x - 6.0 - MARK, y), (x - 6.0, y)], MEASURED);
+}
+
+/// Every overlay of a condition: the objective's channels first, then the others that were measured.
+pub fn overlays(case: &Case, result: &ConditionResult) -> Vec<Figure> {
+    let mut measured: Vec<_> = case.measured(result.condition).collect();
+    measured.sort_by_key(|(_, channel, _)| !case.objective.names(&channel.name));
+    let figures = measured.into_iter();
+    figures
+        .filter_map(|(at, ..)| overlay(case, result, at))
+        .collect()
+}

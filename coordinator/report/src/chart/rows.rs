@@ -1,0 +1,67 @@
+//! What maps with a row per channel share: frame, names of the rows, colour scale.
+use super::canvas::{Canvas, Lettering, WIDTH};
+use super::panel::Panel;
+use super::scale::Scale;
+use crate::color::{GREY, INK, Ramp};
+
+const LEFT: f64 = 104.0;
+const RIGHT: f64 = 20.0;
+const TOP: f64 = 40.0;
+const ROW: f64 = 30.0;
+const FOOT: f64 = 46.0;
+/// By how much cells overlap [px]: no seams between them.
+pub(super) const OVERLAP: f64 = 0.5;
+
+/// Height of a map of this many rows [px].
+pub(super) fn height(rows: usize) -> f64 {
+    TOP + ROW * rows as f64 + FOOT
+}
+
+/// The frame of a map of this many rows; row `k` lies between `k` and `k + 1`.
+pub(super) fn panel(rows: usize, x: Scale) -> Panel {
+    Panel {
+        left: LEFT,
+        top: TOP,
+        width: WIDTH - LEFT - RIGHT,
+        height: ROW * rows as f64,
+        x,
+        y: Scale::between(rows as f64, 0.0, 1.0),
+    }
+}
+
+/// Names of the rows.
+pub(super) fn names(canvas: &mut Canvas, panel: &Panel, channels: &[String]) {
+    let lettering = Lettering::new(11.0, INK).right();
+    for (row, name) in channels.iter().enumerate() {
+        canvas.text((LEFT - 10.0, panel.at_y(row as f64 + 0.5)), name, lettering);
+    }
+}
+
+/// What stands beside a colour scale.
+pub(super) struct Key<'a> {
+    /// Before it.
+    pub before: &'a str,
+    /// Behind it.
+    pub behind: &'a str,
+    /// How much room that takes [px].
+    pub room: f64,
+}
+
+/// The colour scale above the map: and what stands beside it.
+pub(super) fn key(canvas: &mut Canvas, ramp: &Ramp, key: &Key<'_>) {
+    const BAR: f64 = 180.0;
+    const STEPS: usize = 60;
+    let y = 15.0;
+    let left = WIDTH - RIGHT - BAR - key.room;
+    for step in 0..STEPS {
+        let x = left + BAR * step as f64 / STEPS as f64;
+        canvas.rectangle(
+            (x, y - 5.0),
+            (x + BAR / STEPS as f64 + OVERLAP, y + 5.0),
+            ramp.at((step as f64 + 0.5) / STEPS as f64),
+        );
+    }
+    let text = Lettering::new(10.5, GREY);
+    canvas.text((left - 8.0, y), key.before, text.right());
+    canvas.text((left + BAR + 8.0, y), key.behind, text);
+}

@@ -1,0 +1,144 @@
+//! Curves over one abscissa in strips one above the other on one axis, labelled at their right
+//! ends. What is drawn in them is not known here.
+use super::axis::Axis;
+use super::canvas::{Lettering, Pen, WIDTH, render};
+use super::panel::{Panel, spread};
+use super::points::points;
+use super::scale::Scale;
+use crate::color::{BAND, Color};
+use crate::document::Figure;
+
+const LEFT: f64 = 62.0;
+const RIGHT: f64 = 96.0;
+const TOP: f64 = 12.0;
+const GAP: f64 = 16.0;
+const FOOT: f64 = 44.0;
+
+/// One curve with the label at its right end.
+pub struct Curve {
+    label: String,
+    color: Color,
+    points: Vec<(f64, f64)>,
+}
+
+/// One strip.
+pub struct Strip {
+    /// Title of its scale, with the unit.
+    pub title: String,
+    /// Height [px].
+    pub height: f64,
+    /// Curves, drawn in this order.
+    pub curves: Vec<Curve>,
+    /// Rows of (abscissa, low, high) behind the curves.
+    pub band: Vec<(f64, f64, f64)>,
+    /// Its scale, where it is not the curves' own.
+    pub scale: Option<Scale>,
+}
+
+/// A curve, its values times a factor.
+pub fn curve(
+    label: impl Into<String>,
+    color: Color,
+    at: &[f64],
+    values: &[f64],
+    factor: f64,
+) -> Curve {
+    Curve {
+        label: label.into(),
+        color,
+        points: points(at, values)
+            .into_iter()
+            .map(|(x, y)| (x, factor * y))
+            .collect(),
+    }
+}
+
+/// A strip without a band.
+pub fn strip(title: impl Into<String>, height: f64, curves: Vec<Curve>) -> Strip {
+    Strip {
+        title: title.into(),
+        height,
+        curves,
+        band: Vec::new(),
+        scale: None,
+    }
+}
+
+/// Height of the whole figure [px].
+fn height(strips: &[Strip]) -> f64 {
+    let heights: f64 = strips.iter().map(|strip| strip.height + GAP).sum();
+    TOP + heights - GAP + FOOT
+}
+
+/// Left, right, upper and lower end of the axis, as shares of the figure's width and height:
+/// the place for a cursor.
+pub fn span(strips: &[Strip]) -> [f64; 4] {
+    let height = height(strips);
+    [
+        LEFT / WIDTH,
+        (WIDTH - RIGHT) / WIDTH,
+        TOP / height,
+        (height - FOOT) / height,
+    ]
+}
+
+/// Draws the strips.
+pub fn stack(
+    name: impl Into<String>,
+    title: &str,
+    caption: String,
+    axis: &Axis,
+    strips: &[Strip],
+) -> Figure {
+    let width = WIDTH - LEFT - RIGHT;
+    let svg = render((WIDTH, height(strips)), title, |canvas| {
+        let mut top = TOP;
+        for (index, strip) in strips.iter().enumerate() {
+            let curves = strip.curves.iter().flat_map(|curve| &curve.points);
+            let band = strip.band.iter().flat_map(|&(_, low, high)| [low, high]);
+            let panel = Panel {
+                left: LEFT,
+                top,
+                width,
+                height: strip.height,
+                x: axis.scale,
+                y: strip.scale.unwrap_or_else(|| {
+                    Scale::linear(
+                        curves.map(|&(_, y)| y).chain(band),
+                        (strip.height / 26.0).max(2.0),
+                    )
+                }),
+            };
+            panel.guides(canvas);
+            panel.band(canvas, &strip.band, BAND);
+            for curve in &strip.curves {
+                panel.curve(canvas, &curve.points, Pen::new(curve.color, 1.2));
+            }
+            let ends: Vec<_> = strip
+                .curves
+                .iter()
+                .map(|curve| {
+                    let last = curve.points.iter().rfind(|(_, y)| y.is_finite());
+                    last.map_or(panel.bottom(), |&(_, y)| panel.at_y(y))
+                })
+                .collect();
+            let places = spread(&ends, 13.0, top, panel.bottom());
+            for (curve, y) in strip.curves.iter().zip(places) {
+                let lettering = Lettering::new(11.0, curve.color);
+                canvas.text((panel.right() + 7.0, y), &curve.label, lettering);
+            }
+            if strip.curves.iter().all(|curve| curve.points.len() < 2) {
+                panel.remark(canvas, "nothing was simulated");
+            }
+            let last = index + 1 == strips.len();
+            panel.left_axis(canvas, true, &strip.title);
+            panel.lower_axis(canvas, last, if last { &axis.title } else { "" });
+            top = panel.bottom() + GAP;
+        }
+    });
+    Figure {
+        name: name.into(),
+        caption,
+        svg,
+    }
+}

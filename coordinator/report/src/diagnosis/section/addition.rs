@@ -1,0 +1,28 @@
+//! What is added to the model: the entry of the case file, and its sizes.
+use crate::diagnosis::effects::effects_toml;
+use crate::diagnosis::subject::Subject;
+use crate::diagnosis::table as tables;
+use crate::document::{Block, Section};
+
+pub(super) fn section(subject: &Subject<'_>) -> Section {
+    let mut blocks: Vec<Block> = tables::sizes(subject)
+        .map(Block::Table)
+        .into_iter()
+        .collect();
+    if let Some(entry) = effects_toml(subject) {
+        blocks.extend([
+            Block::Text(
+                "The same as an entry of the case's model file. Without it the model is what it was, \
+                 to the bit; with it the effect is ordinary physics, simulated by every worker and \
+                 fitted like any gene:"
+                    .to_owned(),
+            ),
+            Block::Code(entry),
+        ]);
+    }
+    Section {
+        id: "add",
+        title: "What is added",
+        blocks,
+    }
+}

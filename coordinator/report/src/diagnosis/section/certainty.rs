@@ -1,0 +1,73 @@
+//! What the verdict rests on: numerical error, noise, convergence, parameters, cost.
+use crate::diagnosis::subject::Subject;
+use crate::diagnosis::table as tables;
+use crate::document::{Block, Fact, Section};
+use crate::number::{figure, percent};
+
+pub(super) fn section(subject: &Subject<'_>) -> Section {
+    let mut blocks = Vec::new();
+    let facts = facts(subject);
+    if !facts.is_empty() {
+        blocks.push(Block::Facts(facts));
+        blocks.push(tables::numerics(subject).map_or_else(
+            || {
+                Block::Text(
+                    "The finer model of the numerical check did not complete: how far the \
+                     discretisation moves the curves is not known."
+                        .to_owned(),
+                )
+            },
+            Block::Table,
+        ));
+        let rest = [
+            tables::instruments(subject),
+            tables::genes(subject),
+            tables::stages(subject),
+        ];
+        blocks.extend(rest.into_iter().flatten().map(Block::Table));
+    }
+    Section {
+        id: "certainty",
+        title: "What it rests on",
+        blocks,
+    }
+}
+
+/// The grounds; none where the recalibration did not come to an end.
+fn facts(subject: &Subject<'_>) -> Vec<Fact> {
+    let diagnosis = subject.diagnosis();
+    let Some(fit) = &diagnosis.before else {
+        return Vec::new();
+    };
+    let noise = if diagnosis.noise.is_seen() {
+        "seen: the scatter between the cycles, order by order"
+    } else {
+        "assumed from the data sheet and the highest orders: there was one cycle"
+    };
+    let recalibration = format!(
+        "one more step promises to lower the misfit by {}; the tests look at the residual after that \
+         step",
+        percent(fit.search.promised_decrease())
+    );
+    let mut facts = vec![
+        Fact::new("noise", noise),
+        Fact::new("recalibration", recalibration),
+    ];
+    let after = diagnosis.after.iter();
+    facts.extend(
+        after
+            .filter(|after| !after.model.added.is_empty())
+            .map(|after| {
+                let promised = percent(after.search.promised_decrease());
+                Fact::new("fit with the answer", format!("the same: {promised}"))
+            }),
+    );
+    facts.extend(diagnosis.rounds.first().map(|round| {
+        let left = format!(
+            "{} by the best model, per degree of freedom; intervals are as many times as wide",
+            figure(round.dispersion.sqrt())
+        );
+        Fact::new("times the noise", left)
+    }));
+    facts
+}

@@ -1,0 +1,31 @@
+//! How the diagnosis was made: enough to make it again.
+use crate::diagnosis::subject::{Subject, channels};
+use crate::document::{Block, Fact, Section};
+use crate::number::duration;
+use crate::section::origin;
+use crate::words::condition_name;
+
+pub(super) fn section(subject: &Subject<'_>) -> Section {
+    let mut facts = origin::facts(&subject.origin, subject.case);
+    facts.extend(subject.records.iter().map(|record| {
+        let name = condition_name(subject.case, record.condition);
+        let (cycles, channels) = (record.cycles.len(), channels(record).join(", "));
+        Fact::new(
+            format!("record of {name}"),
+            format!("{cycles} cycles of {channels}"),
+        )
+    }));
+    let library = subject.library.iter();
+    let named = library.filter(|effect| !effect.generic).count();
+    let forces = subject.library.len() - named;
+    facts.extend([
+        Fact::new(
+            "library",
+            format!("{named} named effects, {forces} forces without a cause"),
+        ),
+        Fact::new("wall time", duration(subject.wall_s)),
+    ]);
+    let digest = &subject.origin.digest;
+    facts.extend((!digest.is_empty()).then(|| Fact::code("digest of the result", digest)));
+    origin::section(vec![Block::Facts(facts)])
+}

@@ -1,0 +1,112 @@
+//! Where the recalibrated simulation and the record part: abscissa, order, joint.
+use crate::diagnosis::subject::{Subject, channels};
+use crate::document::{Block, Figure, Section, figures};
+use crate::number::{figure, fixed, plain, unit};
+use crate::words::{counted, listed};
+use crate::{chart, kind};
+use discrepancy::place::along::Window;
+use discrepancy::place::whereabouts::Where;
+use discrepancy::record::Record;
+use protocol::case::Abscissa;
+
+/// Windows and entries that are named in words.
+const NAMED: usize = 6;
+
+pub(super) fn section(subject: &Subject<'_>) -> Section {
+    let mut blocks = Vec::new();
+    if let Some(seen) = &subject.diagnosis().whereabouts {
+        blocks.push(Block::Text(
+            "Everything here is what the recalibrated model, without any further effect, leaves of \
+             the record; what another set of parameters could take up does not show."
+                .to_owned(),
+        ));
+        if let Some(record) = subject.calibrated() {
+            blocks.extend(windows(seen, record));
+            blocks.extend(peaks(seen, record).map(Block::Text));
+            blocks.extend(figures(maps(subject, seen, record)));
+        }
+    }
+    Section {
+        id: "where",
+        title: "Where the curves part",
+        blocks,
+    }
+}
+
+fn maps(subject: &Subject<'_>, seen: &Where, record: &Record) -> Vec<Figure> {
+    let names = channels(record);
+    let Some(first) = record.channels.first() else {
+        return Vec::new();
+    };
+    let abscissa = &first.channel.abscissa;
+    let axis = kind::axis(subject.case, abscissa);
+    let hertz = kind::of(subject.case).frequency_hz(subject.case, record.condition);
+    let all = [
+        chart::angle_map(&seen.along, &names, (abscissa, &axis)),
+        chart::order_map(&seen.order, &names, (&abscissa.name, hertz)),
+        chart::joints(&seen.joints, seen.equivalent),
+        chart::latent_forces(&seen.joints, seen.equivalent, (abscissa, &axis)),
+    ];
+    all.into_iter().flatten().collect()
+}
+
+fn windows(seen: &Where, record: &Record) -> Vec<Block> {
+    let all = &seen.along.windows;
+    let item = |window: &Window| {
+        let channel = record.channels.get(window.channel).map(|own| &own.channel);
+        let channel = channel?;
+        Some(format!(
+            "{}, {} to {} {}: the simulation is too {} by {} standard deviations",
+            channel.title,
+            plain(window.from),
+            plain(end(window, &channel.abscissa)),
+            unit(&channel.abscissa.unit),
+            if window.strength > 0.0 { "low" } else { "high" },
+            fixed(window.strength.abs(), 1)
+        ))
+    };
+    let first = record.channels.first();
+    let by = first.map_or_else(String::new, |first| counted(&first.channel.abscissa));
+    if all.is_empty() {
+        let none = format!("By {by}: no window stands out of the noise.");
+        return vec![Block::Text(none)];
+    }
+    let mut blocks = vec![
+        Block::Text(format!("By {by}, the strongest first:")),
+        Block::List(all.iter().take(NAMED).filter_map(item).collect()),
+    ];
+    if all.len() > NAMED {
+        let more = format!("and {} more windows.", all.len() - NAMED);
+        blocks.push(Block::Text(more));
+    }
+    blocks
+}
+
+/// Where a window ends, within the period.
+fn end(window: &Window, abscissa: &Abscissa) -> f64 {
+    let period = abscissa.period.filter(|period| window.to > *period);
+    window.to - period.unwrap_or(0.0)
+}
+
+/// What stands out by order; none where nothing is periodic.
+fn peaks(seen: &Where, record: &Record) -> Option<String> {
+    let mut abscissas = record.channels.iter().map(|own| &own.channel.abscissa);
+    let of = &abscissas.find(|abscissa| abscissa.period.is_some())?.name;
+    let all = &seen.order.peaks;
+    if all.is_empty() {
+        return Some(format!(
+            "By order of the {of}: no entry stands out of the noise."
+        ));
+    }
+    let named = all.iter().take(NAMED).map(|peak| {
+        let (order, ratio) = (peak.order, figure(peak.ratio));
+        let channel = record.channels.get(peak.channel);
+        let channel = channel.map_or("", |own| own.channel.title.as_str());
+        format!("order {order} at {channel} ({ratio}\u{a0}× noise)")
+    });
+    Some(format!(
+        "By order of the {of}, {} entries stand out, most of all {}.",
+        all.len(),
+        listed(&named.collect::<Vec<_>>(), "and")
+    ))
+}

@@ -1,0 +1,47 @@
+//! The proof: how far the gap closes, on records that took part and on records that did not, with
+//! the best rejected rival beside it.
+use crate::chart;
+use crate::diagnosis::shown::{Shown, shown};
+use crate::diagnosis::subject::Subject;
+use crate::diagnosis::table as tables;
+use crate::document::{Block, Section, figures};
+use maud::html;
+
+pub(super) fn section(subject: &Subject<'_>) -> Section {
+    let mut blocks = Vec::new();
+    let numbers = [tables::gaps(subject), tables::paper(subject)];
+    blocks.extend(numbers.into_iter().flatten().map(Block::Table));
+    blocks.extend(shown(subject).iter().flat_map(curves));
+    let rounds = &subject.diagnosis().rounds;
+    let added = rounds.iter().any(|round| round.added.is_some());
+    if !added && !blocks.is_empty() {
+        let same =
+            "Nothing was added: before and after are the same model, shown for what it leaves.";
+        blocks.insert(0, Block::Text(same.to_owned()));
+    }
+    Section {
+        id: "show",
+        title: "What it shows",
+        blocks,
+    }
+}
+
+/// The curves of one condition: what is scored, and behind a fold its other channels.
+fn curves(shown: &Shown<'_>) -> Vec<Block> {
+    let heading = html! { h3 { "Condition " (shown.condition) } };
+    let mut blocks = vec![Block::Markup(heading)];
+    let (scored, others): (Vec<usize>, Vec<usize>) = shown
+        .order()
+        .into_iter()
+        .partition(|&c| shown.record.channels[c].scored);
+    let draw = |channels: Vec<usize>| {
+        let drawn = channels.into_iter();
+        figures(drawn.filter_map(|c| chart::closing(&shown.channel(c)?)))
+    };
+    blocks.extend(draw(scored));
+    let others = draw(others);
+    if !others.is_empty() {
+        blocks.push(Block::Folded("Other channels", others));
+    }
+    blocks
+}

@@ -1,0 +1,125 @@
+//! The curves of a diagnosis condition by condition: measured, before, after, best rejected rival.
+use super::subject::Subject;
+use crate::chart::{Axis, Closing};
+use crate::kind;
+use crate::words::condition_name;
+use discrepancy::record::{Curves, Record};
+
+/// Everything about one condition, on its record's grid.
+#[derive(Clone, Debug)]
+pub(super) struct Shown<'a> {
+    /// Name of the condition.
+    pub condition: String,
+    /// What was measured.
+    pub record: &'a Record,
+    /// The axes of the channels.
+    pub axes: Vec<Axis>,
+    /// Mean over all cycles, by channel.
+    pub mean: Curves,
+    /// Standard deviation of one cycle, by channel; empty lists where there is one cycle only.
+    pub spread: Curves,
+    /// Curves of the recalibrated model.
+    pub before: &'a Curves,
+    /// Curves with what was added, if anything was.
+    pub after: Option<&'a Curves>,
+    /// The best rejected rival and the curves with it.
+    pub rival: Option<(&'a str, &'a Curves)>,
+}
+
+impl Shown<'_> {
+    /// One channel of it.
+    pub(super) fn channel(&self, c: usize) -> Option<Closing<'_>> {
+        let channel = &self.record.channels.get(c)?.channel;
+        Some(Closing {
+            condition: &self.condition,
+            channel: &channel.title,
+            unit: &channel.unit,
+            at: &channel.abscissa.points,
+            axis: self.axes.get(c)?,
+            measured: self.mean.get(c)?,
+            spread: self.spread.get(c).map_or(&[], Vec::as_slice),
+            cycles: self.record.cycles.len(),
+            before: self.before.get(c)?,
+            after: self.after.and_then(|after| after.get(c)).map(Vec::as_slice),
+            rival: self
+                .rival
+                .and_then(|(id, rival)| Some((id, rival.get(c)?.as_slice()))),
+            free_offset: !channel.is_absolute(),
+        })
+    }
+
+    /// Indices of the channels, those that are scored first.
+    pub(super) fn order(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.record.channels.len()).collect();
+        order.sort_by_key(|&c| !self.record.channels[c].scored);
+        order
+    }
+}
+
+/// Every condition that was compared, the calibrated one first; before a comparison, the calibrated
+/// one alone.
+pub(super) fn shown<'a>(subject: &Subject<'a>) -> Vec<Shown<'a>> {
+    let diagnosis = subject.diagnosis();
+    let found = diagnosis.rounds.iter().any(|round| round.added.is_some());
+    let mut all: Vec<Shown<'a>> = Vec::new();
+    let mut seen = Vec::new();
+    for row in &diagnosis.rows {
+        if seen.contains(&row.condition) {
+            continue;
+        }
+        seen.push(row.condition);
+        let rival = diagnosis.rival.as_ref().and_then(|(id, rows)| {
+            let row = rows.iter().find(|other| other.condition == row.condition)?;
+            Some((id.as_str(), &row.after))
+        });
+        all.extend(
+            before(subject, row.condition, &row.before).map(|shown| Shown {
+                after: found.then_some(&row.after),
+                rival,
+                ..shown
+            }),
+        );
+    }
+    if let (true, Some(fit)) = (all.is_empty(), &diagnosis.before) {
+        let calibrated = subject.case.objective.condition;
+        all.extend(before(subject, calibrated, &fit.curves));
+    }
+    all
+}
+
+/// A condition with the curves of the recalibrated model alone.
+fn before<'a>(subject: &Subject<'a>, condition: usize, curves: &'a Curves) -> Option<Shown<'a>> {
+    let record = subject.record(condition)?;
+    let mean = record.mean();
+    let channels = record.channels.iter();
+    let axes = channels.map(|own| kind::axis(subject.case, &own.channel.abscissa));
+    Some(Shown {
+        condition: condition_name(subject.case, condition),
+        axes: axes.collect(),
+        spread: spread(record, &mean),
+        mean,
+        record,
+        before: curves,
+        after: None,
+        rival: None,
+    })
+}
+
+/// Standard deviation of the cycles about their mean.
+fn spread(record: &Record, mean: &Curves) -> Curves {
+    let cycles = record.cycles.len();
+    if cycles < 2 {
+        return Vec::new();
+    }
+    let channel = |(c, mean): (usize, &Vec<f64>)| -> Vec<f64> {
+        let at = |(i, m): (usize, &f64)| {
+            let squares = record
+                .cycles
+                .iter()
+                .map(|cycle| (cycle[c][i] - m) * (cycle[c][i] - m));
+            (squares.sum::<f64>() / (cycles - 1) as f64).sqrt()
+        };
+        mean.iter().enumerate().map(at).collect()
+    };
+    mean.iter().enumerate().map(channel).collect()
+}

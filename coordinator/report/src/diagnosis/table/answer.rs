@@ -1,0 +1,110 @@
+//! Numbers of the answer: parameters of its effects, and genes.
+use crate::diagnosis::subject::Subject;
+use crate::diagnosis::words::interval;
+use crate::document::{Row, Table};
+use crate::number::{NONE, figure, quantity};
+use crate::words::at_bound;
+use protocol::announce::{ParameterDescriptor, Role};
+
+/// Parameters of the effects of the answer.
+pub(in crate::diagnosis) fn sizes(subject: &Subject<'_>) -> Option<Table> {
+    let diagnosis = subject.diagnosis();
+    // a suspect without a verdict is no answer
+    subject.added().first()?;
+    let mut rows = Vec::new();
+    for effect in &diagnosis.effects {
+        rows.push(Row::group(format!("{} ({})", effect.title, effect.id)));
+        for own in &effect.parameters {
+            let (name, unit) = (&own.name, &own.unit);
+            let known = subject.parameter(&effect.id, name);
+            let of = |value: Option<f64>| {
+                value.map_or_else(|| NONE.to_owned(), |value| quantity(value, unit))
+            };
+            rows.push(Row::new(
+                name.replace('_', " "),
+                [
+                    quantity(own.value, unit),
+                    interval(own.interval, unit),
+                    of(known.map(usual)),
+                    known.map_or_else(|| NONE.to_owned(), |p| interval([p.lower, p.upper], unit)),
+                    known
+                        .and_then(|p| edge(own.value, p.lower, p.upper))
+                        .unwrap_or("")
+                        .to_owned(),
+                ],
+            ));
+        }
+    }
+    Table::new(
+        "Sizes of the answer",
+        [
+            "",
+            "value",
+            "95\u{a0}% interval",
+            "usual size",
+            "bounds",
+            "",
+        ],
+        rows,
+    )
+    .noted([
+        "Intervals are those of the linearised fit with all genes free, as wide as its dispersion and the colour of what is left make them; \
+             they hold if the name is right.",
+    ])
+    .unless_empty()
+}
+
+/// How large a parameter usually is: of a shape, its typical value.
+fn usual(parameter: &ParameterDescriptor) -> f64 {
+    match parameter.role {
+        Role::Size => parameter.scale,
+        Role::Shape => parameter.typical,
+    }
+}
+
+/// Which bound a value on a linear scale touches.
+fn edge(value: f64, lower: f64, upper: f64) -> Option<&'static str> {
+    let share = (value - lower) / (upper - lower);
+    match share {
+        _ if share < 0.005 => Some("at its lower bound"),
+        _ if share > 0.995 => Some("at its upper bound"),
+        _ => None,
+    }
+}
+
+/// Genes before and after, with their bounds.
+pub(in crate::diagnosis) fn genes(subject: &Subject<'_>) -> Option<Table> {
+    let diagnosis = subject.diagnosis();
+    let before = diagnosis
+        .before
+        .as_ref()
+        .map(|fit| fit.model.genes(fit.x()))?;
+    let after = diagnosis.after.as_ref().map(|fit| fit.model.genes(fit.x()));
+    let rows = subject.case.unknowns.iter().enumerate().map(|(k, gene)| {
+        let of = |value: Option<&f64>| value.map_or_else(|| NONE.to_owned(), |v| figure(*v));
+        let last = after.as_ref().unwrap_or(&before).get(k);
+        let edge = last.and_then(|v| at_bound(gene, *v));
+        Row::of(
+            gene,
+            [
+                figure(gene.start),
+                of(before.get(k)),
+                of(after.as_ref().and_then(|after| after.get(k))),
+                interval([gene.lower, gene.upper], &gene.unit),
+                edge.map_or_else(String::new, |edge| format!("at its {edge} bound")),
+            ],
+        )
+    });
+    Some(Table::new(
+        "Parameters of the calibration",
+        [
+            "",
+            "recommended",
+            "recalibrated",
+            "with the answer",
+            "bounds",
+            "",
+        ],
+        rows.collect(),
+    ))
+}

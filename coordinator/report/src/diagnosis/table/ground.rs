@@ -1,0 +1,111 @@
+//! What the diagnosis stands on and what it cost: numerical error, simulations.
+use crate::diagnosis::subject::Subject;
+use crate::document::{Row, Table};
+use crate::number::{NONE, count, duration, fixed, quantity};
+use discrepancy::ground::preflight::Preflight;
+use protocol::case::Channel;
+
+/// How far the discretisation moves each channel, at the recalibrated model and at the answer.
+pub(in crate::diagnosis) fn numerics(subject: &Subject<'_>) -> Option<Table> {
+    let diagnosis = subject.diagnosis();
+    let record = subject.calibrated()?;
+    let checks = [
+        ("the recalibrated model", diagnosis.preflight.as_ref()),
+        ("the answer", diagnosis.preflight_after.as_ref()),
+    ];
+    let mut rows = Vec::new();
+    let mut notes = Vec::new();
+    for (name, check) in checks {
+        let Some(check) = check else { continue };
+        rows.push(Row::group(name));
+        let each = record.channels.iter().enumerate();
+        rows.extend(each.map(|(c, own)| row(check, c, &own.channel)));
+        notes.push(format!(
+            "{name}: at most {} of the standard error is left{}.",
+            if check.ratio().is_finite() {
+                format!("{}\u{a0}×", fixed(check.ratio(), 2))
+            } else {
+                "an unknown multiple".to_owned()
+            },
+            if check.whole {
+                ""
+            } else {
+                ", refined one thing at a time"
+            }
+        ));
+    }
+    notes.push(
+        "What recalibration leaves of the difference counts as noise in every test, so that no effect is \
+         named for what a coarser model does; a name must be believed with that of the answer as well."
+            .to_owned(),
+    );
+    Table::new(
+        "Numerical check: the finer model less the one that is fitted, root mean square",
+        [
+            "",
+            "difference",
+            "after recalibration",
+            "standard error of the mean",
+        ],
+        rows,
+    )
+    .noted(notes)
+    .unless_empty()
+}
+
+/// One channel of a check.
+fn row(check: &Preflight, c: usize, channel: &Channel) -> Row {
+    let of = |values: &[f64]| {
+        values
+            .get(c)
+            .map_or_else(|| NONE.to_owned(), |value| quantity(*value, &channel.unit))
+    };
+    Row::new(
+        channel.title.as_str(),
+        [
+            of(&check.rms),
+            of(&check.rms_left),
+            of(&check.standard_error),
+        ],
+    )
+}
+
+/// What each stage cost.
+pub(in crate::diagnosis) fn stages(subject: &Subject<'_>) -> Option<Table> {
+    let accounts = &subject.diagnosed.accounts;
+    let mut rows: Vec<Row> = accounts
+        .iter()
+        .map(|(stage, account)| {
+            Row::new(
+                stage.name(),
+                [
+                    count(account.experiments),
+                    count(account.failed),
+                    count(account.batches),
+                    duration(account.wall.as_secs_f64()),
+                ],
+            )
+        })
+        .collect();
+    let total = |of: fn(&study::StageCost) -> u64| accounts.iter().map(|(_, a)| of(a)).sum();
+    rows.push(Row::new(
+        "all",
+        [
+            count(total(|account| account.experiments)),
+            count(total(|account| account.failed)),
+            count(total(|account| account.batches)),
+            duration(subject.wall_s),
+        ],
+    ));
+    if accounts.is_empty() {
+        return None;
+    }
+    Some(Table::new(
+            "What each stage cost",
+            ["", "simulations", "did not complete", "batches", "time in this session"],
+            rows,
+        ).noted([
+            "Simulations of one batch are independent of each other; a batch waits for the one before.",
+            "Results that the journal held already take no time; the last line's time is that of all \
+             sessions.",]))
+}

@@ -1,0 +1,158 @@
+//! What was suspected, and what would have been seen.
+use crate::diagnosis::judgement::{ranked, tempered};
+use crate::diagnosis::subject::Subject;
+use crate::diagnosis::words::{self, nats, p_value};
+use crate::document::{Row, Table};
+use crate::number::{NONE, figure, percent, quantity};
+use discrepancy::diagnose::Round;
+
+/// Every suspect of a round, with what became of it.
+pub(in crate::diagnosis) fn suspects(number: usize, round: &Round) -> Table {
+    let rows = ranked(round).into_iter().map(|(suspect, judgement)| {
+        let score = suspect.score.as_ref();
+        Row::new(
+            &suspect.effect.id,
+            [
+                judgement.p_value.map_or_else(|| NONE.to_owned(), p_value),
+                score.map_or_else(|| NONE.to_owned(), |score| percent(score.absorbed)),
+                judgement.gain.map_or_else(|| NONE.to_owned(), nats),
+                judgement.why,
+            ],
+        )
+    });
+    Table::new(
+        format!("Round {number}: every suspect, and what became of it"),
+        [
+            "",
+            "p of its test",
+            "absorbed",
+            "nats after refit",
+            "kept or dropped, and why",
+        ],
+        rows.collect(),
+    ).noted([
+        format!(
+            "p: probability of a test as clear as this one if the effect is not there, with the \
+             noise as many times as large as the best model leaves ({}). Absorbed: share of the effect's \
+             signature that recalibration takes up. Nats: gain of the log evidence over the model \
+             without it, with all genes free, over the square of that.",
+            figure(round.dispersion.sqrt())
+        ),
+        format!(
+            "Over the whole family of named effects, p {}.",
+            words::equals(&p_value(round.p_value))
+        ),
+    ])
+}
+
+/// The forces without a cause that explain most; none where none was tried.
+pub(in crate::diagnosis) fn generics(round: &Round) -> Option<Table> {
+    const SHOWN: usize = 6;
+    let mut forces: Vec<_> = round.generics.iter().collect();
+    forces.sort_by(|a, b| b.statistic().total_cmp(&a.statistic()));
+    let scale = round.dispersion;
+    let rows: Vec<Row> = forces
+        .iter()
+        .filter(|force| force.statistic() > 0.0)
+        .take(SHOWN)
+        .map(|force| {
+            let p = tempered(round, force).map_or_else(|| NONE.to_owned(), p_value);
+            let size = force.score.as_ref().and_then(|score| {
+                let first = force.effect.parameters.first()?;
+                Some(quantity(score.size.first()? * first.scale, &first.unit))
+            });
+            Row::new(
+                force.effect.title.clone(),
+                [
+                    figure(force.statistic() / scale),
+                    p,
+                    size.unwrap_or_else(|| NONE.to_owned()),
+                ],
+            )
+        })
+        .collect();
+    Table::new(
+        "Forces without a cause that explain most",
+        ["", "statistic over dispersion", "p", "amplitude"],
+        rows,
+    )
+    .noted([
+        "A name must explain more than the best of these: if one of them beats every name by a \
+             wide margin, the cause is not in the library.",
+    ])
+    .unless_empty()
+}
+
+/// Effects that this record cannot tell apart, and what would.
+pub(in crate::diagnosis) fn look_alikes(subject: &Subject<'_>) -> Option<Table> {
+    /// More cycles than this many times those that there are nobody records.
+    const MOST: f64 = 30.0;
+    let times = |cycles: f64| {
+        if cycles <= 1.0 {
+            "told apart".to_owned()
+        } else if cycles <= MOST {
+            format!("{}\u{a0}× the cycles", figure(cycles))
+        } else {
+            "not by cycles".to_owned()
+        }
+    };
+    let pairs = &subject.diagnosis().look_alikes;
+    let rows: Vec<Row> = pairs
+        .iter()
+        .map(|pair| {
+            let others = pair.cycles_with_others;
+            Row::new(
+                pair.effects.join(", "),
+                [
+                    times(pair.cycles),
+                    others.map_or_else(|| NONE.to_owned(), times),
+                ],
+            )
+        })
+        .collect();
+    Table::new(
+        "What this record cannot tell apart, and what would",
+        ["", "more of the same", "with the other conditions' records"],
+        rows,
+    )
+    .noted([
+        "Whatever the verdict, at three times the sizes from which the effects are seen at all; \
+             the likest first. All pairs that are not listed are told apart.",
+    ])
+    .unless_empty()
+}
+
+/// From which size on each effect would have been seen.
+pub(in crate::diagnosis) fn limits(subject: &Subject<'_>) -> Option<Table> {
+    let limits = subject.diagnosis().detection_limits();
+    let rows: Vec<Row> = limits
+        .iter()
+        .map(|limit| {
+            let scale = subject
+                .parameter(&limit.id, &limit.parameter)
+                .map(|p| p.scale);
+            let seen = if limit.size.is_finite() {
+                quantity(limit.size, &limit.unit)
+            } else {
+                "at no size within its bounds".to_owned()
+            };
+            Row::new(
+                format!("{}, {}", limit.id, limit.parameter.replace('_', " ")),
+                [
+                    seen,
+                    scale.map_or_else(|| NONE.to_owned(), |s| quantity(s, &limit.unit)),
+                    scale.map_or_else(|| NONE.to_owned(), |s| crate::number::ratio(limit.size, s)),
+                ],
+            )
+        })
+        .collect();
+    Table::new(
+            "Detection limits: the size from which this record shows an effect",
+            ["", "seen from", "usual size", "limit over usual size"],
+            rows,
+        ).noted([
+            "Of effects that are not named: at the recalibrated point, each alone, with the misfit of the \
+             model without any: the size that the tests and the evidence asked for would not have \
+             missed. A limit well below the usual size means: had it been there, it would have been \
+             seen.",]).unless_empty()
+}

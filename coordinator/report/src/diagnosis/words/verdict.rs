@@ -1,0 +1,63 @@
+//! The answer in a word, and in a sentence.
+use super::effect::{generic, named};
+use crate::diagnosis::subject::Subject;
+use crate::words::listed;
+use discrepancy::diagnose::Round;
+use discrepancy::verdict::Verdict;
+
+/// The verdict's name.
+pub(in crate::diagnosis) const fn outcome(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::NothingDetected => "NOTHING DETECTED",
+        Verdict::Named => "NAMED",
+        Verdict::Ambiguous => "AMBIGUOUS",
+        Verdict::Unlisted => "UNLISTED",
+        Verdict::Unresolved => "UNRESOLVED",
+    }
+}
+
+/// The answer in one sentence, without its sizes.
+pub(in crate::diagnosis) fn verdict(subject: &Subject<'_>) -> String {
+    let diagnosis = subject.diagnosis();
+    match diagnosis.verdict {
+        Verdict::NothingDetected if diagnosis.limits.is_empty() => {
+            "Nothing detected: what the recalibrated simulation leaves of the record is noise; no \
+             effect was looked for by name."
+                .to_owned()
+        }
+        Verdict::NothingDetected => {
+            "Nothing detected: what the recalibrated simulation leaves of the \
+             record is noise, down to the detection limits below."
+                .to_owned()
+        }
+        Verdict::Named => {
+            let added = subject.added().into_iter();
+            let names: Vec<String> = added.map(|effect| named(subject, &effect.id)).collect();
+            format!("The simulation lacks {}.", listed(&names, "and"))
+        }
+        Verdict::Ambiguous => format!(
+            "The simulation lacks {}; this record does not tell which.",
+            listed(&choices(subject), "and")
+        ),
+        Verdict::Unlisted => format!(
+            "The simulation lacks something that the library does not have; it acts like {}.",
+            diagnosis.generic.as_deref().map_or_else(
+                || "a force of unknown form".to_owned(),
+                |id| generic(subject, id)
+            )
+        ),
+        Verdict::Unresolved => "Unresolved: this record does not carry a name.".to_owned(),
+    }
+}
+
+/// What was added, round by round: a name, or the members of a set of which one acts.
+fn choices(subject: &Subject<'_>) -> Vec<String> {
+    let rounds = subject.diagnosis().rounds.iter();
+    let choice = |round: &Round| {
+        let members: Vec<String> = round.set.iter().map(|id| named(subject, id)).collect();
+        let of = if members.len() > 1 { "one of " } else { "" };
+        format!("{of}{}", listed(&members, "or"))
+    };
+    let found = rounds.filter(|round| round.added.is_some());
+    found.map(choice).collect()
+}

@@ -1,0 +1,34 @@
+//! The report of a diagnosis as a whole, and its folder.
+use super::section::SECTIONS;
+use super::subject::Subject;
+use super::{csv, words};
+use crate::ReportError;
+use crate::document::Report;
+use crate::folder::{stream, write_report};
+use std::path::{Path, PathBuf};
+
+/// The report.
+pub fn report(subject: &Subject<'_>) -> Report {
+    let title = format!("Diagnosis of {}", subject.case.name);
+    let sections = SECTIONS.iter().map(|section| section(subject));
+    Report {
+        outcome: words::outcome(subject.diagnosis().verdict),
+        ..Report::new(title, &subject.origin.run, sections)
+    }
+}
+
+/// Writes the report into a folder, which is made if it does not exist: `report.html`, `tables.txt`,
+/// `figures/*.svg`, `curves.csv` and `suspects.csv`. Returns the paths, the HTML first.
+///
+/// # Errors
+/// [`ReportError`] when a file cannot be written.
+pub fn write(folder: &Path, subject: &Subject<'_>) -> Result<Vec<PathBuf>, ReportError> {
+    let mut written = write_report(folder, &report(subject))?;
+    written.push(stream(folder, "curves.csv", |file| {
+        csv::curves(file, subject)
+    })?);
+    written.push(stream(folder, "suspects.csv", |file| {
+        csv::suspects(file, subject)
+    })?);
+    Ok(written)
+}

@@ -1,0 +1,117 @@
+//! A report as plain text, for a terminal and for `tables.txt`: everything but its pictures.
+use super::block::{Block, Report, Section};
+use super::table::{Label, Row, Table};
+use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, presets};
+
+/// The whole report; `styled` where the terminal shows bold.
+pub fn text(report: &Report, styled: bool) -> String {
+    let mut whole = String::from(report.outcome);
+    if !whole.is_empty() {
+        whole.push('\n');
+    }
+    for (index, section) in report.sections.iter().enumerate() {
+        let body = section_text(section, styled);
+        // the first section needs no heading: what it says is what the report says
+        if index > 0 && !body.is_empty() {
+            whole += &["\n", &section.title.to_uppercase(), "\n"].concat();
+        }
+        whole += &body;
+    }
+    whole
+}
+
+/// The blocks of one section, without its heading.
+pub(crate) fn section_text(section: &Section, styled: bool) -> String {
+    all(&section.blocks, styled)
+}
+
+/// Blocks one below the other, with an empty line before those that stand apart.
+fn all(blocks: &[Block], styled: bool) -> String {
+    let mut text = String::new();
+    for block in blocks {
+        let apart = matches!(
+            block,
+            Block::Heading(..) | Block::Code(_) | Block::Table(_) | Block::Folded(..)
+        );
+        let own = one(block, styled);
+        if apart && !text.is_empty() && !own.is_empty() {
+            text.push('\n');
+        }
+        text += &own;
+    }
+    text
+}
+
+fn one(block: &Block, styled: bool) -> String {
+    match block {
+        Block::Lead(line) | Block::Text(line) | Block::Code(line) | Block::Heading(line, "") => {
+            format!("{line}\n")
+        }
+        Block::Heading(heading, remark) => format!("{heading} ({remark})\n"),
+        Block::List(lines) => items(lines, "  - "),
+        Block::Warning(lines) => items(lines, "  ! "),
+        Block::Facts(facts) => {
+            let facts = facts.iter();
+            let lines = facts.map(|fact| format!("{}: {}", fact.name, fact.value));
+            items(&lines.collect::<Vec<_>>(), "  ")
+        }
+        Block::Table(table) => set_table(table, styled),
+        Block::Folded(_, blocks) => all(blocks, styled),
+        Block::Figure(_) | Block::Markup(_) => String::new(),
+    }
+}
+
+/// Lines behind a mark.
+fn items(lines: &[String], mark: &str) -> String {
+    let lines = lines.iter().map(|line| [mark, line, "\n"].concat());
+    lines.collect()
+}
+
+/// Sets a table with its title and notes.
+pub fn set_table(table: &Table, styled: bool) -> String {
+    let bold = |cell: Cell| {
+        if styled {
+            cell.add_attribute(Attribute::Bold)
+        } else {
+            cell
+        }
+    };
+    let alignment = |column: usize| {
+        if table.is_prose(column) {
+            CellAlignment::Left
+        } else {
+            CellAlignment::Right
+        }
+    };
+    let mut grid = comfy_table::Table::new();
+    // rules above, below and under the head only, as in print
+    grid.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
+    if styled {
+        grid.enforce_styling();
+    } else {
+        grid.force_no_tty();
+    }
+    grid.set_header(table.head.iter().enumerate().map(|(column, head)| {
+        let alignment = column.checked_sub(1).map_or(CellAlignment::Left, alignment);
+        bold(Cell::new(head).set_alignment(alignment))
+    }));
+    for row in &table.rows {
+        match row {
+            Row::Group(name) => {
+                grid.add_row(vec![bold(Cell::new(name))]);
+            }
+            Row::Values(label, cells) => {
+                let label = match label {
+                    Label::Text(text) => format!("  {text}"),
+                    Label::Unknown { name, title, .. } => format!("  {name:<5} {title}"),
+                };
+                let cells = cells.iter().enumerate();
+                let cells =
+                    cells.map(|(column, cell)| Cell::new(cell).set_alignment(alignment(column)));
+                grid.add_row(std::iter::once(Cell::new(label)).chain(cells));
+            }
+        }
+    }
+    let notes = items(&table.notes, "  ");
+    format!("{}\n{}\n{notes}", table.title, grid.trim_fmt())
+}

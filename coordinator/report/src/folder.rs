@@ -1,0 +1,83 @@
+//! A report as a folder of files: `report.html`, `tables.txt`, `figures/*.svg`, and data as CSV.
+use super::document::{Report, page, text};
+use std::fs::{self, File};
+use std::io::{self, BufWriter};
+use std::path::{Path, PathBuf};
+use support::atomic_file::{Draft, replace};
+
+/// A report could not be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// A file of the report could not be written.
+    #[error("cannot write {path}: {source}", path = path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A table of numbers could not be written.
+    #[error("cannot write {path}: {source}", path = path.display())]
+    Csv {
+        /// The file.
+        path: PathBuf,
+        /// What the writer says.
+        source: ::csv::Error,
+    },
+}
+
+/// Writes page, text and figures into a folder, which is made if it does not exist. Returns the paths,
+/// the HTML first.
+///
+/// # Errors
+/// [`ReportError::Write`] when a file cannot be written.
+pub(super) fn write_report(folder: &Path, report: &Report) -> Result<Vec<PathBuf>, ReportError> {
+    let mut written = vec![
+        write(folder, "report.html", &page(report))?,
+        write(folder, "tables.txt", &text(report, false))?,
+    ];
+    let figures = folder.join("figures");
+    for figure in report.figures() {
+        written.push(write(&figures, &svg_name(&figure.name), &figure.svg)?);
+    }
+    Ok(written)
+}
+
+/// Name of the file of a figure: nothing but letters, digits, `-` and `_` before the dot.
+pub fn svg_name(figure: &str) -> String {
+    let keep = |c: char| c.is_ascii_alphanumeric() || c == '-';
+    let stem = figure.chars().map(|c| if keep(c) { c } else { '_' });
+    format!("{}.svg", stem.collect::<String>())
+}
+
+/// Writes one file of text, whole or not at all.
+///
+/// # Errors
+/// [`ReportError::Write`] when it cannot be written.
+pub fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, ReportError> {
+    let path = folder.join(name);
+    let result = fs::create_dir_all(folder).and_then(|()| replace(&path, text.as_bytes()));
+    match result {
+        Ok(()) => Ok(path),
+        Err(source) => Err(ReportError::Write { path, source }),
+    }
+}
+
+/// Writes one file of numbers, whole or not at all.
+///
+/// # Errors
+/// [`ReportError`] when it cannot be written.
+pub fn stream(
+    folder: &Path,
+    name: &str,
+    fill: impl FnOnce(BufWriter<File>) -> Result<(), ::csv::Error>,
+) -> Result<PathBuf, ReportError> {
+    let path = folder.join(name);
+    let draft = Draft::filled(&path, |file| fill(BufWriter::new(file)));
+    let written = draft.and_then(|draft| Ok(draft.publish()?));
+    match written {
+        Ok(()) => Ok(path),
+        Err(source) => Err(ReportError::Csv { path, source }),
+    }
+}

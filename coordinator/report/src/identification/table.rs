@@ -1,0 +1,116 @@
+//! The tables of an identification.
+use super::subject::Subject;
+use super::words::open_ends;
+use crate::document::{Row, Table};
+use crate::number::{NONE, figure, fixed, quantity};
+use crate::words::{condition_name, seen};
+use discrepancy::identify::{Direction, Further};
+
+/// Every unknown with what the record says of it.
+pub(super) fn unknowns(subject: &Subject<'_>) -> Table {
+    let rows = subject.identified.unknowns.iter().map(|own| {
+        let trades = own.correlated.iter().take(3);
+        let trades = trades.map(|(name, c)| format!("{name} ({})", fixed(*c, 2)));
+        let cells = [
+            quantity(own.value, &own.unit),
+            seen(own),
+            open_ends(own),
+            trades.collect::<Vec<_>>().join(", "),
+        ];
+        match subject.unknown(&own.name) {
+            Some(unknown) => Row::of(unknown, cells),
+            None => Row::new(own.name.as_str(), cells),
+        }
+    });
+    Table::new(
+        "What the record says of each unknown",
+        ["", "likeliest", "95 % interval", "open ends", "trades off with"],
+        rows.collect(),
+    )
+    .noted([
+        "An end is where -2 ln L, all else refitted, has risen by what a 95 % interval asks for at this dispersion (drawn as 3.84). An end where \
+         simulations fail is one of the model, not of the record.",
+        "What is not seen has the value at which the fit left it, which means nothing.",
+    ])
+}
+
+/// Directions by how well they are seen.
+pub(super) fn directions(subject: &Subject<'_>) -> Option<Table> {
+    let row = |direction: &Direction| {
+        let parts = direction.parts.iter();
+        let parts = parts.map(|own| format!("{} {}", fixed(own.part, 2), own.name));
+        let deviation = direction.sd_decades;
+        let deviation = if deviation.is_finite() {
+            figure(deviation)
+        } else {
+            NONE.to_owned()
+        };
+        let cells = [deviation, parts.collect::<Vec<_>>().join(", ")];
+        Row::new(direction.words.as_str(), cells)
+    };
+    Table::new(
+        "Directions in which the record sees the unknowns",
+        ["", "standard deviation [decade]", "parts"],
+        subject.identified.directions.iter().map(row).collect(),
+    )
+    .noted([
+        "Eigenvectors of the record's own information at the fit, the instruments' errors taken out: each is \
+         seen independently of the others. Of unknowns on linear scales half the interval stands for a decade.",
+    ])
+    .unless_empty()
+}
+
+/// How wide the bands are.
+pub(super) fn prediction(subject: &Subject<'_>) -> Option<Table> {
+    let case = subject.case;
+    let mut rows = Vec::new();
+    for band in &subject.identified.bands {
+        rows.push(Row::group(condition_name(case, band.condition)));
+        let channels = case.channels_of(band.condition).zip(&band.channels);
+        rows.extend(channels.map(|((_, channel), curve)| {
+            let ends = curve.low.iter().zip(&curve.high);
+            let widest = ends.map(|(low, high)| high - low).fold(0.0, f64::max);
+            let of = |x: f64| quantity(x, &channel.unit);
+            let cells = [of(curve.half_width()), of(0.5 * widest)];
+            Row::new(channel.title.as_str(), cells)
+        }));
+    }
+    Table::new(
+        "How far the answer leaves predictions open: half widths of 95 % bands",
+        ["", "mean", "widest"],
+        rows,
+    )
+    .noted([
+        "Of the simulated curve: noise and zeros of instruments are not in it. A band spans the linear one, each \
+         unknown within its interval, and the outermost points of the profiles.",
+    ])
+    .unless_empty()
+}
+
+/// What further measurements would pin down.
+pub(super) fn further(subject: &Subject<'_>) -> Option<Table> {
+    let row = |one: &Further| {
+        let pins = one.pins.iter().map(|pin| {
+            format!(
+                "{} from {} to {}",
+                pin.name,
+                figure(pin.sd_now),
+                figure(pin.sd_then)
+            )
+        });
+        Row::new(
+            one.measurement.as_str(),
+            [pins.collect::<Vec<_>>().join(", ")],
+        )
+    };
+    Table::new(
+        "What further measurements would pin down",
+        ["", "standard deviation [decade]"],
+        subject.identified.further.iter().map(row).collect(),
+    )
+    .noted([
+        "To first order at the fit; only what would fall to half at least is told. A channel that was never \
+         recorded is given the noise of one that was and has its unit.",
+    ])
+    .unless_empty()
+}

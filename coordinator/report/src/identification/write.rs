@@ -1,0 +1,31 @@
+//! The report of an identification as a whole, and its folder.
+use super::csv;
+use super::section::SECTIONS;
+use super::subject::Subject;
+use crate::ReportError;
+use crate::document::Report;
+use crate::folder::{stream, write_report};
+use std::path::{Path, PathBuf};
+
+/// The report.
+pub fn report(subject: &Subject<'_>) -> Report {
+    let title = format!("What the record of {} sees", subject.case.name);
+    let sections = SECTIONS.iter().map(|section| section(subject));
+    Report::new(title, &subject.origin.run, sections)
+}
+
+/// Writes the report into a folder, which is made if it does not exist: `report.html`, `tables.txt`,
+/// `figures/*.svg`, `profiles.csv` and `prediction.csv`. Returns the paths, the HTML first.
+///
+/// # Errors
+/// [`ReportError`] when a file cannot be written.
+pub fn write(folder: &Path, subject: &Subject<'_>) -> Result<Vec<PathBuf>, ReportError> {
+    let mut written = write_report(folder, &report(subject))?;
+    written.push(stream(folder, "profiles.csv", |file| {
+        csv::profiles(file, subject)
+    })?);
+    written.push(stream(folder, "prediction.csv", |file| {
+        csv::bands(file, subject)
+    })?);
+    Ok(written)
+}

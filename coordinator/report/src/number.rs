@@ -1,0 +1,238 @@
+//! Numbers as an engineer writes them, the same in terminals, HTML and figures.
+//!
+//! Plain text only: powers of ten use Unicode superscripts, the minus is a real minus sign.
+
+/// What stands where there is no value.
+pub const NONE: &str = "–";
+
+/// Keeps a number and its unit or power on one line.
+const NO_BREAK: char = '\u{a0}';
+
+/// Decimal exponent of a finite, non-zero value.
+fn exponent(value: f64) -> i32 {
+    // formatting rounds as the printed digits will be, which log10().floor() does not
+    let text = format!("{:.2e}", value.abs());
+    text.split_once('e')
+        .and_then(|(_, exponent)| exponent.parse().ok())
+        .unwrap_or(0)
+}
+
+/// An integer as Unicode superscript.
+pub fn superscript(value: i32) -> String {
+    value
+        .to_string()
+        .chars()
+        .map(|digit| match digit {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '4' => '⁴',
+            '5' => '⁵',
+            '6' => '⁶',
+            '7' => '⁷',
+            '8' => '⁸',
+            '9' => '⁹',
+            _ => '⁰',
+        })
+        .collect()
+}
+
+/// Replaces the hyphen of a printed number by a minus sign.
+fn signed(text: &str) -> String {
+    text.strip_prefix('-')
+        .map_or_else(|| text.to_owned(), |rest| format!("−{rest}"))
+}
+
+/// Three significant digits; powers of ten outside 0.01 to 100 000.
+pub fn figure(value: f64) -> String {
+    if !value.is_finite() {
+        return NONE.to_owned();
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let exponent = exponent(value);
+    if !(-2..5).contains(&exponent) {
+        let mantissa = value / 10_f64.powi(exponent);
+        return format!(
+            "{}{NO_BREAK}×{NO_BREAK}10{}",
+            fixed(mantissa, 2),
+            superscript(exponent)
+        );
+    }
+    let decimals = usize::try_from(2 - exponent).unwrap_or(0);
+    fixed(value, decimals)
+}
+
+/// Without decimals where it has none, else three significant digits.
+pub fn plain(value: f64) -> String {
+    if (value - value.round()).abs() < 1e-9 {
+        fixed(value, 0)
+    } else {
+        figure(value)
+    }
+}
+
+/// A fixed number of decimals.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    if !value.is_finite() {
+        return NONE.to_owned();
+    }
+    let text = format!("{value:.decimals$}");
+    // "-0.00" says more than is known
+    let text = if text.chars().all(|c| matches!(c, '-' | '0' | '.')) {
+        text.trim_start_matches('-').to_owned()
+    } else {
+        text
+    };
+    signed(&text)
+}
+
+/// A share of 1 as per cent.
+pub fn percent(share: f64) -> String {
+    if !share.is_finite() {
+        return NONE.to_owned();
+    }
+    let decimals = usize::from(share.abs() < 0.9995);
+    format!("{}{NO_BREAK}%", fixed(100.0 * share, decimals))
+}
+
+/// How many times, with the direction in the sign of the exponent: `2.49 ×`.
+pub fn ratio(of: f64, to: f64) -> String {
+    let ratio = of / to;
+    if ratio.is_finite() {
+        format!("{}{NO_BREAK}×", figure(ratio))
+    } else {
+        NONE.to_owned()
+    }
+}
+
+/// A unit as print sets it, from how files write it: `kg.m2` as `kg·m²`, `N/m^1.5` as `N/m¹·⁵`.
+pub fn unit(symbol: &str) -> String {
+    let mut set = String::with_capacity(symbol.len() + 4);
+    let mut raised = false;
+    for c in symbol.chars() {
+        match (c, c.to_digit(10)) {
+            ('^', _) => raised = true,
+            ('.', _) => set.push('·'),
+            (_, Some(digit)) if raised => set.push_str(&superscript(digit.cast_signed())),
+            _ => {
+                // a digit behind a letter is its power, one in front is a number
+                raised = c.is_alphabetic();
+                set.push(c);
+            }
+        }
+    }
+    set
+}
+
+/// The square of a unit as print sets it; nothing where there is no unit.
+pub fn squared(symbol: Option<&str>) -> String {
+    match symbol {
+        None | Some("" | "1") => String::new(),
+        Some(compound) if compound.contains(['.', '/']) => unit(&format!("({compound})^2")),
+        Some(single) => unit(&format!("{single}^2")),
+    }
+}
+
+/// A value with its unit; the unit `1` is not written.
+pub fn quantity(value: f64, symbol: &str) -> String {
+    match symbol {
+        _ if !value.is_finite() => NONE.to_owned(),
+        "" | "1" => figure(value),
+        _ => format!("{}{NO_BREAK}{}", figure(value), unit(symbol)),
+    }
+}
+
+/// A whole number with thin spaces between thousands.
+pub fn count(value: u64) -> String {
+    let digits = value.to_string();
+    let mut grouped = String::with_capacity(digits.len() + digits.len() / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            grouped.push('\u{202f}');
+        }
+        grouped.push(digit);
+    }
+    grouped
+}
+
+/// A duration in the unit that suits it.
+pub fn duration(seconds: f64) -> String {
+    if !seconds.is_finite() || seconds < 0.0 {
+        NONE.to_owned()
+    } else if seconds == 0.0 {
+        "0 s".to_owned()
+    } else if seconds < 1e-3 {
+        format!("{}{NO_BREAK}µs", figure(1e6 * seconds))
+    } else if seconds < 1.0 {
+        format!("{}{NO_BREAK}ms", figure(1e3 * seconds))
+    } else if seconds < 100.0 {
+        format!("{} s", figure(seconds))
+    } else if seconds < 6000.0 {
+        format!("{} min", fixed(seconds / 60.0, 1))
+    } else {
+        format!("{} h", fixed(seconds / 3600.0, 1))
+    }
+}
+
+/// Smallest and largest finite value.
+pub fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
+    values
+        .into_iter()
+        .filter(|value| value.is_finite())
+        .fold(None, |range, value| match range {
+            None => Some((value, value)),
+            Some((low, high)) => Some((low.min(value), high.max(value))),
+        })
+}
+
+/// A number with all its digits, as a table of numbers has it; empty if it is none.
+pub fn field(value: Option<f64>) -> String {
+    value
+        .filter(|value| value.is_finite())
+        .map_or_else(String::new, |value| value.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{count, duration, figure, fixed, percent, ratio};
+
+    #[test]
+    fn three_digits_and_powers_of_ten() {
+        assert_eq!(figure(3.14e8), "3.14\u{a0}×\u{a0}10⁸");
+        assert_eq!(figure(-0.00123), "−1.23\u{a0}×\u{a0}10⁻³");
+        assert_eq!(figure(5201.3), "5201");
+        assert_eq!(figure(40.0), "40.0");
+        assert_eq!(figure(0.0456), "0.0456");
+        assert_eq!(figure(99_999.0), "1.00\u{a0}×\u{a0}10⁵");
+        assert_eq!(figure(9.999), "10.0");
+        assert_eq!(figure(f64::NAN), "–");
+    }
+
+    /// A diagnosis on a fast model said `7.11 x 10^-7 s`.
+    #[test]
+    fn a_time_has_the_unit_that_suits_it() {
+        for (seconds, said) in [
+            (0.0, "0 s"),
+            (7.11e-7, "0.711\u{a0}µs"),
+            (5.5e-2, "55.0\u{a0}ms"),
+            (1.5, "1.50 s"),
+            (150.0, "2.5 min"),
+            (7200.0, "2.0 h"),
+        ] {
+            assert_eq!(duration(seconds), said);
+        }
+    }
+
+    #[test]
+    fn shares_ratios_and_counts() {
+        assert_eq!(percent(0.2541), "25.4\u{a0}%");
+        assert_eq!(percent(1.7824), "178\u{a0}%");
+        assert_eq!(ratio(7.81e8, 3.14e8), "2.49\u{a0}×");
+        assert_eq!(ratio(1.0, 0.0), "–");
+        assert_eq!(count(1_234_567), "1\u{202f}234\u{202f}567");
+        assert_eq!(fixed(-0.001, 2), "0.00");
+    }
+}

@@ -1,0 +1,200 @@
+//! Sections of the report of an orthogonal test.
+use super::subject::Subject;
+use crate::chart::main_effects;
+use crate::document::{Block, Row, Section, Table};
+use crate::number::{NONE, count, figure, fixed};
+use crate::section::origin;
+use crate::words::{listed, objective_heading};
+use protocol::case::Case;
+use study::orthogonal::{Analysis, Factor, Source, Tested, Tried};
+
+/// Above this probability chance is as good a reason as the factor.
+const LIKELY: f64 = 0.05;
+
+/// Every one, in the order of the page.
+pub(super) fn all(subject: &Subject<'_>) -> Vec<Section> {
+    vec![
+        summary(subject.tested),
+        effects(subject.tested),
+        all_runs(subject),
+        origin::section(vec![Block::Facts(origin::facts(
+            &subject.origin,
+            subject.case,
+        ))]),
+    ]
+}
+
+fn summary(tested: &Tested) -> Section {
+    let mut blocks = Vec::new();
+    if let Some((analysis, confirmed)) = tested.analysis.as_ref().zip(tested.confirmation.as_ref())
+    {
+        blocks.push(Block::Lead(format!(
+            "Best levels: {}.",
+            at(&tested.factors, &confirmed.levels)
+        )));
+        blocks.push(Block::Text(format!(
+            "Together they were expected to reach an objective of 10^{}; with seeds of their own they reached \
+             10^{}.",
+            fixed(confirmed.predicted, 3),
+            confirmed
+                .obtained()
+                .map_or_else(|| NONE.to_owned(), |obtained| fixed(obtained, 3))
+        )));
+        blocks.push(Block::Text(chance(tested, analysis)));
+    } else {
+        blocks.push(Block::Lead(
+            "Some runs found no complete simulation: there is nothing to compare.".to_owned(),
+        ));
+    }
+    if tested.budgets_differ() {
+        let warning = "Budgets differ: not every run took as many evaluations as the others, so a level may be \
+            better only because it was given more.";
+        blocks.push(Block::Warning(vec![warning.to_owned()]));
+    }
+    Section {
+        id: "outcome",
+        title: "Outcome",
+        blocks,
+    }
+}
+
+/// Which factors chance alone does not explain.
+fn chance(tested: &Tested, analysis: &Analysis) -> String {
+    let Some(anova) = &analysis.anova else {
+        return "The design is saturated: no degree of freedom is left for the error, so nothing can be told from \
+                chance. More seeds, or fewer factors, leave some."
+            .to_owned();
+    };
+    let telling = anova.terms.iter().filter_map(|term| match term.source {
+        Source::Factor(number) if term.p.is_some_and(|p| p < LIKELY) => {
+            Some(tested.factors[number].name.clone())
+        }
+        Source::Factor(_) | Source::Block | Source::Error => None,
+    });
+    let telling: Vec<String> = telling.collect();
+    if telling.is_empty() {
+        "No factor is significant: chance alone makes ranges as large (p of every factor is 0.05 or more).".to_owned()
+    } else {
+        format!("Significant (p below 0.05): {}.", listed(&telling, "and"))
+    }
+}
+
+fn effects(tested: &Tested) -> Section {
+    let mut blocks = Vec::new();
+    if let Some(analysis) = &tested.analysis {
+        blocks.push(Block::Table(ranges(tested, analysis)));
+        blocks.extend(variance(tested, analysis).map(Block::Table));
+        blocks.push(Block::Figure(main_effects(tested, analysis)));
+    }
+    Section {
+        id: "effects",
+        title: "What the factors do",
+        blocks,
+    }
+}
+
+fn ranges(tested: &Tested, analysis: &Analysis) -> Table {
+    let all = tested.factors.iter().zip(&analysis.ranges);
+    let rows = all.flat_map(|(factor, own)| {
+        let title = format!("{}: range {}", factor.name, fixed(own.range, 4));
+        let levels = factor.levels.iter().zip(&own.means).enumerate();
+        let level = |(index, (level, mean)): (usize, (&String, &f64))| {
+            let best = if index == own.best { "best" } else { "" };
+            Row::new(
+                level,
+                [fixed(*mean, 4), figure(10_f64.powf(*mean)), best.to_owned()],
+            )
+        };
+        std::iter::once(Row::group(title)).chain(levels.map(level))
+    });
+    Table::new(
+        "Range analysis",
+        ["level", "mean response", "as an objective", ""],
+        rows.collect(),
+    )
+    .noted(["The response is log10 of the best objective of a search at its budget; the smaller the better."])
+}
+
+fn variance(tested: &Tested, analysis: &Analysis) -> Option<Table> {
+    let anova = analysis.anova.as_ref()?;
+    let rows = anova.terms.iter().map(|term| {
+        let name = match term.source {
+            Source::Factor(number) => tested.factors[number].name.as_str(),
+            Source::Block => "seed (blocks)",
+            Source::Error => "error",
+        };
+        let known = |value: Option<f64>| value.map_or_else(|| NONE.to_owned(), figure);
+        let cells = [
+            figure(term.squares),
+            term.freedom.to_string(),
+            figure(term.mean_square()),
+            known(term.f),
+            known(term.p),
+        ];
+        Row::new(name, cells)
+    });
+    let table = Table::new(
+        "Analysis of variance",
+        [
+            "source",
+            "sum of squares",
+            "degrees of freedom",
+            "mean square",
+            "F",
+            "p",
+        ],
+        rows.collect(),
+    );
+    Some(table.noted([
+        "Blocks are taken out of the error. p is how often chance alone makes F as large.",
+    ]))
+}
+
+/// Searches with their levels, row by row.
+pub fn runs(case: &Case, factors: &[Factor], tried: &[Tried]) -> Table {
+    let heading = format!("best {}", objective_heading(case));
+    let row = |run: &Tried| {
+        Row::new(
+            at(factors, &run.levels),
+            [
+                run.seed.to_string(),
+                figure(run.objective.unwrap_or(f64::NAN)),
+                count(run.evaluations),
+            ],
+        )
+    };
+    let rows = tried.iter().map(row).collect();
+    Table::new(
+        "Every run",
+        ["levels", "seed", &heading, "evaluations"],
+        rows,
+    )
+}
+
+fn all_runs(subject: &Subject<'_>) -> Section {
+    let Tested {
+        factors,
+        runs: tried,
+        ..
+    } = subject.tested;
+    let mut table = runs(subject.case, factors, tried);
+    if let Some(confirmed) = &subject.tested.confirmation {
+        table.rows.push(Row::group("confirmation"));
+        table
+            .rows
+            .extend(runs(subject.case, factors, &confirmed.runs).rows);
+    }
+    Section {
+        id: "runs",
+        title: "Runs",
+        blocks: vec![Block::Table(table)],
+    }
+}
+
+/// Levels in words.
+fn at(factors: &[Factor], levels: &[usize]) -> String {
+    let one =
+        |(factor, level): (&Factor, &usize)| format!("{} {}", factor.name, factor.levels[*level]);
+    let words: Vec<String> = factors.iter().zip(levels).map(one).collect();
+    words.join(", ")
+}

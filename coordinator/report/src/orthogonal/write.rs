@@ -1,0 +1,20 @@
+//! The report as a whole, and its folder.
+use super::section;
+use super::subject::Subject;
+use crate::document::Report;
+use crate::folder::{ReportError, write_report};
+use std::path::{Path, PathBuf};
+
+/// The report.
+pub fn report(subject: &Subject<'_>) -> Report {
+    let title = format!("Orthogonal test of a search on {}", subject.case.name);
+    Report::new(title, &subject.origin.run, section::all(subject))
+}
+
+/// Writes `report.html`, `tables.txt` and `figures/*.svg` into a folder. Returns the paths, the HTML first.
+///
+/// # Errors
+/// [`ReportError`] when a file cannot be written.
+pub fn write(folder: &Path, subject: &Subject<'_>) -> Result<Vec<PathBuf>, ReportError> {
+    write_report(folder, &report(subject))
+}

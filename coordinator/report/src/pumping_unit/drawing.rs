@@ -1,0 +1,96 @@
+//! The pumping unit's part of a report, as the report asks for it.
+use super::{animation, card::card, contact::contact, csv, revolution, single};
+use crate::data::{Shown, SingleRun};
+use crate::document::{Block, Figure, Section, Table};
+use crate::drawing::Drawing;
+use crate::folder::{ReportError, stream};
+use maud::html;
+use protocol::case::{Case, Unknown};
+use protocol::pumping_unit::{Coefficient, Machine, Simulation};
+use std::path::{Path, PathBuf};
+
+/// The model of a pumping unit.
+pub struct Dhh;
+
+impl Drawing for Dhh {
+    fn channels(&self, of: &Shown<'_>) -> Vec<Figure> {
+        vec![revolution::gauges(of)]
+    }
+
+    fn figures(&self, of: &Shown<'_>) -> Vec<Figure> {
+        let (Ok(unit), Ok(drawn)) = (Machine::of(of.case), Simulation::of(of.curves)) else {
+            return Vec::new();
+        };
+        let mut figures = vec![revolution::tension(&drawn)];
+        figures.extend(contact(&unit, &drawn));
+        figures.push(revolution::motion(&drawn));
+        figures.extend(card((of.case, &unit), of.condition, &drawn));
+        figures.push(revolution::torque(&drawn));
+        figures
+    }
+
+    fn sections(&self, whose: &str, of: Option<&Shown<'_>>) -> Vec<Section> {
+        let moving = of.and_then(|of| {
+            let machine =
+                animation::machine(of.case, of.condition, &Simulation::of(of.curves).ok()?)?;
+            Some(Block::Markup(html! {
+                p {
+                    "Side view with " (whose) " parameters. The well is on the right; the drawing \
+                     moves where JavaScript is allowed."
+                }
+                (machine)
+            }))
+        });
+        vec![Section {
+            id: "moving-machine",
+            title: "The machine in motion",
+            blocks: moving.into_iter().collect(),
+        }]
+    }
+
+    fn zero(&self) -> &'static str {
+        revolution::ZERO
+    }
+
+    fn group(&self, unknown: &Unknown) -> &'static str {
+        match Coefficient::named(&unknown.name) {
+            Some(Coefficient::Kc | Coefficient::Cc) => "Contact",
+            Some(_) => "Rope joints",
+            None => "Unknowns",
+        }
+    }
+
+    fn tables(&self, run: &SingleRun) -> Vec<Table> {
+        Simulation::of(&run.curves).map_or_else(
+            |_| Vec::new(),
+            |drawn| {
+                vec![
+                    single::simulation(run, &drawn),
+                    single::balance(run, &drawn),
+                ]
+            },
+        )
+    }
+
+    fn files(
+        &self,
+        folder: &Path,
+        runs: &[(&str, Shown<'_>)],
+    ) -> Result<Vec<PathBuf>, ReportError> {
+        let mut written = vec![stream(folder, "curves.csv", |file| {
+            csv::curves(file, runs)
+        })?];
+        if let [(_, alone)] = runs
+            && let Ok(drawn) = Simulation::of(alone.curves)
+        {
+            let ropes = |file| csv::ropes(file, &drawn);
+            written.push(stream(folder, "ropes.csv", ropes)?);
+        }
+        Ok(written)
+    }
+
+    fn frequency_hz(&self, case: &Case, condition: usize) -> Option<f64> {
+        let machine = Machine::of(case).ok()?;
+        Some(machine.conditions.get(condition)?.speed_rpm / 60.0)
+    }
+}

@@ -1,0 +1,175 @@
+//! A reduced back head in numbers: its modes beside the case's, and what they alone would show.
+use super::name::mode_family;
+use crate::document::{Row, Table};
+use crate::number::{NONE, fixed, percent};
+use case::pumping_unit::HeadComparison;
+use protocol::pumping_unit::TwinHead;
+use protocol::pumping_unit::{LeftOutMode, ReducedHead};
+
+/// What the last column says.
+const COUPLING: &str = "Coupling: largest share of the static energy under a load pattern that the \
+     mode holds. Patterns: the rope at its shortest, middle and longest wrap of the turn, and the \
+     beam's accelerations along x, along y and about the pivot. Those that couple most are taken.";
+
+/// Modes, one row each, beside the most similar ones of the case's table; then what was left out
+/// below the highest.
+pub fn head_modes(head: &ReducedHead, comparison: &HeadComparison) -> Table {
+    let row = |label: String, family, hz, table: Option<(f64, f64)>, coupling: f64| {
+        let of_table = table.map_or_else(
+            || [NONE, NONE, NONE].map(str::to_owned),
+            |(table_hz, mac)| {
+                let difference = 100.0 * (hz / table_hz - 1.0);
+                [fixed(table_hz, 2), fixed(difference, 2), fixed(mac, 4)]
+            },
+        );
+        let coupling = head.coupled().then(|| fixed(100.0 * coupling, 3));
+        let of_mode = [mode_family(family).to_owned(), fixed(hz, 2)];
+        let cells = of_mode.into_iter().chain(of_table);
+        Row::new(
+            label,
+            cells.chain([coupling.unwrap_or_else(|| NONE.to_owned())]),
+        )
+    };
+    let kept = (1..).zip(head.modes.iter().zip(&comparison.modes));
+    let kept = kept.map(|(number, (mode, found))| {
+        let label = format!("mode {number}");
+        row(
+            label,
+            mode.family,
+            mode.frequency_hz,
+            found.table,
+            mode.coupling,
+        )
+    });
+    let (below, above) = left_out(head);
+    let beside = below.iter().map(|mode| {
+        let label = "left out".to_owned();
+        row(label, mode.family, mode.frequency_hz, None, mode.coupling)
+    });
+    Table::new(
+        "Modes of the back head, pin holes held",
+        [
+            "",
+            "family",
+            "Hz",
+            "table Hz",
+            "difference %",
+            "MAC",
+            "coupling %",
+        ],
+        kept.chain(beside).collect(),
+    )
+    .noted(mode_notes(head, comparison, above))
+}
+
+fn mode_notes(
+    head: &ReducedHead,
+    comparison: &HeadComparison,
+    above: &[LeftOutMode],
+) -> Vec<String> {
+    let mut notes = vec![format!(
+        "MAC: modal assurance criterion of the shapes along the rope arc. Mass {} kg; {} unknown \
+         displacements, {} solves.",
+        fixed(head.mass_kg, 2),
+        head.unknowns,
+        head.lanczos_steps
+    )];
+    if head.coupled() {
+        notes.push(COUPLING.to_owned());
+    }
+    if let (Some(first), Some(last)) = (above.first(), above.last()) {
+        let most = above.iter().fold(0.0_f64, |most, m| most.max(m.coupling));
+        notes.push(format!(
+            "Looked at and left out above them: {} from {} to {} Hz, coupling {} % at most.",
+            above.len(),
+            fixed(first.frequency_hz, 1),
+            fixed(last.frequency_hz, 1),
+            fixed(100.0 * most, 3)
+        ));
+    }
+    if !comparison.inert_hz.is_empty() {
+        let list: Vec<String> = comparison.inert_hz.iter().map(|hz| fixed(*hz, 1)).collect();
+        notes.push(format!(
+            "The case's table also holds modes that do not move the rope surface: {} Hz. No rope \
+             drives them.",
+            list.join(", ")
+        ));
+    }
+    notes
+}
+
+/// What was left out below the highest mode that was kept, and above it.
+fn left_out(head: &ReducedHead) -> (&[LeftOutMode], &[LeftOutMode]) {
+    let highest = head.modes.last().map_or(0.0, |mode| mode.frequency_hz);
+    let below = head
+        .left_out
+        .partition_point(|mode| mode.frequency_hz < highest);
+    head.left_out.split_at(below)
+}
+
+/// Modes that a pair of ropes drives by pulling unequally, one row each: how far they move the rope at
+/// +z on the whole arc, and what the gauges read.
+pub fn head_pair(tables: &TwinHead, offset_m: f64) -> Table {
+    let most = |curve: &[f64]| curve.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let rows = (0..tables.frequencies_hz.len()).map(|k| {
+        let shapes = [&tables.radial, &tables.tangential, &tables.lateral];
+        let moves = shapes.map(|shape| fixed(1e3 * most(&shape[k]), 2));
+        let gauges = tables.gauge_stress_mpa[k].map(|stress| fixed(1e-3 * stress, 2));
+        let hz = fixed(tables.frequencies_hz[k], 2);
+        let cells = std::iter::once(hz).chain(moves).chain(gauges);
+        Row::new(format!("mode {}", k + 1), cells)
+    });
+    let head = [
+        "",
+        "Hz",
+        "radial",
+        "tangential",
+        "lateral",
+        "gauge 1",
+        "gauge 2",
+        "gauge 3",
+        "gauge 4",
+    ];
+    Table::new(
+        format!("Modes out of the plane, ropes at z = ±{offset_m} m"),
+        head,
+        rows.collect(),
+    )
+    .noted([
+        "Largest displacement of the rope at +z (mm) and gauge stress (GPa) per unit modal \
+             coordinate (kg^1/2 m).",
+    ])
+}
+
+/// What truncation costs over a quasi-static turn.
+pub fn head_statics(comparison: &HeadComparison, condition: &str, modes: usize) -> Table {
+    let ranges = &comparison.half_ranges;
+    let rows = (0..4).map(|gauge| {
+        let cells = [
+            fixed(ranges.exact[gauge], 2),
+            fixed(ranges.table[gauge], 2),
+            percent(comparison.influence_difference[gauge]),
+            fixed(ranges.displacement[gauge], 2),
+            fixed(ranges.displacement_offset[gauge], 2),
+        ];
+        Row::new(format!("gauge {}", gauge + 1), cells)
+    });
+    Table::new(
+        format!("Half-range of stress over a quasi-static turn, {condition} (MPa)"),
+        [
+            "",
+            "exact",
+            "case's table",
+            "lines differ",
+            "modes alone",
+            "mean off by",
+        ],
+        rows.collect(),
+    )
+    .noted([
+        "Exact: influence lines (mode acceleration). Lines differ: largest difference of the \
+             influence lines over their largest value."
+            .to_owned(),
+        format!("Modes alone: mode displacement with the first {modes} modes."),
+    ])
+}

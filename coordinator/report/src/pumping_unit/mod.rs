@@ -1,0 +1,21 @@
+//! What reports show of a pumping unit beside what they show of every model: the machine in motion, its
+//! ropes, its dynamometer card, its energy, and the modes of its back head.
+//!
+//! Draws on the report's axes and tables. It does not know where in a report it stands.
+mod animation;
+mod card;
+mod contact;
+pub mod csv;
+mod drawing;
+mod head;
+mod head_modes;
+mod name;
+mod revolution;
+mod single;
+pub mod vtu;
+
+pub use drawing::Dhh;
+pub use head::{head_modes as head_mode_table, head_pair, head_statics};
+pub use head_modes::{HeadPicture, write_head_modes};
+pub use name::{integrator_name, mode_family};
+pub use single::{balance, simulation};

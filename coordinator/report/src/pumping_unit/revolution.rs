@@ -1,0 +1,173 @@
+//! The curves of one simulation over the crank angle: gauges, rope tensions, motion of the
+//! suspension, crank torque.
+use crate::chart::scale::Scale;
+use crate::chart::strip::{Curve, curve, span, stack, strip};
+use crate::chart::{Axis, strips};
+use crate::color::{BLUE, GREEN, INK, PURPLE, VERMILLION};
+use crate::data::Shown;
+use crate::document::Figure;
+use crate::words::condition_name;
+use protocol::case::Case;
+use protocol::pumping_unit::{Sensor, Simulation};
+
+/// Where the crank angle begins.
+pub(super) const ZERO: &str = " from bottom dead centre";
+
+/// The axis of every curve: one turn of the crank.
+pub(super) fn axis() -> Axis {
+    Axis {
+        scale: Scale::turn(),
+        title: format!("crank angle{ZERO} [deg]"),
+    }
+}
+
+/// Stress at all four gauges, with the measured mean and its spread where there is a record.
+pub(super) fn gauges(of: &Shown<'_>) -> Figure {
+    let name = condition_name(of.case, of.condition);
+    stack(
+        format!("gauges_{name}"),
+        &format!("Stress at the gauges, condition {name}"),
+        format!(
+            "Stress at the four gauges under condition {name}, absolute values: no curve is \
+             shifted here."
+        ),
+        &axis(),
+        &strips(of, |channel| Sensor::gauge(&channel.name).is_some()),
+    )
+}
+
+/// Tension of both ropes \[kN\].
+fn tensions(simulation: &Simulation) -> Vec<Curve> {
+    let turn = &simulation.turn_deg;
+    let (back, front) = (
+        &simulation.back_rope_tension_n,
+        &simulation.front_rope_tension_n,
+    );
+    vec![
+        curve("back rope", BLUE, turn, back, 1e-3),
+        curve("front rope", GREEN, turn, front, 1e-3),
+    ]
+}
+
+/// Axial force of both ropes at their free ends.
+pub(super) fn tension(simulation: &Simulation) -> Figure {
+    let strips = [strip("tension [kN]", 150.0, tensions(simulation))];
+    stack(
+        "rope_tension",
+        "Rope tension",
+        "Axial force in the back rope at the crossbeam and in the front rope at the suspension."
+            .to_owned(),
+        &axis(),
+        &strips,
+    )
+}
+
+/// Motion of the suspension point.
+pub(super) fn motion(simulation: &Simulation) -> Figure {
+    let turn = &simulation.turn_deg;
+    let strips = [
+        strip(
+            "height [m]",
+            84.0,
+            vec![curve("position", INK, turn, &simulation.suspension_m, 1.0)],
+        ),
+        strip(
+            "velocity [m/s]",
+            84.0,
+            vec![curve(
+                "velocity",
+                INK,
+                turn,
+                &simulation.suspension_velocity_m_s,
+                1.0,
+            )],
+        ),
+        strip(
+            "acceler. [m/s²]",
+            84.0,
+            vec![curve(
+                "acceleration",
+                INK,
+                turn,
+                &simulation.suspension_acceleration_m_s2,
+                1.0,
+            )],
+        ),
+    ];
+    stack(
+        "suspension",
+        "Motion of the suspension point",
+        "Position above the lowest design position, velocity and acceleration of the suspension \
+         point, upwards positive."
+            .to_owned(),
+        &axis(),
+        &strips,
+    )
+}
+
+/// Net torque at the crank shaft.
+pub(super) fn torque(simulation: &Simulation) -> Figure {
+    let strips = [strip(
+        "torque [kN m]",
+        130.0,
+        vec![curve(
+            "net torque",
+            PURPLE,
+            &simulation.turn_deg,
+            &simulation.crank_torque_n_m,
+            1e-3,
+        )],
+    )];
+    stack(
+        "crank_torque",
+        "Crank torque",
+        "Net torque at the crank shaft, counterweight included; below zero the machine drives the \
+         gear."
+            .to_owned(),
+        &axis(),
+        &strips,
+    )
+}
+
+/// The strips beside the moving machine, and where their crank axis lies: left, right, upper and
+/// lower end as shares of the figure's width and height.
+pub(super) fn player(case: &Case, simulation: &Simulation) -> (Figure, [f64; 4]) {
+    let turn = &simulation.turn_deg;
+    let colors = [VERMILLION, INK, GREEN, PURPLE];
+    let stress = case
+        .objective
+        .terms
+        .iter()
+        .filter_map(|term| {
+            let gauge = Sensor::gauge(&term.channel)?;
+            let index = usize::from(gauge) - 1;
+            let values = &simulation.gauge_mpa[index];
+            let label = format!("gauge {gauge}");
+            Some(curve(label, colors[index], turn, values, 1.0))
+        })
+        .collect();
+    let strips = [
+        strip("stress [MPa]", 104.0, stress),
+        strip("tension [kN]", 84.0, tensions(simulation)),
+        strip(
+            "torque [kN m]",
+            84.0,
+            vec![curve(
+                "crank",
+                PURPLE,
+                turn,
+                &simulation.crank_torque_n_m,
+                1e-3,
+            )],
+        ),
+    ];
+    let figure = stack(
+        "player",
+        "Curves beside the moving machine",
+        "Simulated stress, rope tension and crank torque; the vertical line follows the machine."
+            .to_owned(),
+        &axis(),
+        &strips,
+    );
+    (figure, span(&strips))
+}

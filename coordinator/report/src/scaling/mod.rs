@@ -1,0 +1,166 @@
+//! The report of how searches scale: every row, the figure, what the projection takes for granted.
+//!
+//! Knows the rows as plain data, not who measured them.
+use super::chart::speed_up;
+use super::data::Origin;
+use super::document::{Block, Fact, Report, Row as Cells, Section, Table};
+use super::folder::{ReportError, write_report};
+use super::number::{count, duration, figure, fixed, percent};
+use super::section::origin;
+use protocol::case::Case;
+use std::path::{Path, PathBuf};
+use study::scaling::{How, Row, Scaled};
+
+/// What a report is about.
+pub struct Subject<'a> {
+    /// The case that was searched.
+    pub case: &'a Case,
+    /// The rows.
+    pub scaled: &'a Scaled,
+    /// How it was made.
+    pub origin: Origin,
+}
+
+/// The report.
+pub fn report(subject: &Subject<'_>) -> Report {
+    let title = format!("How searches on {} scale", subject.case.name);
+    let facts = origin::facts(&subject.origin, subject.case);
+    let sections = vec![
+        rows(subject.scaled),
+        assumptions(subject.scaled),
+        origin::section(vec![Block::Facts(facts)]),
+    ];
+    Report::new(title, &subject.origin.run, sections)
+}
+
+/// Writes `report.html`, `tables.txt` and `figures/*.svg` into a folder. Returns the paths, the HTML first.
+///
+/// # Errors
+/// [`ReportError`] when a file cannot be written.
+pub fn write(folder: &Path, subject: &Subject<'_>) -> Result<Vec<PathBuf>, ReportError> {
+    write_report(folder, &report(subject))
+}
+
+fn rows(scaled: &Scaled) -> Section {
+    Section {
+        id: "scaling",
+        title: "Speed-up and slot time",
+        blocks: vec![
+            Block::Table(speeds(scaled)),
+            Block::Figure(speed_up(&scaled.rows)),
+            Block::Table(shares(scaled)),
+        ],
+    }
+}
+
+/// Rows of a table, by what slots did.
+fn grouped(scaled: &Scaled, cells: impl Fn(&Row) -> Vec<String>) -> Vec<Cells> {
+    let groups = [
+        (How::Computed, "computed: the case, on this machine"),
+        (How::Slept, "slept: sessions over TCP on this machine"),
+        (How::Projected, "projected: on a simulated clock"),
+    ];
+    let mut rows = Vec::new();
+    for (how, title) in groups {
+        let of = scaled.rows.iter().filter(|row| row.how == how);
+        let own = of.map(|row| {
+            let label = format!("{} {}", row.preset, row.population);
+            Cells::new(label, [vec![count(row.slots)], cells(row)].concat())
+        });
+        let own: Vec<Cells> = own.collect();
+        if !own.is_empty() {
+            rows.push(Cells::group(title));
+            rows.extend(own);
+        }
+    }
+    rows
+}
+
+fn speeds(scaled: &Scaled) -> Table {
+    let cells = |row: &Row| {
+        vec![
+            count(row.evaluations),
+            duration(row.wall_s),
+            figure(row.speed_up),
+            fixed(row.efficiency, 3),
+            fixed(row.coordinator_us_per_result, 0),
+            percent(row.coordinator_share),
+        ]
+    };
+    let head = [
+        "search and population",
+        "slots",
+        "evaluations",
+        "wall time",
+        "speed-up",
+        "efficiency",
+        "coordinator (us a result)",
+        "coordinator's share",
+    ];
+    Table::new("Speed-up", head, grouped(scaled, cells)).noted([
+        "Speed-up is what one slot alone computes for as many evaluations, over the wall time; efficiency is that \
+         over the slots. The coordinator's share is its processor time over the wall time.",
+    ])
+}
+
+fn shares(scaled: &Scaled) -> Table {
+    let cells = |row: &Row| {
+        let shares = row.shares;
+        let all = [
+            shares.useful,
+            shares.barrier,
+            shares.starved,
+            shares.speculative,
+            shares.failed + shares.lost,
+        ];
+        all.into_iter().map(percent).collect()
+    };
+    let head = [
+        "search and population",
+        "slots",
+        "useful",
+        "barrier",
+        "starved",
+        "speculative",
+        "failed or lost",
+    ];
+    Table::new("Where slot time went", head, grouped(scaled, cells)).noted([
+        "Barrier: slots waited for results that others computed. Starved: they waited for the next order. \
+         Speculative: they computed what another slot brought first.",
+    ])
+}
+
+fn assumptions(scaled: &Scaled) -> Section {
+    let own = &scaled.overheads;
+    let facts = vec![
+        Fact::new(
+            "a simulation in one slot",
+            format!("{} s", figure(own.simulation_s)),
+        ),
+        Fact::new(
+            "half of them took at most",
+            format!(
+                "{} s",
+                figure(
+                    own.simulation_quantiles_s
+                        .get(10)
+                        .copied()
+                        .unwrap_or(f64::NAN)
+                )
+            ),
+        ),
+        Fact::new(
+            "coordinator, a result over TCP",
+            format!("{} us", fixed(own.coordinator_us, 0)),
+        ),
+        Fact::new(
+            "round trip over TCP on loopback",
+            format!("{} ms", fixed(own.round_trip_ms, 2)),
+        ),
+    ];
+    Section {
+        id: "assumptions",
+        title: "What the projection is made from",
+        blocks: vec![Block::Facts(facts), Block::List(scaled.assumptions.clone())],
+    }
+}

@@ -1,0 +1,98 @@
+//! How the result was made: enough to make it again and to compare it.
+use crate::data::{Calibration, Origin, SingleRun};
+use crate::document::{Block, Fact, Section};
+use crate::number::{NONE, count, duration};
+use crate::words::{calibrated, listed};
+use protocol::case::{Case, Channel};
+use protocol::job::Curves;
+
+pub(super) fn calibration(calibration: &Calibration) -> Section {
+    let optimum = calibration.optimised.id;
+    let mut facts = facts(&calibration.origin, &calibration.case);
+    facts.extend([
+        Fact::new("objective", objective(&calibration.case)),
+        Fact::new(
+            "optimum",
+            optimum.map_or_else(|| NONE.to_owned(), |id| format!("individual {}", count(id))),
+        ),
+        Fact::new("wall time", duration(calibration.wall_s)),
+        Fact::code("digest of the evaluation log", &calibration.origin.digest),
+    ]);
+    let mut blocks = vec![Block::Facts(facts)];
+    let result = calibration.calibrated();
+    blocks.extend(result.map(|result| work(&result.optimised.curves)));
+    section(blocks)
+}
+
+pub(super) fn simulation(run: &SingleRun) -> Section {
+    let mut facts = facts(&run.origin, &run.case);
+    facts.push(Fact::code("digest of the result", &run.origin.digest));
+    section(vec![Block::Facts(facts), work(&run.curves)])
+}
+
+/// The section about it, in every report.
+pub(crate) const fn section(blocks: Vec<Block>) -> Section {
+    Section {
+        id: "provenance",
+        title: "How it was made",
+        blocks,
+    }
+}
+
+/// Where any result comes from.
+pub(crate) fn facts(origin: &Origin, case: &Case) -> Vec<Fact> {
+    let mut facts = vec![
+        Fact::new("program", &origin.program),
+        Fact::code("command", &origin.command),
+        Fact::new("run", &origin.run),
+        Fact::new("case", &case.name),
+        Fact::code("digest of the case", &origin.case_hash),
+        Fact::new("measured records", &origin.measured_name),
+    ];
+    let preset = origin.preset.iter();
+    facts.extend(preset.map(|preset| Fact::new("preset", preset)));
+    let seed = origin.seed.iter();
+    facts.extend(seed.map(|seed| Fact::new("seed", seed.to_string())));
+    facts
+}
+
+/// What is minimised.
+fn objective(case: &Case) -> String {
+    let terms = case.objective.terms.iter();
+    let terms: Vec<_> = terms
+        .map(|term| format!("{} × MSE of {}", term.weight, term.channel))
+        .collect();
+    let is_summed = |channel: &&Channel| case.objective.names(&channel.name);
+    let summed = case.channels.iter().filter(is_summed);
+    let mut fixed: Vec<String> = summed
+        .clone()
+        .filter(|channel| channel.is_absolute())
+        .map(|channel| channel.name.clone())
+        .collect();
+    fixed.sort_unstable();
+    fixed.dedup();
+    let offset = if fixed.is_empty() {
+        "free: the mean difference of each channel is removed first".to_owned()
+    } else if summed.clone().all(Channel::is_absolute) {
+        "fixed: absolute values are compared".to_owned()
+    } else {
+        let fixed = listed(&fixed, "and");
+        format!("fixed for {fixed}, free for the others: their mean difference is removed first")
+    };
+    let conditions = match case.objective.others.len() {
+        0 => String::new(),
+        _ => format!(", summed over {}", calibrated(case)),
+    };
+    format!("{}{conditions}; offset {offset}", terms.join(" + "))
+}
+
+/// What one simulation took of the integrator.
+fn work(curves: &Curves) -> Block {
+    let counters = curves.counters.named();
+    let counted = counters.map(|(_, what, number)| format!("{} {what}", count(number)));
+    Block::Text(format!(
+        "One simulation with these parameters took {}, in {} on its worker.",
+        listed(&counted, "and"),
+        duration(curves.wall_s)
+    ))
+}

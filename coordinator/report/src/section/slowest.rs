@@ -1,0 +1,74 @@
+//! The simulations that took most processor time, with how they ended: where the time of a run goes.
+use crate::data::{Calibration, HistoryPoint};
+use crate::document::{Block, Row, Section, Table};
+use crate::number::{count, duration, figure, fixed};
+use crate::words::objective_heading;
+use dispatch::account::JobCost;
+
+/// How many are listed.
+const LISTED: usize = 10;
+
+pub(super) fn calibration(calibration: &Calibration) -> Section {
+    let history = calibration.history.iter();
+    let mut known: Vec<(&HistoryPoint, JobCost)> = history
+        .filter_map(|point| Some((point, point.cost?)))
+        .filter(|(_, cost)| cost.processor_s > 0.0)
+        .collect();
+    known.sort_by(|(_, a), (_, b)| b.processor_s.total_cmp(&a.processor_s));
+    let mut times: Vec<f64> = known.iter().map(|(_, cost)| cost.processor_s).collect();
+    times.reverse();
+    let rows = known.iter().take(LISTED);
+    let table = Table::new(
+        "The slowest simulations",
+        [
+            "individual",
+            "generation",
+            "processor time",
+            "wall time",
+            "Newton iterations",
+            &objective_heading(&calibration.case),
+            "how it ended",
+        ],
+        rows.map(|(point, cost)| row(point, *cost)).collect(),
+    );
+    let table = table.unless_empty().map(|table| table.noted(note(&times)));
+    Section {
+        id: "slowest",
+        title: "Where the time went",
+        blocks: table.map(Block::Table).into_iter().collect(),
+    }
+}
+
+fn row(point: &HistoryPoint, cost: JobCost) -> Row {
+    let ended = point.failure.as_deref().unwrap_or("complete");
+    Row::new(
+        count(point.id),
+        [
+            point.generation.to_string(),
+            duration(cost.processor_s),
+            duration(cost.wall_s),
+            count(cost.newton_iterations),
+            figure(if point.complete {
+                point.fitness
+            } else {
+                f64::NAN
+            }),
+            ended.replace('_', " "),
+        ],
+    )
+}
+
+/// How the slowest compare with the others; `times` ascend.
+fn note(times: &[f64]) -> Option<String> {
+    let median = *times.get(times.len() / 2)?;
+    let (all, longest) = (times.iter().sum::<f64>(), *times.last()?);
+    Some(format!(
+        "All {} simulations of the search took {} of processor time, half of them no more than {} each; \
+         the slowest took {} times that. Wall time far above processor time: the slot's process had to \
+         wait for a processor.",
+        count(times.len() as u64),
+        duration(all),
+        duration(median),
+        fixed(longest / median, 1)
+    ))
+}

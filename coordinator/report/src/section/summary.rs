@@ -1,0 +1,81 @@
+//! The outcome in words: by how much the error fell, where, and where it did not.
+use crate::data::{Calibration, SingleRun};
+use crate::document::{Block, Section};
+use crate::number::{count, duration, figure};
+use crate::words;
+
+pub(super) fn calibration(calibration: &Calibration) -> Section {
+    let mut blocks = vec![Block::Lead(words::headline(calibration))];
+    blocks.extend(words::structure(calibration).map(|said| Block::Warning(vec![said])));
+    if calibration.origin.synthetic {
+        blocks.push(Block::Text(words::SYNTHETIC.to_owned()));
+    }
+    blocks.extend(conditions(calibration));
+    let history = &calibration.history;
+    let failed = history.iter().filter(|point| !point.complete).count();
+    blocks.push(Block::Text(format!(
+        "{} evaluations, {} of which did not complete, in {}. The search ended because {}.",
+        count(history.len() as u64),
+        count(failed as u64),
+        duration(calibration.wall_s),
+        calibration.finish
+    )));
+    let warnings = words::warnings(calibration);
+    if !warnings.is_empty() {
+        blocks.push(Block::Warning(warnings));
+    }
+    section(blocks)
+}
+
+/// What became of each channel, condition by condition.
+fn conditions(calibration: &Calibration) -> Vec<Block> {
+    let case = &calibration.case;
+    let mut blocks = Vec::new();
+    for result in &calibration.conditions {
+        let name = words::condition_name(case, result.condition);
+        let role = if case.objective.holds(result.condition) {
+            "calibrated"
+        } else {
+            "took no part in the fit"
+        };
+        blocks.push(Block::Heading(format!("Condition {name}"), role));
+        let sentences = words::channels(case, result);
+        blocks.push(if sentences.is_empty() {
+            let none = "There are no scores under this condition: no record, or no complete run.";
+            Block::Text(none.to_owned())
+        } else {
+            Block::List(sentences)
+        });
+        blocks.extend(words::absolute_worse(case, result).map(Block::Text));
+    }
+    blocks
+}
+
+pub(super) fn simulation(run: &SingleRun) -> Section {
+    let mut blocks = vec![Block::Lead(format!(
+        "Condition {} with the {} parameters: {}.",
+        words::condition_name(&run.case, run.condition),
+        run.genes_name,
+        words::verdict(&run.curves.verdict)
+    ))];
+    if let Some(evaluation) = &run.evaluation {
+        if run.origin.synthetic {
+            blocks.push(Block::Text(words::SYNTHETIC.to_owned()));
+        }
+        blocks.push(Block::Text(if evaluation.channels.is_empty() {
+            "There is no score: no record, or no complete run.".to_owned()
+        } else {
+            let unit = words::square_after(run.case.objective_unit());
+            format!("The objective is {}{unit}.", figure(evaluation.fitness))
+        }));
+    }
+    section(blocks)
+}
+
+const fn section(blocks: Vec<Block>) -> Section {
+    Section {
+        id: "summary",
+        title: "Summary",
+        blocks,
+    }
+}

@@ -1,0 +1,257 @@
+//! Recommended against optimised parameters (paper, Tables 3 and 4).
+use crate::data::{Calibration, ConditionResult};
+use crate::document::{Row, Table};
+use crate::kind;
+use crate::number::{NONE, figure, fixed, percent, ratio, squared, unit};
+use crate::words::{self, condition_name};
+use protocol::case::Case;
+use protocol::job::{ChannelScore, Verdict};
+
+/// Definitions that stand under every table with errors.
+const DEFINITIONS: [&str; 3] = [
+    "Relative error: mean absolute error over the mean absolute deviation of the measured curve from \
+     its own mean.",
+    "RMSE / half-range: root of the mean squared error over half the measured range.",
+    "Offset: measured minus simulated mean; sensors have no absolute zero.",
+];
+
+/// The channels that were scored, by their places in the case: those of the objective first.
+fn scored(case: &Case, result: &ConditionResult) -> Vec<usize> {
+    let measured = case.measured(result.condition);
+    let mut scored: Vec<usize> = measured.map(|(at, ..)| at).collect();
+    scored.sort_by_key(|&at| !words::is_fitted(case, at));
+    scored
+}
+
+/// A measure of agreement, channel by channel.
+struct Measure {
+    title: &'static str,
+    unit: fn(&str) -> String,
+    of: fn(&ChannelScore) -> f64,
+    write: fn(f64) -> String,
+    /// Whether the ratio of two of them says something: one of signed errors or of offsets does not.
+    has_ratio: bool,
+}
+
+const MEASURES: [Measure; 6] = [
+    Measure {
+        title: "Mean squared error",
+        unit: |unit| squared(Some(unit)),
+        of: |score| score.mse,
+        write: figure,
+        has_ratio: true,
+    },
+    Measure {
+        title: "MSE, absolute (offset not removed)",
+        unit: |unit| squared(Some(unit)),
+        of: |score| score.mse_fixed_offset,
+        write: figure,
+        has_ratio: true,
+    },
+    Measure {
+        title: "Relative error",
+        unit: |_| String::new(),
+        of: |score| score.relative_error,
+        write: percent,
+        has_ratio: true,
+    },
+    Measure {
+        title: "RMSE / half-range",
+        unit: |_| String::new(),
+        of: |score| score.rmse_over_half_range,
+        write: percent,
+        has_ratio: true,
+    },
+    Measure {
+        title: "Error of the peak-to-peak value",
+        unit: |_| String::new(),
+        of: |score| score.peak_to_peak_error,
+        write: percent,
+        has_ratio: false,
+    },
+    Measure {
+        title: "Offset",
+        unit,
+        of: |score| score.offset,
+        write: |value| fixed(value, 2),
+        has_ratio: false,
+    },
+];
+
+impl Measure {
+    /// Both parameter sets at one channel.
+    fn row(&self, case: &Case, result: &ConditionResult, channel: usize) -> Row {
+        let [before, after] = [&result.recommended, &result.optimised].map(|run| {
+            let mut channels = run.evaluation.channels.iter();
+            channels.find(|score| score.channel == channel).map(self.of)
+        });
+        let share = match (before, after) {
+            _ if !self.has_ratio => String::new(),
+            (Some(before), Some(after)) if before > 0.0 && after >= 0.0 => ratio(after, before),
+            _ => NONE.to_owned(),
+        };
+        let write = |value: Option<f64>| value.map_or_else(|| NONE.to_owned(), self.write);
+        let calibrated = case.objective.holds(result.condition);
+        let role = if words::is_fitted(case, channel) || !calibrated {
+            ""
+        } else {
+            " (not fitted)"
+        };
+        let found = case.channels.get(channel);
+        let unit = found.map(|channel| (self.unit)(&channel.unit));
+        let cells = [unit.unwrap_or_default(), write(before), write(after), share];
+        Row::new(
+            format!("{}{role}", words::channel_title(case, channel)),
+            cells,
+        )
+    }
+}
+
+/// Objective and agreement of every channel of a condition.
+fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
+    let scored = scored(case, result);
+    let [before, after] = [&result.recommended, &result.optimised].map(|run| {
+        let complete = run.evaluation.verdict == Verdict::Complete;
+        complete.then_some(run.evaluation.fitness)
+    });
+    let write = |value: Option<f64>| value.map_or_else(|| "failed".to_owned(), figure);
+    let share = before
+        .zip(after)
+        .map(|(before, after)| ratio(after, before));
+    let cells = [
+        squared(case.objective_unit()),
+        write(before),
+        write(after),
+        share.unwrap_or_else(|| NONE.to_owned()),
+    ];
+    let objective = match case.objective.others.len() {
+        0 => "Objective".to_owned(),
+        _ => format!(
+            "Objective, condition {} alone",
+            condition_name(case, result.condition)
+        ),
+    };
+    let mut rows = vec![
+        Row::group(objective),
+        Row::new("weighted sum of mean squared errors", cells),
+    ];
+    for measure in MEASURES {
+        rows.push(Row::group(measure.title));
+        rows.extend(scored.iter().map(|&at| measure.row(case, result, at)));
+    }
+    rows
+}
+
+const HEAD: [&str; 5] = [
+    "",
+    "unit",
+    "recommended",
+    "optimised",
+    "optimised / recommended",
+];
+
+/// Rows of both gene vectors.
+fn gene_rows(calibration: &Calibration) -> Vec<Row> {
+    let mut rows = Vec::new();
+    let (mut group, kind) = ("", kind::of(&calibration.case));
+    let genes = calibration.case.unknowns.iter().enumerate();
+    for (index, gene) in genes {
+        let name = match gene.of_effect() {
+            Some(_) => "Effects",
+            None => kind.group(gene),
+        };
+        if name != group {
+            rows.push(Row::group(name));
+            group = name;
+        }
+        let value = |genes: &[f64]| genes.get(index).copied().unwrap_or(f64::NAN);
+        let before = value(&calibration.recommended.genes);
+        let after = value(&calibration.optimised.genes);
+        let mut optimised = figure(after);
+        if words::at_bound(gene, after).is_some() {
+            optimised.push_str(" *");
+        }
+        let said = calibration.seen.iter().find(|own| own.name == gene.name);
+        let cells = [
+            unit(&gene.unit),
+            figure(before),
+            optimised,
+            ratio(after, before),
+        ];
+        rows.push(Row::of(
+            gene,
+            cells.into_iter().chain(said.map(words::seen)),
+        ));
+    }
+    rows
+}
+
+/// The paper's Table 3: genes, and agreement under the calibrated condition.
+pub fn table_3(calibration: &Calibration) -> Table {
+    let case = &calibration.case;
+    let title = format!(
+        "Recommended and optimised parameters, calibrated {}",
+        words::calibrated(case)
+    );
+    let genes = case.unknowns.iter().zip(&calibration.optimised.genes);
+    let bounds: Vec<String> = genes
+        .filter_map(|(gene, &value)| {
+            let bound = words::bound(gene, words::at_bound(gene, value)?);
+            Some(format!("{} at {bound}", gene.name))
+        })
+        .collect();
+    let marked =
+        (!bounds.is_empty()).then(|| format!("* at a bound of the search: {}.", bounds.join(", ")));
+    let mut table = Table::new(title, HEAD, gene_rows(calibration)).noted(marked);
+    if !calibration.seen.is_empty() {
+        table.head.push("what the record says, 95 %".to_owned());
+        let of = match case.objective.others.len() {
+            0 => "the record".to_owned(),
+            _ => format!(
+                "the record of condition {}",
+                condition_name(case, case.objective.condition)
+            ),
+        };
+        table = table.noted([format!(
+            "What the record says: what {of} does, to first order at the optimum, under its own noise, widened \
+             by what is left; `horsehead identify RUN` says it with profiles."
+        )]);
+    }
+    table = table.noted(DEFINITIONS);
+    if let Some(result) = calibration.calibrated() {
+        table.rows.extend(agreement(case, result));
+        table = table.noted(remarks(case, result));
+    }
+    table
+}
+
+/// The paper's Table 4: agreement under one condition, with the same parameters.
+pub fn table_4(case: &Case, result: &ConditionResult) -> Table {
+    let role = if !case.objective.holds(result.condition) {
+        "which took no part in the fit"
+    } else if case.objective.others.is_empty() {
+        "the calibrated condition"
+    } else {
+        "one of the calibrated conditions"
+    };
+    let name = condition_name(case, result.condition);
+    let title = format!("The same parameters under condition {name}, {role}");
+    Table::new(title, HEAD, agreement(case, result))
+        .noted(DEFINITIONS)
+        .noted(remarks(case, result))
+}
+
+/// What got worse unseen, and which of the two runs failed, and how.
+fn remarks(case: &Case, result: &ConditionResult) -> Vec<String> {
+    let runs = [
+        ("Recommended", &result.recommended),
+        ("Optimised", &result.optimised),
+    ];
+    let failed = runs.into_iter().filter_map(|(who, run)| {
+        let verdict = &run.evaluation.verdict;
+        let failed = *verdict != Verdict::Complete;
+        failed.then(|| format!("{who} parameters {}.", words::verdict(verdict)))
+    });
+    let worse = words::absolute_worse(case, result);
+    worse.into_iter().chain(failed).collect()
+}

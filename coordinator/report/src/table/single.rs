@@ -1,0 +1,94 @@
+//! One simulation in numbers: what every model has of it.
+use crate::data::{Shown, SingleRun};
+use crate::document::{Row, Table};
+use crate::number::{NONE, count, duration, figure, fixed, percent, range, squared, unit};
+use crate::words::{channel_title, condition_name, verdict};
+use protocol::case::Channel;
+use protocol::job::Counters;
+
+/// A row with one value.
+pub fn one(label: &str, unit: &str, value: String) -> Row {
+    Row::new(label, [unit.to_owned(), value])
+}
+
+/// A row with the range of a curve: smallest, largest, half the range; its values times a factor.
+pub fn range_row(label: &str, values: &[f64], factor: f64, unit: &str) -> Row {
+    let ends = range(values.iter().map(|value| factor * value));
+    let cells = ends.map_or([NONE; 3].map(str::to_owned), |(low, high)| {
+        [low, high, 0.5 * (high - low)].map(|value| fixed(value, 2))
+    });
+    Row::new(label, std::iter::once(unit.to_owned()).chain(cells))
+}
+
+/// The range of every channel.
+pub fn ranges(of: &Shown<'_>) -> Vec<Row> {
+    let channels = of.case.channels_of(of.condition);
+    let row = |(_, channel): (usize, &Channel)| {
+        let unit = unit(&channel.unit);
+        range_row(&channel.title, of.channel(channel), 1.0, &unit)
+    };
+    channels.map(row).collect()
+}
+
+/// Verdict of a simulation over rows of ranges.
+pub fn simulation(run: &SingleRun, ranges: Vec<Row>) -> Table {
+    let title = format!(
+        "Condition {}, {} parameters: {}",
+        condition_name(&run.case, run.condition),
+        run.genes_name,
+        verdict(&run.curves.verdict)
+    );
+    let head = ["", "unit", "smallest", "largest", "half range"];
+    Table::new(title, head, ranges)
+}
+
+/// A table of rows with one value each.
+pub fn sums(title: &str, rows: Vec<Row>) -> Table {
+    Table::new(title, ["", "unit", "value"], rows)
+}
+
+/// Agreement with the record, as far as it was scored.
+pub fn agreement(run: &SingleRun) -> Vec<Row> {
+    let scored = run.evaluation.as_ref();
+    let Some(evaluation) = scored.filter(|scored| !scored.channels.is_empty()) else {
+        return Vec::new();
+    };
+    let unit = squared(run.case.objective_unit());
+    let mut rows = vec![
+        Row::group("Against the record"),
+        one("objective", &unit, figure(evaluation.fitness)),
+    ];
+    for score in &evaluation.channels {
+        let channel = run.case.channels.get(score.channel);
+        let title = channel_title(&run.case, score.channel);
+        let unit = squared(channel.map(|channel| channel.unit.as_str()));
+        let error = format!("{title}: mean squared error");
+        rows.push(one(&error, &unit, figure(score.mse)));
+        let error = format!("{title}: relative error");
+        rows.push(one(&error, "", percent(score.relative_error)));
+    }
+    rows
+}
+
+/// What the simulation took.
+pub fn work(counters: &Counters, wall_s: f64) -> Vec<Row> {
+    let counted = counters.named().into_iter();
+    let mut rows = vec![Row::group("Work of the integrator")];
+    rows.extend(counted.map(|(_, what, number)| one(what, "", count(number))));
+    rows.push(one("wall time", "", duration(wall_s)));
+    rows
+}
+
+/// The genes of one simulation beside the recommended ones.
+pub(crate) fn genes(run: &SingleRun) -> Table {
+    let genes = run.case.unknowns.iter().zip(&run.genes);
+    Table::new(
+        format!("Parameters: {}", run.genes_name),
+        ["", "unit", "value", "recommended"],
+        genes
+            .map(|(gene, &value)| {
+                Row::of(gene, [unit(&gene.unit), figure(value), figure(gene.start)])
+            })
+            .collect(),
+    )
+}

@@ -1,0 +1,60 @@
+//! The bounds that unknowns touch, in words.
+use crate::number::quantity;
+use discrepancy::identify::UnknownEstimate;
+use protocol::case::{Scale, Unknown};
+
+/// A bound of an unknown in words, as "its upper bound 1.00e12 N/m".
+pub(crate) fn bound(gene: &Unknown, side: &str) -> String {
+    let value = if side == "lower" {
+        gene.lower
+    } else {
+        gene.upper
+    };
+    format!("its {side} bound {}", quantity(value, &gene.unit))
+}
+
+/// Which bound a value touches, within half a per cent of the interval on the unknown's scale.
+pub(crate) fn at_bound(gene: &Unknown, value: f64) -> Option<&'static str> {
+    let Unknown { lower, upper, .. } = *gene;
+    let share = match gene.scale {
+        Scale::Logarithmic => (value / lower).ln() / (upper / lower).ln(),
+        Scale::Linear => (value - lower) / (upper - lower),
+    };
+    if share < 0.005 {
+        Some("lower")
+    } else if share > 0.995 {
+        Some("upper")
+    } else {
+        None
+    }
+}
+
+/// What the record says of an unknown, in a cell.
+pub(crate) fn seen(own: &UnknownEstimate) -> String {
+    let of = |x: f64| quantity(x, &own.unit);
+    match own.interval {
+        [Some(low), Some(high)] => format!("{} to {}", of(low), of(high)),
+        [Some(low), None] => format!("at least {}", of(low)),
+        [None, Some(high)] => format!("at most {}", of(high)),
+        [None, None] => "not seen by this record".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{at_bound, bound};
+    use protocol::case::{Scale, Unknown};
+
+    #[test]
+    fn bounds_are_noticed_on_the_scale_of_the_unknown() {
+        let stiffness = Unknown::new("k", "N/m", Scale::Logarithmic, 1e8, [1e4, 1e12]);
+        assert_eq!(at_bound(&stiffness, 1e4), Some("lower"));
+        assert_eq!(at_bound(&stiffness, 0.99e12), Some("upper"));
+        assert_eq!(at_bound(&stiffness, 2e4), None);
+        let size = Unknown::new("size", "N", Scale::Linear, 0.0, [-500.0, 1500.0]);
+        assert_eq!(at_bound(&size, -499.0), Some("lower"));
+        assert_eq!(at_bound(&size, 0.0), None);
+        assert_eq!(at_bound(&size, 1400.0), None);
+        assert_eq!(bound(&size, "upper"), "its upper bound 1500\u{a0}N");
+    }
+}
