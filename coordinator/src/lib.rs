@@ -12,4 +12,6 @@ mod kind;
 #[path = "../study/src/oracle.rs"]
 mod oracle;
 pub mod pumping_unit;
-pub mod store;
+#[cfg(test)]
+#[path = "../store/src/read_back.rs"]
+mod read_back;

@@ -37,6 +37,11 @@ const ARROWS: &[(&str, &str)] = &[
     ("report", "support"),
     // its tests fit a model
     ("report", "search"),
+    ("store", "protocol"),
+    ("store", "dispatch"),
+    ("store", "study"),
+    ("store", "case"),
+    ("coordinator", "store"),
     ("coordinator", "report"),
     ("coordinator", "study"),
     ("coordinator", "case"),
@@ -102,8 +107,8 @@ const GATED: &[(&str, &[&str])] = &[
     ),
     ("faer", &["simulation"]),
     ("pulp", &["simulation"]),
-    ("rusqlite", &["coordinator"]),
-    ("parquet", &["coordinator"]),
+    ("rusqlite", &["store"]),
+    ("parquet", &["store"]),
 ];
 
 #[test]

@@ -3,7 +3,7 @@ use crate::words::sources;
 use std::{fs, path::Path};
 
 /// Sources of the product.
-const HOUSE: [&str; 12] = [
+const HOUSE: [&str; 13] = [
     "protocol/src",
     "protocol/link/src",
     "worker/src",
@@ -14,6 +14,7 @@ const HOUSE: [&str; 12] = [
     "coordinator/dispatch/src",
     "coordinator/launch/src",
     "coordinator/report/src",
+    "coordinator/store/src",
     "coordinator/study/src",
     "tests/oscillator",
 ];

@@ -25,6 +25,7 @@ const GENERAL: &[&str] = &[
     "coordinator/dispatch/src",
     "coordinator/launch/src",
     "coordinator/report/src",
+    "coordinator/store/src",
     "coordinator/study/src",
     "coordinator/src",
 ];

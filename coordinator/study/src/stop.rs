@@ -6,6 +6,9 @@ use tokio::sync::watch;
 pub type Stop = watch::Receiver<bool>;
 
 /// A future's result, unless the user stops first.
+///
+/// # Errors
+/// [`StudyError::Interrupted`] if the user stops.
 pub async fn or_stop<T>(future: impl Future<Output = T>, stop: &mut Stop) -> Result<T, StudyError> {
     let stopped = async {
         // a sender that is gone can no longer stop anything

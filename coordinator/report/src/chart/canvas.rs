@@ -54,36 +54,42 @@ impl Lettering {
     }
 
     /// The same, ending at its anchor.
+    #[must_use]
     pub const fn right(mut self) -> Self {
         self.along = "end";
         self
     }
 
     /// The same with the anchor in its middle.
+    #[must_use]
     pub const fn centered(mut self) -> Self {
         self.along = "middle";
         self
     }
 
     /// The same, standing on its anchor.
+    #[must_use]
     pub const fn above(mut self) -> Self {
         self.drop = -0.2;
         self
     }
 
     /// The same, hanging from its anchor.
+    #[must_use]
     pub const fn below(mut self) -> Self {
         self.drop = 0.76;
         self
     }
 
     /// The same in bold.
+    #[must_use]
     pub const fn bold(mut self) -> Self {
         self.bold = true;
         self
     }
 
     /// The same, reading upwards.
+    #[must_use]
     pub const fn upwards(mut self) -> Self {
         self.upwards = true;
         self

@@ -1,11 +1,11 @@
 //! A table of individuals: a CSV file with a column for each unknown that a case searches.
-use crate::store::gene_column;
 use case::{
     CaseError, file,
     table::{Table, columns},
 };
 use search::space::{Axis, Space};
 use std::path::Path;
+use store::gene_column;
 
 /// Columns by which a table is one that this program wrote: of `export`, and of a sweep. Its other columns say what came
 /// of the individuals.

@@ -7,16 +7,14 @@ use super::{
     interrupt,
     manifest::Manifest,
 };
-use crate::{
-    cli::output::{problem::Usage, terminal},
-    store::{Exported, Format, Label, Store, StoreError, Target},
-};
+use crate::cli::output::{problem::Usage, terminal};
 use discrepancy::laboratory::Stage;
 use dispatch::journal;
 use protocol::{case::Case, event::Finished, job::Job};
 use search::strategy::Proposal;
 use serde::Serialize;
 use std::{cell::RefCell, collections::BTreeMap, path::PathBuf};
+use store::{Exported, Format, Label, Store, StoreError, Target};
 use study::{Crew, EvaluatorError, ProgressView, Recorded, StageView, Stop, StudyError, Watch};
 
 /// What is known of the run as a whole, beside its journal.

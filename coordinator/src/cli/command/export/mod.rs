@@ -1,23 +1,21 @@
 //! `horsehead export`: a run as tables for queries, and the folders of its failed runs, from its journal.
 mod failed;
 
-use crate::{
-    cli::{
-        argument::output::OutputChoice,
-        output::{problem::EXIT_CODES, terminal},
-        run::{
-            folder::{CASE, MANIFEST, RunFolder},
-            kind::AnyRun,
-            manifest::Manifest,
-            tables::{self, Source},
-        },
+use crate::cli::{
+    argument::output::OutputChoice,
+    output::{problem::EXIT_CODES, terminal},
+    run::{
+        folder::{CASE, MANIFEST, RunFolder},
+        kind::AnyRun,
+        manifest::Manifest,
+        tables::{self, Source},
     },
-    store::{Format, Target},
 };
 use clap::{Args, ValueEnum};
 use protocol::case::Case;
 use serde::Serialize;
 use std::{collections::BTreeMap, path::PathBuf};
+use store::{Format, Target};
 
 /// Turn a run into tables (a SQLite database, or a folder of CSV or Parquet files), or fetch failed runs.
 #[derive(Debug, Args)]

@@ -1,19 +1,17 @@
 //! Exports of whole runs: what the tables say is what the search saw and the journal holds.
 use super::*;
-use crate::oracle::{Oracle, case, physics};
-use crate::{
-    cli::{
-        argument::output::Output,
-        output::{problem::Usage, progress::Silent},
-        run::{
-            begun::Run,
-            bus,
-            calibration::calibrate,
-            manifest::{CALIBRATE, FORMAT},
-        },
+use crate::cli::{
+    argument::output::Output,
+    output::{problem::Usage, progress::Silent},
+    run::{
+        begun::Run,
+        bus,
+        calibration::calibrate,
+        manifest::{CALIBRATE, FORMAT},
     },
-    store::read_back::{self, Tables, Value},
 };
+use crate::oracle::{Oracle, case, physics};
+use crate::read_back::{self, Tables, Value};
 use dispatch::journal::{self, Entry, Journal};
 use protocol::{
     event::{Event, Finished, RunHeader},
@@ -139,6 +137,12 @@ fn arguments(run: &Path, format: Form, to: Option<&Path>) -> Arguments {
     }
 }
 
+/// Bytes of files by path.
+fn files(paths: &[String]) -> BTreeMap<String, Vec<u8>> {
+    let read = |path: &String| (path.clone(), fs::read(path).expect("it was written"));
+    paths.iter().map(read).collect()
+}
+
 /// Values of a column.
 fn column<'a>(tables: &'a Tables, table: &str, column: &str) -> Vec<&'a Value> {
     let (names, rows) = &tables[table];
@@ -205,11 +209,11 @@ fn three_forms_hold_what_the_search_saw_and_leave_no_trace() {
     for form in [Form::Sqlite, Form::Csv, Form::Parquet] {
         let made = export(&arguments(&folder, form, None)).unwrap();
         assert!(made.complete, "{:?}", made.notes);
-        let first = read_back::files(&made.files);
+        let first = files(&made.files);
         let tables = read_back::tables(&folder.join(Format::from(form).usual_name()), form.into());
         // again, over the first one
         let again = export(&arguments(&folder, form, None)).unwrap();
-        assert_eq!(read_back::files(&again.files), first, "{form:?}");
+        assert_eq!(files(&again.files), first, "{form:?}");
         for (name, rows) in &made.rows {
             assert_eq!(tables[*name].1.len() as u64, *rows, "{form:?} {name}");
         }

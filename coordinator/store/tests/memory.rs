@@ -4,7 +4,6 @@
     reason = "helpers of a test: what cannot be written or read has failed"
 )]
 use case::{Overrides, load};
-use coordinator::store::{Format, Label, Store, Target};
 use dispatch::journal::{self, Journal};
 use protocol::{
     event::{Event, Finished, RunHeader},
@@ -16,6 +15,7 @@ use protocol::{
     message::{Attempt, Cost},
 };
 use std::{env, fs, path::Path, process::Command};
+use store::{Format, Label, Store, Target};
 
 /// Residuals of each result (a tenth of a real one's).
 const RESIDUALS: usize = 144;
@@ -67,7 +67,7 @@ fn peak_mib() -> u64 {
 #[test]
 fn fifty_thousand_evaluations_need_the_memory_of_five_thousand() {
     let scratch = tempfile::tempdir().unwrap();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/cyjs10-5-37hb");
     let case = load(&folder, &Overrides::default()).unwrap();
     for format in [Format::Sqlite, Format::Csv, Format::Parquet] {
         let mut peaks = Vec::new();

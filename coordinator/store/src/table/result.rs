@@ -1,6 +1,6 @@
 //! Tables of results: what was asked, how it ended, what it cost, how well it agrees.
 use super::about::{column, gene_column};
-use crate::store::{
+use crate::{
     column::{Columns, JOB},
     row::{Added, Brief, Evaluated, Scored},
 };

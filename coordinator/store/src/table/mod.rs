@@ -6,7 +6,7 @@ mod about;
 mod event;
 mod result;
 
-pub(crate) use about::gene_column;
+pub use about::gene_column;
 
 use super::{
     book::{Book, Table},

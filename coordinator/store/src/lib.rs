@@ -11,7 +11,7 @@ mod error;
 mod export;
 mod parquet;
 #[cfg(test)]
-pub(crate) mod read_back;
+mod read_back;
 mod row;
 mod sqlite;
 mod table;
@@ -21,5 +21,9 @@ mod tests;
 
 pub use error::StoreError;
 pub use export::{Exported, Label, Store};
-pub(crate) use table::gene_column;
+pub use table::gene_column;
 pub use target::{Format, Target};
+
+// tests of other crates include what reads exports back
+#[cfg(test)]
+extern crate self as store;

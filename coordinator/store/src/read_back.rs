@@ -1,6 +1,5 @@
-//! Tests read exports back, each form with a reader of its own.
-pub(crate) use super::column::Value;
-use super::target::Format;
+//! Tests read exports back, each form with a reader of its own; the crate's own tests and the program's include this
+//! file.
 use parquet::{
     file::reader::{FileReader as _, SerializedFileReader},
     record::Field,
@@ -11,15 +10,23 @@ use std::{
     fs::{self, File},
     path::Path,
 };
+use store::Format;
+
+/// What a field holds.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Value {
+    /// Nothing.
+    Null,
+    /// A whole number.
+    Integer(i64),
+    /// A finite number.
+    Real(f64),
+    /// Words.
+    Text(String),
+}
 
 /// Names of columns, and rows, by table.
 pub(crate) type Tables = BTreeMap<String, (Vec<String>, Vec<Vec<Value>>)>;
-
-/// Bytes of files by path.
-pub(crate) fn files(paths: &[String]) -> BTreeMap<String, Vec<u8>> {
-    let read = |path: &String| (path.clone(), fs::read(path).expect("it was written"));
-    paths.iter().map(read).collect()
-}
 
 /// All tables of an export.
 pub(crate) fn tables(path: &Path, format: Format) -> Tables {

@@ -7,7 +7,6 @@ use std::{
 
 /// Why a run cannot be exported.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum StoreError {
     /// A file cannot be read or written.
     #[error("cannot {doing} {}: {source}", path.display())]

@@ -1,5 +1,5 @@
 //! Tables of what happened: workers, events of the run, damage of its journal.
-use crate::store::{column::Columns, row::Happened};
+use crate::{column::Columns, row::Happened};
 use dispatch::journal::Damage;
 use protocol::event::{Spent, WorkerAccount};
 

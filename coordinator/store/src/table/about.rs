@@ -1,5 +1,5 @@
 //! Tables about the run as a whole: what is known of it, its genes, and what every column means.
-use crate::store::{
+use crate::{
     column::{Column, Columns},
     row::Fact,
 };
@@ -14,7 +14,7 @@ pub(super) fn run() -> Columns<Fact> {
 }
 
 /// Name of the column of a gene, with its unit: `stiffness_n_per_m`.
-pub(crate) fn gene_column(gene: &Unknown) -> String {
+pub fn gene_column(gene: &Unknown) -> String {
     column(&gene.name.replace('.', "_"), &gene.unit)
 }
 
