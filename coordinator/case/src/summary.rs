@@ -127,7 +127,11 @@ pub fn text(loaded: &Loaded) -> String {
     let conditions = conditions.filter_map(|at| case.conditions.get(at));
     let conditions: Vec<&str> = conditions.map(|condition| &*condition.name).collect();
     let conditions = conditions.join(" + ");
-    let _infallible = write!(text, "objective   {conditions}: {}", terms.join(", "));
+    if terms.is_empty() {
+        text.push_str("objective   none: the case is simulated only");
+    } else {
+        let _infallible = write!(text, "objective   {conditions}: {}", terms.join(", "));
+    }
     for note in &loaded.notes {
         let _infallible = write!(text, "\nnote: {note}");
     }

@@ -4,12 +4,12 @@
 //! by the case's own reference individual, which each worker computes once it holds the case. The
 //! first worker of a run sets what the others must come to: to the last bit, or within what the case says.
 use super::{
+    admission_rules::{malformed, model, objection, shown},
     drain::turn_away,
     member::Member,
     notice::Notice,
     roster::dismiss,
     state::Core,
-    terms::{absurdity, model, objection, shown},
 };
 use protocol::{
     announce::Announcement,
@@ -26,7 +26,7 @@ const MOST_REFUSED: usize = 4096;
 
 /// A worker introduces itself.
 pub(super) fn announce(core: &mut Core, from: WorkerId, announcement: Announcement, now: Duration) {
-    if let Some(reason) = absurdity(&announcement).or_else(|| objection(core, &announcement)) {
+    if let Some(reason) = malformed(&announcement).or_else(|| objection(core, &announcement)) {
         let host = shown(&announcement.host);
         refuse(core, from, host, reason);
         return;

@@ -5,7 +5,7 @@ use super::{
     lease, membership, reconcile, result,
     slot_time::Doing,
     state::{Core, Pending, Phase},
-    tail,
+    stragglers,
 };
 use protocol::{
     event::Event,
@@ -40,7 +40,7 @@ impl Core {
         drain::end_drained(self, now);
         if self.may_give_out() && membership::is_complete(self, now) {
             assign::assign(self, now);
-            tail::steal(self, now);
+            stragglers::steal(self, now);
         }
         self.clocks.go_on(Doing {
             computes: self.jobs.len() > self.queue.len(),
@@ -62,7 +62,7 @@ fn submit(core: &mut Core, id: JobId, job: Job, now: Duration) {
     core.jobs.insert(id, pending);
     core.queue.insert(id);
     lease::adopt(core, id, now);
-    if let Some((from, done)) = core.early.take(id) {
+    if let Some((from, done)) = core.unclaimed.take(id) {
         result::done(core, from, done, now);
     }
 }
@@ -105,7 +105,7 @@ fn tick(core: &mut Core, now: Duration) {
     membership::check_silence(core, now);
     result::check_overdue(core, now);
     membership::check_deserted(core, now);
-    tail::copy_slow(core, now);
+    stragglers::copy_slow(core, now);
     if now.saturating_sub(core.accounted) >= core.options.policy.account_interval {
         core.account(now);
     }

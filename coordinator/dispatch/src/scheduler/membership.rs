@@ -1,11 +1,11 @@
 //! Who takes part, and who is lost.
 use super::{
+    admission_rules::shown,
     lease::requeue,
     notice::Notice,
     result,
     roster::{dismiss, remove},
     state::{Core, millis},
-    terms::shown,
 };
 use protocol::{
     id::{JobId, WorkerId},

@@ -12,15 +12,15 @@
 //! this process could lose.
 //!
 //! Each file uses only what stands above it: what is remembered (`state` over `member`, `slot_time`,
-//! `policy`, `times`, `failures`); who holds which job (`lease`); `result` and `roster`; `drain`, `terms`,
-//! `admission` and `reconcile`; `membership`; `assign` and `tail`; and at the top `inbox`, which is
+//! `policy`, `times`, `failures`); who holds which job (`lease`); `result` and `roster`; `drain`, `admission_rules`,
+//! `admission` and `reconcile`; `membership`; `assign` and `stragglers`; and at the top `inbox`, which is
 //! told what happens.
 mod admission;
+mod admission_rules;
 mod assign;
 mod completed;
 mod crew;
 mod drain;
-mod early;
 mod failures;
 mod inbox;
 mod input;
@@ -36,11 +36,11 @@ mod roster;
 mod slot_time;
 mod snapshot;
 mod state;
-mod tail;
-mod terms;
+mod stragglers;
 #[cfg(test)]
 mod tests;
 mod times;
+mod unclaimed_results;
 
 pub use completed::Completed;
 pub use crew::Hand;

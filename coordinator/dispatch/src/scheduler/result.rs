@@ -36,7 +36,7 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
             || core.options.expected.contains(&from)
             || core.options.epoch > 1
         {
-            core.early.put(from, done);
+            core.unclaimed.put(from, done);
         }
         return;
     };

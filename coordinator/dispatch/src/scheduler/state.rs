@@ -1,6 +1,5 @@
 //! All that the core remembers, and what can be said of it without knowing how it comes about.
 use super::{
-    early::Early,
     failures::Failures,
     input::{Command, Drain},
     job_set::JobSet,
@@ -9,6 +8,7 @@ use super::{
     policy::Policy,
     slot_time::Clocks,
     times::Times,
+    unclaimed_results::UnclaimedResults,
 };
 use protocol::{
     case::Repeats,
@@ -67,7 +67,7 @@ pub struct Core {
     pub(super) storing: BTreeMap<JobId, Vec<(WorkerId, Attempt)>>,
     pub(super) finished: JobSet,
     /// Results of jobs that were not submitted (yet).
-    pub(super) early: Early,
+    pub(super) unclaimed: UnclaimedResults,
     pub(super) times: Times,
     pub(super) counts: Counts,
     pub(super) last_call: Duration,
@@ -164,7 +164,7 @@ impl Core {
             suspects: BTreeSet::new(),
             storing: BTreeMap::new(),
             finished,
-            early: Early::default(),
+            unclaimed: UnclaimedResults::default(),
             times: Times::default(),
             counts: Counts::default(),
             last_call: Duration::ZERO,

@@ -360,26 +360,26 @@ fn early_results_are_kept_of_members_and_up_to_a_budget() {
     let mut scene = Scene::new();
     scene.core.options.expected = [WorkerId(7)].into();
     scene.hear(9, FromWorker::Done(Box::new(early(0, 1))));
-    assert_eq!(scene.core.early.bytes(), 0, "of a stranger");
+    assert_eq!(scene.core.unclaimed.bytes(), 0, "of a stranger");
     scene.hear(7, FromWorker::Done(Box::new(early(1, 1))));
-    assert!(scene.core.early.bytes() > 0, "of one who is expected");
+    assert!(scene.core.unclaimed.bytes() > 0, "of one who is expected");
     scene.join(1, 1);
     for job in 10..20 {
         scene.hear(1, FromWorker::Done(Box::new(early(job, LONG))));
         // the same again costs nothing
         scene.hear(1, FromWorker::Done(Box::new(early(job, LONG))));
     }
-    let kept = early::MOST_BYTES / LONG;
-    let bytes = scene.core.early.bytes();
+    let kept = unclaimed_results::MOST_BYTES / LONG;
+    let bytes = scene.core.unclaimed.bytes();
     assert!(
-        (kept * LONG..=early::MOST_BYTES).contains(&bytes),
+        (kept * LONG..=unclaimed_results::MOST_BYTES).contains(&bytes),
         "{bytes}"
     );
     scene.submit(0..2);
     scene.submit(10..20);
     let delivered: Vec<u64> = scene.delivered.iter().map(|(job, _)| *job).collect();
     assert_eq!(delivered, [1, 10, 11, 12, 13, 14, 15]);
-    assert_eq!(scene.core.early.bytes(), 0);
+    assert_eq!(scene.core.unclaimed.bytes(), 0);
     // it repeats the others
     scene.hear(1, FromWorker::Done(Box::new(early(16, LONG))));
     assert_eq!(scene.delivered.len(), 8);

@@ -37,8 +37,8 @@ Examples:
   horsehead workers down --ssh node1,node2
 
 Through the run, workers finish their jobs and end, all of them if none is named. With --ssh or
---hosts their processes are ended at once, whether a run goes on or not; what they hold is given to
-others.";
+--hosts their processes are ended at once, whether a run goes on or not; what they hold is given
+to others.";
 
 /// Which run.
 #[derive(Debug, Args)]

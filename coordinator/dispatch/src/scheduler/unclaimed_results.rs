@@ -16,7 +16,7 @@ pub(super) const MOST_BYTES: usize = 64 << 20;
 
 /// Results of jobs that were not submitted (yet).
 #[derive(Debug, Default)]
-pub(super) struct Early {
+pub(super) struct UnclaimedResults {
     held: BTreeMap<JobId, Held>,
     bytes: usize,
 }
@@ -28,7 +28,7 @@ struct Held {
     bytes: usize,
 }
 
-impl Early {
+impl UnclaimedResults {
     /// Keeps the first result of a job, if there is room for it.
     pub(super) fn put(&mut self, from: WorkerId, done: Done) {
         let job = done.attempt.job;

@@ -26,7 +26,7 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// What no worker of ours would say of itself; it is kept, shown and written down, so there is an
 /// end to it.
-pub(super) fn absurdity(announcement: &Announcement) -> Option<String> {
+pub(super) fn malformed(announcement: &Announcement) -> Option<String> {
     let Announcement {
         build,
         host,
