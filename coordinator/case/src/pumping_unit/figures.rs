@@ -75,7 +75,7 @@ pub struct RecordFigures {
 /// Loads a case and tells what is in it.
 ///
 /// # Errors
-/// As [`crate::load`].
+/// As [`crate::load()`].
 pub fn figures(folder: &Path) -> Result<Figures, CaseError> {
     let overrides = Overrides::default();
     of(&Source::new(
@@ -88,7 +88,7 @@ pub fn figures(folder: &Path) -> Result<Figures, CaseError> {
 /// The same in short.
 ///
 /// # Errors
-/// As [`crate::load`].
+/// As [`crate::load()`].
 pub(super) fn summary(source: &Source<'_>) -> Result<Summary, CaseError> {
     let figures = of(source)?;
     let (text, conditions) = (figures.to_string(), figures.conditions.iter());

@@ -41,7 +41,7 @@ pub struct HeadSource {
 /// Reads a case and what its back head is reduced from. Tables of another mesh are no error here.
 ///
 /// # Errors
-/// As [`crate::load`]; a case without mesh or gauge places.
+/// As [`crate::load()`]; a case without mesh or gauge places.
 pub fn load_head(folder: &Path) -> Result<(PumpingUnit, HeadSource), CaseError> {
     let overrides = Overrides::default();
     let document = document(folder, &overrides)?;

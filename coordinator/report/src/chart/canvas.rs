@@ -5,7 +5,7 @@
 use crate::color::Color;
 use maud::{Markup, PreEscaped, Render, html};
 
-/// Width of every full-width figure [px].
+/// Width of every full-width figure \[px\].
 pub const WIDTH: f64 = 960.0;
 /// Units of the SVG per pixel on screen.
 const FINENESS: f64 = 10.0;
@@ -20,7 +20,7 @@ pub struct Pen {
 }
 
 impl Pen {
-    /// A pen of a colour and a width [px].
+    /// A pen of a colour and a width \[px\].
     pub const fn new(color: Color, width: f64) -> Self {
         Self { color, width }
     }

@@ -12,13 +12,13 @@ const DIGIT: f64 = 5.9;
 
 /// A rectangle on the sheet with a scale along each side.
 pub struct Panel {
-    /// Left edge [px].
+    /// Left edge \[px\].
     pub left: f64,
-    /// Upper edge [px].
+    /// Upper edge \[px\].
     pub top: f64,
-    /// Width [px].
+    /// Width \[px\].
     pub width: f64,
-    /// Height [px].
+    /// Height \[px\].
     pub height: f64,
     /// Horizontal scale.
     pub x: Scale,
@@ -27,27 +27,27 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// Right edge [px].
+    /// Right edge \[px\].
     pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
-    /// Lower edge [px].
+    /// Lower edge \[px\].
     pub fn bottom(&self) -> f64 {
         self.top + self.height
     }
 
-    /// Where a horizontal value lies [px].
+    /// Where a horizontal value lies \[px\].
     pub fn at_x(&self, x: f64) -> f64 {
         self.left + self.width * self.x.share(x)
     }
 
-    /// Where a vertical value lies [px].
+    /// Where a vertical value lies \[px\].
     pub fn at_y(&self, y: f64) -> f64 {
         self.bottom() - self.height * self.y.share(y)
     }
 
-    /// Where a point lies [px].
+    /// Where a point lies \[px\].
     pub fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         (self.at_x(x), self.at_y(y))
     }
@@ -157,7 +157,7 @@ const fn tick_length(label: &str) -> f64 {
     if label.is_empty() { 0.55 * TICK } else { TICK }
 }
 
-/// Heights for labels that want to stand at `wanted` [px] but need `gap` between them; the order
+/// Heights for labels that want to stand at `wanted` \[px\] but need `gap` between them; the order
 /// of the input is kept.
 pub fn spread(wanted: &[f64], gap: f64, low: f64, high: f64) -> Vec<f64> {
     let mut order: Vec<usize> = (0..wanted.len()).collect();

@@ -25,7 +25,7 @@ pub struct Curve {
 pub struct Strip {
     /// Title of its scale, with the unit.
     pub title: String,
-    /// Height [px].
+    /// Height \[px\].
     pub height: f64,
     /// Curves, drawn in this order.
     pub curves: Vec<Curve>,
