@@ -5,8 +5,9 @@
 //! or the network.
 //!
 //! From below upwards: `number`, `color` and `words` say one thing each; `document` is what every report
-//! is made of, and its forms; `table` and `chart` fill it, and `drawing` is what a kind of model fills in,
-//! those of `kind`, else `general`; `section` lists what a report says; `folder` and `write` make files of it.
+//! is made of, and its forms; `table` and `chart` have what several topics share, and `drawing` is what a kind of model
+//! fills in, those of `kind`, else `general`; `section` has a file for each topic, with its tables and figures;
+//! `folder` and `write` make files of it.
 pub mod chart;
 pub mod color;
 mod command_files;
@@ -37,6 +38,7 @@ pub use document::{Block, Figure, Report, Section, Table, page, text};
 pub use drawing::Drawing;
 pub use folder::ReportError;
 pub use general::General;
+pub use section::{derivatives, genes, hosts, jobs, slot_time};
 pub use write::{
     agreement, calibration, parameters, ranges, simulation, structure, write_calibration,
     write_simulation,

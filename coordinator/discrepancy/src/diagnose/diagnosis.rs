@@ -83,20 +83,10 @@ impl Diagnosis {
         Some((round, rival))
     }
 
-    /// Detection limits of the effects that the answer does not name; infinite where no size within an effect's bounds would
-    /// be seen.
-    pub fn detection_limits(&self) -> Vec<Limit> {
+    /// Detection limits of the effects that the answer does not name.
+    pub fn detection_limits(&self) -> impl Iterator<Item = &Limit> {
         let named = |limit: &&Limit| self.effects.iter().any(|own| own.id == limit.id);
-        let bounded = |limit: &Limit| Limit {
-            size: if limit.size > limit.largest {
-                f64::INFINITY
-            } else {
-                limit.size
-            },
-            ..limit.clone()
-        };
-        let others = self.limits.iter().filter(|limit| !named(limit));
-        others.map(bounded).collect()
+        self.limits.iter().filter(move |limit| !named(limit))
     }
 
     /// Nothing but a reason.

@@ -23,6 +23,13 @@ pub struct Limit {
     pub largest: f64,
 }
 
+impl Limit {
+    /// Whether some size within the parameter's bounds would be seen.
+    pub fn is_within_bounds(&self) -> bool {
+        self.size <= self.largest
+    }
+}
+
 /// Detection limits of all effects of a round, at a level of the family of their tests.
 pub(crate) fn limits(round: &Round, fit: &Fit, alpha: f64) -> Vec<Limit> {
     let tangent = fit.tangent();

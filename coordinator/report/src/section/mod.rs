@@ -19,7 +19,10 @@ use super::data::{Calibration, SingleRun};
 use super::document::Section;
 use super::kind;
 
+pub use derivative::derivatives;
+pub use gene::genes;
 pub(super) use parameters::calibration as parameters;
+pub use worker::{hosts, jobs, slot_time};
 
 /// Every section about a calibration, in the order of the page.
 pub(super) fn calibration(all: &Calibration) -> Vec<Section> {

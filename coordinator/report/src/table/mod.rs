@@ -1,17 +1,9 @@
 //! Tables of results, one file per subject: what a table shows, not how it is set.
 mod compare;
-mod derivative;
-mod gap;
 mod single;
-mod worker;
 
 pub use super::document::Row;
 pub use super::document::{Table, set_table as text};
 pub use compare::{table_3, table_4};
-pub use derivative::derivatives;
-pub(super) use gap::gap;
 pub(super) use single::genes;
 pub use single::{agreement, one, range_row, ranges, simulation, sums, work};
-pub use worker::slot_time;
-pub(super) use worker::workers;
-pub use worker::{hosts, jobs};

@@ -1,7 +1,7 @@
 //! Genes that are parameters of effects, in tables, figures and words.
 use crate::sample;
 use protocol::case::{EffectSetting, Scale, Unknown};
-use report::{chart, table};
+use report::table;
 
 #[test]
 fn a_parameter_of_an_effect_is_shown_beside_the_coefficients() {
@@ -28,10 +28,10 @@ fn a_parameter_of_an_effect_is_shown_beside_the_coefficients() {
         "{text}"
     );
     // in its panel the individuals are spread evenly
-    let figure = chart::genes(&calibration);
+    let figure = report::genes(&calibration);
     assert!(figure.svg.contains("load_offset [N]"));
     assert!(figure.caption.contains("linear ones"), "{}", figure.caption);
-    let plain = chart::genes(&sample::calibration(200));
+    let plain = report::genes(&sample::calibration(200));
     assert!(!plain.caption.contains("linear ones"));
     let dots = |svg: &str| svg.matches("<circle").count();
     // all individuals once more, and the best

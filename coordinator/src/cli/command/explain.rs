@@ -154,10 +154,10 @@ fn text(account: &RunAccount, object: &ExplainOutput) -> String {
             },
         ),
         String::new(),
-        shown(&table::slot_time(&account.spent)),
+        shown(&report::slot_time(&account.spent)),
     ];
     lines.extend(object.why.iter().cloned());
-    for more in [table::hosts(account), table::jobs(account)] {
+    for more in [report::hosts(account), report::jobs(account)] {
         lines.extend([String::new(), shown(&more)]);
     }
     lines.extend(object.left.iter().map(|(why, times)| match times {

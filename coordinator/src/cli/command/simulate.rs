@@ -118,7 +118,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let tables = || {
         let tables = report::ranges(&run).into_iter();
         let tables = tables.chain(report::agreement(&run));
-        let tables = tables.chain(table::derivatives(&run));
+        let tables = tables.chain(report::derivatives(&run));
         let texts = tables.map(|table| table::text(&table, terminal::styled()));
         texts.collect::<Vec<_>>().join("\n")
     };

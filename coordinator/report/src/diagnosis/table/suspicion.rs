@@ -126,15 +126,17 @@ pub(in crate::diagnosis) fn look_alikes(subject: &Subject<'_>) -> Option<Table> 
 pub(in crate::diagnosis) fn limits(subject: &Subject<'_>) -> Option<Table> {
     let limits = subject.diagnosis().detection_limits();
     let rows: Vec<Row> = limits
-        .iter()
         .map(|limit| {
             let scale = subject
                 .parameter(&limit.id, &limit.parameter)
                 .map(|p| p.scale);
-            let seen = if limit.size.is_finite() {
+            let seen = if limit.size.is_infinite() {
+                "never: absorbed".to_owned()
+            } else if limit.is_within_bounds() {
                 quantity(limit.size, &limit.unit)
             } else {
-                "at no size within its bounds".to_owned()
+                let largest = quantity(limit.largest, &limit.unit);
+                format!("beyond its bounds, {largest}")
             };
             Row::new(
                 format!("{}, {}", limit.id, limit.parameter.replace('_', " ")),

@@ -123,7 +123,7 @@ pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
         rounds: rounds(diagnosis),
         whereabouts: whereabouts(subject),
         wander: wandered(subject),
-        detection_limits: diagnosis.detection_limits(),
+        detection_limits: diagnosis.detection_limits().map(bounded).collect(),
         nuisances: diagnosis.nuisances.clone(),
         absorbed: diagnosis.absorbed.clone(),
         inseparable: diagnosis
@@ -181,4 +181,16 @@ fn numerical_error(diagnosis: &Diagnosis) -> Option<NumericalOutput> {
         at_answer: at_answer.map(|after| Box::new(NumericalOutput::of(after))),
         ..NumericalOutput::of(check)
     })
+}
+
+/// A limit as programs read it: null where no size within the effect's bounds would be seen.
+fn bounded(limit: &Limit) -> Limit {
+    Limit {
+        size: if limit.is_within_bounds() {
+            limit.size
+        } else {
+            f64::INFINITY
+        },
+        ..limit.clone()
+    }
 }
