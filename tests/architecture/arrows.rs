@@ -15,6 +15,7 @@ const ARROWS: &[(&str, &str)] = &[
     // starting workers knows neither cases nor runs
     ("launch", "link"),
     ("launch", "protocol"),
+    ("launch", "support"),
     // reading a case knows neither runs nor pictures
     ("case", "protocol"),
     ("case", "exchange"),

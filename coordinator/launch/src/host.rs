@@ -1,6 +1,6 @@
 //! Hosts as people write them.
-use super::error::NodeError;
 use std::{fmt, fs, path::Path, str::FromStr};
+use support::Problem;
 
 /// One host: what the user's ssh is told, and what is known of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,11 +26,11 @@ impl fmt::Display for Host {
 
 /// `user@host:port`, as one word of `--ssh` or the first of a line of `--hosts`.
 impl FromStr for Host {
-    type Err = NodeError;
+    type Err = Problem;
 
-    fn from_str(text: &str) -> Result<Self, NodeError> {
+    fn from_str(text: &str) -> Result<Self, Problem> {
         let wrong = |why: &str| {
-            NodeError::new(
+            Problem::new(
                 format!("\"{text}\" is no host: {why}"),
                 "write HOST, USER@HOST or USER@HOST:PORT; IPv6 addresses as [fe80::1]:22",
             )
@@ -59,11 +59,11 @@ impl FromStr for Host {
 /// The hosts of a file: one a line, with `slots=N` behind it where it differs; `#` begins a comment.
 ///
 /// # Errors
-/// [`NodeError`], naming the file, the line and what is wrong with it.
-pub fn read_hosts(file: &Path) -> Result<Vec<Host>, NodeError> {
+/// [`Problem`], naming the file, the line and what is wrong with it.
+pub fn read_hosts(file: &Path) -> Result<Vec<Host>, Problem> {
     let help = "one host a line, as `user@node7:22 slots=8`";
     let text = fs::read_to_string(file)
-        .map_err(|error| NodeError::new(format!("{}: {error}", file.display()), help))?;
+        .map_err(|error| Problem::new(format!("{}: {error}", file.display()), help))?;
     let mut hosts = Vec::new();
     for (number, line) in text.lines().enumerate() {
         let at = format!("{}:{}", file.display(), number + 1);
@@ -75,11 +75,11 @@ pub fn read_hosts(file: &Path) -> Result<Vec<Host>, NodeError> {
         let Some(first) = words.next() else { continue };
         let mut host: Host = first
             .parse()
-            .map_err(|error: NodeError| NodeError::new(format!("{at}: {error}"), error.help))?;
+            .map_err(|error: Problem| Problem::new(format!("{at}: {error}"), error.remedy))?;
         for word in words {
             let slots = word.strip_prefix("slots=").and_then(|n| n.parse().ok());
             host.slots = Some(slots.filter(|n| (1..=4096).contains(n)).ok_or_else(|| {
-                NodeError::new(format!("{at}: \"{word}\" is not understood"), help)
+                Problem::new(format!("{at}: \"{word}\" is not understood"), help)
             })?);
         }
         hosts.push(host);

@@ -1,7 +1,6 @@
 //! Workers by Kubernetes: a Deployment whose pods dial the coordinator, with a `NetworkPolicy` that lets
 //! them reach nothing else and a Secret of keys that `kubectl` makes from the folder.
 use super::{
-    error::NodeError,
     plan::{Input, Part, Plan, Step},
     shell::{line, settings},
     worker_options::WorkerOptions,
@@ -9,6 +8,7 @@ use super::{
 use link::keys::{CA, WORKER};
 use serde_json::{Value, json};
 use std::{fmt::Write as _, net::IpAddr, path::Path};
+use support::Problem;
 
 /// Name of all objects.
 const NAME: &str = "horsehead-worker";
@@ -20,7 +20,7 @@ const KEYS: &str = "/keys";
 ///
 /// # Errors
 /// If the options are not understood.
-pub fn up(order: &WorkerOptions, options: &str, name: Option<&str>) -> Result<Plan, NodeError> {
+pub fn up(order: &WorkerOptions, options: &str, name: Option<&str>) -> Result<Plan, Problem> {
     let known = ["replicas", "image", "namespace", "cpu", "memory"];
     let given = settings("--k8s", options, &known)?;
     let of = |key: &str, usual: &str| {
@@ -31,7 +31,7 @@ pub fn up(order: &WorkerOptions, options: &str, name: Option<&str>) -> Result<Pl
         let text = of(key, usual);
         let number = text.parse::<u16>().ok().filter(|n| (1..=most).contains(n));
         number.ok_or_else(|| {
-            NodeError::new(
+            Problem::new(
                 format!("--k8s {key}={text}: not a number of 1 to {most}"),
                 format!("write {key}=N"),
             )
@@ -39,7 +39,7 @@ pub fn up(order: &WorkerOptions, options: &str, name: Option<&str>) -> Result<Pl
     };
     let (replicas, cpu) = (number("replicas", "1", 5000)?, number("cpu", "1", 4096)?);
     if !order.prologue.is_empty() {
-        return Err(NodeError::new(
+        return Err(Problem::new(
             "--prologue says nothing to --k8s",
             "put what a worker needs into its image: deploy/Containerfile",
         ));

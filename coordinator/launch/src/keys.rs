@@ -4,7 +4,6 @@
 //! Hosts beyond the folders that are there get new ones from `horsehead keys add`, whose names a
 //! running coordinator has made room for.
 use super::{
-    error::NodeError,
     host::Host,
     plan::{Input, Step},
 };
@@ -14,6 +13,7 @@ use std::{
     fs,
     path::{Path, PathBuf},
 };
+use support::Problem;
 
 /// File in a worker's folder: the host that has a copy of it.
 const HOST: &str = "host";
@@ -22,10 +22,10 @@ const HOST: &str = "host";
 ///
 /// # Errors
 /// If the folder cannot be used by a coordinator, or new names are needed and it cannot sign.
-pub fn assign(folder: &Path, hosts: &[Host]) -> Result<(Vec<String>, Vec<Step>), NodeError> {
+pub fn assign(folder: &Path, hosts: &[Host]) -> Result<(Vec<String>, Vec<Step>), Problem> {
     let keys = Keys::read(folder, Role::Coordinator).map_err(|error| {
         let help = "--tls takes the folder that `horsehead keys new DIR --host NAME` made";
-        NodeError::new(error.to_string(), help)
+        Problem::new(error.to_string(), help)
     })?;
     let mut free: BTreeSet<&String> = keys.workers().iter().collect();
     // folders that were taken away, or given to somebody by hand, are no use
@@ -49,7 +49,7 @@ pub fn assign(folder: &Path, hosts: &[Host]) -> Result<(Vec<String>, Vec<Step>),
             name
         } else {
             let name = unused.find(vacant).ok_or_else(|| {
-                NodeError::new(
+                Problem::new(
                     format!("{} has all the names that it may have", folder.display()),
                     "remove folders of nodes that are gone, and their lines in `workers`",
                 )
@@ -67,7 +67,7 @@ pub fn assign(folder: &Path, hosts: &[Host]) -> Result<(Vec<String>, Vec<Step>),
     }
     if !made.is_empty() {
         if !folder.join(CA_KEY).exists() {
-            return Err(NodeError::new(
+            return Err(Problem::new(
                 format!(
                     "{} has no folder for {} of the hosts, and cannot sign new ones without {CA_KEY}",
                     folder.display(),
@@ -98,10 +98,10 @@ pub fn assign(folder: &Path, hosts: &[Host]) -> Result<(Vec<String>, Vec<Step>),
 ///
 /// # Errors
 /// If there is no such folder, or nobody was given it.
-pub fn host_of(folder: &Path, name: &str) -> Result<Host, NodeError> {
+pub fn host_of(folder: &Path, name: &str) -> Result<Host, Problem> {
     let file = folder.join(name).join(HOST);
     let text = fs::read_to_string(&file).map_err(|error| {
-        NodeError::new(
+        Problem::new(
             format!("{}: {error}", file.display()),
             "launching by ssh with this folder as --tls gives hosts their keys and writes this file",
         )

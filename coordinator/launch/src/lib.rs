@@ -6,7 +6,6 @@
 //! never holds a key: commands read key material from its folder. It does not know runs, jobs, nor
 //! what a worker computes.
 pub mod doctor;
-mod error;
 pub mod execute;
 mod host;
 pub mod k8s;
@@ -19,7 +18,6 @@ pub mod ssh;
 pub mod systemd;
 mod worker_options;
 
-pub use error::NodeError;
 pub use host::{Host, read_hosts};
 pub use plan::{Input, Part, Plan, Step};
 pub use program::Program;

@@ -1,11 +1,11 @@
 //! A worker program: for which machines it was built, and the oldest C library that can run it.
-use super::error::NodeError;
 use object::{
     Endianness,
     elf::{FileHeader64, VER_FLG_WEAK},
     read::elf::{FileHeader, SectionHeader},
 };
 use std::path::{Path, PathBuf};
+use support::Problem;
 
 /// A worker program that can be copied to other machines.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,9 +27,9 @@ impl Program {
     ///
     /// # Errors
     /// If it cannot be read or is no ELF program of 64 bits.
-    pub fn read(path: &Path) -> Result<Self, NodeError> {
+    pub fn read(path: &Path) -> Result<Self, Problem> {
         let wrong = |why: String| {
-            NodeError::new(
+            Problem::new(
                 format!("{} is no worker program: {why}", path.display()),
                 "`cargo build --release` makes one, `deploy/portable.sh` one for older systems; \
                  name it with --worker-program ARCH=PATH",

@@ -1,5 +1,5 @@
 //! Words of command lines: written for a shell, and read from options.
-use super::error::NodeError;
+use support::Problem;
 
 /// Words as one line of shell.
 pub(super) fn line(words: &[String]) -> String {
@@ -27,7 +27,7 @@ pub(super) fn settings(
     option: &str,
     text: &str,
     known: &[&str],
-) -> Result<Vec<(String, String)>, NodeError> {
+) -> Result<Vec<(String, String)>, Problem> {
     let parts = text.split(',').filter(|part| !part.is_empty());
     parts
         .map(|part| match part.split_once('=') {
@@ -36,7 +36,7 @@ pub(super) fn settings(
             {
                 Ok((key.to_owned(), value.to_owned()))
             }
-            _ => Err(NodeError::new(
+            _ => Err(Problem::new(
                 format!("{option} {text}: \"{part}\" is not understood"),
                 if known.is_empty() {
                     format!("write KEY=VALUE, as {option} nodes=4,time=02:00:00")

@@ -1,11 +1,11 @@
 //! Workers by Slurm: one per node of an allocation, from one batch script that `sbatch` reads.
 use super::{
-    error::NodeError,
     plan::{Input, Part, Plan, Step},
     program::Program,
     shell::{line, lines, settings},
     worker_options::WorkerOptions,
 };
+use support::Problem;
 
 /// Options of sbatch that `--slurm` may set besides the number of nodes are all that it has.
 ///
@@ -20,12 +20,12 @@ pub fn up(
     arguments: &[String],
     program: &Program,
     name: Option<&str>,
-) -> Result<Plan, NodeError> {
+) -> Result<Plan, Problem> {
     let mut command = vec!["sbatch".to_owned()];
     for (key, value) in settings("--slurm", options, &[])? {
         let counts = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_digit());
         if key == "nodes" && !value.split('-').all(counts) {
-            return Err(NodeError::new(
+            return Err(Problem::new(
                 format!("--slurm {options}: nodes={value} is no number of nodes"),
                 "write how many, as nodes=4, or between which numbers, as nodes=2-4",
             ));

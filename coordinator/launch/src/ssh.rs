@@ -6,7 +6,6 @@
 mod script;
 
 use super::{
-    error::NodeError,
     execute::{self, LaunchError},
     host::Host,
     keys,
@@ -17,6 +16,7 @@ use super::{
 };
 use link::keys::{CA, WORKER};
 use std::sync::atomic::AtomicBool;
+use support::Problem;
 
 /// Options of every call: nothing is ever asked at the terminal, and a host that does not answer, or no
 /// longer, ends the call.
@@ -31,20 +31,20 @@ const OPTIONS: [&str; 4] = [
 /// for `wait_s` seconds that it takes part (0: not at all).
 ///
 /// # Errors
-/// [`NodeError`] if there are no keys for a host, or a host is named twice.
+/// [`Problem`] if there are no keys for a host, or a host is named twice.
 pub fn up(
     order: &WorkerOptions,
     hosts: &[Host],
     programs: &[Program],
     wait_s: u64,
-) -> Result<Plan, NodeError> {
+) -> Result<Plan, Problem> {
     for (at, host) in hosts.iter().enumerate() {
         if hosts
             .iter()
             .take(at)
             .any(|other| other.to_string() == host.to_string())
         {
-            return Err(NodeError::new(
+            return Err(Problem::new(
                 format!("{host} is named twice"),
                 "a host has one worker with a slot for each of its cores",
             ));

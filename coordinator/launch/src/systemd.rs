@@ -1,12 +1,12 @@
 //! A worker of this machine that comes back with it: a unit of the user's own systemd.
 use super::{
-    error::NodeError,
     plan::{Input, Part, Plan, Step},
     program::Program,
     shell::{line, settings},
     worker_options::WorkerOptions,
 };
 use std::path::{Path, PathBuf};
+use support::Problem;
 
 /// Name of the unit.
 const UNIT: &str = "horsehead-worker.service";
@@ -22,12 +22,12 @@ pub fn up(
     program: &Program,
     name: Option<&str>,
     configuration: &Path,
-) -> Result<Plan, NodeError> {
+) -> Result<Plan, Problem> {
     let mut order = order.clone();
     for (key, value) in settings("--systemd", options, &["slots"])? {
         let slots = value.parse().ok().filter(|n| (1..=4096).contains(n));
         order.slots = Some(slots.ok_or_else(|| {
-            NodeError::new(
+            Problem::new(
                 format!("--systemd {key}={value}: not a number of slots"),
                 "write slots=N with N from 1 to 4096",
             )

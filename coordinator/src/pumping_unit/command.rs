@@ -6,7 +6,7 @@ use super::{
 use crate::cli::{
     argument::{case::case_folder, individual::condition, output::OutputChoice},
     output::{
-        problem::{EXIT_CODES, Usage},
+        problem::{EXIT_CODES, Problem},
         terminal,
     },
     run::once::in_scratch,
@@ -100,16 +100,16 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let modes = arguments.modes.unwrap_or(machine.run.modes);
     if !(1..=MOST_MODES).contains(&modes) {
-        return Err(Usage {
+        return Err(Problem {
             message: format!("{modes} modes cannot be computed"),
-            help: format!("ask for 1 to {MOST_MODES}"),
+            remedy: format!("ask for 1 to {MOST_MODES}"),
         }
         .into());
     }
     if arguments.write && modes < machine.run.modes {
-        return Err(Usage {
+        return Err(Problem {
             message: format!("the case simulates {} modes", machine.run.modes),
-            help: "write at least as many, or lower run.modes in case.toml first".to_owned(),
+            remedy: "write at least as many, or lower run.modes in case.toml first".to_owned(),
         }
         .into());
     }
@@ -262,7 +262,7 @@ fn mesh(read: &mesh::Mesh) -> HeadMesh {
 }
 
 /// A job and its answer each travel in one message.
-fn check_size(spec: &ReduceHeadSpec) -> Result<(), Usage> {
+fn check_size(spec: &ReduceHeadSpec) -> Result<(), Problem> {
     const MEBIBYTE: usize = 1 << 20;
     // what is not the fields of the answer is small beside this
     const ROOM: usize = wire::BODY_LIMIT - MEBIBYTE;
@@ -270,13 +270,13 @@ fn check_size(spec: &ReduceHeadSpec) -> Result<(), Usage> {
         spec.mesh.nodes_m.len(),
         spec.mesh.elements.len() / spec.mesh.kind.nodes(),
     );
-    let too_long = |what: &str, help: String| Usage {
+    let too_long = |what: &str, help: String| Problem {
         message: format!(
             "{what} of a mesh of {nodes} nodes and {elements} elements is more than the {} MiB \
              that travel in one message",
             ROOM / MEBIBYTE
         ),
-        help,
+        remedy: help,
     };
     // positions of 24 bytes, numbers of at most 5
     let there = 24 * nodes + 5 * (spec.mesh.elements.len() + spec.mesh.rope_surface.len());

@@ -603,7 +603,10 @@ fn the_slowest_simulations_are_listed_with_what_they_cost() {
             row.trim_start().starts_with(&individual.to_string()),
             "{row}"
         );
-        assert!(row.contains("401\u{a0}ms") && row.contains("601\u{a0}ms"), "{row}");
+        assert!(
+            row.contains("401\u{a0}ms") && row.contains("601\u{a0}ms"),
+            "{row}"
+        );
     }
     assert!(note.contains("the slowest took 2.0 times that"), "{note}");
 }

@@ -1,5 +1,5 @@
 //! What a simulation is differentiated by, as it is typed.
-use crate::cli::output::problem::Usage;
+use crate::cli::output::problem::Problem;
 use protocol::{case::Case, job::Column};
 
 /// The word for everything that the case has.
@@ -10,7 +10,7 @@ const ALL: &str = "all";
 ///
 /// # Errors
 /// A name that is neither an unknown nor could be a parameter of an effect, or one that stands twice.
-pub(crate) fn columns(case: &Case, typed: &str) -> Result<Vec<Column>, Usage> {
+pub(crate) fn columns(case: &Case, typed: &str) -> Result<Vec<Column>, Problem> {
     let own = case.unknowns.iter().map(|unknown| unknown.name.clone());
     let parameters = case.effects.iter().flat_map(|effect| {
         let all = effect.parameters.iter();
@@ -36,9 +36,9 @@ pub(crate) fn columns(case: &Case, typed: &str) -> Result<Vec<Column>, Usage> {
         } else {
             "is no unknown of the case"
         };
-        return Err(Usage {
+        return Err(Problem {
             message: format!("--derivatives: `{name}` {problem}"),
-            help: format!(
+            remedy: format!(
                 "give names separated by commas, or `{ALL}`: {}, or EFFECT.PARAMETER",
                 known.join(", ")
             ),

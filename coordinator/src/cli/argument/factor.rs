@@ -1,6 +1,6 @@
 //! Factors of a sweep: settings of a search with the values that they take, `--factor KEY=A,B,C`.
 use super::settings::refuse;
-use crate::cli::output::problem::Usage;
+use crate::cli::output::problem::Problem;
 use search::strategy::{Preset, Settings};
 use study::orthogonal::Factor;
 
@@ -34,7 +34,7 @@ pub(crate) fn set(
     level: usize,
     preset: &Preset,
     settings: &mut Settings,
-) -> Result<(), Usage> {
+) -> Result<(), Problem> {
     for key in keys(factor) {
         let set = preset.set(settings, key, &factor.levels[level]);
         set.map_err(|error| refuse(preset, error))?;
@@ -46,12 +46,16 @@ pub(crate) fn set(
 ///
 /// # Errors
 /// The first of them, with what there is.
-pub(crate) fn check(factors: &[Factor], preset: &Preset, settings: &Settings) -> Result<(), Usage> {
+pub(crate) fn check(
+    factors: &[Factor],
+    preset: &Preset,
+    settings: &Settings,
+) -> Result<(), Problem> {
     let mut named: Vec<&str> = Vec::new();
     for factor in factors {
-        let twice = |message: String| Usage {
+        let twice = |message: String| Problem {
             message,
-            help: "name every setting, and every value of it, once".to_owned(),
+            remedy: "name every setting, and every value of it, once".to_owned(),
         };
         for key in keys(factor) {
             if named.contains(&key) {
@@ -66,9 +70,9 @@ pub(crate) fn check(factors: &[Factor], preset: &Preset, settings: &Settings) ->
         for (level, words) in factor.levels.iter().enumerate() {
             let mut settings = settings.clone();
             let done = set(factor, level, preset, &mut settings);
-            done.map_err(|error| Usage {
+            done.map_err(|error| Problem {
                 message: format!("factor {}: {}", factor.name, error.message),
-                help: error.help,
+                remedy: error.remedy,
             })?;
             if met.contains(&settings) {
                 return Err(twice(format!(

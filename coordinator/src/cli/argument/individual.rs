@@ -1,5 +1,5 @@
 //! Which parameters are simulated, and under which working condition.
-use crate::cli::output::problem::Usage;
+use crate::cli::output::problem::Problem;
 use case::read_genes;
 use clap::Args;
 use protocol::case::Case;
@@ -31,21 +31,21 @@ impl IndividualChoice {
     }
 
     /// Position of its condition in the case.
-    pub(crate) fn condition(&self, case: &Case) -> Result<usize, Usage> {
+    pub(crate) fn condition(&self, case: &Case) -> Result<usize, Problem> {
         condition(case, self.condition.as_deref())
     }
 }
 
 /// Position of a condition by name; the calibrated one without.
-pub(crate) fn condition(case: &Case, name: Option<&str>) -> Result<usize, Usage> {
+pub(crate) fn condition(case: &Case, name: Option<&str>) -> Result<usize, Problem> {
     let Some(name) = name else {
         return Ok(case.objective.condition);
     };
     case.condition(name).ok_or_else(|| {
         let known: Vec<&str> = case.conditions.iter().map(|c| c.name.as_str()).collect();
-        Usage {
+        Problem {
             message: format!("the case has no condition `{name}`"),
-            help: format!("it has: {}", known.join(", ")),
+            remedy: format!("it has: {}", known.join(", ")),
         }
     })
 }

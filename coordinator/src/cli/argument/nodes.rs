@@ -1,7 +1,8 @@
 //! Hosts that are reached by ssh, as they are typed.
 use clap::Args;
-use launch::{Host, NodeError, read_hosts};
+use launch::{Host, read_hosts};
 use std::path::PathBuf;
+use support::Problem;
 
 /// Hosts, one by one or from a file.
 #[derive(Clone, Debug, Args)]
@@ -31,7 +32,7 @@ impl HostsChoice {
     }
 
     /// The hosts.
-    pub(crate) fn read(&self) -> Result<Vec<Host>, NodeError> {
+    pub(crate) fn read(&self) -> Result<Vec<Host>, Problem> {
         match &self.hosts {
             Some(file) => read_hosts(file),
             None => self.ssh.iter().map(|host| host.parse()).collect(),

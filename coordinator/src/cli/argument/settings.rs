@@ -1,5 +1,5 @@
 //! Settings of a search by name: `--set KEY=VALUE`, their table in the help, and what they become.
-use crate::cli::output::problem::Usage;
+use crate::cli::output::problem::Problem;
 use clap::Args;
 use search::{
     strategy::{CATALOGUE, Plan, Preset, Settings, SettingsError, offer::Named},
@@ -43,7 +43,7 @@ impl SettingsChoice {
     ///
     /// # Errors
     /// If a key is unknown, or a value may not be that.
-    pub(crate) fn choose(&self, preset: &Preset, plan: &Plan<'_>) -> Result<Chosen, Usage> {
+    pub(crate) fn choose(&self, preset: &Preset, plan: &Plan<'_>) -> Result<Chosen, Problem> {
         let usual = (preset.settings)(plan);
         let mut settings = usual.clone();
         for (key, value) in &self.set {
@@ -83,7 +83,7 @@ impl SettingsChoice {
 }
 
 /// What to do about a setting that a preset does not take.
-pub(crate) fn refuse(preset: &Preset, error: SettingsError) -> Usage {
+pub(crate) fn refuse(preset: &Preset, error: SettingsError) -> Problem {
     let message = format!("preset {}: {error}", preset.name);
     let help = if let SettingsError::Unknown { key, known } = error {
         let alike = |one: &&String| strsim::normalized_damerau_levenshtein(&key, one);
@@ -93,7 +93,10 @@ pub(crate) fn refuse(preset: &Preset, error: SettingsError) -> Usage {
     } else {
         "`horsehead calibrate --help` lists what every setting may be".to_owned()
     };
-    Usage { message, help }
+    Problem {
+        message,
+        remedy: help,
+    }
 }
 
 /// The table of all settings for the help: what each may be, its value in every preset that has it,

@@ -2,7 +2,7 @@
 use crate::cli::{
     argument::{case::case_folder, output::OutputChoice},
     output::{
-        problem::{EXIT_CODES, Usage},
+        problem::{EXIT_CODES, Problem},
         terminal,
     },
 };
@@ -68,9 +68,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         files,
     } = proposed(&arguments.case)?;
     let path = allow::path();
-    let mut allowed = allow::read(&path).map_err(|problem| Usage {
+    let mut allowed = allow::read(&path).map_err(|problem| Problem {
         message: problem.to_string(),
-        help: "nothing was written".to_owned(),
+        remedy: "nothing was written".to_owned(),
     })?;
     if let Some(own) = allowed.entry.get(&name) {
         let started = |entry: &allow::Entry| {
@@ -78,14 +78,14 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             [&[program], &entry.arguments[..]].concat().join(" ")
         };
         if started(own) != started(&entry) && !arguments.replace {
-            return Err(Usage {
+            return Err(Problem {
                 message: format!(
                     "{}: entry `{name}` starts `{}`, this case wants `{}`",
                     path.display(),
                     started(own),
                     started(&entry)
                 ),
-                help: "give the case an entry of its own with `entry = \"..\"` under [model] of case.toml, or \
+                remedy: "give the case an entry of its own with `entry = \"..\"` under [model] of case.toml, or \
                        replace the other with --replace; nothing was written"
                     .to_owned(),
             }
@@ -115,9 +115,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let written = std::fs::create_dir_all(folder)
             .and_then(|()| atomic_file::replace(&path, allow::text(&allowed).as_bytes()));
-        written.map_err(|error| Usage {
+        written.map_err(|error| Problem {
             message: format!("cannot write {}: {error}", path.display()),
-            help: "name a list that can be written with HORSEHEAD_ALLOW".to_owned(),
+            remedy: "name a list that can be written with HORSEHEAD_ALLOW".to_owned(),
         })?;
     }
     let words = if arguments.dry_run {

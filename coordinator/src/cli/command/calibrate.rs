@@ -9,7 +9,7 @@ use crate::cli::{
     },
     output::{
         calibration::show,
-        problem::{EXIT_CODES, Usage},
+        problem::{EXIT_CODES, Problem},
         progress::{Display, Silent},
         terminal,
     },
@@ -118,13 +118,13 @@ fn planned_workers(workers: &WorkersChoice) -> usize {
 }
 
 /// The space to search, about the recommended values or those of a start.
-fn searched(case: &Case, start: Option<&Start>) -> Result<Space, Usage> {
-    manifest::space(case, start).map_err(|error| Usage {
+fn searched(case: &Case, start: Option<&Start>) -> Result<Space, Problem> {
+    manifest::space(case, start).map_err(|error| Problem {
         message: match start {
             Some(start) => format!("{}: {error}", start.file.display()),
             None => error.to_string(),
         },
-        help: "choose values inside the bounds, or widen them in case.toml".to_owned(),
+        remedy: "choose values inside the bounds, or widen them in case.toml".to_owned(),
     })
 }
 
@@ -146,14 +146,14 @@ fn check_table(
     settings: &Settings,
     space: &Space,
     seed: u64,
-) -> Result<(), Usage> {
+) -> Result<(), Problem> {
     let Some(table) = table else {
         return Ok(());
     };
     let built = build_after(settings, space, seed, &table.individuals);
-    built.map(drop).map_err(|error| Usage {
+    built.map(drop).map_err(|error| Problem {
         message: format!("{}: {error}", table.file.display()),
-        help: "leave rows out, let the search go on for longer with --set, or score the whole table with \
+        remedy: "leave rows out, let the search go on for longer with --set, or score the whole table with \
                `horsehead sweep FILE`"
             .to_owned(),
     })

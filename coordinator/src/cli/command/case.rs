@@ -2,7 +2,7 @@
 use crate::cli::{
     argument::{case::CaseChoice, output::OutputChoice},
     output::{
-        problem::{EXIT_CODES, Usage},
+        problem::{EXIT_CODES, Problem},
         terminal,
     },
     run::once::in_scratch,
@@ -162,9 +162,9 @@ struct ImportOutput {
 }
 
 fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow::Result<()> {
-    let imported = command::import::import(control, folder).map_err(|error| Usage {
+    let imported = command::import::import(control, folder).map_err(|error| Problem {
         message: error.to_string(),
-        help: "nothing was written".to_owned(),
+        remedy: "nothing was written".to_owned(),
     })?;
     let [parameters, observations] = imported.counts;
     let object = ImportOutput {
@@ -207,17 +207,17 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
 fn begin(folder: &Path) -> anyhow::Result<()> {
     let file = folder.join("case.toml");
     if file.exists() {
-        return Err(Usage {
+        return Err(Problem {
             message: format!("{} exists already", file.display()),
-            help: "choose another folder; nothing was written".to_owned(),
+            remedy: "choose another folder; nothing was written".to_owned(),
         }
         .into());
     }
     let written = std::fs::create_dir_all(folder)
         .and_then(|()| atomic_file::replace(&file, case::pumping_unit::template().as_bytes()));
-    written.map_err(|error| Usage {
+    written.map_err(|error| Problem {
         message: format!("cannot write {}: {error}", file.display()),
-        help: "choose a folder that can be written".to_owned(),
+        remedy: "choose a folder that can be written".to_owned(),
     })?;
     terminal::tell(&format!(
         "wrote {}\nput the files it names beside it, then run `horsehead case check {}`",

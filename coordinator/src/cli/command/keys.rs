@@ -2,7 +2,7 @@
 use crate::cli::{
     argument::workers::worker_count,
     output::{
-        problem::{EXIT_CODES, Usage},
+        problem::{EXIT_CODES, Problem},
         terminal,
     },
 };
@@ -154,9 +154,9 @@ fn check(folder: &Path) -> Result<(), KeyError> {
     Ok(())
 }
 
-fn refuse(error: &KeyError) -> Usage {
-    Usage {
+fn refuse(error: &KeyError) -> Problem {
+    Problem {
         message: error.to_string(),
-        help: String::new(),
+        remedy: String::new(),
     }
 }

@@ -5,7 +5,7 @@ use crate::cli::{
         individual::condition,
         settings::{Chosen, SettingsChoice},
     },
-    output::problem::Usage,
+    output::problem::Problem,
     run::{
         begun::Run,
         bus,
@@ -242,7 +242,7 @@ fn a_run_folder_goes_on_with_the_same_run_and_refuses_another() {
             .ends_with("was begun: the model (its tables or numbers)"),
         "{other}"
     );
-    let help = other.downcast::<Usage>().unwrap().help;
+    let help = other.downcast::<Problem>().unwrap().remedy;
     assert!(help.contains("-quick-seed3-2"), "another folder in {help}");
     // the case comes back with every bit, so its hash and the journal still fit
     let kept = Calibration::open(&path).unwrap().case;
@@ -275,7 +275,7 @@ fn an_unknown_condition_is_refused_with_those_there_are() {
     assert_eq!(condition(&case, None).unwrap(), case.objective.condition);
     assert_eq!(condition(&case, Some("4rpm")).unwrap(), 1);
     let error = condition(&case, Some("9rpm")).unwrap_err();
-    assert_eq!(error.help, "it has: 5rpm, 4rpm");
+    assert_eq!(error.remedy, "it has: 5rpm, 4rpm");
 }
 
 #[test]
@@ -293,9 +293,13 @@ fn a_folder_of_something_else_is_no_run_folder() {
     assert!(begin(scratch.path()).is_ok(), "a journal makes it one");
     std::fs::write(scratch.path().join("run.json"), "{").unwrap();
     let error = begin(scratch.path()).unwrap_err();
-    let usage = error.downcast_ref::<Usage>().unwrap();
+    let usage = error.downcast_ref::<Problem>().unwrap();
     assert!(usage.message.contains("run.json is damaged"), "{usage}");
-    assert!(usage.help.contains("(the same command"), "{}", usage.help);
+    assert!(
+        usage.remedy.contains("(the same command"),
+        "{}",
+        usage.remedy
+    );
 }
 
 #[test]
@@ -332,7 +336,7 @@ fn the_way_to_go_on_names_the_folder_in_hand() {
 }
 
 /// What `--set` makes of a preset's settings, with so many workers planned.
-fn chosen(name: &str, set: &[(&str, &str)], workers: usize) -> Result<Chosen, Usage> {
+fn chosen(name: &str, set: &[(&str, &str)], workers: usize) -> Result<Chosen, Problem> {
     let case = load(&shipped(), &Overrides::default()).unwrap();
     let space = Space::new(&case.unknowns).unwrap();
     let plan = Plan {
@@ -394,7 +398,7 @@ fn settings_by_name_make_another_run_in_a_folder_of_its_own() {
 fn unknown_settings_are_answered_with_the_nearest_and_bad_values_with_what_is_allowed() {
     let error = chosen("paper", &[("encodign", "gray")], 1).unwrap_err();
     assert!(
-        error.help.starts_with("did you mean `encoding`?"),
+        error.remedy.starts_with("did you mean `encoding`?"),
         "{error:?}"
     );
     let error = chosen("memetic", &[("roulette", "wheel")], 1).unwrap_err();
@@ -462,10 +466,10 @@ fn the_way_out_of_damage_is_the_command_of_the_run() {
     drop(journal::Journal::open(scratch.path(), &header, run, 5, |_| {}).unwrap());
     std::fs::write(scratch.path().join("run.json"), "{").unwrap();
     let error = RunFolder::new(scratch.path()).head().err().unwrap();
-    let usage = error.downcast_ref::<Usage>().unwrap();
+    let usage = error.downcast_ref::<Problem>().unwrap();
     assert!(
-        usage.help.contains("horsehead diagnose CASE --seed N"),
+        usage.remedy.contains("horsehead diagnose CASE --seed N"),
         "{}",
-        usage.help
+        usage.remedy
     );
 }

@@ -9,7 +9,7 @@ use crate::cli::{
     output::{
         calibration::condition_result,
         object::{calibration::VerifyOutput, score},
-        problem::{EXIT_CODES, Usage},
+        problem::{EXIT_CODES, Problem},
         terminal,
     },
     run::{
@@ -59,12 +59,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let parameters = run.folder.file(GENES);
     if !parameters.exists() {
-        return Err(Usage {
+        return Err(Problem {
             message: format!(
                 "{} has no calibrated parameters yet",
                 arguments.run.display()
             ),
-            help: format!("finish the run first:\n  {}", run.resume_command()),
+            remedy: format!("finish the run first:\n  {}", run.resume_command()),
         }
         .into());
     }

@@ -1,15 +1,15 @@
 //! Folders that a user names for results.
-use super::problem::Usage;
+use super::problem::Problem;
 use std::path::Path;
 
 /// Refuses a folder that cannot be written, before anything is simulated for it.
-pub(crate) fn check_out(folder: &Path) -> Result<(), Usage> {
+pub(crate) fn check_out(folder: &Path) -> Result<(), Problem> {
     let tried = std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
     match tried {
         Ok(_) => Ok(()),
-        Err(error) => Err(Usage {
+        Err(error) => Err(Problem {
             message: format!("cannot write into {}: {error}", folder.display()),
-            help: "choose a folder that can be written, with --out DIR".to_owned(),
+            remedy: "choose a folder that can be written, with --out DIR".to_owned(),
         }),
     }
 }

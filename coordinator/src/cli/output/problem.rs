@@ -1,7 +1,7 @@
 //! Errors as people see them: what happened, why, and what to do; and the exit code they mean.
 use super::terminal;
 use case::CaseError;
-use std::{fmt, process::ExitCode};
+use std::process::ExitCode;
 use study::{EvaluatorError, StudyError};
 
 /// What the help of every command ends with.
@@ -15,22 +15,8 @@ pub(crate) const BAD_INPUT: u8 = 2;
 /// Exit code after Ctrl-C.
 pub(crate) const INTERRUPTED: u8 = 130;
 
-/// The command line or a file it names cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Usage {
-    /// What is wrong.
-    pub(crate) message: String,
-    /// What to do.
-    pub(crate) help: String,
-}
-
-impl fmt::Display for Usage {
-    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        to.write_str(&self.message)
-    }
-}
-
-impl std::error::Error for Usage {}
+/// The command line, or a file it names, cannot be used: its errors end in exit code 2.
+pub(crate) use support::Problem;
 
 /// Prints an error with its causes and remedies, and gives its exit code.
 pub(crate) fn explain(error: &anyhow::Error) -> ExitCode {
@@ -61,7 +47,7 @@ pub(crate) fn plainly(message: &str) -> Option<String> {
 fn code(error: &anyhow::Error) -> u8 {
     let mut code = FAILED;
     for cause in error.chain() {
-        if cause.is::<Usage>() || cause.is::<CaseError>() {
+        if cause.is::<Problem>() || cause.is::<CaseError>() {
             code = BAD_INPUT;
         }
         match cause.downcast_ref::<StudyError>() {
@@ -89,12 +75,12 @@ fn describe(error: &anyhow::Error) -> String {
         let evaluator = cause
             .downcast_ref::<EvaluatorError>()
             .and_then(|e| e.help.clone());
-        let usage = cause
-            .downcast_ref::<Usage>()
-            .map(|usage| usage.help.clone());
+        let problem = cause
+            .downcast_ref::<Problem>()
+            .map(|problem| problem.remedy.clone());
         for help in study
             .or(evaluator)
-            .or(usage)
+            .or(problem)
             .into_iter()
             .filter(|help| !help.is_empty())
         {
@@ -114,9 +100,9 @@ mod tests {
 
     #[test]
     fn causes_and_remedies_are_told_and_the_code_tells_whose_fault_it_is() {
-        let usage = Usage {
+        let usage = Problem {
             message: "no such condition".into(),
-            help: "it has: 5rpm".into(),
+            remedy: "it has: 5rpm".into(),
         };
         let error = Err::<(), _>(usage).context("cannot verify").unwrap_err();
         assert_eq!(

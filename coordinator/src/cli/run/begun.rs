@@ -4,7 +4,7 @@ use super::{
     folder::{CASE, MANIFEST, RunFolder},
     manifest::{Decides, Manifest},
 };
-use crate::cli::output::problem::Usage;
+use crate::cli::output::problem::Problem;
 use case::{Loaded, Overrides, difference::differences, load_with_notes};
 use protocol::case::Case;
 use report::Origin;
@@ -33,14 +33,14 @@ impl<S: Decides> Run<S> {
     fn load(folder: RunFolder) -> anyhow::Result<Self> {
         let head = folder.head()?;
         if head.kind != S::KIND {
-            return Err(Usage {
+            return Err(Problem {
                 message: format!(
                     "{} holds a run of `horsehead {}`, not of `horsehead {}`",
                     folder.path().display(),
                     head.kind,
                     S::KIND
                 ),
-                help: "name the folder of another run, or begin a new one with --run DIR"
+                remedy: "name the folder of another run, or begin a new one with --run DIR"
                     .to_owned(),
             }
             .into());
@@ -70,9 +70,9 @@ impl<S: Decides> Run<S> {
         }
         let earlier = Self::load(run.folder.clone())?;
         if let Some(difference) = run.difference(&earlier) {
-            return Err(Usage {
+            return Err(Problem {
                 message: format!("{} holds another run: {difference}", path.display()),
-                help: format!(
+                remedy: format!(
                     "choose another folder with --run, or go on with that run:\n  {}",
                     earlier.resume_command()
                 ),
@@ -139,7 +139,7 @@ impl<S: Decides> Run<S> {
     ///
     /// # Errors
     /// If not; the error says how to go on.
-    pub(crate) fn expect_replayable(&self) -> Result<(), Usage> {
+    pub(crate) fn expect_replayable(&self) -> Result<(), Problem> {
         let path = self.folder.path().display();
         let (message, remedy) = if !self.folder.is_finished() {
             (format!("{path} is not finished"), "go on with it first")
@@ -151,9 +151,9 @@ impl<S: Decides> Run<S> {
         } else {
             return Ok(());
         };
-        Err(Usage {
+        Err(Problem {
             message,
-            help: format!("{remedy}:\n  {}", self.resume_command()),
+            remedy: format!("{remedy}:\n  {}", self.resume_command()),
         })
     }
 
@@ -192,16 +192,16 @@ impl<S: Decides> Run<S> {
     }
 
     /// Why a run cannot go on with a case that was changed: the same command would say the same again.
-    fn changed(&self, changes: &str) -> Usage {
+    fn changed(&self, changes: &str) -> Problem {
         let manifest = &self.manifest;
         let path = self.folder.path();
         let another = manifest.resume_command(&unused(path));
-        Usage {
+        Problem {
             message: format!(
                 "the case has changed since {} was begun: {changes}",
                 path.display()
             ),
-            help: format!(
+            remedy: format!(
                 "a run is of one case; put {} back as it was, or begin a run of the changed one:\n  {another}",
                 manifest.case_folder.display()
             ),

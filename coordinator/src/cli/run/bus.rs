@@ -1,5 +1,5 @@
 //! The dispatcher as an evaluator: opening it, and its refusals in words that help.
-use crate::cli::{argument::door::Door, output::problem::Usage};
+use crate::cli::{argument::door::Door, output::problem::Problem};
 use dispatch::journal::{self, JournalError};
 use dispatch::runtime::{Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot};
 use link::LinkError;
@@ -63,7 +63,11 @@ impl Bus {
     pub(crate) async fn open(options: Options, case: &Case) -> anyhow::Result<Self> {
         let unready = (options.local_workers > 0).then(|| case::kind::of(case).unready(case));
         if let Some((message, help)) = unready.flatten() {
-            return Err(Usage { message, help }.into());
+            return Err(Problem {
+                message,
+                remedy: help,
+            }
+            .into());
         }
         let options = options.for_dispatch(case)?;
         let journal = options.run_dir.join(journal::FILE);
@@ -158,9 +162,9 @@ fn refuse(error: &DispatchError) -> anyhow::Error {
         | DispatchError::Stopped(_)
         | DispatchError::Closed => return explain(error).into(),
     };
-    Usage {
+    Problem {
         message: without_source_places(&error.to_string()),
-        help: help.to_owned(),
+        remedy: help.to_owned(),
     }
     .into()
 }

@@ -4,7 +4,7 @@ use super::{
     command_line::quote,
     manifest::{self, DIAGNOSE, Manifest},
 };
-use crate::cli::output::{problem::Usage, terminal};
+use crate::cli::output::{problem::Problem, terminal};
 use case::Loaded;
 use discrepancy::{diagnose::Inputs, model::Off, thresholds::Thresholds};
 use protocol::{announce::EffectDescriptor, case::Case};
@@ -71,9 +71,9 @@ pub(crate) async fn diagnose<E: Evaluator>(
         if known.all(|suspect| suspect.id != *id) {
             let names = library.iter().filter(|e| !e.generic).map(|e| e.id.as_str());
             let known: Vec<&str> = names.collect();
-            return Err(Usage {
+            return Err(Problem {
                 message: format!("the workers know no effect `{id}`"),
-                help: format!("they know: {}", known.join(", ")),
+                remedy: format!("they know: {}", known.join(", ")),
             }
             .into());
         }

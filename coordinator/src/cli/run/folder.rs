@@ -8,7 +8,7 @@ use super::{
     command_line::quote_path,
     manifest::{CALIBRATE, DIAGNOSE, FORMAT, calibrate},
 };
-use crate::cli::output::{problem::Usage, terminal};
+use crate::cli::output::{problem::Problem, terminal};
 use anyhow::Context as _;
 use case::write_genes;
 use dispatch::journal::{self, Recording};
@@ -99,15 +99,16 @@ impl RunFolder {
     ///
     /// # Errors
     /// If no run was begun there.
-    pub(crate) fn at(path: &Path) -> Result<Self, Usage> {
+    pub(crate) fn at(path: &Path) -> Result<Self, Problem> {
         let folder = Self::new(path);
         if folder.is_begun() {
             return Ok(folder);
         }
-        Err(Usage {
+        Err(Problem {
             message: format!("{} is no run folder: it has no {MANIFEST}", path.display()),
-            help: "`horsehead calibrate CASE` and `horsehead diagnose CASE` make them below runs/"
-                .to_owned(),
+            remedy:
+                "`horsehead calibrate CASE` and `horsehead diagnose CASE` make them below runs/"
+                    .to_owned(),
         })
     }
 
@@ -118,19 +119,19 @@ impl RunFolder {
         if head.format == FORMAT {
             return Ok(head);
         }
-        Err(Usage {
+        Err(Problem {
             message: format!(
                 "{} was made by {}, in a form this version does not read",
                 self.path.display(),
                 head.program
             ),
-            help: "use that version, or begin a new run with --run".to_owned(),
+            remedy: "use that version, or begin a new run with --run".to_owned(),
         }
         .into())
     }
 
     /// Refuses what is no folder, or is one with files of something else.
-    pub(crate) fn check_vacant(&self) -> Result<(), Usage> {
+    pub(crate) fn check_vacant(&self) -> Result<(), Problem> {
         let path = self.path.display();
         let help = "choose an empty or new folder with --run DIR".to_owned();
         // the lock and keys alone are left where a run could not begin
@@ -139,15 +140,15 @@ impl RunFolder {
             names.all(|name| name == journal::LOCK || name == KEYS)
         });
         match vacant {
-            Ok(false) if !self.file(journal::FILE).exists() => Err(Usage {
+            Ok(false) if !self.file(journal::FILE).exists() => Err(Problem {
                 message: format!("{path} is not empty, and no run was begun in it"),
-                help,
+                remedy: help,
             }),
             Ok(_) => Ok(()),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-            Err(error) => Err(Usage {
+            Err(error) => Err(Problem {
                 message: format!("{path} cannot be a run folder: {error}"),
-                help,
+                remedy: help,
             }),
         }
     }
@@ -217,9 +218,9 @@ impl RunFolder {
     /// Reads a file of JSON.
     pub(crate) fn read_json<T: DeserializeOwned>(&self, name: &str) -> anyhow::Result<T> {
         let file = self.file(name);
-        let damaged = |why: &dyn std::fmt::Display| Usage {
+        let damaged = |why: &dyn std::fmt::Display| Problem {
             message: format!("{} is damaged: {why}", file.display()),
-            help: self.repair(),
+            remedy: self.repair(),
         };
         let text = fs::read_to_string(&file).map_err(|error| damaged(&error))?;
         Ok(serde_json::from_str(&text).map_err(|error| damaged(&error))?)

@@ -4,7 +4,7 @@ use super::{
     diagnosis::{entrance, inputs},
     manifest::{self, IDENTIFY, Manifest},
 };
-use crate::cli::output::{problem::Usage, terminal};
+use crate::cli::output::{problem::Problem, terminal};
 use case::Loaded;
 use discrepancy::{
     diagnose::Inputs, identify::Identified, laboratory::Stage, thresholds::Thresholds,
@@ -73,10 +73,10 @@ pub(crate) async fn identify<E: Evaluator>(
     };
     let done = study::identify_on(evaluator, case, &inputs, watch, stop).await?;
     let Some(identified) = done.identified else {
-        return Err(Usage {
+        return Err(Problem {
             message: "no fit of this record completes, so nothing can be said of what it sees"
                 .to_owned(),
-            help: "`horsehead simulate` says whether the case runs at all; start from parameters that \
+            remedy: "`horsehead simulate` says whether the case runs at all; start from parameters that \
                    do with --genes FILE, or take `held_out` from a channel of the calibrated condition"
                 .to_owned(),
         }

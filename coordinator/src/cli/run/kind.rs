@@ -11,7 +11,7 @@ use crate::cli::{
     argument::output::Output,
     output::{
         calibration::show, diagnosis::Answer, identification::show as identified,
-        object::diagnosis::times::Times, problem::Usage,
+        object::diagnosis::times::Times, problem::Problem,
     },
 };
 use case::Loaded;
@@ -49,9 +49,9 @@ impl AnyRun {
             CALIBRATE => Ok(Self::Calibration(Run::open(path)?)),
             DIAGNOSE => Ok(Self::Diagnosis(Run::open(path)?)),
             IDENTIFY => Ok(Self::Identification(Run::open(path)?)),
-            other => Err(Usage {
+            other => Err(Problem {
                 message: format!("{} holds a run of `horsehead {other}`", path.display()),
-                help: "name the folder of a calibration, a diagnosis or an identification"
+                remedy: "name the folder of a calibration, a diagnosis or an identification"
                     .to_owned(),
             }
             .into()),
@@ -62,7 +62,7 @@ impl AnyRun {
     ///
     /// # Errors
     /// If not; the error says how to go on.
-    pub(crate) fn expect_replayable(&self) -> Result<(), Usage> {
+    pub(crate) fn expect_replayable(&self) -> Result<(), Problem> {
         match self {
             Self::Calibration(run) => run.expect_replayable(),
             Self::Diagnosis(run) => run.expect_replayable(),

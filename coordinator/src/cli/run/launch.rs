@@ -5,11 +5,11 @@
 use super::folder::KEYS;
 use crate::cli::{
     argument::{door::Door, workers::WorkersChoice},
-    output::{problem::Usage, terminal},
+    output::{problem::Problem, terminal},
 };
 use dispatch::runtime::locate::worker_program;
 use launch::{
-    Host, NodeError, Plan, Program, WorkerOptions,
+    Host, Plan, Program, WorkerOptions,
     execute::{LaunchError, carry_out},
     ssh,
 };
@@ -52,7 +52,7 @@ pub(crate) struct Launch {
 impl Launch {
     /// What is needed before the run listens: an address and keys; none where no host is named.
     pub(crate) fn prepare(workers: &WorkersChoice, run: &Path) -> anyhow::Result<Option<Self>> {
-        let hosts = workers.hosts.read().map_err(refuse)?;
+        let hosts = workers.hosts.read()?;
         let Some(first) = hosts.first() else {
             return Ok(None);
         };
@@ -89,13 +89,8 @@ impl Launch {
 
     /// Brings the workers up, beside the run; a host that fails is told of and not waited for.
     pub(crate) fn up(&mut self) -> anyhow::Result<()> {
-        let plan = ssh::up(
-            &self.order,
-            &self.hosts,
-            &programs(&[]).map_err(refuse)?,
-            WAIT_S,
-        );
-        let plan = plan.map_err(refuse)?;
+        let plan = ssh::up(&self.order, &self.hosts, &programs(&[])?, WAIT_S);
+        let plan = plan?;
         let cancelled = Arc::clone(&self.cancelled);
         let launching = thread::Builder::new()
             .name("launch".to_owned())
@@ -175,30 +170,21 @@ fn carry_until(plan: &Plan, cancelled: &AtomicBool) -> anyhow::Result<()> {
 }
 
 /// What failed, with its remedy.
-fn remedied(error: &LaunchError) -> Usage {
-    Usage {
+fn remedied(error: &LaunchError) -> Problem {
+    Problem {
         message: error.to_string(),
-        help: error.remedy.clone(),
+        remedy: error.remedy.clone(),
     }
-}
-
-/// What cannot be planned, as an error of what was typed.
-pub(crate) fn refuse(error: NodeError) -> anyhow::Error {
-    Usage {
-        message: error.message,
-        help: error.help,
-    }
-    .into()
 }
 
 /// The worker that `horsehead` would start here, then those that were named for other machines, which
 /// come before it where they are for the same.
-pub(crate) fn programs(named: &[String]) -> Result<Vec<Program>, NodeError> {
+pub(crate) fn programs(named: &[String]) -> Result<Vec<Program>, Problem> {
     let mut programs = Vec::new();
     for text in named {
-        let wrong = |why: &str| NodeError {
+        let wrong = |why: &str| Problem {
             message: format!("--worker-program {text}: {why}"),
-            help: "write ARCH=PATH with ARCH as `uname -m` says on the host".to_owned(),
+            remedy: "write ARCH=PATH with ARCH as `uname -m` says on the host".to_owned(),
         };
         let (machine, path) = text.split_once('=').ok_or_else(|| wrong("it has no ="))?;
         let program = Program::read(Path::new(path))?;
@@ -218,9 +204,9 @@ pub(crate) fn programs(named: &[String]) -> Result<Vec<Program>, NodeError> {
             }
         }
         Err(error) if programs.is_empty() => {
-            return Err(NodeError {
+            return Err(Problem {
                 message: error.to_string(),
-                help: "or name one with --worker-program ARCH=PATH".to_owned(),
+                remedy: "or name one with --worker-program ARCH=PATH".to_owned(),
             });
         }
         Err(_) => {}

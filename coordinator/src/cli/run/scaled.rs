@@ -7,7 +7,7 @@ use super::{
 };
 use crate::cli::{
     argument::{door::Door, settings},
-    output::{problem::Usage, terminal},
+    output::{problem::Problem, terminal},
 };
 use anyhow::Context as _;
 use dispatch::account;
@@ -319,9 +319,9 @@ impl Scale<'_> {
         let slept = sleep_through(options, usize::try_from(slots)?, &mut source, &takes).await;
         let slept = slept.map_err(|error| bus::explain(&error))?;
         if slept.slots < usize::try_from(slots)? {
-            return Err(Usage {
+            return Err(Problem {
                 message: format!("only {} of {slots} sessions joined", slept.slots),
-                help: "ask for fewer with --sleeping; `ulimit -n` says how many connections a process may hold"
+                remedy: "ask for fewer with --sleeping; `ulimit -n` says how many connections a process may hold"
                     .to_owned(),
             }
             .into());

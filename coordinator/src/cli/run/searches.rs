@@ -5,7 +5,7 @@ use crate::cli::{
         factor::{self, check},
         settings::SettingsChoice,
     },
-    output::problem::Usage,
+    output::problem::Problem,
 };
 use anyhow::Context as _;
 use search::{
@@ -51,7 +51,7 @@ impl Searches {
         choice: &SettingsChoice,
         factors: Vec<Factor>,
         (evaluations, seeds): (Option<u64>, Vec<u64>),
-    ) -> Result<(Self, Vec<String>), Usage> {
+    ) -> Result<(Self, Vec<String>), Problem> {
         // what follows the number of workers is that of one: any crew finds the same
         let plan = Plan { space, workers: 1 };
         let chosen = choice.choose(preset, &plan)?;
@@ -68,9 +68,9 @@ impl Searches {
         let mut settings = chosen.settings;
         let mut set = |key: &str, value: u64| {
             let done = preset.set(&mut settings, key, &value.to_string());
-            done.map(drop).map_err(|error| Usage {
+            done.map(drop).map_err(|error| Problem {
                 message: format!("preset {}: {error}", preset.name),
-                help: format!("choose another number of evaluations, or set {key}"),
+                remedy: format!("choose another number of evaluations, or set {key}"),
             })
         };
         if let Some(budget) = evaluations {
@@ -106,9 +106,9 @@ impl Searches {
                 factor::set(factor, *level, preset, &mut settings)?;
             }
             for seed in &self.seeds {
-                build(&settings, space, *seed).map_err(|error| Usage {
+                build(&settings, space, *seed).map_err(|error| Problem {
                     message: format!("{}: {error}", self.words(row)),
-                    help: "choose other levels, or other settings with --set".to_owned(),
+                    remedy: "choose other levels, or other settings with --set".to_owned(),
                 })?;
                 all.push(Search {
                     settings: settings.clone(),

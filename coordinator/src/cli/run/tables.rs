@@ -7,7 +7,7 @@ use super::{
     interrupt,
     manifest::Manifest,
 };
-use crate::cli::output::{problem::Usage, terminal};
+use crate::cli::output::{problem::Problem, terminal};
 use discrepancy::laboratory::Stage;
 use dispatch::journal;
 use protocol::{case::Case, event::Finished, job::Job};
@@ -152,9 +152,9 @@ pub(crate) fn make(
 ) -> anyhow::Result<(Exported, Vec<String>)> {
     let path = source.folder.file(journal::FILE);
     if !path.exists() {
-        return Err(Usage {
+        return Err(Problem {
             message: format!("{} has no journal yet", source.folder.path().display()),
-            help: "the command that began the run makes it".to_owned(),
+            remedy: "the command that began the run makes it".to_owned(),
         }
         .into());
     }
@@ -215,9 +215,9 @@ fn explained(error: StoreError) -> anyhow::Error {
         StoreError::Io { .. } => "choose a place that can be written, with --to",
         StoreError::Table { .. } | StoreError::Journal(_) => return error.into(),
     };
-    Usage {
+    Problem {
         message: error.to_string(),
-        help: help.to_owned(),
+        remedy: help.to_owned(),
     }
     .into()
 }

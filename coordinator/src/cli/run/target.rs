@@ -5,7 +5,7 @@ use super::{
     folder::{GENES, RunFolder},
     manifest::{CALIBRATE, Decides, Manifest, Start},
 };
-use crate::cli::output::problem::Usage;
+use crate::cli::output::problem::Problem;
 use case::{Loaded, Overrides, load_with_notes, require_record};
 use std::path::{Path, PathBuf};
 
@@ -98,9 +98,9 @@ fn finished(folder: &RunFolder) -> anyhow::Result<Calibration> {
     let path = folder.path();
     let kind = folder.head()?.kind;
     if kind != CALIBRATE {
-        return Err(Usage {
+        return Err(Problem {
             message: format!("{} holds a run of `horsehead {kind}`", path.display()),
-            help: "name a case folder, or the folder of a calibration".to_owned(),
+            remedy: "name a case folder, or the folder of a calibration".to_owned(),
         }
         .into());
     }
@@ -108,9 +108,9 @@ fn finished(folder: &RunFolder) -> anyhow::Result<Calibration> {
     if folder.file(GENES).exists() {
         return Ok(calibration);
     }
-    Err(Usage {
+    Err(Problem {
         message: format!("{} is not finished", path.display()),
-        help: format!("finish it first:\n  {}", calibration.resume_command()),
+        remedy: format!("finish it first:\n  {}", calibration.resume_command()),
     }
     .into())
 }

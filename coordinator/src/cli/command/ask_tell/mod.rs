@@ -3,14 +3,14 @@ mod talk;
 mod words;
 
 use crate::cli::output::{
-    problem::{EXIT_CODES, Usage},
+    problem::{EXIT_CODES, Problem},
     terminal,
 };
 use clap::{Args, builder::PossibleValuesParser};
 use search::strategy::CATALOGUE;
 use std::io::{self, BufRead as _};
 use talk::{Opening, Talk};
-use words::{Line, Refused};
+use words::Line;
 
 /// Let another program evaluate what a strategy asks for.
 #[derive(Debug, Args)]
@@ -65,13 +65,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                     return Ok(());
                 }
             }
-            Err(refused) => return end(talk.as_ref(), refused.at(number)),
+            Err(refused) => return end(talk.as_ref(), words::at(refused, number)),
         }
     }
     match talk.as_ref().map(Talk::close) {
         Some(Ok(said)) => say(&said),
         Some(Err(refused)) => end(talk.as_ref(), refused),
-        None => end(None, Refused::silent()),
+        None => end(None, words::silent()),
     }
 }
 
@@ -82,17 +82,13 @@ fn say(line: &Line) -> anyhow::Result<()> {
 }
 
 /// The last line of a talk that ends badly: why, and what was found until then.
-fn end(talk: Option<&Talk>, refused: Refused) -> anyhow::Result<()> {
+fn end(talk: Option<&Talk>, problem: Problem) -> anyhow::Result<()> {
     let (evaluations, best) = talk.map_or((0, None), Talk::found);
     say(&Line::Error {
-        error: refused.error.clone(),
-        help: refused.help.clone(),
+        error: problem.message.clone(),
+        help: problem.remedy.clone(),
         evaluations,
         best,
     })?;
-    Err(Usage {
-        message: refused.error,
-        help: refused.help,
-    }
-    .into())
+    Err(problem.into())
 }

@@ -1,6 +1,6 @@
 //! A talk with whoever evaluates: what it says becomes results of a search, which says what is asked next. It
 //! knows lines, not where they come from.
-use super::words::{Answer, Answers, Axis, Best, Line, Point, Refused, Scale, read};
+use super::words::{Answer, Answers, Axis, Best, Line, Point, Scale, read};
 use crate::cli::argument::settings::SettingsChoice;
 use protocol::case::{self, Unknown};
 use search::{
@@ -8,6 +8,7 @@ use search::{
     strategy::{Finish, Plan, Residual, Strategy, Told, build_after, preset},
 };
 use std::collections::BTreeMap;
+use support::Problem;
 
 pub(super) use super::words::Opening;
 
@@ -40,13 +41,13 @@ impl Axis {
 }
 
 /// Points to begin with, each inside the bounds.
-fn first_points(space: &Space, points: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Refused> {
+fn first_points(space: &Space, points: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Problem> {
     for (number, point) in (1..).zip(points) {
         let axes = space.axes();
         let refuse = |why: String| {
             let help =
                 "give each point of `start` one number per axis of `space`, inside its bounds";
-            Err(Refused::new(format!("start: point {number} {why}"), help))
+            Err(Problem::new(format!("start: point {number} {why}"), help))
         };
         if point.len() != axes.len() {
             return refuse(format!(
@@ -68,20 +69,20 @@ fn first_points(space: &Space, points: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Ref
 
 impl Opening {
     /// Reads the first line.
-    pub(super) fn read(line: &str) -> Result<Self, Refused> {
+    pub(super) fn read(line: &str) -> Result<Self, Problem> {
         let example = "{\"space\": [{\"name\": \"x\", \"lower\": -1, \"upper\": 1}]}";
         read(line, example)
     }
 
     /// Begins a talk.
-    pub(super) fn begin(self, strategy: &str) -> Result<Talk, Refused> {
+    pub(super) fn begin(self, strategy: &str) -> Result<Talk, Problem> {
         let unknowns: Vec<Unknown> = self.space.into_iter().map(Axis::unknown).collect();
         let bounds = "give each a name of its own, finite lower < upper with the start between, above \
                       0 on a log scale";
         let space = Space::new(&unknowns);
-        let space = space.map_err(|error| Refused::new(format!("space: {error}"), bounds))?;
+        let space = space.map_err(|error| Problem::new(format!("space: {error}"), bounds))?;
         let preset = preset(strategy).ok_or_else(|| {
-            Refused::new(format!("there is no strategy `{strategy}`"), "see --help")
+            Problem::new(format!("there is no strategy `{strategy}`"), "see --help")
         })?;
         let set = self.settings.into_iter().map(|(key, value)| {
             let words = value.as_str().map(str::to_owned);
@@ -93,18 +94,18 @@ impl Opening {
             workers: 1,
         };
         let chosen = SettingsChoice { set }.choose(preset, &plan);
-        let chosen = chosen.map_err(|usage| Refused::new(usage.message, usage.help))?;
+        let chosen = chosen?;
         let first = first_points(&space, &self.start)?;
         let strategy = build_after(&chosen.settings, &space, self.seed, &first);
         let strategy = strategy.map_err(|error| {
-            Refused::new(
+            Problem::new(
                 format!("settings: {error}"),
                 "`horsehead calibrate --help` lists what every setting may be",
             )
         })?;
         let left = self.budget.unwrap_or(u64::MAX);
         if left == 0 {
-            return Err(Refused::new(
+            return Err(Problem::new(
                 "budget is 0",
                 "give at least 1, or leave it out",
             ));
@@ -135,7 +136,7 @@ impl Talk {
     }
 
     /// Takes a line of answers, whole or not at all; what is said to it.
-    pub(super) fn take(&mut self, line: &str) -> Result<Line, Refused> {
+    pub(super) fn take(&mut self, line: &str) -> Result<Line, Problem> {
         let answers: Answers = read(line, "{\"tell\": [{\"id\": 0, \"f\": 3.5}]}")?;
         let mut told = BTreeMap::new();
         for answer in answers.tell {
@@ -144,7 +145,7 @@ impl Talk {
                 return Err(self.stranger(id));
             }
             if told.insert(id, answer.into_told()?).is_some() {
-                return Err(Refused::new(
+                return Err(Problem::new(
                     format!("point {id} is told twice in it"),
                     "tell every point once",
                 ));
@@ -179,7 +180,7 @@ impl Talk {
     }
 
     /// The end of the input.
-    pub(super) fn close(&self) -> Result<Line, Refused> {
+    pub(super) fn close(&self) -> Result<Line, Problem> {
         self.end("input")
     }
 
@@ -188,14 +189,14 @@ impl Talk {
         (self.told, self.best.clone())
     }
 
-    fn end(&self, done: &'static str) -> Result<Line, Refused> {
+    fn end(&self, done: &'static str) -> Result<Line, Problem> {
         let (evaluations, best) = self.found();
         let failed = || match evaluations {
-            0 => Refused::new(
+            0 => Problem::new(
                 "the input ended, and no point was told",
                 "tell what came of the points that are asked",
             ),
-            _ => Refused::new(
+            _ => Problem::new(
                 format!("all of the {evaluations} points failed"),
                 "check the evaluation at the start, and the bounds",
             ),
@@ -209,7 +210,7 @@ impl Talk {
     }
 
     /// Why an answer is to no open point.
-    fn stranger(&self, id: u64) -> Refused {
+    fn stranger(&self, id: u64) -> Problem {
         let open: Vec<String> = self.open.keys().take(9).map(u64::to_string).collect();
         let help = format!("open are {}", open.join(", "));
         let why = if id < self.asked {
@@ -217,17 +218,17 @@ impl Talk {
         } else {
             "was not asked for"
         };
-        Refused::new(format!("point {id} {why}"), help)
+        Problem::new(format!("point {id} {why}"), help)
     }
 }
 
 impl Answer {
-    fn into_told(self) -> Result<(Told, Option<Residual>), Refused> {
+    fn into_told(self) -> Result<(Told, Option<Residual>), Problem> {
         let id = self.id;
         let refuse = |why: &str| {
             let help =
                 "say \"f\" with a number, \"residual\" with its numbers, or \"failed\": true";
-            Err(Refused::new(format!("point {id} {why}"), help))
+            Err(Problem::new(format!("point {id} {why}"), help))
         };
         let squared = |residual: &[f64]| residual.iter().map(|r| r * r).sum();
         let told = !self.residual.is_empty() && !self.failed;

@@ -3,6 +3,7 @@ use search::strategy::Proposal;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use support::Problem;
 
 /// The first line.
 #[derive(Debug, Deserialize)]
@@ -120,41 +121,25 @@ pub(super) struct Best {
     pub(super) f: f64,
 }
 
-/// Why a line is not taken, and what to say instead.
-#[derive(Debug)]
-pub(super) struct Refused {
-    pub(super) error: String,
-    pub(super) help: String,
+/// Nothing was said.
+pub(super) fn silent() -> Problem {
+    let help = "begin with one line that has `space`; `horsehead ask-tell --help` shows one";
+    Problem::new("the input ended before its first line", help)
 }
 
-impl Refused {
-    pub(super) fn new(error: impl Into<String>, help: impl Into<String>) -> Self {
-        Self {
-            error: error.into(),
-            help: help.into(),
-        }
-    }
-
-    /// Nothing was said.
-    pub(super) fn silent() -> Self {
-        let help = "begin with one line that has `space`; `horsehead ask-tell --help` shows one";
-        Self::new("the input ended before its first line", help)
-    }
-
-    /// With the line, counted from 1.
-    pub(super) fn at(self, number: usize) -> Self {
-        let error = format!("line {number}: {}", self.error);
-        Self { error, ..self }
-    }
+/// With the line, counted from 1.
+pub(super) fn at(problem: Problem, number: usize) -> Problem {
+    let message = format!("line {number}: {}", problem.message);
+    Problem { message, ..problem }
 }
 
 /// Reads a line.
-pub(super) fn read<T: DeserializeOwned>(line: &str, example: &str) -> Result<T, Refused> {
+pub(super) fn read<T: DeserializeOwned>(line: &str, example: &str) -> Result<T, Problem> {
     serde_json::from_str(line).map_err(|error| {
         let mut help = format!("a line is one object, as {example}");
         if ["NaN", "Infinity"].iter().any(|word| line.contains(word)) {
             help += "; JSON has finite numbers only: say {\"id\": .., \"failed\": true}";
         }
-        Refused::new(format!("it cannot be read: {error}"), help)
+        Problem::new(format!("it cannot be read: {error}"), help)
     })
 }

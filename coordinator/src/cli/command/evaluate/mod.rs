@@ -7,7 +7,7 @@ use crate::cli::{
         workers::WorkersChoice,
     },
     output::{
-        problem::{EXIT_CODES, Usage},
+        problem::{EXIT_CODES, Problem},
         terminal,
     },
     run::{
@@ -89,9 +89,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     })?;
     match refused.load(Ordering::SeqCst) {
         0 => Ok(()),
-        count => Err(Usage {
+        count => Err(Problem {
             message: format!("{count} lines were not taken"),
-            help: "each was answered with its error; all others are scored".to_owned(),
+            remedy: "each was answered with its error; all others are scored".to_owned(),
         }
         .into()),
     }

@@ -1,5 +1,5 @@
 //! `horsehead export --failed RUN`: what programs left where they failed, as folders to look into.
-use crate::cli::{output::problem::Usage, run::folder::RunFolder};
+use crate::cli::{output::problem::Problem, run::folder::RunFolder};
 use anyhow::Context as _;
 use dispatch::journal::{self, Recording};
 use protocol::{
@@ -55,9 +55,9 @@ pub(super) fn fetch(run: &Path, to: Option<&Path>, force: bool) -> anyhow::Resul
     let folder = RunFolder::at(run)?;
     let journal = folder.file(journal::FILE);
     if !journal.exists() {
-        return Err(Usage {
+        return Err(Problem {
             message: format!("{} has no journal yet", folder.path().display()),
-            help: "the command that began the run makes it".to_owned(),
+            remedy: "the command that began the run makes it".to_owned(),
         }
         .into());
     }
@@ -114,9 +114,9 @@ fn prepare(place: &Path, is_own: bool, force: bool) -> anyhow::Result<()> {
     let is_empty = fs::read_dir(place).map_or(true, |mut entries| entries.next().is_none());
     if !is_empty {
         if !is_own && !force {
-            return Err(Usage {
+            return Err(Problem {
                 message: format!("{} is not empty", place.display()),
-                help: "choose another place with --to, or write into it with --force".to_owned(),
+                remedy: "choose another place with --to, or write into it with --force".to_owned(),
             }
             .into());
         }

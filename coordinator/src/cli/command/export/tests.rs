@@ -2,7 +2,7 @@
 use super::*;
 use crate::cli::{
     argument::output::Output,
-    output::{problem::Usage, progress::Silent},
+    output::{problem::Problem, progress::Silent},
     run::{
         begun::Run,
         bus,
@@ -350,7 +350,7 @@ fn a_run_without_results_has_empty_tables_and_another_folder_is_refused() {
     assert!(error.to_string().contains("has no journal yet"), "{error}");
     let error = export(&arguments(scratch.path(), Form::Csv, None)).unwrap_err();
     assert!(error.to_string().contains("is no run folder"), "{error}");
-    assert!(error.is::<Usage>());
+    assert!(error.is::<Problem>());
     let left: Vec<_> = fs::read_dir(scratch.path()).unwrap().collect();
     assert_eq!(left.len(), 1, "only the run: {left:?}");
 }

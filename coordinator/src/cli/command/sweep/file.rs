@@ -12,7 +12,7 @@ use crate::cli::{
             orthogonal::{GridOutput, runs_table},
             scored::{self, IndividualsOutput},
         },
-        problem::Usage,
+        problem::Problem,
         progress::Display,
         terminal,
     },
@@ -77,9 +77,9 @@ fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<Swept>, Individuals)>
         }
         Some("csv") => None,
         Some(_) | None => {
-            return Err(Usage {
+            return Err(Problem {
                 message: format!("{} is neither a grid nor a table", file.display()),
-                help: "a grid ends in .toml, a table of individuals in .csv".to_owned(),
+                remedy: "a grid ends in .toml, a table of individuals in .csv".to_owned(),
             }
             .into());
         }
@@ -89,9 +89,10 @@ fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<Swept>, Individuals)>
         .as_ref()
         .and_then(|(grid, _)| grid.case.as_ref().map(beside));
     let Some(case_folder) = arguments.case.clone().or(own) else {
-        return Err(Usage {
+        return Err(Problem {
             message: format!("{}: of which case?", file.display()),
-            help: "name its folder with --case CASE, in a grid with `case = \"FOLDER\"`".to_owned(),
+            remedy: "name its folder with --case CASE, in a grid with `case = \"FOLDER\"`"
+                .to_owned(),
         }
         .into());
     };

@@ -1,7 +1,7 @@
 //! The file of a grid: which case, which preset, which settings take which values.
 use crate::cli::{
     argument::settings::SettingsChoice,
-    output::problem::Usage,
+    output::problem::Problem,
     run::{searches::Searches, swept::combinations},
 };
 use case::document::{Document, Step};
@@ -96,9 +96,9 @@ impl Grid {
         let choice = SettingsChoice {
             set: set.collect::<anyhow::Result<_>>()?,
         };
-        let named = |error: Usage| Usage {
+        let named = |error: Problem| Problem {
             message: format!("{}: {}", document.path.display(), error.message),
-            help: error.help,
+            remedy: error.remedy,
         };
         let counts = factors
             .iter()
@@ -106,9 +106,9 @@ impl Grid {
             .chain([seeds.len()]);
         let count = counts.fold(1_usize, usize::saturating_mul);
         if count > MOST {
-            return Err(named(Usage {
+            return Err(named(Problem {
                 message: format!("{count} searches are too many"),
-                help: format!("at most {MOST}: take fewer values or seeds"),
+                remedy: format!("at most {MOST}: take fewer values or seeds"),
             })
             .into());
         }

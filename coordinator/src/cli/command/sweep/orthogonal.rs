@@ -9,7 +9,7 @@ use crate::cli::{
     },
     output::{
         object::orthogonal::OrthogonalOutput,
-        problem::{EXIT_CODES, Usage},
+        problem::{EXIT_CODES, Problem},
         progress::Display,
         terminal,
     },
@@ -128,7 +128,7 @@ fn usual(array: Array) -> Vec<Factor> {
 }
 
 /// The factors of an array.
-fn factors(arguments: &Arguments) -> Result<Vec<Factor>, Usage> {
+fn factors(arguments: &Arguments) -> Result<Vec<Factor>, Problem> {
     let array = arguments.array;
     let chosen = match arguments.factor.as_slice() {
         [] => usual(array),
@@ -141,16 +141,16 @@ fn factors(arguments: &Arguments) -> Result<Vec<Factor>, Usage> {
         array.levels()
     );
     if chosen.len() > array.columns() {
-        return Err(Usage {
+        return Err(Problem {
             message: format!("{} factors are too many", chosen.len()),
-            help: holds,
+            remedy: holds,
         });
     }
     let other = chosen.iter().find(|own| own.levels.len() != array.levels());
     match other {
-        Some(factor) => Err(Usage {
+        Some(factor) => Err(Problem {
             message: format!("factor {} has {} levels", factor.name, factor.levels.len()),
-            help: holds,
+            remedy: holds,
         }),
         None => Ok(chosen),
     }

@@ -6,7 +6,7 @@ use crate::cli::{
         workers::cores,
     },
     output::{
-        problem::{EXIT_CODES, Usage},
+        problem::{EXIT_CODES, Problem},
         progress::Display,
         terminal,
     },
@@ -123,9 +123,9 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Scaling>> {
     // every search can be made before anything runs
     let space = Space::new(&case.unknowns)?;
     for search in settings.searches() {
-        Scaling::settings(search, &space, 1).map_err(|error| Usage {
+        Scaling::settings(search, &space, 1).map_err(|error| Problem {
             message: error.to_string(),
-            help:
+            remedy:
                 "choose presets that have a population, as paper, paper-batch, window and l-shade"
                     .to_owned(),
         })?;

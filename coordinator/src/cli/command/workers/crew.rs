@@ -1,8 +1,8 @@
 //! `workers list`, `drain` and `down`: asking the process that works on a run.
 use crate::cli::{
     argument::{nodes::HostsChoice, output::OutputChoice},
-    output::{problem::Usage, terminal},
-    run::launch::{carry, refuse},
+    output::{problem::Problem, terminal},
+    run::launch::carry,
 };
 use clap::Args;
 use dispatch::runtime::control::{
@@ -119,7 +119,7 @@ pub(super) fn drain(arguments: &DrainArguments) -> anyhow::Result<()> {
 
 /// Ends workers.
 pub(super) fn down(arguments: &DownArguments) -> anyhow::Result<()> {
-    let hosts = arguments.hosts.read().map_err(refuse)?;
+    let hosts = arguments.hosts.read()?;
     if !hosts.is_empty() {
         return carry(&ssh::down(&hosts, None));
     }
@@ -152,11 +152,12 @@ fn tell(workers: &[Worker], now: bool, what: &str) {
 }
 
 fn ask(folder: &Path, question: &Question) -> anyhow::Result<Vec<Worker>> {
-    Ok(control::ask(folder, question).map_err(|error| Usage {
+    Ok(control::ask(folder, question).map_err(|error| Problem {
         message: error.to_string(),
-        help: "`horsehead workers list --run RUN` with the folder of a run that goes on shows its \
+        remedy:
+            "`horsehead workers list --run RUN` with the folder of a run that goes on shows its \
                workers"
-            .to_owned(),
+                .to_owned(),
     })?)
 }
 
@@ -173,14 +174,14 @@ impl RunChoice {
         let mut found: Vec<PathBuf> = with_socket.filter(answers).collect();
         match (found.pop(), found.len()) {
             (Some(folder), 0) => Ok(folder),
-            (None, _) => Err(Usage {
+            (None, _) => Err(Problem {
                 message: "nobody works on any run below runs/ now".to_owned(),
-                help: "name the folder of one elsewhere with --run RUN".to_owned(),
+                remedy: "name the folder of one elsewhere with --run RUN".to_owned(),
             }
             .into()),
-            (Some(folder), more) => Err(Usage {
+            (Some(folder), more) => Err(Problem {
                 message: format!("{} runs go on", more + 1),
-                help: format!("name one of them, as --run {}", folder.display()),
+                remedy: format!("name one of them, as --run {}", folder.display()),
             }
             .into()),
         }

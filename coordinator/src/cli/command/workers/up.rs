@@ -2,10 +2,10 @@
 use crate::cli::{
     argument::nodes::HostsChoice,
     output::terminal,
-    run::launch::{carry, programs, refuse},
+    run::launch::{carry, programs},
 };
 use clap::{ArgGroup, Args};
-use launch::{NodeError, Plan, WorkerOptions, k8s, keys, slurm, ssh, systemd};
+use launch::{Plan, WorkerOptions, k8s, keys, slurm, ssh, systemd};
 use link::{
     keys::{Keys, Role},
     locator::{Locator, Protocol},
@@ -15,6 +15,7 @@ use std::{
     path::{Path, PathBuf},
     process::Command,
 };
+use support::Problem;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -106,21 +107,21 @@ pub(super) struct LogsArguments {
 
 /// Plans, and prints the plan or carries it out.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let plan = plan(arguments).map_err(refuse)?;
+    let plan = plan(arguments)?;
     if arguments.dry_run {
         return terminal::write(&plan.to_string());
     }
     carry(&plan)
 }
 
-fn plan(arguments: &Arguments) -> Result<Plan, NodeError> {
+fn plan(arguments: &Arguments) -> Result<Plan, Problem> {
     let tls = match (arguments.connect.protocol, &arguments.tls) {
         (Protocol::Tcp, _) => None,
         (Protocol::Quic, Some(folder)) => Some(absolute(folder)),
         (Protocol::Quic, None) => {
-            return Err(NodeError {
+            return Err(Problem {
                 message: format!("{} needs certificates: give --tls DIR", arguments.connect),
-                help: "`horsehead keys new DIR --host NAME` makes them".to_owned(),
+                remedy: "`horsehead keys new DIR --host NAME` makes them".to_owned(),
             });
         }
     };
@@ -130,9 +131,9 @@ fn plan(arguments: &Arguments) -> Result<Plan, NodeError> {
         idle_timeout: Some(arguments.idle_timeout).filter(|seconds| *seconds > 0),
         slots: arguments.slots,
         prologue: match &arguments.prologue {
-            Some(file) => fs::read_to_string(file).map_err(|error| NodeError {
+            Some(file) => fs::read_to_string(file).map_err(|error| Problem {
                 message: format!("--prologue {}: {error}", file.display()),
-                help: "name a file of shell lines".to_owned(),
+                remedy: "name a file of shell lines".to_owned(),
             })?,
             None => String::new(),
         },
@@ -142,9 +143,9 @@ fn plan(arguments: &Arguments) -> Result<Plan, NodeError> {
         return k8s::up(&order, options, one_for_all(&order)?.as_deref());
     }
     let programs = programs(&arguments.worker_program)?;
-    let own = programs.first().ok_or_else(|| NodeError {
+    let own = programs.first().ok_or_else(|| Problem {
         message: "there is no worker program".to_owned(),
-        help: "name one with --worker-program ARCH=PATH".to_owned(),
+        remedy: "name one with --worker-program ARCH=PATH".to_owned(),
     })?;
     if let Some(options) = &arguments.slurm {
         let name = one_for_all(&order)?;
@@ -161,7 +162,7 @@ fn plan(arguments: &Arguments) -> Result<Plan, NodeError> {
 }
 
 /// The folder of keys that all workers of a launch share, where they share a file system or a secret.
-fn one_for_all(order: &WorkerOptions) -> Result<Option<String>, NodeError> {
+fn one_for_all(order: &WorkerOptions) -> Result<Option<String>, Problem> {
     let Some(folder) = &order.tls else {
         return Ok(None);
     };
@@ -174,13 +175,13 @@ fn one_for_all(order: &WorkerOptions) -> Result<Option<String>, NodeError> {
     });
     match name {
         Ok(Some(name)) => Ok(Some(name)),
-        Ok(None) => Err(NodeError {
+        Ok(None) => Err(Problem {
             message: format!("{} has no folder of a worker", folder.display()),
-            help: "`horsehead keys add DIR worker-01` makes one".to_owned(),
+            remedy: "`horsehead keys add DIR worker-01` makes one".to_owned(),
         }),
-        Err(error) => Err(NodeError {
+        Err(error) => Err(Problem {
             message: error.to_string(),
-            help: "--tls takes the folder that `horsehead keys new DIR --host NAME` made"
+            remedy: "--tls takes the folder that `horsehead keys new DIR --host NAME` made"
                 .to_owned(),
         }),
     }
@@ -193,8 +194,8 @@ fn absolute(path: &Path) -> PathBuf {
 /// Shows the end of the logs of some hosts.
 pub(super) fn logs(arguments: &LogsArguments) -> anyhow::Result<()> {
     let hosts = match (&arguments.name, &arguments.tls) {
-        (Some(name), Some(folder)) => vec![keys::host_of(folder, name).map_err(refuse)?],
-        _ => arguments.hosts.read().map_err(refuse)?,
+        (Some(name), Some(folder)) => vec![keys::host_of(folder, name)?],
+        _ => arguments.hosts.read()?,
     };
     for host in hosts {
         let command = ssh::logs(&host);
