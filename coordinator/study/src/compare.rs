@@ -2,6 +2,7 @@
 use super::{
     error::StudyError,
     evaluator::Evaluator,
+    job_number::of_comparison,
     stop::{Stop, or_stop},
 };
 use protocol::{
@@ -10,9 +11,6 @@ use protocol::{
     job::{self, Column, Evaluation, Individual, Job, Reply, SimulateSpec},
 };
 use std::collections::BTreeMap;
-
-/// Ids of comparison jobs begin here: beyond every proposal of a search.
-const FIRST_ID: u64 = 1 << 40;
 
 /// What is wanted.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,7 +75,7 @@ pub async fn compare<E: Evaluator>(
     for (group, one) in wanted.iter().enumerate() {
         let recorded = case.is_measured(one.condition);
         for (position, (_, genes)) in one.individuals.iter().enumerate() {
-            let first = first_id(one.condition, one.first + position);
+            let first = of_comparison(one.condition, one.first + position);
             if recorded {
                 let individual = Individual::new(one.condition, genes.clone());
                 let reply = Reply::Score {
@@ -124,11 +122,6 @@ pub async fn compare<E: Evaluator>(
         .collect()
 }
 
-/// Eight bits of position and two jobs each; results of different conditions never meet.
-fn first_id(condition: usize, position: usize) -> u64 {
-    FIRST_ID + ((condition as u64) << 9) + 2 * position as u64
-}
-
 fn name(case: &Case, wanted: &[Wanted], (group, position): (usize, usize)) -> String {
     let one = wanted.get(group);
     let condition = one.and_then(|one| case.conditions.get(one.condition));
@@ -146,7 +139,7 @@ fn collect(
     let mut individuals = Vec::with_capacity(one.individuals.len());
     for (position, (name, genes)) in one.individuals.iter().enumerate() {
         let pair = pairs.remove(&(group, position)).unwrap_or_default();
-        let id = JobId(first_id(one.condition, one.first + position) + 1);
+        let id = JobId(of_comparison(one.condition, one.first + position) + 1);
         let drawn = pair.drawn.ok_or(StudyError::WrongKind { id })?;
         individuals.push(Curves {
             name: name.clone(),

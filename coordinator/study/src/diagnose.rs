@@ -2,7 +2,8 @@
 use super::{
     error::StudyError,
     evaluator::Evaluator,
-    laboratory::{FIRST, Jobs, StageCost, StageView},
+    job_number::EXPERIMENTS,
+    laboratory::{Jobs, StageCost, StageView},
     stop::Stop,
     watch::Watch,
 };
@@ -28,7 +29,7 @@ pub async fn diagnose_on<E: Evaluator>(
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
 ) -> Result<Diagnosed, StudyError> {
-    let mut jobs = Jobs::new((evaluator, FIRST), inputs, &Stage::ALL, watch, stop);
+    let mut jobs = Jobs::new((evaluator, EXPERIMENTS), inputs, &Stage::ALL, watch, stop);
     let diagnosis = diagnose(&mut jobs, inputs).await?;
     Ok(Diagnosed {
         diagnosis,

@@ -2,7 +2,8 @@
 use super::{
     error::StudyError,
     evaluator::Evaluator,
-    laboratory::{FIRST, Jobs, StageCost, StageView},
+    job_number::{EXPERIMENTS, FIRST_LOOK},
+    laboratory::{Jobs, StageCost, StageView},
     stop::Stop,
     watch::Watch,
 };
@@ -45,16 +46,13 @@ pub async fn identify_on<E: Evaluator>(
         channels.map(|(_, channel)| channel.clone()).collect()
     };
     let conditions: Vec<Vec<Channel>> = (0..case.conditions.len()).map(of).collect();
-    let mut jobs = Jobs::new((evaluator, FIRST), inputs, &STAGES, watch, stop);
+    let mut jobs = Jobs::new((evaluator, EXPERIMENTS), inputs, &STAGES, watch, stop);
     let identified = identify(&mut jobs, inputs, &conditions).await?;
     Ok(IdentifiedOn {
         identified,
         accounts: jobs.accounts(),
     })
 }
-
-/// The id of the first job of a glance: behind all of a calibration and of its comparisons.
-const GLANCE: u64 = 1 << 50;
 
 /// A first look at what a record sees, where the inputs start; nothing where that cannot be said.
 ///
@@ -66,6 +64,6 @@ pub async fn glance_on<E: Evaluator>(
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
 ) -> Result<Option<Vec<UnknownEstimate>>, StudyError> {
-    let mut jobs = Jobs::new((evaluator, GLANCE), inputs, &[Stage::Show], watch, stop);
+    let mut jobs = Jobs::new((evaluator, FIRST_LOOK), inputs, &[Stage::Show], watch, stop);
     glance(&mut jobs, inputs).await
 }

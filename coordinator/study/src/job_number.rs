@@ -1,14 +1,32 @@
-//! Numbers of jobs that are looked up by their content.
+//! Numbers of the jobs of a run: a job keeps its number in the journal, so that a run which is opened again finds its
+//! result.
 //!
-//! Requests of `evaluate`, of a table and of a sweep come in any order, and equal ones are computed once: a job's
-//! number follows from the hash of its content, so that a run which is opened again finds its results. Two jobs whose
-//! hashes begin alike would share a number; the journal keeps the whole hash beside each number, and the second job
-//! takes another one.
+//! A search numbers its individuals from 0 in the order of its proposals, a diagnosis and an identification their
+//! experiments from [`EXPERIMENTS`] on in the order in which they ask; comparisons and the first look after a calibration
+//! have ranges of their own behind those, so that they never meet.
+//!
+//! Requests of `evaluate`, of a table and of a sweep come in any order, and equal ones are computed once: their numbers
+//! follow from the hashes of their content ([`JobNumbers`]). Two jobs whose hashes begin alike would share a number; the
+//! journal keeps the whole hash beside each number, and the second job takes another one.
 use protocol::{
     id::{ContentHash, JobId},
     job::Job,
 };
 use std::collections::BTreeMap;
+
+/// The question for the effects that the workers know.
+pub(super) const LIBRARY: u64 = 0;
+/// The first experiment of a diagnosis or an identification.
+pub(super) const EXPERIMENTS: u64 = LIBRARY + 1;
+/// The first experiment of the look that follows a calibration: behind its individuals and its comparisons.
+pub(super) const FIRST_LOOK: u64 = 1 << 50;
+/// The first job of a comparison: behind every individual of a search.
+const COMPARISONS: u64 = 1 << 40;
+
+/// The first of the two jobs about a parameter set that is compared: eight bits of position for each condition.
+pub(super) fn of_comparison(condition: usize, position: usize) -> u64 {
+    COMPARISONS + ((condition as u64) << 9) + 2 * position as u64
+}
 
 /// Bits of a hash that become a number: every table format holds integers of that size exactly.
 const BITS: u32 = 48;

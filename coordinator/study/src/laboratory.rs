@@ -5,6 +5,7 @@
 use super::{
     error::StudyError,
     evaluator::{Evaluator, answer},
+    job_number::LIBRARY,
     stop::{Stop, or_stop},
     watch::{View, Watch},
 };
@@ -52,11 +53,6 @@ pub struct StageView {
 impl View for StageView {
     type Reason = Stage;
 }
-
-/// The id of the question for the effects that the workers know.
-const LIBRARY: u64 = 0;
-/// The id of what is asked after it.
-pub(super) const FIRST: u64 = LIBRARY + 1;
 
 /// Asks a worker for the effects that it can simulate.
 ///
