@@ -559,3 +559,15 @@ fn tables_that_were_written_are_read() {
         assert!(said.contains(value), "{written}: {said}");
     }
 }
+
+/// What is printed ends its last line, so that a prompt stands below it.
+#[test]
+fn a_check_ends_its_last_line() {
+    let desk = Desk::new();
+    let output = Command::new(env!("CARGO_BIN_EXE_horsehead"))
+        .args(["case", "check", "case"])
+        .current_dir(desk.folder.path())
+        .output()
+        .unwrap();
+    assert!(output.stdout.ends_with(b"\n") && !output.stdout.ends_with(b"\n\n"));
+}

@@ -77,7 +77,11 @@ pub fn replace(place: &Path, content: &[u8]) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::{Draft, replace};
-    use std::{fs, os::unix::fs::PermissionsExt as _};
+    use std::{
+        fs,
+        io::{self, Write as _},
+        os::unix::fs::PermissionsExt as _,
+    };
 
     #[test]
     fn a_file_is_replaced_whole_with_its_permissions_and_through_its_link() {
@@ -99,6 +103,24 @@ mod tests {
         assert_eq!(fs::read(&file).unwrap(), b"two");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
         assert!(replace(&folder.path().join("no/such"), b"").is_err());
+    }
+
+    /// A disk that fills up leaves the old file, and nothing half written.
+    #[test]
+    fn a_file_that_cannot_be_filled_leaves_the_old_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path().join("report.csv");
+        replace(&place, b"old").unwrap();
+        let full = Draft::filled(&place, |mut file: fs::File| {
+            file.write_all(b"half")?;
+            Err(io::Error::from(io::ErrorKind::StorageFull))
+        });
+        assert_eq!(full.unwrap_err().kind(), io::ErrorKind::StorageFull);
+        assert_eq!(fs::read(&place).unwrap(), b"old");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+        let whole = Draft::filled(&place, |mut file: fs::File| file.write_all(b"new"));
+        whole.unwrap().publish().unwrap();
+        assert_eq!(fs::read(&place).unwrap(), b"new");
     }
 
     /// A new file is as readable as any other that is simply written.

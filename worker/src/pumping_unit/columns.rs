@@ -119,12 +119,6 @@ fn named((at, column): (usize, &job::Column)) -> Result<(Column, Per), Failure> 
         Some((effect, found))
     });
     let Some((effect, parameter)) = known else {
-        let own = parts.and_then(|(effect, _)| catalogue().iter().find(|one| one.id == effect));
-        if let Some(own) = own {
-            let all: Vec<&str> = own.parameters.iter().map(|p| p.name).collect();
-            let problem = format!("there is no `{name}`; `{}` has {}", own.id, all.join(", "));
-            return Err(Failure::misconfigured(format!("columns[{at}]"), problem));
-        }
         let of_effects = catalogue().iter().flat_map(|one| {
             let each = one.parameters.iter();
             each.map(|parameter| format!("{}.{}", one.id, parameter.name))
@@ -133,7 +127,12 @@ fn named((at, column): (usize, &job::Column)) -> Result<(Column, Per), Failure> 
         let coefficients = pumping_unit::Coefficient::ALL.map(pumping_unit::Coefficient::as_str);
         let known = coefficients.into_iter();
         let known = known.chain(of_effects.iter().map(String::as_str));
-        let problem = format!("there is no `{name}`; {}", effect::meant(name, known));
+        let mut problem = format!("there is no `{name}`; {}", effect::meant(name, known));
+        let own = parts.and_then(|(effect, _)| catalogue().iter().find(|one| one.id == effect));
+        if let Some(own) = own {
+            let all: Vec<&str> = own.parameters.iter().map(|p| p.name).collect();
+            problem = format!("{problem} `{}` has {}", own.id, all.join(", "));
+        }
         return Err(Failure::misconfigured(format!("columns[{at}]"), problem));
     };
     let column = Column::Parameter {

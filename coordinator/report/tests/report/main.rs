@@ -610,3 +610,26 @@ fn the_slowest_simulations_are_listed_with_what_they_cost() {
     }
     assert!(note.contains("the slowest took 2.0 times that"), "{note}");
 }
+
+/// On a phone tables and figures scroll inside the page, and figures keep the size at which their letters can be read.
+#[test]
+fn tables_and_figures_scroll_on_a_narrow_screen() {
+    let page = page_of(&sample::calibration(100));
+    assert!(page.contains("name=\"viewport\" content=\"width=device-width"));
+    // the machine in motion has a small table and curves of its own, on which its cursor moves
+    for (element, own) in [("<table>", 0), ("<svg xmlns", 1)] {
+        let all = page.matches(element).count() - own;
+        let scrolled = page
+            .matches(&format!("<div class=\"scroll\">{element}"))
+            .count();
+        assert!(
+            all > 3 && scrolled == all,
+            "{element}: {scrolled} of {all} scroll"
+        );
+    }
+    let (_, narrow) = page
+        .split_once("@media screen and (max-width: 640px)")
+        .expect("a rule");
+    assert!(narrow.contains(".scroll > svg { width: 700px; max-width: none; }"));
+    assert!(page.contains(".scroll { overflow-x: auto;"));
+}
