@@ -22,8 +22,8 @@ pub(crate) struct Found {
     pub(crate) notes: Vec<String>,
 }
 
-/// Looks at the recommended individual, searches, and compares on whatever evaluates: workers, or the recording of a journal, which gives
-/// the same again.
+/// Looks at the recommended individual, searches, and compares on whatever evaluates: workers, or the recording of a
+/// journal, which gives the same again.
 ///
 /// # Errors
 /// As [`study::calibrate()`] and [`study::compare()`].
@@ -39,6 +39,10 @@ pub(crate) async fn calibrate<E: Evaluator>(
     let built = strategy::build_after(&manifest.settings, &space, manifest.seed, first);
     let mut strategy = built.map_err(StudyError::from)?;
     let wanted = study::recommended(case, PICTURES);
+    // workers may be long in coming
+    let mut view = ProgressView::default();
+    view.plan(&strategy.progress());
+    watch.progress(&view, &|| evaluator.crew());
     let recommended = match study::compare(evaluator, case, &wanted, stop).await {
         // others may do better; without a comparison there is no report
         Err(error @ StudyError::Unavailable { .. }) => Err(error),
