@@ -12,10 +12,14 @@ use serde::Deserialize;
 
 const ALL: &[&dyn CaseKind] = &[&PumpingUnits, &Commands];
 
+/// Part of a kind's name before its colon, which all entries of a list share: `command` of `command:decay`.
+pub fn family(name: &str) -> &str {
+    name.split_once(':').map_or(name, |(family, _)| family)
+}
+
 /// The kind of a name.
 pub fn named(name: &str) -> &'static dyn CaseKind {
-    // what follows a colon tells apart what is the same here
-    let name = name.split(':').next().unwrap_or_default();
+    let name = family(name);
     let mut all = ALL.iter().copied();
     all.find(|kind| kind.name() == name).unwrap_or(&AnyKind)
 }

@@ -12,8 +12,7 @@ const ALL: &[(&str, &dyn Drawing)] = &[(Machine::KIND, &Dhh), (external::KIND, &
 
 /// How results of a case are shown.
 pub fn of(case: &Case) -> &'static dyn Drawing {
-    // what follows a colon tells apart what is the same here
-    let name = case.model.kind.split(':').next().unwrap_or_default();
+    let name = case::kind::family(&case.model.kind);
     let mut all = ALL.iter();
     all.find(|(kind, _)| *kind == name)
         .map_or(&General, |(_, drawing)| *drawing)

@@ -1,5 +1,4 @@
-//! What the coordinator may know of a kind of model beside what its cases say: all that the general form
-//! says already stands here.
+//! Objects that commands print for a kind of model; the general form, for every kind, is the default of each.
 use crate::digest::Digest;
 use discrepancy::identify::Band;
 use protocol::{

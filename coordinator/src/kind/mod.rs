@@ -12,8 +12,7 @@ const ALL: &[&dyn Kind] = &[&PumpingUnits];
 
 /// The kind of a name.
 pub(crate) fn named(name: &str) -> &'static dyn Kind {
-    // what follows a colon tells apart what is the same here
-    let name = name.split(':').next().unwrap_or_default();
+    let name = case::kind::family(name);
     let mut all = ALL.iter().copied();
     all.find(|kind| kind.name() == name).unwrap_or(&AnyKind)
 }

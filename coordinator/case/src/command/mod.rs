@@ -1,4 +1,4 @@
-//! Cases of models that are programs of the user's own, the kind `command`: how a case describes the files that are filled in and read, what a machine must allow, and cases in the files of PEST.
+//! Cases of models that are programs of the user's own: the kind `command`.
 //!
 //! ```toml
 //! [model]

@@ -57,9 +57,7 @@ pub(crate) fn load_case(folder: &Path, measured: Option<&Path>) -> anyhow::Resul
     };
     let loaded = load_with_notes(folder, &overrides)?;
     let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
-    for note in &notes {
-        terminal::tell(&format!("note: {note}"));
-    }
+    terminal::note(&notes);
     let measured = measured.unwrap_or(folder).display().to_string();
     Ok(LoadedCase {
         case: loaded.case,

@@ -173,9 +173,7 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
         observations,
         notes: imported.notes.clone(),
     };
-    for note in &object.notes {
-        terminal::tell(&format!("note: {note}"));
-    }
+    terminal::note(&object.notes);
     // what was written is read as every command will read it; a folder that none can read would block the next try
     let read = |folder: &Path| -> anyhow::Result<Proposal> {
         case::check(folder, &Overrides::default())?;

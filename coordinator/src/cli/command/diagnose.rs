@@ -90,9 +90,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         target = target.without_found_by(&earlier)?;
     }
     let has_own = target.loaded.effects.len() < stated;
-    for note in &target.loaded.notes {
-        terminal::tell(&format!("note: {note}"));
-    }
+    terminal::note(&target.loaded.notes);
     let settings = Decides {
         thresholds: Thresholds {
             rounds: usize::from(arguments.rounds),

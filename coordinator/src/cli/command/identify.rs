@@ -71,9 +71,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let measured = target.measured.as_deref();
         RunFolder::default_path(&target.loaded.case, IDENTIFY, &[], measured, arguments.seed)?
     };
-    for note in &target.loaded.notes {
-        terminal::tell(&format!("note: {note}"));
-    }
+    terminal::note(&target.loaded.notes);
     let settings = Decides {
         orders: Thresholds::default().orders,
         differences: arguments.differences,

@@ -60,11 +60,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let derived: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
     let pictures = if arguments.out.is_some() { PICTURES } else { 0 };
+    let outside = outside_bounds(case, &genes);
+    terminal::note(&outside);
     let mut notes = loaded.notes.clone();
-    for note in outside_bounds(case, &genes) {
-        terminal::tell(&format!("note: {note}"));
-        notes.push(note);
-    }
+    notes.extend(outside);
     let wanted = Wanted {
         condition,
         first: 0,

@@ -1,7 +1,10 @@
 //! Printing: results on standard output, everything else on standard error.
 use crate::cli::argument::output::Output;
 use serde::Serialize;
-use std::io::{self, IsTerminal as _, Write as _};
+use std::{
+    fmt,
+    io::{self, IsTerminal as _, Write as _},
+};
 
 /// Sends warnings of the machinery to standard error; `HORSEHEAD_LOG` asks for more or less, as
 /// `HORSEHEAD_LOG=info`. The bus itself is silent by default: it reports as errors what happens
@@ -24,7 +27,7 @@ pub(crate) fn tell(text: &str) {
 }
 
 /// Prints notes for people on standard error, a line each.
-pub(crate) fn note(notes: &[String]) {
+pub(crate) fn note(notes: &[impl fmt::Display]) {
     for note in notes {
         tell(&format!("note: {note}"));
     }

@@ -135,9 +135,7 @@ pub(crate) fn calibration(run: &Calibration) -> anyhow::Result<Vec<PathBuf>> {
     let (exported, notes) = make(&source, target, async |recorded, labels, stop| {
         calibrate(recorded, run, labels, stop).await.map(drop)
     })?;
-    for note in &notes {
-        terminal::tell(&format!("note: {note}"));
-    }
+    terminal::note(&notes);
     Ok(exported.files)
 }
 

@@ -96,16 +96,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.failed {
         let to = arguments.to.as_deref();
         let object = failed::fetch(&arguments.run, to, arguments.force)?;
-        for note in &object.notes {
-            terminal::tell(&format!("note: {note}"));
-        }
+        terminal::note(&object.notes);
         let text = || failed::text(&object);
         return terminal::print(arguments.output.output, text, &object);
     }
     let object = export(arguments)?;
-    for note in &object.notes {
-        terminal::tell(&format!("note: {note}"));
-    }
+    terminal::note(&object.notes);
     terminal::print(arguments.output.output, || text(&object), &object)
 }
 
