@@ -103,19 +103,19 @@ pub fn check(document: &Document, effects: &[CaseEffect], units: &[&str]) -> Res
         let way = |key| [Step::Key("effects"), Step::Index(index), Step::Key(key)];
         let quoted = format!("\"{}\"", effect.id);
         if !is_name(&effect.id) {
-            faults.take::<()>(Err(document.field(
+            faults.add(document.field(
                 &way("id"),
                 quoted,
                 "an identifier of small letters, digits, `_` and `.`",
                 "write the identifier of an effect, as `pivot_friction`",
-            )));
+            ));
         } else if effects[..index].iter().any(|other| other.id == effect.id) {
-            faults.take::<()>(Err(document.field(
+            faults.add(document.field(
                 &way("id"),
                 quoted,
                 "an effect that no other table has",
                 "duplicate effect: put all its parameters into one table",
-            )));
+            ));
         }
         for (name, parameter) in &effect.parameters {
             faults.take(check_unit(document, (index, name), parameter, units));
@@ -140,36 +140,36 @@ pub fn check_known(
         let Some(own) = known.iter().find(|own| own.id == effect.id) else {
             let ids = known.iter().filter(|own| !own.generic);
             let ids: Vec<&str> = ids.map(|own| own.id.as_str()).collect();
-            faults.take::<()>(Err(document.field(
+            faults.add(document.field(
                 &[table[0], table[1], Step::Key("id")],
                 format!("\"{}\"", effect.id),
                 format!("an effect that the workers know: {}", ids.join(", ")),
                 &meant(&effect.id, &ids),
-            )));
+            ));
             continue;
         };
         let names: Vec<&str> = own.parameters.iter().map(|p| p.name.as_str()).collect();
         for (name, parameter) in &effect.parameters {
             let way = [table[0], table[1], Step::Key("parameters"), Step::Key(name)];
             let Some(known) = own.parameters.iter().find(|known| known.name == *name) else {
-                faults.take::<()>(Err(document.field(
+                faults.add(document.field(
                     &way,
                     parameter.value,
                     format!("a parameter of {}: {}", own.id, names.join(", ")),
                     &meant(name, &names),
-                )));
+                ));
                 continue;
             };
             let to = |key| [way[0], way[1], way[2], way[3], Step::Key(key)];
             if parameter.unit != known.unit {
-                faults.take::<()>(Err(document.field(
+                faults.add(document.field(
                     &to("unit"),
                     format!("\"{}\"", parameter.unit),
                     format!("\"{}\"", known.unit),
                     &convert(&parameter.unit, &known.unit),
-                )));
+                ));
             } else if !(known.lower..=known.upper).contains(&parameter.value) {
-                faults.take::<()>(Err(document.field(
+                faults.add(document.field(
                     &to("value"),
                     parameter.value,
                     format!(
@@ -179,7 +179,7 @@ pub fn check_known(
                         known.unit
                     ),
                     "correct the value, or its unit",
-                )));
+                ));
             }
         }
     }

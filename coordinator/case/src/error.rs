@@ -142,16 +142,15 @@ pub struct Faults(Vec<CaseError>);
 impl Faults {
     /// Takes a result apart: the value, or none after its fault was kept.
     pub fn take<T>(&mut self, result: Result<T, CaseError>) -> Option<T> {
-        match result {
-            Ok(value) => Some(value),
-            Err(CaseError::Several(Several(faults))) => {
-                self.0.extend(faults);
-                None
-            }
-            Err(fault) => {
-                self.0.push(fault);
-                None
-            }
+        result.map_err(|fault| self.add(fault)).ok()
+    }
+
+    /// Keeps a fault; one that is several, as those.
+    pub fn add(&mut self, fault: CaseError) {
+        if let CaseError::Several(Several(faults)) = fault {
+            self.0.extend(faults);
+        } else {
+            self.0.push(fault);
         }
     }
 

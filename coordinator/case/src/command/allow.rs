@@ -80,13 +80,9 @@ fn is_there(place: &Path, folder: &Path, external: &External) -> bool {
             .collect()
     };
     let inside: PathBuf = plain(place);
-    let mut files = external.files.iter().map(|file| Path::new(&file.path));
-    let travels = files.any(|file| plain(file) == inside);
-    let filled = external
-        .fills
-        .iter()
-        .any(|fill| plain(Path::new(&fill.file)) == inside);
-    place.is_absolute() && place.is_file() || travels || filled || folder.join(place).is_file()
+    let mut fills = external.fills.iter();
+    // a whole path stays itself when it is joined to a folder
+    folder.join(place).is_file() || fills.any(|fill| plain(Path::new(&fill.file)) == inside)
 }
 
 /// Where a program lies: as the shell finds it; as it is named where it travels with the case.

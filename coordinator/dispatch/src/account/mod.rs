@@ -215,30 +215,12 @@ pub fn reasons(spent: &Spent) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::journal::Journal;
+    use crate::journal::{Journal, sample::finished};
     use protocol::{
-        event::{Account, Finished, RunHeader},
-        id::{AttemptId, ContentHash, JobId, RunId},
+        event::{Account, RunHeader},
+        id::{ContentHash, RunId},
         job::{Answer, Failure, Outcome},
-        message::{Attempt, Cost},
     };
-
-    /// A result of a job.
-    fn finished(job: u64, wall_us: u64, outcome: Outcome) -> Event {
-        Event::Finished(Box::new(Finished {
-            attempt: Attempt {
-                job: JobId(job),
-                attempt: AttemptId(7),
-            },
-            work: ContentHash::of(&job.to_le_bytes()),
-            worker: None,
-            cost: Cost {
-                wall_us,
-                cpu_us: wall_us / 2,
-            },
-            outcome,
-        }))
-    }
 
     fn row(worker: u64, useful_us: u64, barrier_us: u64) -> WorkerAccount {
         WorkerAccount {
