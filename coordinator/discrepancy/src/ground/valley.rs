@@ -11,14 +11,8 @@ use crate::model::fit::Fit;
 use crate::model::unknowns::Point;
 use search::least_squares::Settings;
 use search::strategy::levenberg::Apart;
-use search::strategy::quick::coarse_scan;
+use search::strategy::quick::{RACE, coarse_scan};
 
-/// Stations from which fits race, and how far apart they are along the scanned unknown (coordinate): as `quick` has it.
-const STARTS: usize = 8;
-const APART: f64 = 0.07;
-/// Jacobians of a fit until the worse half of the race is given up, and fits that are left at last.
-const HEAT: u32 = 2;
-const KEPT: usize = 2;
 /// A fit lies in another valley if it leaves less than this share of what the first one left.
 pub(crate) const BETTER: f64 = 0.9;
 
@@ -53,14 +47,8 @@ pub async fn enter<L: Laboratory>(
         .filter_map(|(point, curves)| Some((left(curves?), point)))
         .collect();
     seen.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let apart = Apart::new(space, APART);
-    let mut starts: Vec<Point> = Vec::new();
-    for (_, point) in seen {
-        let near = |other: &Point| apart.near(&other.x, &point.x);
-        if starts.len() < STARTS && !starts.iter().any(near) {
-            starts.push(point);
-        }
-    }
+    let best = seen.into_iter().map(|(_, point)| point);
+    let starts = Apart::new(space, RACE.apart).first(RACE.starts, best, |point| &point.x);
     follow(experiments, fit, starts).await
 }
 
@@ -75,13 +63,13 @@ pub async fn follow<L: Laboratory>(
     mut starts: Vec<Point>,
 ) -> Result<Option<Fit>, L::Error> {
     let best = loop {
-        let fits = experiments.fits(starts, Settings::short(HEAT)).await?;
+        let fits = experiments.fits(starts, Settings::short(RACE.heat)).await?;
         let mut fits: Vec<Fit> = fits.into_iter().flatten().collect();
         fits.sort_by(|a, b| a.chi_squared().total_cmp(&b.chi_squared()));
-        if fits.len() <= KEPT {
+        if fits.len() <= RACE.keep {
             break fits.into_iter().next();
         }
-        fits.truncate(fits.len().div_ceil(2).max(KEPT));
+        fits.truncate(fits.len().div_ceil(2).max(RACE.keep));
         starts = fits.iter().map(Fit::point).collect();
     };
     let better = |best: &Fit| best.chi_squared() < BETTER * fit.chi_squared();

@@ -158,8 +158,27 @@ impl Apart {
         Self { axes }
     }
 
+    /// The first `count` points that lie apart from those before them; `x` is a point's coordinates.
+    pub fn first<P>(
+        &self,
+        count: usize,
+        points: impl IntoIterator<Item = P>,
+        x: impl Fn(&P) -> &[f64],
+    ) -> Vec<P> {
+        let mut kept: Vec<P> = Vec::new();
+        for point in points {
+            if kept.len() == count {
+                break;
+            }
+            if !kept.iter().any(|other| self.near(x(other), x(&point))) {
+                kept.push(point);
+            }
+        }
+        kept
+    }
+
     /// Whether one of two points is too near the other to begin a descent of its own.
-    pub fn near(&self, a: &[f64], b: &[f64]) -> bool {
+    fn near(&self, a: &[f64], b: &[f64]) -> bool {
         let near = |&(k, distance): &(usize, f64)| (a[k] - b[k]).abs() < distance;
         self.axes.iter().all(near)
     }
@@ -180,17 +199,10 @@ impl Levenberg {
 
     /// Descents from the best points that lie apart.
     fn begin(&self, archive: &Archive) -> Vec<(LeastSquares, usize)> {
-        let mut starts: Vec<(Vec<f64>, f64)> = Vec::new();
+        let ranked = archive.ranked().into_iter();
+        let ranked = ranked.map(|one| (self.space.point(&one.genes), one.told.fitness));
         let apart = Apart::new(&self.space, self.settings.apart);
-        for one in archive.ranked() {
-            let x = self.space.point(&one.genes);
-            if !starts.iter().any(|(other, _)| apart.near(other, &x)) {
-                starts.push((x, one.told.fitness));
-            }
-            if starts.len() == self.settings.starts {
-                break;
-            }
-        }
+        let starts = apart.first(self.settings.starts, ranked, |(x, _)| x);
         let search = |(x, fitness): (Vec<f64>, f64)| {
             let usual = Settings::default();
             let exact = self.settings.finish == Finish::Exact;

@@ -277,11 +277,10 @@ impl QuickSettings {
                 ..descent.clone()
             });
             *descent = LevenbergSettings {
-                starts: 8,
-                // half of what the machine's stations lie apart
-                apart: 0.07,
-                heat: 2,
-                keep: 2,
+                starts: RACE.starts,
+                apart: RACE.apart,
+                heat: RACE.heat,
+                keep: RACE.keep,
                 ..descent.clone()
             };
             parts.insert(1, race);
@@ -311,6 +310,28 @@ impl QuickSettings {
         Self { trust, parts }
     }
 }
+
+/// How descents race that begin at stations of a scan.
+#[derive(Debug)]
+pub struct Race {
+    /// Stations from which descents begin.
+    pub starts: usize,
+    /// How far apart they are along the scanned unknown (coordinate).
+    pub apart: f64,
+    /// Jacobians of a descent until the worse half of the race is given up.
+    pub heat: u32,
+    /// Descents that are left at last.
+    pub keep: usize,
+}
+
+/// The race from the stations of a [`coarse_scan`].
+pub const RACE: Race = Race {
+    starts: 8,
+    // half of what the machine's stations lie apart
+    apart: 0.07,
+    heat: 2,
+    keep: 2,
+};
 
 /// The first unknown that has a narrow valley: its axis, and what the case says of the valley.
 fn narrow(space: &Space) -> Option<(usize, &Valley)> {
