@@ -1,12 +1,13 @@
-//! The digest of a simulation: two runs with the same digest have the same bits.
+//! Digest of a simulation: equal digests mean bitwise equal results.
 use protocol::job::{Counters, Reached, Verdict};
 
-/// BLAKE3 over how a simulation ended, what it cost, and every number of its curves, little endian.
+/// BLAKE3 digest over the outcome of a simulation, its counters, and every number of its curves, little
+/// endian.
 #[derive(Debug)]
 pub(crate) struct Digest(blake3::Hasher);
 
 impl Digest {
-    /// Begins with how far it got.
+    /// Begins a digest; for a failed simulation, with the load or time fraction that was reached.
     pub(crate) fn of(verdict: Verdict) -> Self {
         let mut digest = Self(blake3::Hasher::new());
         if let Verdict::Failed { reached, .. } = verdict {
@@ -21,7 +22,7 @@ impl Digest {
         self.bytes(&value.to_bits().to_le_bytes());
     }
 
-    /// Adds a curve, with its length before it.
+    /// Adds a curve, preceded by its length.
     pub(crate) fn curve(&mut self, curve: &[f64]) {
         self.number(curve.len() as f64);
         for value in curve {
@@ -29,12 +30,12 @@ impl Digest {
         }
     }
 
-    /// Adds bytes as they are.
+    /// Adds raw bytes.
     pub(crate) fn bytes(&mut self, bytes: &[u8]) {
         self.0.update(bytes);
     }
 
-    /// Ends with what it cost and what ended it; 64 hexadecimal digits.
+    /// Adds counters and verdict, and returns the digest as 64 hexadecimal digits.
     pub(crate) fn end(mut self, verdict: Verdict, counters: &Counters) -> String {
         for (_, _, count) in counters.named() {
             self.bytes(&count.to_le_bytes());

@@ -1,9 +1,10 @@
-//! Decides what to evaluate and remembers everything.
+//! Coordinator: decides what to evaluate and records every result.
 //!
-//! Data flows one way: a case folder is read and checked (the crate `case`), a search strategy proposes individuals,
-//! `dispatch` has them computed and records what came back, `report` shows it, `store` makes tables of it for queries.
-//! `study` is the loop from the first proposal to the comparison of the result, [`cli`] the commands around it,
-//! `launch` what starts workers elsewhere. Nothing here links the dynamics.
+//! Data flows one way: a case folder is read and checked (crate `case`), a search strategy proposes
+//! individuals, `dispatch` has them computed and records the results, `report` displays these, `store`
+//! exports them as tables for queries. `study` contains the loop from the first proposal to the comparison of
+//! the result, [`cli`] the commands, and `launch` the start of workers on other hosts. No code here links the
+//! dynamics.
 pub mod cli;
 mod digest;
 mod kind;

@@ -1,6 +1,6 @@
-//! Any bytes against the readers of files: an answer or an error in words, never a panic.
+//! Property tests of file readers on arbitrary bytes: they return a value or an error, and never panic.
 //!
-//! The short form of `tests/fuzz`, which does the same a million times with a compiler's help.
+//! Short form of `tests/fuzz`, which runs about a million inputs with compiler instrumentation.
 #![expect(
     clippy::unwrap_used,
     clippy::format_collect,
@@ -32,7 +32,8 @@ static CASE: LazyLock<Case> = LazyLock::new(|| {
     load(&shipped, &Overrides::default()).unwrap()
 });
 
-/// A stretch of a journal: rubbish, or the body of a record whose mark and checksum are in order.
+/// Segment of a journal: random bytes, random bytes as the body of a record with valid mark and checksum, or
+/// a valid record.
 #[derive(Clone, Debug)]
 enum Stretch {
     Rubbish(Vec<u8>),

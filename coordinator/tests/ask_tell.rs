@@ -1,4 +1,5 @@
-//! `horsehead ask-tell` as another program sees it: lines in, lines out, and how a talk ends.
+//! Tests of `horsehead ask-tell` from the side of the other program: lines of input and output, and the end
+//! of a session.
 #![expect(
     clippy::unwrap_used,
     reason = "helpers of tests: a program that cannot be run or read has failed"
@@ -9,7 +10,7 @@ use std::{
     process::{Child, ChildStdin, ChildStdout, Command, Stdio},
 };
 
-/// A talk with the program.
+/// Session with a running `horsehead ask-tell`.
 struct Peer {
     child: Child,
     to: Option<ChildStdin>,
@@ -30,7 +31,7 @@ impl Peer {
         Self { child, to, from }
     }
 
-    /// Says a line; what is said to it.
+    /// Sends a line and returns the reply.
     fn say(&mut self, line: &str) -> Value {
         writeln!(self.to.as_mut().unwrap(), "{line}").unwrap();
         self.hear()
@@ -42,7 +43,7 @@ impl Peer {
         serde_json::from_str(&line).unwrap()
     }
 
-    /// Says nothing more; what is said to that.
+    /// Closes the input and returns the final reply.
     fn hang_up(&mut self) -> Value {
         self.to = None;
         self.hear()
@@ -54,7 +55,8 @@ impl Peer {
     }
 }
 
-/// Two unknowns, one on a log scale, with a minimum of 0 at 100 and 0.3.
+/// Returns the opening line of a search with two unknowns, one on a log scale, whose minimum of 0 lies at 100
+/// and 0.3; `more` is merged into it.
 fn opening(more: &Value) -> String {
     let mut opening = json!({"space": [
         {"name": "k", "lower": 1.0, "upper": 1e6, "scale": "log"},
@@ -70,15 +72,15 @@ fn residual(point: &Value) -> [f64; 2] {
     [x(0).log10() - 2.0, x(1) - 0.3]
 }
 
-/// What came of a point, with its residual.
+/// Returns the result of a point, with its residual.
 fn answer(point: &Value) -> Value {
     let residual = residual(point);
     let f: f64 = residual.iter().map(|r| r * r).sum();
     json!({"id": point["id"], "f": f, "residual": residual})
 }
 
-/// Every strategy ends on its own, whether points are told one to a line, last first, or all at once; the
-/// line that ends a talk has the best.
+/// Checks that every strategy ends by itself, whether results are sent one per line in reverse order, or all
+/// at once; the last line contains the best point.
 #[test]
 fn every_strategy_talks_to_its_end_in_any_order() {
     for preset in search::strategy::CATALOGUE {
@@ -115,7 +117,7 @@ fn every_strategy_talks_to_its_end_in_any_order() {
     }
 }
 
-/// The residual alone is enough: its squared length is what is minimised.
+/// Checks that a residual without an objective suffices: its sum of squares is minimised.
 #[test]
 fn a_point_may_be_told_with_its_residual_alone() {
     let mut peer = Peer::new("least-squares");
@@ -130,8 +132,8 @@ fn a_point_may_be_told_with_its_residual_alone() {
     assert!(said["best"]["f"].as_f64().unwrap() < 1e-6, "{said}");
 }
 
-/// Lines that cannot be taken, with a word of the answer: the talk ends with code 2, and what was found
-/// before is not lost.
+/// Checks that an invalid line ends the session with an error that contains the expected word and with exit
+/// code 2, and that earlier results are kept.
 #[test]
 fn what_cannot_be_taken_is_answered_and_nothing_is_lost() {
     for (line, word) in [
@@ -166,7 +168,7 @@ fn what_cannot_be_taken_is_answered_and_nothing_is_lost() {
     }
 }
 
-/// The first line is checked like a case and a command line.
+/// Checks that an opening line with invalid space or settings is refused.
 #[test]
 fn a_first_line_that_makes_no_search_is_refused() {
     let axis = |lower: f64, upper: f64, scale: &str| json!({"space": [{"name": "x", "lower": lower, "upper": upper, "scale": scale}]});
@@ -199,7 +201,8 @@ fn a_first_line_that_makes_no_search_is_refused() {
     }
 }
 
-/// A peer that stops: what was told counts; where nothing was, that is an error.
+/// Checks that the end of the input ends the session: with the best point so far, or with an error if no
+/// result was sent.
 #[test]
 fn the_end_of_the_input_ends_a_talk() {
     let mut peer = Peer::new("quick");

@@ -1,4 +1,4 @@
-//! `horsehead doctor` on loopback: every layer fails once, and is named with a remedy.
+//! Tests of `horsehead doctor` on loopback: each network layer fails once and is reported with a remedy.
 #![expect(
     clippy::unwrap_used,
     reason = "helpers of tests: a program that cannot be run or read has failed"
@@ -12,7 +12,7 @@ use std::{
     time::{Duration, Instant, SystemTime},
 };
 
-/// What the program says, and its exit code.
+/// Runs `horsehead doctor` and returns its object and exit code.
 fn doctor(words: &[&str]) -> (Value, Option<i32>) {
     let output = Command::new(env!("CARGO_BIN_EXE_horsehead"))
         .arg("doctor")
@@ -26,7 +26,7 @@ fn doctor(words: &[&str]) -> (Value, Option<i32>) {
     (object.unwrap_or(Value::String(said)), output.status.code())
 }
 
-/// The layer that fails is the last that was looked at.
+/// Asserts that the given layer is reported as failed, as the last layer that was checked.
 fn fails(words: &[&str], layer: &str) {
     let (object, code) = doctor(words);
     assert_eq!(
@@ -45,7 +45,8 @@ fn fails(words: &[&str], layer: &str) {
     );
 }
 
-/// An authority with a coordinator for loopback, and workers of these times.
+/// Creates an authority with a coordinator certificate for loopback and worker certificates of the given
+/// validity.
 fn keys(folder: &Path, workers: &[(&str, Validity)]) {
     let authority = Authority::create(folder).unwrap();
     let hosts = ["127.0.0.1".to_owned(), "localhost".to_owned()];
@@ -133,7 +134,7 @@ fn every_layer_is_named_from_the_coordinators_side() {
     assert_eq!(doctor(&[]).1, Some(0));
 }
 
-/// A coordinator that waits for individuals on its standard input; ended when dropped.
+/// Coordinator process that waits for individuals on its standard input; killed when dropped.
 struct Waiting(Child);
 
 impl Waiting {

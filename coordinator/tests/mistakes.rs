@@ -1,5 +1,5 @@
-//! Mistakes that people make at the command line, each with the words that it must be answered with: what is wrong, and
-//! what to do. Faults of a case's files have a list of their own in `case_errors`.
+//! Tests of common mistakes at the command line: each answer must name the fault and the remedy. Faults in
+//! the files of a case are tested in `case_errors`.
 #![expect(
     clippy::unwrap_used,
     reason = "helpers of tests: a command that cannot be run or read has failed"
@@ -13,7 +13,7 @@ use std::{
 };
 use tempfile::TempDir;
 
-/// A copy of the shipped case in a folder of its own, to which commands are relative.
+/// Temporary folder with a copy of the shipped case; commands run in it.
 struct Desk {
     folder: TempDir,
 }
@@ -42,7 +42,7 @@ impl Desk {
         self.folder.path().join(file)
     }
 
-    /// Replaces a text of a file that must have it.
+    /// Replaces the first occurrence of a text in a file. Panics if the file does not contain the text.
     fn replace(&self, file: &str, from: &str, to: &str) {
         let text = fs::read_to_string(self.path(file)).unwrap();
         assert!(text.contains(from), "{file} has no `{from}`");
@@ -53,7 +53,8 @@ impl Desk {
         fs::write(self.path(file), text).unwrap();
     }
 
-    /// Rewrites the record: cells of a row by their columns, the header among them.
+    /// Rewrites the measured record row by row: `rewrite` gets the row number (0 for the header) and the
+    /// cells of the row.
     fn record(&self, rewrite: impl Fn(usize, &mut Vec<String>)) {
         let path = self.path("case/measured/test_5rpm.csv.gz");
         let mut text = String::new();
@@ -78,7 +79,7 @@ impl Desk {
         );
     }
 
-    /// Runs a command; its exit code, and all that it said.
+    /// Runs a command and returns its exit code and its output (stdout followed by stderr).
     fn run(&self, command: &str) -> (i32, String) {
         let output = Command::new(env!("CARGO_BIN_EXE_horsehead"))
             .args(command.split(' '))
@@ -92,7 +93,8 @@ impl Desk {
     }
 }
 
-/// A mistake: its name, what is done before, the command, its exit code, and words of the answer.
+/// One mistake: its name, the preparation of the folder, the command, the expected exit code, and texts that
+/// the output must contain.
 type Mistake = (
     &'static str,
     fn(&Desk),
@@ -235,7 +237,7 @@ const MISTAKES: &[Mistake] = &[
         2,
         &[
             "invalid value 'x' for '--seed <SEED>'",
-            "it is no whole number",
+            "not a whole number",
         ],
     ),
     (
@@ -271,7 +273,7 @@ const MISTAKES: &[Mistake] = &[
         |_| {},
         "simulate case --derivatives kb9",
         2,
-        &["`kb9` is no unknown of the case", "kb1, kb23"],
+        &["`kb9` is not an unknown of the case", "kb1, kb23"],
     ),
     (
         "a derivative by a parameter that an effect has not",
@@ -466,7 +468,7 @@ const MISTAKES: &[Mistake] = &[
     ),
 ];
 
-/// A table of one individual at the recommended values, but for one of them.
+/// Returns a CSV table of one individual at the recommended values, except for the unknown `name`.
 fn table(name: &str, value: &str) -> String {
     let mut cells = [
         ("kb1", "3.14e8"),
@@ -506,7 +508,8 @@ fn every_mistake_is_answered_with_what_to_do() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
-/// A run is of one case: what was changed is said, and the command that is advised works.
+/// Checks that a run folder is refused for a case edited since the run began, that the message names the
+/// change, and that the command it suggests works.
 #[test]
 fn a_case_that_was_edited_after_its_run_begins_another_one() {
     let desk = Desk::new();
@@ -528,8 +531,8 @@ fn a_case_that_was_edited_after_its_run_begins_another_one() {
     assert_eq!(code, 0, "{advised}: {said}");
 }
 
-/// What a sweep or an export wrote is read again, with the units in the names of its columns and all that came of the
-/// individuals beside them.
+/// Checks that tables written by `sweep` and `export` can be read by `sweep` again, although their column
+/// names carry units and further columns hold the results.
 #[test]
 fn tables_that_were_written_are_read() {
     let desk = Desk::new();
@@ -560,7 +563,8 @@ fn tables_that_were_written_are_read() {
     }
 }
 
-/// What is printed ends its last line, so that a prompt stands below it.
+/// Checks that the output ends with exactly one newline, so that the shell prompt starts on a line of its
+/// own.
 #[test]
 fn a_check_ends_its_last_line() {
     let desk = Desk::new();

@@ -1,99 +1,99 @@
-//! What a worker says of itself before it is given work.
+//! Announcement by which a worker introduces itself before it receives jobs.
 use serde::{Deserialize, Serialize};
 
-/// A worker's introduction; what the coordinator decides admission by.
+/// Introduction of a worker, on which the coordinator bases admission.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Announcement {
-    /// Version of the protocol it speaks, [`crate::wire::VERSION`].
+    /// Version of the protocol that the worker uses, [`crate::wire::VERSION`].
     pub protocol: u8,
-    /// Package version and profile of its binary.
+    /// Package version and build profile of the worker's binary.
     pub build: String,
-    /// Name of its machine.
+    /// Host name of the worker's machine.
     pub host: String,
-    /// Its process on that machine.
+    /// Process id of the worker on its machine.
     pub pid: u32,
-    /// Jobs it computes at a time.
+    /// Number of slots, i.e. jobs computed at a time.
     pub slots: u32,
-    /// Hardware threads of its machine.
+    /// Hardware threads of the worker's machine.
     pub cores: u32,
-    /// Kinds of job it can do, by [`crate::job::Job::kind`].
+    /// Kinds of job that the worker can execute, by [`crate::job::Job::kind`].
     pub job_kinds: Vec<String>,
-    /// What it can simulate.
+    /// Models that the worker can simulate.
     pub models: Vec<ModelDescriptor>,
 }
 
-/// A kind of model as one build of a worker simulates it.
+/// Kind of model as implemented by one build of a worker.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelDescriptor {
-    /// Name of the kind, as cases state it ([`crate::case::ModelSettings::kind`]).
+    /// Name of the kind, as stated in cases ([`crate::case::ModelSettings::kind`]).
     pub kind: String,
-    /// Names the numerics: equal digests promise equal bits.
+    /// Digest of the numerics: equal digests guarantee bitwise equal results.
     pub digest: String,
-    /// Effects that it can add to what a case describes.
+    /// Effects that the model can add to the machine described by a case.
     pub effects: Vec<EffectDescriptor>,
 }
 
-/// One effect that a model may add, described well enough to be proposed, sized and searched.
+/// Effect that a model can add, described in enough detail to be proposed, estimated and searched.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EffectDescriptor {
-    /// Fixed identifier, as in results.
+    /// Fixed identifier, as used in results.
     pub id: String,
-    /// In words.
+    /// Description in words.
     pub title: String,
-    /// Joint or part of the model that it acts at, as `saddle` or `guide`.
+    /// Joint or part of the model at which the effect acts, e.g. `saddle` or `guide`.
     pub joint: String,
-    /// What of the model it changes.
+    /// Part of the model that the effect changes.
     pub place: Place,
-    /// Whether it is a form of force without a cause, for localisation alone.
+    /// Whether the effect is a generic form of force without a physical cause, used only for localisation.
     pub generic: bool,
-    /// Its free numbers.
+    /// Parameters of the effect.
     pub parameters: Vec<ParameterDescriptor>,
 }
 
-/// What of a model an effect changes.
+/// Part of a model that an effect changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Place {
     /// Geometry, inertia or forces.
     Dynamics,
-    /// The motion that drives it, or where its angle is zero.
+    /// Driving motion, or the zero of its angle.
     Drive,
-    /// The load that is applied.
+    /// Applied load.
     Load,
-    /// The chain from what is measured to the reading.
+    /// Measurement chain from the measured quantity to the reading.
     Sensor,
 }
 
-/// One free number of an effect.
+/// Parameter of an effect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ParameterDescriptor {
-    /// Name within the effect.
+    /// Name of the parameter within its effect.
     pub name: String,
-    /// Unit of all its values, as written.
+    /// Unit of all values of the parameter, as text.
     pub unit: String,
-    /// Whether it switches the effect on, or only shapes it.
+    /// Role: whether the parameter switches the effect on or only shapes it.
     pub role: Role,
-    /// Signs that it may have.
+    /// Signs that the parameter may have.
     pub sign: Sign,
-    /// Least value.
+    /// Lower bound.
     pub lower: f64,
-    /// Greatest value.
+    /// Upper bound.
     pub upper: f64,
-    /// Value at which the effect is not there; of a shape, its typical value.
+    /// Value at which the effect vanishes; for a shape parameter its typical value.
     pub absent: f64,
-    /// Value with which its signature is taken, and the default of a shape.
+    /// Value at which the signature of the effect is computed; the default of a shape parameter.
     pub typical: f64,
-    /// Its physical size: how large it commonly is on machines of this kind.
+    /// Typical magnitude on machines of this kind.
     pub scale: f64,
 }
 
-/// What a parameter does for its effect.
+/// Role of a parameter in its effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
-    /// At its absent value it contributes nothing.
+    /// Size: at its absent value the effect vanishes.
     Size,
-    /// It forms what the sizes switch on.
+    /// Shape: modifies an effect that is switched on by its size parameters.
     Shape,
 }
 
@@ -101,8 +101,8 @@ pub enum Role {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sign {
-    /// Above and below its absent value.
+    /// Values on both sides of its absent value.
     Either,
-    /// Not below its absent value: what dissipates, what is a distance, a time.
+    /// Values not below its absent value, as for dissipation, distances and times.
     Positive,
 }

@@ -1,4 +1,5 @@
-//! Everything that enters the journal. Readers of a run are folds over a stream of these.
+//! Journal entries: all events that a coordinator writes to the journal. Readers of a run are folds over the
+//! stream of these events.
 use crate::{
     id::{ContentHash, JobId, RunId, WorkerId},
     job::Outcome,
@@ -7,124 +8,125 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// What decides the result of a run; a run is only resumed with the same.
+/// Settings that determine the result of a run; a run is resumed only with the same settings.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RunHeader {
-    /// Which command the run belongs to, as `calibrate`.
+    /// Command that began the run, e.g. `calibrate`.
     pub kind: String,
-    /// Hash of the encoded case.
+    /// Content hash of the encoded case.
     pub case: ContentHash,
-    /// Canonical JSON of everything else that decides the result.
+    /// Canonical JSON of all other settings that determine the result.
     pub settings: String,
 }
 
-/// One line of a run's history.
+/// Entry of a run's journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Event {
-    /// First record: what the run is.
+    /// First entry: identity of the run.
     Begun {
-        /// Its name on the wire.
+        /// Id of the run in messages.
         run: RunId,
-        /// What decides its result.
+        /// Settings that determine the result.
         header: RunHeader,
     },
-    /// A coordinator process took the run over.
+    /// A coordinator process took over the run.
     Opened {
-        /// Counts the processes from 1.
+        /// Number of the coordinator process, from 1.
         epoch: u32,
-        /// When [ms since 1970 UTC].
+        /// Time of the takeover [ms since 1970 UTC].
         at_unix_ms: u64,
     },
     /// A worker was admitted.
     Joined {
-        /// The worker.
+        /// Id of the worker.
         worker: WorkerId,
-        /// Its machine.
+        /// Host name of the worker's machine.
         host: String,
-        /// Its slots.
+        /// Number of slots of the worker.
         slots: u32,
-        /// Its numerics.
+        /// Digest of the worker's numerics.
         model_digest: String,
     },
     /// A worker left or was lost.
     Left {
-        /// The worker.
+        /// Id of the worker.
         worker: WorkerId,
-        /// Why, in words.
+        /// Reason in words.
         reason: String,
     },
-    /// A job was asked for.
+    /// A job was created by the search.
     Asked {
-        /// The job.
+        /// Id of the job.
         job: JobId,
-        /// Hash of the encoded job: a number stands for one content in all processes of a run.
+        /// Content hash of the encoded job; a job id denotes the same content in all coordinator processes of
+        /// a run.
         work: ContentHash,
     },
-    /// A job has its one accepted result.
+    /// A job has its only accepted result.
     Finished(Box<Finished>),
-    /// The coordinator ended the run by itself.
+    /// The coordinator ended the run regularly.
     Closed,
-    /// What the case's reference individual came to on the run's first worker: every other one
-    /// must come to the same.
+    /// Result of the case's reference individual on the run's first worker, which every other worker must
+    /// reproduce.
     Proved {
-        /// The bits, or some of the values.
+        /// Bits, or a selection of the values, of the reference result.
         proof: Proof,
     },
-    /// How slots spent their time until now; written now and then, when workers go, and at the
-    /// end. The last one of a worker counts.
+    /// Use of the slots' time up to now; written periodically, when workers leave, and at the end. The last
+    /// account of a worker counts.
     Accounted(Box<Account>),
 }
 
-/// How the slots of workers spent their time.
+/// Use of the slots' time of all workers.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Account {
-    /// Counts the coordinator's processes from 1.
+    /// Number of the coordinator process, from 1.
     pub epoch: u32,
     /// Time since that process began \[ms\].
     pub at_ms: u64,
-    /// By worker.
+    /// Accounts of the workers.
     pub workers: Vec<WorkerAccount>,
 }
 
-/// How the slots of one worker spent their time, since it joined.
+/// Use of the slots' time of one worker since it joined.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WorkerAccount {
-    /// The worker.
+    /// Id of the worker.
     pub worker: WorkerId,
-    /// Its machine.
+    /// Host name of the worker's machine.
     pub host: String,
-    /// Its slots.
+    /// Number of slots of the worker.
     pub slots: u32,
-    /// Results of it that were accepted.
+    /// Number of accepted results from the worker.
     pub done: u64,
-    /// Attempts that failed there.
+    /// Number of attempts that failed on the worker.
     pub failed: u64,
-    /// Its slot time by use.
+    /// Slot time of the worker by use.
     pub spent: Spent,
 }
 
-/// Slot time by use \[us\]; the kinds add up to the time that slots were connected.
+/// Slot time by use \[us\]; all uses add up to the time for which slots were connected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spent {
-    /// Slots times the time they were connected.
+    /// Number of slots times the time for which they were connected.
     pub connected_us: u64,
-    /// Computing results that were accepted.
+    /// Time spent on computing accepted results.
     pub useful_us: u64,
-    /// Without a job, because the search waits for results that others compute.
+    /// Idle time while the search waits for results that other slots compute.
     pub barrier_us: u64,
-    /// Without a job though the run is not waiting for others: fetching the case, waiting for the
-    /// next order or for a journal that cannot be written, or the run asked for nothing.
+    /// Idle time for other reasons: fetching the case, waiting for the next job or for a journal that cannot
+    /// be written, or no jobs in the run.
     pub starved_us: u64,
-    /// Computing results that another worker brought first.
+    /// Time spent on results that another worker delivered first.
     pub speculative_us: u64,
-    /// On attempts that failed.
+    /// Time spent on attempts that failed.
     pub failed_us: u64,
-    /// On attempts whose worker was lost, or that nobody answered for.
+    /// Time spent on attempts whose worker was lost or that never got an answer.
     pub lost_us: u64,
 }
 
 impl Spent {
-    /// The kinds, with their names.
+    /// Returns the uses with their names.
     pub const fn kinds(&self) -> [(&'static str, u64); 6] {
         [
             ("useful", self.useful_us),
@@ -136,12 +138,12 @@ impl Spent {
         ]
     }
 
-    /// All kinds together \[us\].
+    /// Returns the sum over all uses \[us\].
     pub fn sum_us(&self) -> u64 {
         self.kinds().iter().map(|(_, us)| us).sum()
     }
 
-    /// Adds another account.
+    /// Adds the times of another account.
     pub const fn add(&mut self, other: &Self) {
         self.connected_us += other.connected_us;
         self.useful_us += other.useful_us;
@@ -153,23 +155,23 @@ impl Spent {
     }
 }
 
-/// The one accepted result of a job.
+/// Accepted result of a job; a job has exactly one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finished {
-    /// The attempt that brought it.
+    /// Attempt that delivered the result.
     pub attempt: Attempt,
-    /// Hash of the encoded job.
+    /// Content hash of the encoded job.
     pub work: ContentHash,
-    /// Who did it; none for a failure that the coordinator states itself.
+    /// Worker that computed the result; `None` for a failure that the coordinator recorded itself.
     pub worker: Option<WorkerId>,
-    /// What it took.
+    /// Cost of the attempt.
     pub cost: Cost,
-    /// What came out.
+    /// Outcome of the job.
     pub outcome: Outcome,
 }
 
 impl Finished {
-    /// The job this answers.
+    /// Returns the id of the job.
     pub const fn job(&self) -> JobId {
         self.attempt.job
     }

@@ -1,152 +1,154 @@
-//! A model that is somebody's own program: files that are filled in, a program that a worker is allowed to
-//! start, files that are read back.
+//! External model: a user's own program, with input files that are filled in, an executable that a worker is
+//! allowed to start, and output files that are read back.
 //!
-//! What is started stands in the worker's own list, under the name of an *entry*; a case names it and says no
-//! more. Nothing here knows how files are written or read, nor what their numbers mean.
+//! The executable is defined in the worker's own list of allowed programs under the name of an *entry*; a
+//! case states only this name. This module is independent of the file formats and of the meaning of the
+//! numbers.
 use crate::case::ModelSettings;
 use crate::file::File;
 use crate::id::ContentHash;
 use crate::wire::{self, WireError};
 use serde::{Deserialize, Serialize};
 
-/// Kind of such models in case files. On the wire the name of the entry follows behind a colon, so that each
-/// entry is a kind of its own, which a worker has or has not.
+/// Kind of external models in case files. In messages a colon and the name of the entry follow, so that each
+/// entry is a kind of its own, which a worker supports or not.
 pub const KIND: &str = "command";
 
-/// Most bytes of all files of a case together: they travel with it in one message.
+/// Maximum total size of all files of a case (bytes), because they travel with the case in one message.
 pub const MOST_BYTES: usize = 12 << 20;
 
-/// Kind on the wire of an entry's models.
+/// Returns the kind of an entry's models as used in messages.
 pub fn kind_of(entry: &str) -> String {
     format!("{KIND}:{entry}")
 }
 
-/// The entry of a kind on the wire, if it is one of these.
+/// Returns the entry of a kind used in messages, if the kind denotes an external model.
 pub fn entry_of(kind: &str) -> Option<&str> {
     kind.strip_prefix(KIND)?.strip_prefix(':')
 }
 
-/// How one evaluation goes.
+/// Description of one evaluation by an external program.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct External {
-    /// Files that lie in the program's folder before anything is filled in.
+    /// Static files copied into the program's folder before others are filled in.
     pub files: Vec<File>,
-    /// Files that are written for every individual.
+    /// Input files written for every individual.
     pub fills: Vec<Fill>,
-    /// Files that the program leaves.
+    /// Output files read after the program has ended.
     pub readings: Vec<Reading>,
-    /// Values that follow from the parameters alone.
+    /// Values computed from the parameters alone, without the program.
     pub equations: Vec<Equation>,
-    /// How each unknown of the case is written, in the case's order.
+    /// Names and scaling of the case's unknowns in input files, in the case's order.
     pub parameters: Vec<Parameter>,
-    /// What each condition of the case sets beside the unknowns: names and values.
+    /// Names and values that each condition of the case sets in addition to the unknowns.
     pub conditions: Vec<Vec<(String, f64)>>,
-    /// Where each channel of the case comes from, in the case's order.
+    /// Source of each channel's values, in the case's order.
     pub curves: Vec<Source>,
-    /// Exit statuses that are verdicts of the program about the individual, with the word for each.
+    /// Exit statuses by which the program reports a verdict on the individual, with the name of each verdict.
     pub verdicts: Vec<(i32, String)>,
 }
 
-/// A file that is written for every individual.
+/// Input file written for every individual.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fill {
-    /// Where it is written, below the program's folder.
+    /// Path of the file below the program's folder.
     pub file: String,
-    /// What is written.
+    /// Format and template of the file.
     pub form: FillForm,
 }
 
-/// How a file is filled in.
+/// Format of an input file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FillForm {
-    /// A template of PEST: the text of its `.tpl` file.
+    /// PEST template: the text of the `.tpl` file.
     Pest(String),
-    /// A text with `{name}`.
+    /// Text template with `{name}` fields.
     Braces(String),
-    /// Dakota's parameters file, in one of its forms: `standard`, `aprepro`, `json`.
+    /// Dakota parameters file in the given format: `standard`, `aprepro` or `json`.
     Dakota(String),
 }
 
-/// A file that the program leaves, and how values are found in it.
+/// Output file of the program, with the method to read it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reading {
-    /// Where it is found, below the program's folder.
+    /// Path of the file below the program's folder.
     pub file: String,
-    /// How it is read.
+    /// Format of the file.
     pub form: ReadingForm,
 }
 
-/// How values are found in a file.
+/// Format of an output file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ReadingForm {
-    /// Instructions of PEST: the text of the `.ins` file. Its observations are named values.
+    /// File read by PEST instructions, given as the text of the `.ins` file; its observations are named
+    /// values.
     Pest(String),
-    /// Dakota's results file; the names of its functions, in its order, are named values.
+    /// Dakota results file, with the names of its functions in the file's order; these are named values.
     Dakota(Vec<String>),
-    /// Columns under a header.
+    /// Table with columns under a header.
     Table,
-    /// An object of JSON.
+    /// JSON object.
     Object,
 }
 
-/// A value that follows from the parameters: a weighted sum of them or of their logarithms.
+/// Value computed from the parameters: a weighted sum of them or of their logarithms.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Equation {
     /// Name of the value.
     pub name: String,
-    /// What is added up.
+    /// Terms of the sum.
     pub terms: Vec<EquationTerm>,
 }
 
-/// A term of an equation.
+/// Term of an equation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EquationTerm {
     /// Name of the parameter.
     pub parameter: String,
-    /// Its factor.
+    /// Factor on the parameter or its logarithm.
     pub factor: f64,
-    /// Whether its decimal logarithm is taken.
+    /// Whether the term uses the parameter's decimal logarithm.
     pub log: bool,
 }
 
-/// How an unknown is written.
+/// Name and scaling of an unknown in input files.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
-    /// Its name in templates.
+    /// Name in templates.
     pub name: String,
-    /// `factor x value + offset` is written.
+    /// Factor in `factor x value + offset`, the number written into input files.
     pub factor: f64,
-    /// See [`Self::factor`].
+    /// Summand in `factor x value + offset`; see [`Self::factor`].
     pub offset: f64,
 }
 
-/// Where the values of a channel come from.
+/// Source of the values of a channel.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Source {
-    /// Named values, one for each place.
+    /// Named values, one per point of the channel's abscissa.
     Named(Vec<String>),
-    /// A column of a table, brought to the channel's places along another column, or as it is.
+    /// Column of a table, interpolated to the channel's abscissa along another column, or used unchanged.
     Column {
-        /// The table: its place among the readings.
+        /// Index of the table among the readings.
         reading: usize,
-        /// Column of its places; none where its rows are the channel's places.
+        /// Name of the abscissa column; `None` if the rows correspond to the channel's points.
         at: Option<String>,
-        /// Column of its values.
+        /// Name of the column with the values.
         column: String,
     },
-    /// A number or a list of numbers in an object.
+    /// Number or list of numbers in a JSON object.
     Pointer {
-        /// The object: its place among the readings.
+        /// Index of the object among the readings.
         reading: usize,
-        /// JSON pointer of the values.
+        /// JSON pointer to the values.
         values: String,
-        /// The same of their places; none where they stand at the channel's places.
+        /// JSON pointer to the abscissa of the values; `None` if they correspond to the channel's points.
         at: Option<String>,
     },
 }
 
 impl External {
-    /// Out of what a case carries.
+    /// Decodes the description of an external model from a case's settings.
     ///
     /// # Errors
     /// [`WireError::Malformed`] for settings of another kind or version.
@@ -159,8 +161,9 @@ impl External {
         wire::decode(&settings.settings)
     }
 
-    /// Names everything that comes to lie in the program's folder: files, and what is filled in. Programs read
-    /// these as they read their own code, so that somebody who allowed the one has looked at the other.
+    /// Returns the digest of all files placed in the program's folder, static and filled in. A program
+    /// interprets its input files like code, so a permission covers exactly the files that were reviewed with
+    /// it.
     pub fn digest(&self) -> String {
         let bytes = wire::encode(&(&self.files, &self.fills)).unwrap_or_default();
         ContentHash::of(&bytes).to_string()

@@ -1,10 +1,10 @@
-//! Names of things that travel: numbers that cannot be mistaken for one another.
+//! Identifiers used in messages, as distinct types so that they cannot be confused.
 //!
-//! An id is only a name: this module knows neither who hands them out nor what they stand for.
+//! This module is independent of how ids are assigned and of what they denote.
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Declares a number that is a name.
+/// Declares a newtype for a numeric id, with its display format.
 macro_rules! number {
     ($(#[$doc:meta])* $name:ident($inner:ty), $format:literal) => {
         $(#[$doc])*
@@ -22,32 +22,32 @@ macro_rules! number {
 }
 
 number!(
-    /// One unit of work of a run; handed out by whoever asks for the work, from 0 on.
+    /// Id of a job of a run; assigned by the caller that requests the job, from 0.
     JobId(u64),
     "{}"
 );
 number!(
-    /// One try at a job; grows with each offer of the same job, from 0 on.
+    /// Number of an attempt at a job; increases with each dispatch of the job, from 0.
     AttemptId(u32),
     "{}"
 );
 number!(
-    /// One worker process; drawn when it starts, so that a restarted worker is another one.
+    /// Id of a worker process; drawn when the process starts, so that a restarted worker has a new id.
     WorkerId(u64),
     "{:016x}"
 );
 number!(
-    /// One run, in whichever coordinator process; drawn when its journal is begun.
+    /// Id of a run, the same in all its coordinator processes; drawn when its journal is created.
     RunId(u64),
     "{:016x}"
 );
 
-/// BLAKE3 hash of some bytes: their name wherever they are kept.
+/// BLAKE3 hash of some bytes, by which they are identified wherever they are stored.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ContentHash(pub [u8; 32]);
 
 impl ContentHash {
-    /// The name of `bytes`.
+    /// Computes the hash of `bytes`.
     pub fn of(bytes: &[u8]) -> Self {
         Self(*blake3::hash(bytes).as_bytes())
     }
@@ -65,10 +65,10 @@ impl fmt::Debug for ContentHash {
     }
 }
 
-/// A new number that no one else has drawn: mixes what differs between processes and moments.
+/// Draws a number that is unique with overwhelming probability, by hashing the process and the time.
 ///
-/// The caller supplies both, because this crate reads no clock: `place` names the process
-/// (host, pid), `nanos` the moment.
+/// The caller supplies both, because this crate reads no clock: `place` identifies the process (host, pid),
+/// `nanos` the time.
 pub fn draw(place: &str, nanos: u128) -> u64 {
     let mut hasher = blake3::Hasher::new();
     hasher.update(place.as_bytes());

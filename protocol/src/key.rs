@@ -1,4 +1,4 @@
-//! The names under which messages travel, and nothing else.
+//! Key expressions under which messages are published on Zenoh.
 //!
 //! ```text
 //! horsehead/1/w/WORKER/job         coordinator -> worker: jobs, cancellations
@@ -9,32 +9,32 @@
 //! horsehead/1/RUN/blob/HASH/CHUNK  worker asks coordinator: content, piece by piece
 //! ```
 //!
-//! `RUN` is 16 hexadecimal digits, all zeros until a coordinator has told the worker. `WORKER` is
-//! two parts: the name of its certificate and the 16 digits of its process ([`WorkerName`]).
-//! Access control grants a worker only keys with the name of its certificate in them.
+//! `RUN` is 16 hexadecimal digits, all zeros until the coordinator has told the worker the run. `WORKER` has
+//! two parts: the name of the worker's certificate and the 16 digits of its process ([`WorkerName`]). Access
+//! control grants a worker only keys that contain the name of its certificate.
 //!
-//! Workers listen to keys without patterns, and without the run, which they do not know at first and
-//! which every frame says: the router remembers the way of a key that somebody listens to as it is,
-//! and looks through the patterns of all workers for any other, at every message.
+//! Workers subscribe to keys without wildcards and without the run; they do not know the run at first, and
+//! every frame states it. The router caches the route of a key that has an exact subscription; for any other
+//! key it searches the wildcard expressions of all workers at every message.
 use crate::{
     id::{ContentHash, RunId},
     name::WorkerName,
 };
 
-/// What every key begins with. The number is that of this layout and not the wire version: ends of
-/// different wire versions must hear each other to say so.
+/// Prefix of every key. The number is the version of the key layout and not the wire version: peers with
+/// different wire versions must receive each other's messages to report the mismatch.
 pub const ROOT: &str = "horsehead/1";
 
-/// Which of a coordinator's lanes a message takes: a long job must not hold up an end.
+/// Channel of a message between coordinator and worker: bulk data must not delay control messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Lane {
-    /// Jobs and results.
+    /// Lane of jobs and results.
     Data,
-    /// Everything that is short and must not wait.
+    /// Lane of short messages that must not wait.
     Control,
 }
 
-/// Where the coordinator puts a message for a worker, and the worker listens.
+/// Returns the key on which the coordinator publishes to a worker and to which the worker subscribes.
 pub fn to_worker(worker: &WorkerName, lane: Lane) -> String {
     let lane = match lane {
         Lane::Data => "job",
@@ -43,7 +43,7 @@ pub fn to_worker(worker: &WorkerName, lane: Lane) -> String {
     format!("{ROOT}/w/{worker}/{lane}")
 }
 
-/// Where a worker puts a message for the coordinator.
+/// Returns the key on which a worker publishes to the coordinator.
 pub fn from_worker(run: RunId, worker: &WorkerName, lane: Lane) -> String {
     let lane = match lane {
         Lane::Data => "res",
@@ -52,7 +52,7 @@ pub fn from_worker(run: RunId, worker: &WorkerName, lane: Lane) -> String {
     format!("{ROOT}/{run}/{lane}/{worker}")
 }
 
-/// Everything from any worker in one lane, of any run: newcomers do not know the run.
+/// Returns the key expression for all workers in one lane, of any run, since new workers do not know the run.
 pub fn all_from_workers(lane: Lane) -> String {
     match lane {
         Lane::Data => format!("{ROOT}/*/res/*/*"),
@@ -60,46 +60,46 @@ pub fn all_from_workers(lane: Lane) -> String {
     }
 }
 
-/// Presence of a worker in a run.
+/// Returns the key of a worker's presence (liveliness token) in a run.
 pub fn alive(run: RunId, worker: &WorkerName) -> String {
     format!("{ROOT}/{run}/alive/{worker}")
 }
 
-/// Presence of any worker in a run.
+/// Returns the key expression of the presence of any worker in a run.
 pub fn all_alive(run: RunId) -> String {
     format!("{ROOT}/{run}/alive/*/*")
 }
 
-/// One piece of some content.
+/// Returns the key of one chunk of a blob.
 pub fn blob(run: RunId, hash: ContentHash, chunk: u32) -> String {
     format!("{ROOT}/{run}/blob/{hash}/{chunk}")
 }
 
-/// Any piece of any content of a run.
+/// Returns the key expression of any chunk of any blob of a run.
 pub fn all_blobs(run: RunId) -> String {
     format!("{ROOT}/{run}/blob/*/*")
 }
 
-/// The worker that a key ends with, if it does.
+/// Parses the worker's name at the end of a key; `None` if the key does not end with one.
 pub fn worker_of(key: &str) -> Option<WorkerName> {
     let (rest, process) = key.rsplit_once('/')?;
     let (_, owner) = rest.rsplit_once('/')?;
     WorkerName::parse(owner, process)
 }
 
-/// What the workers of one certificate may do, as patterns of keys; nothing else.
+/// Permissions of all workers with the same certificate, as key expressions; everything else is denied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Grant {
-    /// Where they may listen, and receive.
+    /// Keys to which the workers may subscribe.
     pub hear: String,
-    /// Where they may speak.
+    /// Keys on which the workers may publish.
     pub speak: [String; 2],
-    /// Where they may show presence.
+    /// Keys on which the workers may declare their presence.
     pub appear: String,
 }
 
 impl Grant {
-    /// What `owner`'s workers may do.
+    /// Returns the permissions of the workers of `owner`.
     pub fn of(owner: &str) -> Self {
         Self {
             hear: format!("{ROOT}/w/{owner}/*/*"),
@@ -111,13 +111,13 @@ impl Grant {
         }
     }
 
-    /// What every worker may fetch.
+    /// Returns the key expression that every worker may query: blobs of any run.
     pub fn fetch() -> String {
         format!("{ROOT}/*/blob/*/*")
     }
 }
 
-/// The content and piece that a key asks for, if it does.
+/// Parses hash and chunk number at the end of a blob's key; `None` for any other key.
 pub fn blob_of(key: &str) -> Option<(ContentHash, u32)> {
     let (rest, chunk) = key.rsplit_once('/')?;
     let (_, hash) = rest.rsplit_once('/')?;

@@ -1,7 +1,7 @@
-//! What may be said on the wire: plain data and its encoding.
+//! Wire protocol: plain message types and their encoding.
 //!
-//! The arrows of the workspace end here: this crate knows nothing of sockets, files, clocks or
-//! dynamics. At this edge every number carries its unit in its name.
+//! No crate of the workspace is below this one, and it knows nothing of sockets, files, clocks or dynamics.
+//! Every number at this interface carries its unit in its name.
 pub mod announce;
 pub mod case;
 pub mod curve;

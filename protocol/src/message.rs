@@ -1,4 +1,4 @@
-//! Everything that coordinator, worker and slot say to each other: one enum per direction.
+//! Messages between coordinator, worker and slot: one enum per direction.
 use crate::{
     announce::Announcement,
     id::{AttemptId, ContentHash, JobId},
@@ -7,141 +7,142 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// One try at one job; what leases, results and acknowledgements are about.
+/// Dispatch of one job to one worker; leases, results and acknowledgements refer to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Attempt {
     /// The job.
     pub job: JobId,
-    /// Which try.
+    /// Number of the dispatch of that job.
     pub attempt: AttemptId,
 }
 
-/// Coordinator to worker.
+/// Message from the coordinator to a worker.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToWorker {
-    /// "I do not know you": announce yourself (again).
+    /// The coordinator does not know the worker, which must announce itself (again).
     Identify,
-    /// The worker takes part; the run is the frame's.
+    /// The worker is admitted to the run that the frame states.
     Admitted {
-        /// Which coordinator process of that run, counted from 1.
+        /// Number of the coordinator process in that run, counted from 1.
         epoch: u32,
-        /// Name of the case, to be fetched as a blob before any job.
+        /// Hash of the case, which the worker must fetch as a blob before any job.
         case: ContentHash,
-        /// Its length (bytes).
+        /// Length of the encoded case (bytes).
         case_bytes: u64,
     },
-    /// The worker may not take part.
+    /// The worker is not admitted.
     Refused {
-        /// Which field of the announcement differs, and what to do.
+        /// Field of the announcement that does not match, and the remedy.
         reason: String,
     },
-    /// A job; doing it twice does no harm.
+    /// Job to do; repeating it does no harm (idempotent).
     Run(Box<Order>),
-    /// The result is no longer wanted.
+    /// The result of the attempt is no longer needed.
     Cancel(Attempt),
-    /// These results are in the journal: forget them.
+    /// The results of these attempts are in the journal; the worker can discard them.
     Stored(Vec<Attempt>),
-    /// The run is over; there will be no more work from this coordinator.
+    /// The run has ended; this coordinator sends no more work.
     Ended,
 }
 
-/// A job as it is given to a worker.
+/// Job as dispatched to a worker, with attempt and deadline.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Order {
-    /// Which try at which job.
+    /// Attempt that the result must refer to.
     pub attempt: Attempt,
-    /// From start to forced end \[ms\].
+    /// Time from start to forced termination \[ms\].
     pub deadline_ms: u64,
-    /// What to do.
+    /// Job to do.
     pub job: Job,
 }
 
-/// Worker to coordinator.
+/// Message from a worker to the coordinator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum FromWorker {
-    /// Who I am.
+    /// Description of the worker when it joins.
     Announce(Box<Announcement>),
-    /// I am alive, and this is what I hold.
+    /// Heartbeat with the attempts that the worker holds.
     Beat(Beat),
-    /// A job is done.
+    /// Result of an attempt.
     Done(Box<Done>),
-    /// I end; offer what I hold to others.
+    /// The worker is shutting down; its attempts must be dispatched to other workers.
     Leaving {
-        /// Why.
+        /// Reason for leaving.
         reason: String,
     },
 }
 
-/// Proof of life, each second; also the truth about what a worker holds.
+/// Heartbeat, sent each second; its lists of the attempts that a worker holds are authoritative.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Beat {
-    /// Counts up from 0.
+    /// Sequence number, counted from 0.
     pub number: u64,
-    /// The case it has fetched and checked; without it no job but [`Job::Nothing`] can be done.
+    /// Hash of the case that the worker has fetched and verified; without a case only [`Job::Nothing`] can be
+    /// done.
     pub case: Option<ContentHash>,
-    /// What the reference individual of that case came to here; without it no job is given.
+    /// Result of the case's reference individual on this worker; without it the worker receives no jobs.
     pub proof: Option<Proof>,
-    /// Attempts in a slot.
+    /// Attempts being computed in a slot.
     pub running: Vec<Attempt>,
-    /// Attempts that wait for a slot.
+    /// Attempts queued for a slot.
     pub waiting: Vec<Attempt>,
     /// Attempts whose results are not yet acknowledged.
     pub finished: Vec<Attempt>,
 }
 
-/// What a job took of the slot that did it. It decides nothing and enters no digest.
+/// Time that a job occupied its slot; informative only, used for no decision and not part of any digest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Cost {
-    /// Time in the slot \[us\].
+    /// Wall time in the slot \[us\].
     pub wall_us: u64,
-    /// Processor time of the slot's process meanwhile \[us\]; 0 if it came to no answer.
+    /// Processor time of the slot process during the job \[us\]; 0 if the job gave no answer.
     pub cpu_us: u64,
 }
 
 impl Cost {
-    /// Time in the slot \[s\].
+    /// Returns the wall time in the slot \[s\].
     pub const fn wall_s(self) -> f64 {
         self.wall_us as f64 / 1e6
     }
 
-    /// Processor time \[s\].
+    /// Returns the processor time \[s\].
     pub const fn cpu_s(self) -> f64 {
         self.cpu_us as f64 / 1e6
     }
 }
 
-/// A result, kept by the worker until it is acknowledged.
+/// Result of an attempt, kept by the worker until the coordinator acknowledges it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Done {
-    /// Which try at which job.
+    /// Attempt that the result belongs to.
     pub attempt: Attempt,
-    /// Hash of the job that was done, so that a result never answers another question.
+    /// Hash of the job that was done, which guards against assigning the result to another job.
     pub work: ContentHash,
-    /// What it took.
+    /// Time that the job took.
     pub cost: Cost,
-    /// What came out.
+    /// Answer or failure of the job.
     pub outcome: Outcome,
 }
 
-/// Worker process to slot process, over the slot's standard input.
+/// Message from the worker process to a slot process, over the slot's standard input.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToSlot {
     /// The encoded case for all following jobs.
     Case(#[serde(with = "serde_bytes")] Vec<u8>),
-    /// Do this.
+    /// Job to do.
     Run(Box<Job>),
 }
 
-/// Slot process to worker process, over the slot's standard output.
+/// Message from a slot process to its worker process, over the slot's standard output.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum FromSlot {
-    /// The slot's process is ready.
+    /// The slot process is ready.
     Ready,
-    /// The last job is done.
+    /// The job is finished.
     Done {
-        /// What came out.
+        /// Answer or failure of the job.
         outcome: Box<Outcome>,
-        /// Processor time that it took \[us\].
+        /// Processor time of the job \[us\].
         cpu_us: u64,
     },
 }

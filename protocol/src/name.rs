@@ -1,13 +1,13 @@
-//! What a worker is called on the bus: whose certificate it shows, and which process of it.
+//! Name of a worker on the bus: the name of its certificate and the number of its process.
 //!
-//! Access control knows certificates, so the first part of a name is the certificate's; the
-//! second is drawn by each process, so that one certificate may serve any number of them and a
-//! restarted worker is another one. A [`WorkerId`] is the hash of both: nobody can take the id
-//! of a worker whose certificate is not its own. This module knows no certificate format.
+//! Access control knows certificates, so the first part of a name is the certificate's. The second part is
+//! drawn at random by each process, so that one certificate may serve any number of processes and a restarted
+//! worker has a new name. A [`WorkerId`] is the hash of both: no worker can take the id of a worker with
+//! another certificate. This module knows no certificate format.
 use crate::id::WorkerId;
 use std::fmt;
 
-/// Owner of workers without a certificate: those on loopback.
+/// Owner name of workers without a certificate, which connect over loopback.
 pub const ANYONE: &str = "anyone";
 /// Longest name of an owner (bytes).
 pub const OWNER_BYTES: usize = 64;
@@ -19,19 +19,19 @@ pub struct WorkerName {
     process: u64,
 }
 
-/// Why something is no name of an owner.
+/// Error: a text that cannot be the name of an owner.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "\"{name}\" cannot name a worker: 1 to {OWNER_BYTES} of a-z, 0-9, '-', '_' and '.', beginning \
+    "\"{name}\" cannot name a worker: use 1 to {OWNER_BYTES} characters from a-z, 0-9, '-', '_' and '.', beginning \
      with a letter or digit, and not \"{ANYONE}\""
 )]
 pub struct NameError {
-    /// As given.
+    /// Rejected text, cut to [`OWNER_BYTES`] characters.
     pub name: String,
 }
 
 impl WorkerName {
-    /// A process of the owner of a certificate.
+    /// Creates the name of a process that shows the certificate of an owner.
     ///
     /// # Errors
     /// [`NameError`] unless [`check_owner`] accepts the owner.
@@ -43,7 +43,7 @@ impl WorkerName {
         })
     }
 
-    /// A process without a certificate.
+    /// Creates the name of a process without a certificate.
     pub fn anyone(process: u64) -> Self {
         Self {
             owner: ANYONE.to_owned(),
@@ -51,7 +51,7 @@ impl WorkerName {
         }
     }
 
-    /// Reads the last two parts of a key.
+    /// Parses the last two parts of a key.
     pub(crate) fn parse(owner: &str, process: &str) -> Option<Self> {
         (process.len() == 16).then_some(())?;
         let process = u64::from_str_radix(process, 16).ok()?;
@@ -61,12 +61,12 @@ impl WorkerName {
         Self::of(owner, process).ok()
     }
 
-    /// Whose certificate it shows; [`ANYONE`] without one.
+    /// Returns the name of the certificate; [`ANYONE`] without one.
     pub fn owner(&self) -> &str {
         &self.owner
     }
 
-    /// The number that stands for it everywhere but on the bus.
+    /// Returns the hash of the name, which identifies the worker everywhere but on the bus.
     pub fn id(&self) -> WorkerId {
         let mut first = [0; 8];
         blake3::Hasher::new()
@@ -83,10 +83,10 @@ impl fmt::Display for WorkerName {
     }
 }
 
-/// Whether a certificate's name can be a part of a key.
+/// Checks whether a certificate's name can be part of a key.
 ///
 /// # Errors
-/// [`NameError`] if it is empty, too long, holds other characters than the permitted, or is
+/// [`NameError`] if the name is empty, too long, contains characters that are not permitted, or is
 /// [`ANYONE`].
 pub fn check_owner(name: &str) -> Result<(), NameError> {
     let permitted = |byte: u8| {

@@ -1,37 +1,38 @@
-//! What the reference individual of a case came to on a worker, and whether two machines agree on it.
+//! Result of a case's reference individual on a worker, and the comparison of two machines' results.
 use crate::id::ContentHash;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Most values that stand for a result.
+/// Largest number of values that represent a result.
 pub const MOST_SAMPLES: usize = 64;
 
-/// What the case's reference individual came to.
+/// Result of the case's reference individual.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Proof {
-    /// The name of every bit of it.
+    /// Hash of the encoded result, for a model that is reproducible bit by bit.
     Bits(ContentHash),
-    /// Some of its values, of a model that does not repeat its bits; at most [`MOST_SAMPLES`].
+    /// Selected values of the result, for a model that is not reproducible bit by bit; at most
+    /// [`MOST_SAMPLES`].
     Values(Vec<Sample>),
-    /// Nothing: a model that does not repeat its bits fails at it.
+    /// The reference individual failed in a model that is not reproducible bit by bit.
     Failed,
 }
 
-/// A value of a result.
+/// Selected value of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// The value, in its channel's unit.
     pub value: f64,
-    /// How large values of its channel are: their root mean square, in the same unit.
+    /// Root mean square of the values of the channel, in the channel's unit.
     pub scale: f64,
 }
 
 impl Proof {
-    /// Whether another machine's result is the same: bits are equal, values lie no further apart than a share of
-    /// their channel's size.
+    /// Compares the result with that of another machine: hashes must be equal; values may differ by at most
+    /// `tolerance` times the larger of their scales.
     ///
     /// # Errors
-    /// In words, what differs.
+    /// Description of the difference, in words.
     pub fn agrees(&self, other: &Self, tolerance: f64) -> Result<(), String> {
         match (self, other) {
             (Self::Bits(own), Self::Bits(others)) if own == others => Ok(()),
@@ -40,12 +41,12 @@ impl Proof {
                 match pairs.find(|(a, b)| !a.is_near(b, tolerance)) {
                     None => Ok(()),
                     Some((a, b)) => Err(format!(
-                        "{} where this run's is {}, further apart than {tolerance} of its channel's size",
+                        "{} where this run's is {}; the difference exceeds {tolerance} times the channel's root mean square",
                         b.value, a.value
                     )),
                 }
             }
-            _ => Err(format!("{other}, this run's is {self}")),
+            _ => Err(format!("{other}, where this run's is {self}")),
         }
     }
 }

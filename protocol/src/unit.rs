@@ -1,8 +1,7 @@
 //! Units that case files may state, and the only conversion to SI in the workspace.
 //!
-//! A [`Unit`] is data: it travels with the value it belongs to. It knows nothing of what the
-//! value means. Rotational stiffness of the reference paper is given per degree
-//! (`N m/deg`), so `value_si = value * 180 / pi` for those.
+//! A [`Unit`] is data: it travels with its value and knows nothing of the value's meaning. The reference
+//! paper gives rotational stiffness per degree (`N m/deg`), so `value_si = value * 180 / pi` for those.
 use serde::{Deserialize, Serialize};
 
 /// A unit that the program can convert.
@@ -32,7 +31,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// Every unit there is, in the order in which errors list them.
+    /// All units, in the order in which errors list them.
     pub const ALL: [Self; 7] = [
         Self::NewtonPerMetre,
         Self::NewtonMetrePerRadian,
@@ -43,12 +42,12 @@ impl Unit {
         Self::NewtonPerMetreToThreeHalves,
     ];
 
-    /// The unit of that symbol.
+    /// Returns the unit with the given symbol.
     pub fn named(symbol: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|unit| unit.symbol() == symbol)
     }
 
-    /// As written in case files and tables.
+    /// Returns the symbol used in case files and tables.
     pub const fn symbol(self) -> &'static str {
         match self {
             Self::NewtonPerMetre => "N/m",
@@ -61,7 +60,7 @@ impl Unit {
         }
     }
 
-    /// What one of this unit is in SI (radians, metres, newtons, seconds).
+    /// Returns the factor that converts a value of this unit to SI (radians, metres, newtons, seconds).
     pub const fn si_factor(self) -> f64 {
         match self {
             Self::NewtonMetrePerDegree | Self::NewtonMetreSecondPerDegree => {
@@ -75,7 +74,7 @@ impl Unit {
         }
     }
 
-    /// The same unit with its angle counted in radians: what a value is in after `to_si`.
+    /// Returns the SI unit of a value after [`Unit::to_si`]: the unit per radian in place of per degree.
     #[must_use]
     pub const fn si(self) -> Self {
         match self {

@@ -1,30 +1,29 @@
-//! The encoding: values to bytes, and the frame around them. Knows no message.
+//! Encoding of values to bytes, and the frame around them; independent of the message types.
 //!
 //! ```text
 //! | "HH" | version u8 | kind u8 | run u64 | length u32 | crc32 u32 | body ... |
 //! ```
 //!
-//! Numbers are little endian with fixed width, so a body is laid out by inspection. The body is
-//! bincode (serde mode), which does not describe itself: bytes of another shape decode without an
-//! error. Therefore the kind is checked before the body is touched, and a body must be used up to
-//! its last byte. No wire type may be recursive or hold a vector of zero-sized values: bincode's
-//! limit does not cover those.
+//! Numbers are little endian with fixed width, so that a body can be read by inspection. The body is bincode
+//! (serde mode), which is not self-describing: bytes of another type may decode without an error. Therefore
+//! the kind is checked before the body is decoded, and the body must be consumed to its last byte. No wire
+//! type may be recursive or hold a vector of zero-sized values: bincode's limit does not cover those.
 use crate::id::RunId;
 use serde::{Serialize, de::DeserializeOwned};
 
-/// Version of the frame and of everything in it; both ends must have the same. A test holds the form
-/// of every message to it: whoever changes one raises this number.
+/// Version of the frame and of everything in it; both peers must have the same. A test compares the layout of
+/// every message with a stored copy: a change of layout requires a higher number.
 pub const VERSION: u8 = 12;
-/// The most a body may hold (bytes): a long simulation with its pictures fits.
+/// Largest length of a body (bytes): a long simulation with its snapshots fits.
 pub const BODY_LIMIT: usize = 16 << 20;
-/// What an outcome may gain at each of its stations: from its slot to its worker, to the coordinator,
-/// into the journal (bytes). What passes one must fit through the next.
+/// Allowance for the data added to an outcome at each hop: slot to worker, worker to coordinator, coordinator
+/// to journal (bytes). An outcome that passes one hop must fit through the next.
 const ENVELOPE: usize = 64;
-/// Bytes before the body.
+/// Length of the header before the body (bytes).
 pub const HEADER_BYTES: usize = 20;
 const MAGIC: [u8; 2] = *b"HH";
 
-/// What kind of body a frame carries; a new kind is a new number, never a reused one.
+/// Type of the body in a frame; a new kind gets a new number, numbers are never reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// [`crate::message::ToWorker`].
@@ -38,7 +37,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Every kind there is.
+    /// All kinds of frames.
     pub const ALL: [Self; 4] = [
         Self::ToWorker,
         Self::FromWorker,
@@ -46,7 +45,7 @@ impl Kind {
         Self::FromSlot,
     ];
 
-    /// The number on the wire.
+    /// Returns the number of the kind in the header.
     pub const fn number(self) -> u8 {
         match self {
             Self::ToWorker => 1,
@@ -56,8 +55,8 @@ impl Kind {
         }
     }
 
-    /// The most that a body of this kind may hold (bytes). What comes from slots is written down in
-    /// the end, with more around it at each station.
+    /// Returns the largest length of a body of this kind (bytes). Results from slots end up in the journal,
+    /// with more data around them at each hop, so their limit is lower.
     pub const fn limit(self) -> usize {
         match self {
             Self::ToWorker | Self::ToSlot => BODY_LIMIT,
@@ -67,91 +66,92 @@ impl Kind {
     }
 }
 
-/// Why bytes are not a message.
+/// Reason why bytes are not a valid message.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WireError {
-    /// The frame ends before its header or body does.
-    #[error("the frame is cut: {found} of {expected} bytes")]
+    /// The frame is truncated.
+    #[error("the frame is truncated: {found} of {expected} bytes were received")]
     Cut {
-        /// Bytes there are.
+        /// Number of bytes received.
         found: usize,
-        /// Bytes there should be.
+        /// Number of bytes that the header requires.
         expected: usize,
     },
-    /// The first two bytes are not ours.
+    /// The first two bytes are not the magic number `HH`.
     #[error("not a horsehead frame: it begins with {found:02x?}")]
     Magic {
-        /// What it begins with.
+        /// First two bytes of the frame.
         found: [u8; 2],
     },
-    /// The other end speaks another version.
+    /// The peer uses another wire version.
     #[error(
         "wire version {found}, but this build speaks {VERSION}: use the same build on both ends"
     )]
     Version {
-        /// The other end's version.
+        /// Wire version of the peer.
         found: u8,
     },
-    /// A kind that this reader does not expect.
-    #[error("frame kind {found}, expected {expected}")]
+    /// The kind of the frame is not the expected one.
+    #[error("a frame of kind {found} was received where kind {expected} was expected")]
     Kind {
-        /// The kind in the frame.
+        /// Kind stated in the frame.
         found: u8,
-        /// The kind that was asked for.
+        /// Kind that the reader expects.
         expected: u8,
     },
-    /// The body is longer than anyone may send.
+    /// The body exceeds the length limit of its kind.
     #[error("a body of {bytes} bytes exceeds the limit of {limit}")]
     TooLong {
-        /// Length of the body.
+        /// Length of the body (bytes).
         bytes: usize,
-        /// The limit.
+        /// Limit on the length (bytes).
         limit: usize,
     },
-    /// The checksum does not fit the body.
-    #[error("the checksum of the body is {found:08x}, its frame says {expected:08x}")]
+    /// The checksum does not match the body.
+    #[error(
+        "the body is damaged: its checksum is {found:08x}, but the header states {expected:08x}"
+    )]
     Checksum {
-        /// Computed from the body.
+        /// Checksum computed from the body.
         found: u32,
-        /// As stated.
+        /// Checksum stated in the header.
         expected: u32,
     },
     /// Bytes remain after the value.
-    #[error("{bytes} bytes are left over after the value")]
+    #[error("the message is too long for its type: {bytes} bytes remain after decoding")]
     Leftover {
-        /// How many.
+        /// Number of remaining bytes.
         bytes: usize,
     },
-    /// The body is no value of the expected type.
-    #[error("the body cannot be read: {reason}")]
+    /// The body cannot be decoded as the expected type.
+    #[error("the message cannot be encoded or decoded: {reason}")]
     Malformed {
-        /// The decoder's words.
+        /// Message of the decoder.
         reason: String,
     },
 }
 
-/// A frame whose header and checksum are in order.
+/// Frame whose header and checksum are valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
-    /// The run it belongs to; 0 before a worker has been told.
+    /// Run that the frame belongs to; 0 before the worker has been told the run.
     pub run: RunId,
     /// The encoded value.
     pub body: &'a [u8],
 }
 
-/// Encodes a value without a frame: for content that is named by its hash.
+/// Encodes a value without a frame, for content that is addressed by its hash.
 ///
 /// # Errors
-/// [`WireError::TooLong`] beyond [`BODY_LIMIT`]; [`WireError::Malformed`] if the value cannot be
-/// encoded.
+/// [`WireError::TooLong`] beyond [`BODY_LIMIT`]; [`WireError::Malformed`] if the value cannot be encoded.
 pub fn encode<T: Serialize>(value: &T) -> Result<Vec<u8>, WireError> {
     let mut bytes = Vec::new();
     append(&mut bytes, value, BODY_LIMIT)?;
     Ok(bytes)
 }
 
-/// Decodes a value that fills `bytes` to the last one.
+/// Decodes a value that consumes all of `bytes`.
 ///
 /// # Errors
 /// [`WireError::TooLong`], [`WireError::Malformed`] or [`WireError::Leftover`].
@@ -171,7 +171,7 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, WireError> {
 /// Encodes a value into a frame.
 ///
 /// # Errors
-/// As [`encode`], with the limit of the kind.
+/// Those of [`encode`], with the limit of the kind.
 pub fn seal<T: Serialize>(kind: Kind, run: RunId, value: &T) -> Result<Vec<u8>, WireError> {
     let mut frame = Vec::with_capacity(256);
     frame.extend_from_slice(&MAGIC);
@@ -235,10 +235,10 @@ pub fn unseal<T: DeserializeOwned>(kind: Kind, frame: &[u8]) -> Result<(RunId, T
     Ok((opened.run, decode(opened.body)?))
 }
 
-/// The length of the body that follows a header on a stream (bytes).
+/// Returns the length of the body that follows a header on a stream (bytes).
 ///
 /// # Errors
-/// What [`open`] finds wrong with a header.
+/// Those of [`open`] that concern the header.
 pub fn body_length(kind: Kind, header: &[u8; HEADER_BYTES]) -> Result<usize, WireError> {
     check_header(kind, header)
 }

@@ -1,4 +1,5 @@
-//! The codec against its two promises: what goes in comes out, and nothing makes it panic.
+//! Property tests of the codec: every value survives encoding and decoding, and no input makes the decoder
+//! panic.
 #[expect(unreachable_pub, reason = "a module of the fuzz targets, too")]
 #[path = "../../tests/fuzz/targets/property/wire.rs"]
 mod property;
@@ -238,7 +239,7 @@ fn what_does_not_belong_is_named() {
     );
 }
 
-/// A hostile length must cost nothing: the decoder would otherwise reserve what it promises.
+/// Checks that a hostile length prefix is refused before the decoder allocates memory for it.
 #[test]
 fn a_promise_of_more_than_there_is_is_refused() {
     let mut body = wire::encode(&ToWorker::Stored(Vec::new())).unwrap();
@@ -250,8 +251,8 @@ fn a_promise_of_more_than_there_is_is_refused() {
     ));
 }
 
-/// Found as a result that its worker could send and the journal could not hold: never stored, never
-/// acknowledged, it kept the run from ending.
+/// Regression test: a result that the worker could send but the journal could not hold was never stored nor
+/// acknowledged, and the run did not end.
 #[test]
 fn what_a_slot_can_hand_in_can_be_sent_on_and_stored() {
     let outcome = |bytes: usize| Outcome::Done(Answer::Nothing(vec![0; bytes]));

@@ -1,8 +1,8 @@
-//! The wire version against the form of everything that travels: neither changes without the other.
+//! Checks that the layout of all transmitted types changes only together with the wire version.
 //!
-//! bincode does not describe itself: a field more, or two in another order, and the other end reads
-//! nonsense or, worse, something plausible. `wire_form.txt` holds the form of every message that
-//! belongs to the present version, as read from the types.
+//! bincode is not self-describing: after an added field or a changed order the peer decodes nonsense or,
+//! worse, plausible values. `wire_form.txt` holds the layout of every message of the present version, as
+//! derived from the types.
 use protocol::{
     announce::{Place, Role, Sign},
     case::{Case, Offset, Repeats, Scale},
@@ -20,11 +20,12 @@ use protocol::{
 use serde_reflection::{Samples, Tracer, TracerConfig};
 use std::{fs, path::Path};
 
-/// One line for each type that is part of a message, of a case or of the journal.
+/// Returns one line for each type that is part of a message, of a case or of the journal.
 fn form() -> String {
     let mut tracer = Tracer::new(TracerConfig::default());
     let samples = Samples::new();
-    /// Each enum is to be asked for by itself: of others the first variant is enough.
+    /// Traces each listed type; every enum must be listed, since only the first variant of an enum inside
+    /// another type is traced.
     macro_rules! trace {
         ($($type:ty)*) => {
             $(tracer.trace_type::<$type>(&samples).expect("a form");)*
@@ -69,7 +70,7 @@ fn nothing_that_travels_changes_without_the_wire_version() {
     );
 }
 
-/// The header and the encoding of numbers, byte by byte.
+/// Checks the layout of a frame byte by byte: the header and the encoding of numbers.
 #[test]
 fn a_frame_is_laid_out_as_it_was() {
     let attempt = Attempt {
@@ -100,7 +101,7 @@ fn a_frame_is_laid_out_as_it_was() {
     assert_eq!(frame[20..], bytes(&body));
 }
 
-/// Bytes from hexadecimal digits with spaces.
+/// Parses hexadecimal digits, with spaces allowed, into bytes.
 fn bytes(text: &str) -> Vec<u8> {
     let digits: Vec<u8> = text
         .chars()

@@ -1,8 +1,8 @@
-//! The dependency arrows between the crates of the workspace.
+//! Permitted dependencies between the crates of the workspace.
 use crate::workspace::{dependencies, packages};
 use std::collections::BTreeSet;
 
-/// Every arrow that may exist between our own crates: `(from, to)`.
+/// Permitted dependencies between the crates of the workspace: `(from, to)`.
 const ARROWS: &[(&str, &str)] = &[
     ("link", "protocol"),
     ("worker", "protocol"),
@@ -82,7 +82,8 @@ const ARROWS: &[(&str, &str)] = &[
     ("bench", "search"),
 ];
 
-/// Heavy or impure crates and who alone may name them.
+/// External crates with heavy dependencies or side effects, each with the only workspace crates that may
+/// depend on it.
 const GATED: &[(&str, &[&str])] = &[
     ("zenoh", &["link", "tests"]),
     (

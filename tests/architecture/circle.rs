@@ -1,19 +1,20 @@
-//! Circles of files inside a crate. A file leads to every other file that defines a name it uses: one
-//! that it imports, directly or through a re-export, or writes out as a path. Tests count like all else,
-//! and a parent and its child are two files; `mod child;` alone uses nothing of the child.
+//! Detection of dependency cycles between the files of a crate. A file depends on every other file that
+//! defines a name it uses: a name that it imports, directly or through a re-export, or writes as a path.
+//! Tests count like other code, and a parent module and its child are two files; `mod child;` alone is no
+//! dependency on the child.
 use crate::module_tree::{ModuleTree, Name};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path as FilePath,
 };
 
-/// From a file to a file, with the names that the first takes from the second.
+/// Dependencies between files: (user, used) with the names that the user takes.
 pub(crate) type Uses = BTreeMap<(usize, usize), BTreeSet<String>>;
 
-/// Re-exports are followed this far; none of ours is so deep.
+/// Largest number of re-exports that are followed; no chain in the workspace is so long.
 const DEEPEST: usize = 16;
 
-/// Which files use which others.
+/// Returns the dependencies between the files of a crate.
 pub(crate) fn uses(tree: &ModuleTree) -> Uses {
     let mut uses = Uses::new();
     for (index, module) in tree.modules.iter().enumerate() {
@@ -28,7 +29,8 @@ pub(crate) fn uses(tree: &ModuleTree) -> Uses {
     uses
 }
 
-/// Files that define what a path stands for, seen from a module, with the name that is defined.
+/// Returns the files that define the items a path refers to, as seen from a module, with the name of each
+/// item.
 fn definitions(tree: &ModuleTree, module: usize, path: &[String]) -> BTreeSet<(usize, String)> {
     let found = resolve(tree, module, path, DEEPEST);
     found
@@ -40,7 +42,7 @@ fn definitions(tree: &ModuleTree, module: usize, path: &[String]) -> BTreeSet<(u
         .collect()
 }
 
-/// What a path leads to.
+/// Target of a path: a module, or an item by its file and name.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Found {
     Module(usize),
@@ -66,7 +68,7 @@ fn resolve(tree: &ModuleTree, module: usize, path: &[String], deepest: usize) ->
         .collect()
 }
 
-/// Goes on from what the first segments led to.
+/// Resolves the remaining segments of a path, starting from the target of the first ones.
 fn follow(tree: &ModuleTree, from: Found, rest: &[String], deepest: usize) -> BTreeSet<Found> {
     let (Found::Module(module), Some((first, rest))) = (&from, rest.split_first()) else {
         return BTreeSet::from([from]);
@@ -82,7 +84,7 @@ fn follow(tree: &ModuleTree, from: Found, rest: &[String], deepest: usize) -> BT
         .collect()
 }
 
-/// What a name stands for in a module.
+/// Returns all meanings of a name in a module.
 fn named(tree: &ModuleTree, module: usize, name: &str, deepest: usize) -> BTreeSet<Found> {
     let Some(deepest) = deepest.checked_sub(1) else {
         return BTreeSet::new();
@@ -110,7 +112,7 @@ fn named(tree: &ModuleTree, module: usize, name: &str, deepest: usize) -> BTreeS
         .collect()
 }
 
-/// Sets of files of which each leads to every other.
+/// Returns the strongly connected components of more than one file.
 pub(crate) fn circles(files: usize, uses: &Uses) -> Vec<BTreeSet<usize>> {
     let mut reach: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); files];
     for (from, to) in uses.keys() {
@@ -135,7 +137,7 @@ pub(crate) fn circles(files: usize, uses: &Uses) -> Vec<BTreeSet<usize>> {
     sets.into_iter().filter(|set| set.len() > 1).collect()
 }
 
-/// A circle in words: every arrow inside it and what it carries.
+/// Formats a dependency cycle: each dependency inside it with the names concerned.
 pub(crate) fn in_words(
     tree: &ModuleTree,
     uses: &Uses,

@@ -1,6 +1,6 @@
-//! What every effect of the library owes its reader.
+//! Documentation required of every effect in the library.
 
-/// Every effect says where its law comes from.
+/// Checks that the module documentation of every effect states the source of its law.
 #[test]
 fn every_effect_names_its_source() {
     let manifest = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));

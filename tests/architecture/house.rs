@@ -1,4 +1,5 @@
-//! No circle of files in any crate of the house; and the reader that says so finds them where they are.
+//! Checks that no crate of the workspace has a dependency cycle between its files, and that the detector
+//! finds cycles in small examples.
 use crate::{
     circle::{circles, in_words, uses},
     module_tree::ModuleTree,
@@ -25,7 +26,7 @@ fn no_circles_of_files() {
     assert!(words.is_empty(), "\n{words}");
 }
 
-/// Circles of a crate made of these files.
+/// Returns the dependency cycles of a crate made of the given files (name, text).
 fn circles_of(files: &[(&str, &str)]) -> Vec<Vec<String>> {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {

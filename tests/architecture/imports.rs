@@ -1,17 +1,17 @@
-//! Every path that a piece of code writes: in imports, in types and expressions, inside macro calls, and
-//! as text in attributes such as serde's. Whether it leads anywhere is not known here.
+//! Collection of every path written in a piece of code: in imports, types and expressions, inside macro
+//! calls, and as text in attributes such as serde's. Paths are not resolved here.
 use proc_macro2::{TokenStream, TokenTree};
 use syn::{UseTree, visit::Visit};
 
-/// Segments of a path as written.
+/// Segments of a path, as written.
 pub(crate) type Path = Vec<String>;
 
-/// Collects.
+/// Syntax-tree visitor that collects paths and imports.
 #[derive(Debug, Default)]
 pub(crate) struct Visitor {
-    /// Paths outside of imports.
+    /// Paths outside of `use` declarations.
     pub paths: Vec<Path>,
-    /// Trees of imports.
+    /// Trees of `use` declarations.
     pub uses: Vec<UseTree>,
 }
 
@@ -55,7 +55,8 @@ impl<'ast> Visit<'ast> for Visitor {
 }
 
 impl Visitor {
-    /// Paths in the tokens of a macro call: identifiers joined by colons, but for what follows a dot.
+    /// Collects the paths in the tokens of a macro call: identifiers joined by `::`, except those after a
+    /// dot.
     fn paths_of(&mut self, tokens: TokenStream) {
         let mut path = Path::new();
         let (mut colons, mut dot) = (0, false);
@@ -88,7 +89,7 @@ impl Visitor {
         self.paths.retain(|path| !path.is_empty());
     }
 
-    /// Paths that stand as text in the tokens of an attribute.
+    /// Collects the paths written as string literals in the tokens of an attribute.
     fn texts_of(&mut self, tokens: TokenStream) {
         for token in tokens {
             match token {

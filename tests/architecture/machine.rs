@@ -1,8 +1,9 @@
-//! Who may know the pumping unit: it is one model among others, and the rest of the house is for any.
+//! Checks that only listed files refer to the pumping unit: it is one model among others, and all other code
+//! must work for any model.
 use crate::words::sources;
 use std::{fs, path::Path};
 
-/// Sources of the product.
+/// Source folders of the product.
 const HOUSE: [&str; 13] = [
     "protocol/src",
     "protocol/link/src",
@@ -19,7 +20,7 @@ const HOUSE: [&str; 13] = [
     "tests/oscillator",
 ];
 
-/// Its own folders, and the lines that register it.
+/// Folders of the pumping unit, and the files that register it.
 const KNOW_IT: [&str; 17] = [
     "protocol/src/pumping_unit",
     "worker/src/pumping_unit",

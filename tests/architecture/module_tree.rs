@@ -1,5 +1,5 @@
-//! A crate's modules and the names that each of them defines or imports, read from its files as `rustc`
-//! would find them. It knows nothing of circles, and nothing of types: a name is a name.
+//! Modules of a crate and the names that each of them defines or imports, read from its files as `rustc`
+//! would find them. Names are not resolved to types, and dependency cycles are not considered here.
 use crate::imports::{Path, Visitor};
 use std::{
     collections::BTreeMap,
@@ -7,46 +7,46 @@ use std::{
 };
 use syn::{Item, UseTree, visit::Visit};
 
-/// What a name in a module stands for.
+/// Meaning of a name in a module.
 #[derive(Clone, Debug)]
 pub(crate) enum Name {
-    /// Something that is defined in this file.
+    /// Item defined in the module's own file.
     Defined,
-    /// The module with this index.
+    /// Child module, by index.
     Module(usize),
-    /// Whatever this path stands for, seen from the module.
+    /// Import of a path, as seen from the module.
     Imported(Path),
 }
 
-/// One module.
+/// Module with its names and paths.
 #[derive(Debug)]
 pub(crate) struct Module {
-    /// Index of the file that holds it.
+    /// Index of the file that contains the module.
     pub file: usize,
-    /// The module around it; none of the crate's root.
+    /// Index of the parent module; `None` for the crate root.
     pub parent: Option<usize>,
-    /// Its names.
+    /// Names defined or imported, each with its meanings (a name may be a type and a function).
     pub names: BTreeMap<String, Vec<Name>>,
-    /// Paths whose names are all taken over.
+    /// Paths of glob imports.
     pub globs: Vec<Path>,
-    /// Every path that its code writes, imports included.
+    /// Every path written in the module's code, imports included.
     pub paths: Vec<Path>,
 }
 
-/// A crate, from its root file on.
+/// Files and modules of a crate.
 #[derive(Debug, Default)]
 pub(crate) struct ModuleTree {
-    /// Files, the root first.
+    /// Files, the crate root first.
     pub files: Vec<PathBuf>,
-    /// Modules, the root first.
+    /// Modules, the crate root first.
     pub modules: Vec<Module>,
 }
 
 impl ModuleTree {
-    /// Reads a crate.
+    /// Reads a crate from its root file.
     ///
     /// # Panics
-    /// If a file cannot be read or parsed: then it would not compile either.
+    /// If a file cannot be read or parsed; such a crate would not compile either.
     pub(crate) fn read(root: &FilePath) -> Self {
         let mut tree = Self::default();
         let folder = root.parent().expect("a folder");
@@ -54,7 +54,7 @@ impl ModuleTree {
         tree
     }
 
-    /// Reads a file as a module; its children lie in `folder`.
+    /// Reads a file as a module whose children lie in `folder`, and returns its index.
     fn read_file(&mut self, file: &FilePath, parent: Option<usize>, folder: &FilePath) -> usize {
         let text = std::fs::read_to_string(file)
             .unwrap_or_else(|problem| panic!("{}: {problem}", file.display()));
@@ -126,7 +126,7 @@ impl ModuleTree {
         names.entry(name).or_default().push(what);
     }
 
-    /// Takes the names of a `use` into a module.
+    /// Adds the names of a `use` tree to a module.
     fn take(&mut self, module: usize, tree: &UseTree, before: &Path) {
         let with = |ident: &syn::Ident| {
             let mut path = before.clone();
@@ -166,7 +166,7 @@ impl ModuleTree {
     }
 }
 
-/// The name that an item defines.
+/// Returns the name that an item defines, if any.
 #[expect(
     clippy::wildcard_enum_match_arm,
     reason = "the syntax of the language is open: what is not listed names no file"
@@ -188,7 +188,7 @@ fn defined(item: &Item) -> Option<String> {
     Some(ident.to_string())
 }
 
-/// What `#[path = ".."]` says.
+/// Returns the value of the attribute `#[path = ".."]`.
 #[expect(
     clippy::wildcard_enum_match_arm,
     reason = "the syntax of the language is open: what is not listed names no file"

@@ -1,7 +1,7 @@
-//! The recipes of `coordinator/README.md`: every file that they name is there.
+//! Checks that every file named in the recipes of `coordinator/README.md` exists.
 use std::path::{Path, PathBuf};
 
-/// Files of sources and of their tests below a folder.
+/// Collects all files below a folder.
 fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in folder.read_dir().expect("a folder") {
         let path = entry.expect("an entry").path();
@@ -13,7 +13,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// What stands between back quotes.
+/// Returns the parts of a text between backquotes.
 fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').skip(1).step_by(2)
 }

@@ -1,20 +1,21 @@
-//! Which words belong to one machine, and where they may stand: the rest of the house is for any model.
+//! Words that belong to one machine and the files that may contain them; all other code must be independent
+//! of the model.
 use std::{
     fs,
     path::{Path, PathBuf},
 };
 
-/// Words that some folders do not know.
+/// Rule that bans words from folders.
 struct Rule {
-    /// Folders and files, from the workspace's root.
+    /// Folders and files in which the words are banned, relative to the workspace root.
     within: &'static [&'static str],
-    /// Small letters stand for themselves and for capitals, others for themselves alone.
+    /// Banned words; a word in lower case is banned in any case, a word with capitals only as written.
     words: &'static [&'static str],
-    /// Folders and files inside those that may say them.
+    /// Exceptions: folders and files that may contain the words.
     except: &'static [&'static str],
 }
 
-/// Folders that are for any model.
+/// Source folders that must be independent of the model.
 const GENERAL: &[&str] = &[
     "protocol/src",
     "protocol/link/src",
@@ -30,7 +31,8 @@ const GENERAL: &[&str] = &[
     "coordinator/src",
 ];
 
-/// What was written for ten coefficients of ropes and four gauges is written for any unknowns and channels.
+/// Banned words per folder: code first written for ten rope coefficients and four gauges must work for any
+/// unknowns and channels.
 const RULES: &[Rule] = &[
     Rule {
         within: &[
@@ -100,7 +102,7 @@ impl Rule {
     }
 }
 
-/// Words of a line, those inside identifiers by themselves: `GaugeTrace` and `gauge_mpa` are two each.
+/// Splits a line into words, also inside identifiers: `GaugeTrace` and `gauge_mpa` give two words each.
 fn words(line: &str) -> impl Iterator<Item = &str> {
     line.split(|c: char| !c.is_ascii_alphanumeric())
         .flat_map(|part| {
@@ -115,7 +117,7 @@ fn words(line: &str) -> impl Iterator<Item = &str> {
         })
 }
 
-/// Every Rust source of a folder, or the file itself.
+/// Returns every Rust source below a folder, or the path itself if it is a file.
 pub(crate) fn sources(at: &Path) -> Vec<PathBuf> {
     if at.is_file() {
         return vec![at.to_owned()];

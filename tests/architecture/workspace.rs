@@ -1,8 +1,8 @@
-//! Packages of the workspace and their targets, as cargo sees them.
+//! Packages of the workspace and their targets, as reported by `cargo metadata`.
 use serde_json::Value;
 use std::{path::PathBuf, process::Command};
 
-/// All packages.
+/// Returns the metadata of all packages of the workspace.
 pub(crate) fn packages() -> Vec<Value> {
     let arguments = [
         "metadata",
@@ -16,14 +16,15 @@ pub(crate) fn packages() -> Vec<Value> {
     meta["packages"].as_array().cloned().expect("packages")
 }
 
-/// Names of what a package depends on, and whether its tests alone do.
+/// Returns the names of a package's dependencies, each with whether it is a development dependency.
 pub(crate) fn dependencies(package: &Value) -> Vec<(&str, bool)> {
     let all = package["dependencies"].as_array().into_iter().flatten();
     all.filter_map(|one| Some((one["name"].as_str()?, one["kind"] == "dev")))
         .collect()
 }
 
-/// Root files of a package's library, programs, tests and benches, each with a name for messages.
+/// Returns the root files of a package's library, programs, tests and benchmarks, each with a label for
+/// messages.
 pub(crate) fn targets(package: &Value) -> Vec<(String, PathBuf)> {
     let name = package["name"].as_str().expect("a name");
     let all = package["targets"].as_array().into_iter().flatten();

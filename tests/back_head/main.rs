@@ -1,5 +1,5 @@
-//! The shipped back head, reduced from its mesh, against the tables that other programs made:
-//! modes by `CalculiX`, statics by another implementation of the same element.
+//! Checks the reduction of the shipped back head from its mesh against reference tables: modes by `CalculiX`,
+//! statics by another implementation of the same element.
 #![expect(
     clippy::unwrap_used,
     reason = "the helpers read shipped files; a test that cannot read them has failed"
@@ -17,7 +17,7 @@ use std::{
     sync::LazyLock,
 };
 
-/// Welded steel, as the case's documentation states it.
+/// Properties of welded steel, as stated in the case's documentation.
 const STEEL: Steel = Steel {
     young: 206.0e9,
     poisson: 0.3,
@@ -32,7 +32,7 @@ fn shipped_mesh() -> Mesh {
     mesh_of(&folder().join("back_head.msh"))
 }
 
-/// A mesh file as the reduction takes it.
+/// Reads a mesh file and converts it to the reduction's input type.
 fn mesh_of(path: &Path) -> Mesh {
     let read = mesh::read(path).unwrap();
     Mesh {
@@ -80,7 +80,7 @@ fn gauges(table: &serde_json::Value) -> Vec<Gauge> {
 
 const PROBES_DEG: [f64; 6] = [125.0, 140.0, 160.0, 180.0, 200.0, 212.0];
 
-/// The shipped bricks with 24 modes of both families: reduced once for all tests.
+/// Reduction of the shipped brick mesh with 24 modes of both families, computed once for all tests.
 static BRICKS: LazyLock<Reduction> = LazyLock::new(|| reduced_from(&shipped_mesh(), 24, &BOTH));
 
 fn reduced_from(mesh: &Mesh, modes: usize, families: &[Family]) -> Reduction {
@@ -103,7 +103,7 @@ fn reduced_from(mesh: &Mesh, modes: usize, families: &[Family]) -> Reduction {
     .unwrap()
 }
 
-/// Modal assurance criterion of two vectors.
+/// Computes the modal assurance criterion (MAC) of two vectors.
 fn mac(a: &[f64], b: &[f64]) -> f64 {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     dot(a, b).powi(2) / (dot(a, a) * dot(b, b))
@@ -111,8 +111,8 @@ fn mac(a: &[f64], b: &[f64]) -> f64 {
 
 const BOTH: [Family; 2] = [Family::Symmetric, Family::Antisymmetric];
 
-/// All 24 modes of both families within 0.6 % (asked for: 1 % of the first six, 2 % of twelve);
-/// shapes alike where no other mode of the family is near.
+/// Checks that all 24 modes of both families agree with `CalculiX` within 0.6 % (required: 1 % for the first
+/// six, 2 % for twelve), and the shapes of modes without a close neighbour of the same family.
 #[test]
 fn modes_of_both_families_are_those_of_calculix() {
     let reduction = &*BRICKS;
@@ -165,9 +165,9 @@ fn modes_of_both_families_are_those_of_calculix() {
     }
 }
 
-/// The case's table of "symmetric" modes was computed on the whole mesh with only `u_z` held on
-/// the middle plane. That lets in a second kind: vibrations of the halves against each other, whose
-/// middle plane stands still. Both kinds together are its twelve, within 0.6 %.
+/// Checks that the case's table of "symmetric" modes mixes two kinds. It was computed on the whole mesh with
+/// only `u_z` fixed on the middle plane, which also admits vibrations of the two halves against each other
+/// with the middle plane at rest. Both kinds together give its twelve frequencies within 0.6 %.
 #[test]
 fn the_shipped_table_mixes_in_modes_with_the_middle_plane_at_rest() {
     let theirs = numbers(&table("back_head_modes.json")["frequencies_hz"]);
@@ -193,7 +193,8 @@ fn the_shipped_table_mixes_in_modes_with_the_middle_plane_at_rest() {
     }
 }
 
-/// Statics by the same element elsewhere: far within the 1 % that is asked for.
+/// Checks the statics against another implementation of the same element: errors are far below the required 1
+/// %.
 #[test]
 fn influence_lines_compliance_and_mass_are_those_of_the_other_program() {
     let reduction = &*BRICKS;
@@ -245,8 +246,8 @@ fn influence_lines_compliance_and_mass_are_those_of_the_other_program() {
     assert!((reduction.inertia / 2673.3 - 1.0).abs() < 2e-4);
 }
 
-/// Stress of a wrapped rope over the turn, and how far six modes are from it, as the case's
-/// documentation states both.
+/// Checks the quasi-static gauge stress of the wrapped rope over a revolution, computed with the exact
+/// influence lines, against the published table.
 #[test]
 fn the_quasi_static_turn_is_the_published_one() {
     let case_folder = folder().join("..");
@@ -287,7 +288,7 @@ fn the_quasi_static_turn_is_the_published_one() {
     }
 }
 
-/// Place and tension of the rope over the turn, as the kinematics table states them.
+/// Reads the contact angle and the tension of the rope over a revolution from the kinematics table.
 fn table_turn() -> QuasiStatic {
     let path = folder().join("../machine/kinematics_720.csv");
     let text = fs::read_to_string(path).unwrap();
@@ -303,7 +304,7 @@ fn table_turn() -> QuasiStatic {
     turn
 }
 
-/// Lines of stress [Pa/N] as a case has them.
+/// Converts influence lines [Pa/N] to the form of a case [MPa/N].
 fn lines(arc_deg: Vec<f64>, normal: &[Vec<f64>], tangential: &[Vec<f64>]) -> Influence {
     let table = |rows: &[Vec<f64>]| {
         let rows = rows.iter();
@@ -323,9 +324,10 @@ fn half_range(curve: &[f64]) -> f64 {
     0.5 * (high - low)
 }
 
-/// The reduction's own lines under the table's tension are the published turn, to 1e-3 of the largest
-/// reading at every crank angle (1 % is asked for); its six lowest symmetric modes alone miss as much
-/// of it as is published: half-ranges of 12.69, 7.59, 15.63 and 9.43 MPa, within 1 %.
+/// Checks the quasi-static revolution with the reduction's own influence lines under the tabulated tension:
+/// it agrees with the published one to 1e-3 of the largest reading at every crank angle (required: 1 %). The
+/// six lowest symmetric modes alone give the published half-ranges of 12.69, 7.59, 15.63 and 9.43 MPa, within
+/// 1 %.
 #[test]
 fn own_lines_and_own_modes_give_the_published_half_ranges() {
     let reduction = &*BRICKS;

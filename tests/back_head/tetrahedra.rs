@@ -1,5 +1,5 @@
-//! The shipped head cut into 10-node tetrahedra, as a mesh file of Gmsh's kind, against the bricks and
-//! against `CalculiX`; a mesh by Gmsh itself against scikit-fem.
+//! Checks the shipped head cut into 10-node tetrahedra and written as a Gmsh file against the bricks and
+//! against `CalculiX`, and a mesh made by Gmsh against scikit-fem.
 use super::*;
 use case::pumping_unit::mesh::Mesh as ReadMesh;
 use split::Split;
@@ -8,14 +8,15 @@ use std::{collections::BTreeSet, fmt::Write as _};
 #[path = "../../worker/simulation/src/flexible/tests/split.rs"]
 mod split;
 
-/// Millionths of a metre, without a sign for z: equal for a node and its image.
+/// Rounds a position to micrometres and drops the sign of z, so that a node and its mirror image are equal.
 fn place(&[x, y, z]: &[f64; 3]) -> [i64; 3] {
     #[expect(clippy::cast_possible_truncation, reason = "a head of some metres")]
     let cell = |x: f64| (x * 1e6).round() as i64;
     [cell(x), cell(y), cell(z.abs())]
 }
 
-/// A mesh of bricks as a file of 10-node tetrahedra, six to a brick, that is its own mirror image.
+/// Converts a brick mesh to the text of a Gmsh file of 10-node tetrahedra, six per brick, that is symmetric
+/// about z = 0.
 fn as_tetrahedra(bricks: &ReadMesh) -> String {
     let places: BTreeSet<[i64; 3]> = bricks.nodes_m.iter().map(place).collect();
     let order: Vec<[i64; 3]> = places.into_iter().collect();
@@ -71,7 +72,7 @@ fn as_tetrahedra(bricks: &ReadMesh) -> String {
     text
 }
 
-/// The head of tetrahedra, reduced once for all tests: the modes that a rope drives.
+/// Reduction of the tetrahedral mesh to six symmetric modes, computed once for all tests.
 static REDUCED: LazyLock<Reduction> = LazyLock::new(|| {
     let bricks = mesh::read(&folder().join("back_head.msh")).unwrap();
     let file = tempfile::tempdir().unwrap();
@@ -83,8 +84,9 @@ static REDUCED: LazyLock<Reduction> = LazyLock::new(|| {
     reduced_from(&read, 6, &[Family::Symmetric])
 });
 
-/// Six modes within 1 % of `CalculiX`' on the bricks: tetrahedra that are cut from bricks resolve more,
-/// and half the size of bricks moves the lowest modes by about 1 %. Shapes and stresses alike.
+/// Checks that six modes agree within 1 % with those of `CalculiX` on the bricks, with similar shapes and
+/// stresses. Tetrahedra cut from bricks resolve more than the bricks; halving the brick size moves the lowest
+/// modes by about 1 %.
 #[test]
 fn modes_of_tetrahedra_are_those_of_calculix() {
     let table = table("back_head_modes_all.json");
@@ -109,8 +111,9 @@ fn modes_of_tetrahedra_are_those_of_calculix() {
     }
 }
 
-/// Influence lines within 4 % of their largest value, and within 3 % on the whole: half the size of
-/// bricks moves gauge 3 by 3 %. Mass and its lever are exact: both meshes fill the same body.
+/// Checks that influence lines agree within 4 % of their largest value and within 3 % in a least-squares
+/// scale factor; halving the brick size moves gauge 3 by 3 %. Mass, centre of mass and inertia are exact,
+/// since both meshes fill the same body.
 #[test]
 fn statics_of_tetrahedra_are_those_of_bricks() {
     let lines = rows("back_head_influence.csv");
@@ -165,10 +168,10 @@ fn statics_of_tetrahedra_are_those_of_bricks() {
     assert!((REDUCED.inertia / 2673.3 - 1.0).abs() < 2e-4);
 }
 
-/// Half an arm with curved edges as Gmsh itself meshed it, against another finite element program
-/// (`arm/make.py` made both): frequencies, the gauge's reading of every mode, mass, influence line.
-/// With its four integration points too, to rounding errors; with as many as curved edges need, as far
-/// as that choice goes.
+/// Checks half an arm with curved edges, meshed by Gmsh, against another finite-element program
+/// (`arm/make.py` made both): frequencies, gauge reading of every mode, mass, influence line. Against a
+/// reference with the same four integration points the agreement is near rounding error; against one with
+/// enough points for curved edges it is limited by the integration error.
 #[test]
 fn a_mesh_by_gmsh_gives_what_another_program_gives() {
     let arm = Path::new(env!("CARGO_MANIFEST_DIR")).join("back_head/arm");

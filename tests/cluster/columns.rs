@@ -1,4 +1,4 @@
-//! Derivatives from several processes: the same bits as from one.
+//! Checks that derivatives computed by several processes are bit-identical to those from one.
 use super::{LIMIT, collect};
 use dispatch::runtime::{Dispatch, DispatchOptions};
 use protocol::{
@@ -10,7 +10,7 @@ use protocol::{
 };
 use std::{collections::BTreeMap, path::Path};
 
-/// The shipped machine with long cylinders.
+/// Loads the shipped machine with longer, fewer rope cylinders, for speed.
 fn coarse() -> Case {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
     let case = case::load(&folder, &case::Overrides::default()).unwrap();
@@ -23,7 +23,8 @@ fn coarse() -> Case {
     unit.into_case().unwrap()
 }
 
-/// Simulations of a few individuals with derivatives by a coefficient, a size, a shape and a generic force.
+/// Returns simulations of a few individuals with derivatives by a coefficient, a size, a shape and a generic
+/// force.
 fn jobs(case: &Case) -> Vec<Job> {
     let mut shape = Column::of("pivot_friction.creep");
     shape.values = vec![("moment".to_owned(), 1500.0)];

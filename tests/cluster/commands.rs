@@ -1,5 +1,5 @@
-//! The product's commands from a case to its tables: a calibration that is killed on the way and goes
-//! on, and cases without records.
+//! Tests of the commands from a case to its tables: a calibration that is killed and resumed, and cases
+//! without recordings.
 use super::LIMIT;
 use rustix::process::Signal;
 use serde_json::Value;
@@ -10,12 +10,12 @@ use std::{
 };
 use tests::process::{Process, coordinator_program, wait_until};
 
-/// Individuals of a calibration.
+/// Number of individuals of a calibration.
 const POINTS: u64 = 12;
-/// Bytes of a journal with a few results of some 28 kB, far from all of them.
+/// Length of a journal with a few results of some 28 kB, far from all of them (bytes).
 const SOME: u64 = 100_000;
 
-/// The shipped case with fewer, longer cylinders, edited line by line.
+/// Copies the shipped case with fewer, longer cylinders and edits its file line by line.
 fn coarse_case(folder: &Path, edit: impl Fn(&str) -> String) {
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
     let case = folder.join("case");
@@ -41,7 +41,7 @@ fn horsehead(folder: &Path, words: &[&str]) -> Command {
     command
 }
 
-/// What a command says as one object.
+/// Runs a command and returns the JSON object that it prints.
 fn said(folder: &Path, words: &[&str]) -> Value {
     let output = horsehead(folder, words).output().unwrap();
     let errors = String::from_utf8_lossy(&output.stderr);
@@ -49,7 +49,7 @@ fn said(folder: &Path, words: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// What a calibration found, without where and how fast.
+/// Removes run folder, wall time and files from the result of a calibration, so that results can be compared.
 fn found(mut object: Value) -> Value {
     for key in ["run", "wall_s", "files"] {
         assert!(

@@ -1,7 +1,7 @@
-//! A coordinator for the cluster suite, to be killed: writes a line for each result.
+//! Coordinator program for the cluster tests, which kill it: writes a line for each result.
 //!
-//! `test-coordinator RUN_DIR LOCATOR JOBS DELAY_MS LOCAL_WORKERS` does a number of jobs; each line
-//! is `id replayed`. With `search:SEED` for JOBS it searches, and leaves its log in `RUN_DIR/log`.
+//! `test-coordinator RUN_DIR LOCATOR JOBS DELAY_MS LOCAL_WORKERS` does a number of jobs; each line is `id
+//! replayed`. With `search:SEED` for JOBS it runs a search and leaves its log in `RUN_DIR/log`.
 use dispatch::runtime::Dispatch;
 use protocol::id::JobId;
 use std::{

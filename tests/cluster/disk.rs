@@ -1,8 +1,8 @@
-//! A disk that is really full: a small file system of its own.
+//! Tests with a disk that is really full: a small file system of the test's own.
 //!
-//! It is mounted in a mount namespace, which only the test's own processes see. Where the machine
-//! does not allow that, the test says so and proves nothing; the writer's own tests inject the same
-//! failures.
+//! The file system is mounted in a mount namespace, visible only to the test's own processes. Where the
+//! machine does not allow that, the test reports it and is skipped; the journal writer's own tests inject the
+//! same failures.
 use super::LIMIT;
 use dispatch::journal;
 use protocol::event::Event;
@@ -23,8 +23,8 @@ use tests::process::{Process, free_locator, is_alive, wait_until};
 const JOBS: u64 = 400;
 const NO_MOUNT: &str = "this machine lets nobody mount a file system in a namespace";
 
-/// Mounts 200 KiB at `$0`, fills most of it and runs the program that follows; what it wrote is
-/// copied beside it, since the disk is gone with its processes.
+/// Shell script that mounts 200 KiB at `$0`, fills most of it and runs the program that follows. The run
+/// folder is copied next to the mount point, since the disk vanishes with its processes.
 const MOUNT: &str = "mount -t tmpfs -o size=200k tmpfs \"$0\" && \
                      head -c 140000 /dev/zero > \"$0/ballast\" && \"$@\" && \
                      if [ -d \"$0/run\" ]; then cp -r \"$0/run\" \"$0/../copy\"; fi";
@@ -39,10 +39,10 @@ fn may_mount(folder: &Path) -> bool {
     tried.is_ok_and(|status| status.success())
 }
 
-/// A coordinator whose run lies on a small disk, and everything that it says.
+/// Coordinator whose run folder lies on a small disk, with its captured output.
 struct OnSmallDisk {
     process: Process,
-    /// The disk, seen from outside of the namespace.
+    /// Path of the disk as seen from outside of the namespace.
     disk: PathBuf,
     results: Arc<AtomicUsize>,
     said: Arc<Mutex<String>>,
@@ -51,13 +51,13 @@ struct OnSmallDisk {
 }
 
 impl OnSmallDisk {
-    /// Starts it for so many jobs, unless this machine has no such disks; afterwards its run is
-    /// copied to `copy` in `folder`.
+    /// Starts a coordinator for a number of jobs; `None` if the machine does not allow such mounts.
+    /// Afterwards the run folder is copied to `copy` in `folder`.
     fn start(folder: &Path, locator: &str, jobs: u64, delay_ms: u32) -> Option<Self> {
         Self::start_with(folder, locator, (jobs, delay_ms), &[])
     }
 
-    /// The same with variables of the environment.
+    /// Starts a coordinator as [`Self::start`] does, with environment variables.
     fn start_with(
         folder: &Path,
         locator: &str,
@@ -121,7 +121,7 @@ impl OnSmallDisk {
         fs::remove_file(self.disk.join("ballast")).unwrap();
     }
 
-    /// Its last line, once it has come to a good end.
+    /// Waits until the coordinator exits with code 0 and returns its last line.
     fn end(mut self) -> String {
         let last = self.reader.join().unwrap();
         assert_eq!(self.process.wait(LIMIT), Some(0));
@@ -155,7 +155,8 @@ fn a_full_disk_pauses_the_run_and_room_lets_it_go_on() {
     eprintln!("paused after {paused} of {JOBS} results");
 }
 
-/// A run that is left alone does not wait for ever: it says what happened and ends, with exit code 1.
+/// Checks that a run on a full disk does not wait for ever: after the limit it reports the cause and exits
+/// with code 1.
 #[test]
 fn a_pause_that_is_too_long_ends_the_run_with_what_it_has() {
     let folder = tempfile::tempdir().unwrap();
@@ -181,8 +182,9 @@ fn a_pause_that_is_too_long_ends_the_run_with_what_it_has() {
     );
 }
 
-/// Workers forget their results when a run ends. Found as a coordinator that waited a second for a
-/// full disk, told its workers that all is over, and left without its last results.
+/// Checks that a run that ends on a full disk waits for space, since workers discard their results when a run
+/// ends. Regression: a coordinator waited a second for a full disk, told its workers that the run was over,
+/// and exited without its last results.
 #[test]
 fn a_run_that_ends_on_a_full_disk_waits_for_room() {
     const SLOTS: u64 = 20;

@@ -1,4 +1,4 @@
-//! Workers that are killed, frozen or told to end.
+//! Tests with workers that are killed, frozen or asked to end.
 use super::{LIMIT, collect, submit};
 use dispatch::runtime::{BenchPlan, BenchWorkers, Dispatch, bench};
 use protocol::{id::JobId, job::Job};
@@ -113,8 +113,8 @@ async fn a_frozen_worker_is_replaced_within_six_seconds() {
     assert_eq!((summary.last.lost, summary.last.done), (1, 3));
 }
 
-/// A frozen worker with jobs outstanding does not hold up the pipes of the others: results go on
-/// coming all the while it is neither known to be lost nor answers.
+/// Checks that a frozen worker with outstanding jobs does not block the connections of the others: results
+/// keep arriving while the frozen worker does not answer and is not yet declared lost.
 #[tokio::test(flavor = "multi_thread")]
 async fn a_frozen_worker_does_not_hold_up_the_others() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,6 +1,7 @@
-//! A coordinator that is killed a hundred times, at random instants, and the same command again.
+//! Tests with a coordinator that is killed a hundred times, at random instants, and restarted with the same
+//! command.
 //!
-//! `HORSEHEAD_TEST_KILLS` sets how many kills there are (default 100).
+//! `HORSEHEAD_TEST_KILLS` sets the number of kills (default 100).
 use dispatch::journal;
 use dispatch::runtime::Dispatch;
 use protocol::{event::Event, id::draw};
@@ -27,7 +28,7 @@ fn coordinator(run_dir: &Path, seed: u64, trace: &Path) -> Process {
     coordinator_at("none", 2, run_dir, seed, trace)
 }
 
-/// One that listens, too, or has no workers of its own.
+/// Starts a coordinator that searches, with a given locator and number of local workers.
 fn coordinator_at(locator: &str, local: usize, run_dir: &Path, seed: u64, trace: &Path) -> Process {
     let mut command = Command::new(env!("CARGO_BIN_EXE_test-coordinator"));
     command
@@ -37,7 +38,7 @@ fn coordinator_at(locator: &str, local: usize, run_dir: &Path, seed: u64, trace:
     Process::start(command)
 }
 
-/// Encoded results by job; no job may be there twice.
+/// Returns the results in the journal by job, as text; panics if a job appears twice.
 fn recorded(run_dir: &Path) -> BTreeMap<u64, String> {
     let mut results = BTreeMap::new();
     let read = journal::fold(&run_dir.join(journal::FILE), |_, event| {
@@ -54,14 +55,14 @@ fn recorded(run_dir: &Path) -> BTreeMap<u64, String> {
     }
 }
 
-/// Jobs that slots have begun so far, in order.
+/// Returns the jobs that slots have begun so far, in order.
 fn begun(trace: &Path) -> Vec<u64> {
     let text = fs::read_to_string(trace).unwrap_or_default();
     text.lines().map(|line| line.parse().unwrap()).collect()
 }
 
-/// Kills one process at a random instant: some soon after its start, some in the middle of work.
-/// `false` if it came to its end before.
+/// Kills a process at a random instant: soon after its start or in the middle of work. Returns `false` if the
+/// process had already ended.
 fn kill_once(process: &mut Process, random: u64) -> bool {
     let (lines, heard) = mpsc::channel();
     let output = process.output();
@@ -99,7 +100,8 @@ fn kill_once(process: &mut Process, random: u64) -> bool {
     !ended_before
 }
 
-/// One run after another, killed `wanted` times altogether, under seeds of its own; how many runs.
+/// Runs searches with successive seeds until they have been killed `wanted` times altogether; returns the
+/// number of runs.
 fn kill_runs(wanted: usize, seeds: RangeFrom<u64>) -> usize {
     let (mut kills, mut runs) = (0, 0);
     for seed in seeds {
@@ -112,7 +114,8 @@ fn kill_runs(wanted: usize, seeds: RangeFrom<u64>) -> usize {
     runs
 }
 
-/// Kills one run until it comes to its end or has been killed so often, and has it end; how often.
+/// Kills one run repeatedly until it ends or has been killed `most` times, then lets it finish and checks its
+/// results; returns the number of kills.
 fn kill_run(most: usize, seed: u64) -> usize {
     let folder = tempfile::tempdir().unwrap();
     let trace = folder.path().join("trace");
@@ -173,7 +176,7 @@ fn killed_a_hundred_times_it_loses_and_repeats_nothing_that_was_recorded() {
     eprintln!("{wanted} kills in {runs} runs took {:?}", started.elapsed());
 }
 
-/// Lines that a coordinator writes, as they come; they end with it.
+/// Returns a channel with the lines that a coordinator writes; the channel closes when the process ends.
 fn lines_of(process: &mut Process) -> mpsc::Receiver<String> {
     let (lines, heard) = mpsc::channel();
     let output = process.output();
@@ -186,8 +189,8 @@ fn lines_of(process: &mut Process) -> mpsc::Receiver<String> {
     heard
 }
 
-/// A worker that outlives every process of its coordinator begins each job once in all of them: what
-/// it computes and what it has finished when one dies counts in the next.
+/// Checks that a worker that outlives all processes of its coordinator begins each job only once: jobs that
+/// it is computing or has finished when a coordinator dies count for the next coordinator.
 #[test]
 fn a_worker_that_outlives_fifteen_coordinators_does_every_job_once() {
     const KILLS: usize = 15;
@@ -235,8 +238,8 @@ fn a_worker_that_outlives_fifteen_coordinators_does_every_job_once() {
     drop(worker);
 }
 
-/// The search without generations on real workers, one, three and seven of them, each with three
-/// that are killed on the way: the same log.
+/// Checks that the asynchronous (steady-state) search gives the same log on one, three and seven real
+/// workers, three of which are killed in each run.
 #[tokio::test(flavor = "multi_thread")]
 async fn one_three_and_seven_workers_of_which_some_are_killed_make_the_same_log() {
     let mut logs = BTreeSet::new();

@@ -1,4 +1,5 @@
-//! A coordinator that reads late: whoever has spoken is not silent, though nobody listened yet.
+//! Checks that a coordinator that reads its messages late does not take a worker for silent whose messages
+//! have arrived but are unread.
 use dispatch::runtime::Dispatch;
 use link::{CoordinatorEnd, Heard};
 use protocol::{
@@ -21,12 +22,13 @@ use std::{
 };
 use tests::{empty_case, options};
 
-/// How long one word takes to be read on this busy machine.
+/// Time that reading one message takes on the simulated busy machine.
 const READING: Duration = Duration::from_millis(20);
-/// Words of the talker in front of the other's: together longer than anyone may be silent.
+/// Number of one worker's messages queued before the other worker's heartbeat: reading them takes longer than
+/// a worker may be silent.
 const WORDS: u64 = 240;
 
-/// An end with a pile of words that have arrived.
+/// Coordinator end of a link with a backlog of messages.
 struct Pile {
     heard: VecDeque<Heard>,
     read: Arc<AtomicBool>,
@@ -73,8 +75,9 @@ fn beat(number: u64) -> FromWorker {
     })
 }
 
-/// Found on a machine with thirty times more to run than cores: words lay unread for longer than a
-/// worker may be silent, and those behind them were taken for silence.
+/// Regression test from a machine with thirty times more processes than cores: messages stayed unread for
+/// longer than a worker may be silent, and workers whose messages were further back in the queue were
+/// declared lost.
 #[tokio::test(flavor = "multi_thread")]
 async fn silence_is_judged_only_after_what_has_arrived_was_read() {
     let folder = tempfile::tempdir().unwrap();

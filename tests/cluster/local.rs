@@ -1,5 +1,5 @@
-//! Local workers that end: started again while the run makes progress, given up with one clear
-//! message when it cannot.
+//! Tests with local workers that end: they are restarted while the run makes progress, and given up with one
+//! clear message when it cannot.
 use super::LIMIT;
 use std::{
     fs,
@@ -10,14 +10,14 @@ use std::{
 };
 use tests::process::{Process, worker_program};
 
-/// What a run with local workers alone came to.
+/// Exit status and output of a run that has only local workers.
 struct Ended {
     status: Option<i32>,
     lines: Vec<String>,
     errors: String,
 }
 
-/// Runs jobs of 5 ms on local workers, with something in their environment.
+/// Runs jobs of 5 ms on local workers, with an environment variable.
 fn run(folder: &Path, jobs: u64, workers: usize, environment: (&str, &str)) -> Ended {
     let mut command = Command::new(env!("CARGO_BIN_EXE_test-coordinator"));
     command

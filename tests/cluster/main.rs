@@ -1,4 +1,4 @@
-//! Real processes on loopback: killed, frozen, restarted; nothing may be lost.
+//! Tests with real processes on loopback, which are killed, frozen and restarted; no result may be lost.
 #![expect(
     clippy::unwrap_used,
     clippy::panic,
@@ -22,14 +22,13 @@ use dispatch::runtime::{Dispatch, DispatchError};
 use protocol::{id::JobId, job::Outcome};
 use std::{collections::BTreeMap, time::Duration};
 
-/// Longest time that anything may take.
+/// Time limit of every wait.
 const LIMIT: Duration = Duration::from_mins(1);
 
-/// Taken by tests whose slots are children of the test process itself, so that each can count its
-/// own.
+/// Lock for tests whose slots are children of the test process itself, so that each test counts only its own.
 static OWN_SLOTS: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
 
-/// Collects results until there are `jobs` of them.
+/// Collects the outcomes of `jobs` jobs; panics after the time limit or at a duplicate.
 async fn collect(
     dispatch: &mut Dispatch,
     jobs: usize,

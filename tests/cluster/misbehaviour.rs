@@ -1,5 +1,5 @@
-//! Jobs that crash, allocate without bound, never return, leave processes behind or kill their
-//! worker: each is ended and named, and the others are done.
+//! Tests with jobs that crash, allocate without bound, never return, leave processes behind or kill their
+//! worker: each is terminated and reported, and the other jobs are done.
 use super::{OWN_SLOTS, collect};
 use dispatch::runtime::{Completed, Dispatch, Summary};
 use protocol::{
@@ -21,10 +21,11 @@ use tests::{
 use tokio::sync::mpsc::unbounded_channel;
 use worker::pool::{Pool, SlotOptions, Task};
 
-/// Workers take long to start where everybody else is busy.
+/// Time limit of every wait; longer than elsewhere, since workers start slowly on a busy machine.
 const LIMIT: Duration = Duration::from_mins(3);
 
-/// Outcomes of jobs 0 to `jobs` on workers of which some jobs misbehave.
+/// Returns the outcomes of jobs 0 to `jobs` - 1 on workers with the given misbehaving jobs, and the run's
+/// summary.
 async fn outcomes(
     jobs: u64,
     behaviour: &str,
@@ -71,7 +72,7 @@ async fn jobs_that_crash_or_allocate_without_bound_fail_alone_and_say_why() {
     assert_eq!(summary.last.repeated, 2, "each was tried twice");
 }
 
-/// The job takes its worker with it: after two of them it runs alone, after four it is given up;
+/// Checks that a job that kills its workers runs alone after two losses and is given up after four, and that
 /// no other job fails.
 #[tokio::test(flavor = "multi_thread")]
 async fn a_job_that_kills_its_workers_is_quarantined_and_given_up() {
@@ -87,8 +88,8 @@ async fn a_job_that_kills_its_workers_is_quarantined_and_given_up() {
     assert_eq!((summary.last.failed, summary.last.lost), (1, 4));
 }
 
-/// A slot whose jobs misbehave, started by way of another program: the environment of this process
-/// is not ours to change, so the slot gets it from a shell.
+/// Creates options of a slot with misbehaving jobs. The slot is started by a shell script that sets its
+/// environment, since a test must not change the environment of its own process.
 fn slot(folder: &Path, behaviour: &str, by: &str) -> SlotOptions {
     let program = folder.join("worker");
     let worker = tests::process::worker_program();
@@ -117,7 +118,8 @@ fn task(n: u64, deadline: Duration) -> Task {
     }
 }
 
-/// Ended at its deadline with everything it started, even what left its process group.
+/// Checks that a job is terminated at its deadline with all its descendants, even those outside its process
+/// group.
 #[test]
 fn a_job_that_never_returns_leaves_no_descendant() {
     let _turn = OWN_SLOTS.blocking_lock();
@@ -146,7 +148,7 @@ fn a_job_that_never_returns_leaves_no_descendant() {
     drop(pool);
 }
 
-/// Processes that the misbehaving job leaves behind.
+/// Counts the `sleep` processes left behind by the misbehaving job.
 fn sleepers() -> usize {
     let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
     let ours = format!("HORSEHEAD_SLOT_PROCESS={}.", std::process::id());
@@ -159,7 +161,7 @@ fn sleepers() -> usize {
         .count()
 }
 
-/// If nothing works at all, one clear message comes instead of a thousand.
+/// Checks that a run in which every job crashes stops with one clear message instead of a thousand.
 #[tokio::test(flavor = "multi_thread")]
 async fn if_every_job_crashes_the_run_stops_with_one_message() {
     let folder = tempfile::tempdir().unwrap();
@@ -192,8 +194,8 @@ async fn if_every_job_crashes_the_run_stops_with_one_message() {
     dispatch.close().await.unwrap();
 }
 
-/// Computing takes ten times as long as usual where others have the processor. A job that merely
-/// waits for it must not be given up: the result of a run would depend on the load of its machines.
+/// Checks that a job that waits for a processor is not terminated at its deadline. On a busy machine
+/// computing may take ten times as long, and the result of a run must not depend on the machine's load.
 #[test]
 fn a_job_that_gets_no_processor_is_not_overdue() {
     let _turn = OWN_SLOTS.blocking_lock();

@@ -1,8 +1,8 @@
-//! Workers outlive their coordinator, dead or frozen: they go on, come back, and hand in what they
-//! finished.
+//! Tests in which workers outlive a coordinator that is killed or frozen: they keep computing, reconnect and
+//! deliver their results.
 //!
-//! `HORSEHEAD_TEST_OUTAGE_S` sets how long the coordinator is gone (default 6 s, longer than every
-//! lease: the transport's is 3 s, silence means loss after 4 s).
+//! `HORSEHEAD_TEST_OUTAGE_S` sets the length of the outage (default 6 s, longer than every lease: that of the
+//! transport is 3 s, and a worker is declared lost after 4 s of silence).
 use super::LIMIT;
 use rustix::process::Signal;
 use std::{
@@ -27,7 +27,7 @@ fn outage() -> Duration {
     Duration::from_secs(seconds.ok().map_or(6, |seconds| seconds.parse().unwrap()))
 }
 
-/// Two workers of two slots that write down what they compute.
+/// Starts two workers of two slots that record the jobs they compute in a trace file.
 fn workers(locator: &str, trace: &Path) -> [Process; 2] {
     let environment = [("HORSEHEAD_TEST_TRACE", trace.to_str().unwrap())];
     [(); 2].map(|()| Process::worker_with(locator, &["--slots", "2"], &environment))
@@ -78,8 +78,8 @@ fn workers_come_back_after_an_outage_and_nothing_is_computed_twice() {
     drop(workers);
 }
 
-/// Ctrl-Z and `fg`, or a virtual machine that is moved: the workers gave up their connections to a
-/// coordinator that did not answer, and are not to blame for it.
+/// Checks that a coordinator that was frozen (Ctrl-Z and `fg`, or migration of a virtual machine) declares no
+/// worker lost, although the workers closed their connections while it did not answer.
 #[test]
 fn a_coordinator_that_was_frozen_blames_nobody_and_repeats_nothing() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! A coordinator that is killed, and the same command again.
+//! Tests with a coordinator that is killed and restarted with the same command.
 use super::LIMIT;
 use dispatch::journal;
 use protocol::{event::Event, id::JobId, job::Outcome};
@@ -22,7 +22,7 @@ fn coordinator(run_dir: &Path, locator: &str, jobs: u64, local: usize) -> Proces
     Process::start(command)
 }
 
-/// Results in the journal, and how often each job is there.
+/// Returns the results in the journal by job, and the number of result entries.
 fn recorded(run_dir: &Path) -> (BTreeMap<JobId, Outcome>, usize) {
     let (mut results, mut records) = (BTreeMap::new(), 0);
     journal::fold(&run_dir.join(journal::FILE), |_, event| {
@@ -35,8 +35,8 @@ fn recorded(run_dir: &Path) -> (BTreeMap<JobId, Outcome>, usize) {
     (results, records)
 }
 
-/// Kills a coordinator again and again; its workers stay. No recorded result is computed again,
-/// and the end is what it would have been.
+/// Kills a coordinator repeatedly while its workers stay, and checks that no recorded result is computed
+/// again and that the final results are complete.
 #[test]
 fn a_killed_coordinator_goes_on_where_it_was() {
     let folder = tempfile::tempdir().unwrap();
@@ -71,7 +71,7 @@ fn a_killed_coordinator_goes_on_where_it_was() {
     drop(workers);
 }
 
-/// Local workers die with their coordinator, even when it is killed, and so do their slots.
+/// Checks that local workers and their slots end with their coordinator, even when it is killed.
 #[test]
 fn a_killed_coordinator_leaves_no_process_behind() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Sixty-four worker processes, one of which freezes: a measurement, since it takes a quiet machine.
+//! Measurement with 64 worker processes, one of which freezes; needs an otherwise idle machine.
 //!
 //! ```text
 //! cargo test --workspace --test cluster -- --ignored --nocapture sixty_four
@@ -17,12 +17,12 @@ use tests::{
 };
 
 const WORKERS: usize = 64;
-/// Jobs that are asked for ahead: two for each worker, and some to spare.
+/// Number of jobs submitted ahead: two for each worker, and some to spare.
 const AHEAD: u64 = 3 * WORKERS as u64;
 
 struct Load {
     dispatch: Dispatch,
-    /// Bytes of each order.
+    /// Payload of each job (bytes).
     order_bytes: usize,
     delay_ms: u32,
     asked: u64,
@@ -30,7 +30,7 @@ struct Load {
 }
 
 impl Load {
-    /// Does jobs for a while; how many a second.
+    /// Does jobs for the given time and returns the rate \[1/s\].
     async fn rate(&mut self, time: Duration) -> f64 {
         let (begun, before) = (Instant::now(), self.done);
         while begun.elapsed() < time {
@@ -71,8 +71,8 @@ async fn one_frozen_worker_of_sixty_four_costs_the_others_at_most_a_tenth() {
     assert!(share >= 0.9, "{share}");
 }
 
-/// The same with two orders of 3 MB each on their way to the frozen one: more than the sockets
-/// between it and the coordinator hold, so its pipe is full.
+/// Measures the effect of one frozen worker with two jobs of 3 MB each in transit to it: more than the socket
+/// buffers hold, so that its connection is blocked.
 #[tokio::test(flavor = "multi_thread")]
 #[ignore = "a measurement: needs a machine of its own for a minute and 2 GB of memory"]
 async fn a_full_pipe_to_one_of_sixty_four_costs_the_others_at_most_a_tenth() {
@@ -81,8 +81,8 @@ async fn a_full_pipe_to_one_of_sixty_four_costs_the_others_at_most_a_tenth() {
     assert!(share >= 0.9, "{share}");
 }
 
-/// Measures for so long without and with one frozen worker of sixty-four, at such orders: what share
-/// of their rate the others keep, and that in words.
+/// Measures the job rate for the given time without and with one frozen worker of 64; returns the share of
+/// their rate that the others keep \[1\], and a report sentence.
 async fn frozen(order_bytes: usize, delay_ms: u32, time: Duration) -> (f64, String) {
     let folder = tempfile::tempdir().unwrap();
     let locator = free_locator();

@@ -1,4 +1,5 @@
-//! Slots: jobs that never return, slots that crash, and a link that misbehaves.
+//! Tests of slots with jobs that never return, slots that crash, and a link that loses, duplicates and
+//! reorders messages.
 use super::{LIMIT, OWN_SLOTS};
 use dispatch::runtime::Dispatch;
 use link::memory::{Faults, Hub};
@@ -52,8 +53,8 @@ fn task(job: u64, delay_ms: u32, deadline: Duration) -> Task {
     }
 }
 
-/// Slot processes of this process, whose tests take turns; others have theirs in processes of
-/// workers.
+/// Returns the slot processes that are children of this process; the tests with such slots run one at a time,
+/// and other tests' slots are children of worker processes.
 fn slots() -> BTreeSet<i32> {
     children(getpid())
         .into_iter()
@@ -117,7 +118,7 @@ fn a_job_that_never_returns_is_ended_and_a_crash_is_told() {
     });
 }
 
-/// Runs a search over a link of this process; its log.
+/// Runs a search over an in-process link with injected faults; returns its log and the summary.
 async fn over_memory(faults: Faults) -> (String, dispatch::runtime::Summary) {
     let folder = tempfile::tempdir().unwrap();
     let mut hub = None;
@@ -158,8 +159,8 @@ async fn over_memory(faults: Faults) -> (String, dispatch::runtime::Summary) {
     (search.log(), summary)
 }
 
-/// A fifth of all messages lost, a fifth doubled, all in disorder: the same search, to the last bit of
-/// every individual.
+/// Checks that a link that loses a fifth of all messages, duplicates a fifth and reorders all gives the same
+/// search, to the last bit of every individual.
 #[tokio::test(flavor = "multi_thread")]
 async fn a_link_that_loses_doubles_and_reorders_changes_nothing() {
     let _turn = OWN_SLOTS.lock().await;

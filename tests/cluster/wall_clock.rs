@@ -1,8 +1,8 @@
-//! A wall clock that is set forwards and backwards under a run: leases, deadlines and journal go by
-//! the clock that cannot be set.
+//! Checks that leases, deadlines and journal use the monotonic clock: the wall clock is set forwards and
+//! backwards during a run.
 //!
-//! The clock of this machine is everybody's, so the programs under test are lied to instead: a
-//! library of a few lines (`wall_clock.c`), loaded before their own.
+//! The clock of the machine is shared, so the programs under test are given a false time instead: a small
+//! library (`wall_clock.c`), preloaded before their own libraries.
 use rustix::process::Signal;
 use std::{
     io::{BufRead, BufReader},
@@ -13,7 +13,7 @@ use std::{
 };
 use tests::process::{Process, free_locator, worker_program};
 
-/// Builds the library with the compiler that also links Rust programs.
+/// Builds the preloaded library with the compiler that also links Rust programs.
 fn library(folder: &Path) -> PathBuf {
     let built = folder.join("wall_clock.so");
     let status = Command::new("cc")
@@ -25,7 +25,7 @@ fn library(folder: &Path) -> PathBuf {
     built
 }
 
-/// The time of day as a program of this machine sees it \[s\].
+/// Returns the time of day as a program with the preloaded library sees it \[s\].
 fn shown(library: &Path) -> i64 {
     let output = Command::new("date")
         .arg("+%s")

@@ -1,4 +1,4 @@
-//! What may be started is decided by the machine alone.
+//! Tests of the allow list: the machine alone decides which external programs may be started.
 use crate::rig::Rig;
 use std::fs;
 
@@ -163,8 +163,8 @@ fn a_record_beyond_the_curve_that_the_program_left_in_the_folder_is_refused() {
     rig.done(&["case", "check", "case"]);
 }
 
-/// A machine whose program gives other numbers for the same values does not work on the run; one that differs by
-/// no more than the case allows does.
+/// Checks that a machine whose program gives different numbers for the same values is not admitted to the
+/// run, and that one within the tolerance of the case is.
 #[test]
 fn machines_are_compared_by_a_reference_run_within_the_case_s_tolerance() {
     // whoever is not the first gives a hundredth more

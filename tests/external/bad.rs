@@ -1,11 +1,13 @@
-//! Programs that do everything wrong: each costs its own individual, says why, and leaves nothing behind.
+//! Tests with external programs that misbehave: each fails only its own individual, reports the reason, and
+//! leaves nothing behind.
 use crate::rig::Rig;
 use std::{
     fs,
     time::{Duration, Instant},
 };
 
-/// Why a simulation with such a program failed.
+/// Returns the error message of a failed simulation with the given program, after checking that no run folder
+/// remains.
 fn failure(rig: &Rig) -> String {
     let said = rig.refused(&["simulate", "case"]);
     let left = rig.left();
@@ -86,7 +88,8 @@ fn what_the_program_calls_a_verdict_is_not_tried_again() {
     assert!(runs <= 3, "{runs}");
 }
 
-/// After the first individuals have all failed there is one message with the program's last words.
+/// Checks that a run whose first individuals all fail stops with one message that quotes the program's last
+/// output.
 #[test]
 fn a_run_in_which_everything_fails_stops_and_says_why() {
     let rig = Rig::shell("echo no such mesh >&2\nexit 1\n", "");
@@ -113,7 +116,8 @@ fn a_folder_of_a_failed_run_stays_where_that_is_wanted() {
     assert_eq!(fs::read_to_string(trace).unwrap(), "7\n");
 }
 
-/// Whatever machine it failed on: what was filled in, written and said comes with the failure.
+/// Checks that the files of a failed run (filled-in input, output, messages) are exported from the journal,
+/// on whichever machine the run failed.
 #[test]
 fn failed_runs_are_fetched_from_the_journal() {
     let program = "echo half done > trace\necho no such mesh >&2\nln -s /etc/hostname link\n\
@@ -163,7 +167,7 @@ fn no_more_run_at_a_time_than_a_machine_allows() {
     ]);
 }
 
-/// Something is done to a value on its way.
+/// Extension method that applies a function to a value and returns the value.
 trait Tap: Sized {
     fn tap(self, with: impl FnOnce(&Self)) -> Self {
         with(&self);

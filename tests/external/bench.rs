@@ -1,8 +1,9 @@
-//! A Python program with five effects that its case starts without, and records in which one of them acts.
+//! Tests with a Python model that has five candidate effects, one of which acts in the measured records but
+//! is absent from the case.
 use crate::rig::Rig;
 use std::fs;
 
-/// The hardening of the spring that the records hide [1/mm2].
+/// True hardening coefficient of the spring, with which the measured records were generated [1/mm2].
 const HARDENING: f64 = 0.012;
 
 #[test]
@@ -26,7 +27,8 @@ fn a_hidden_effect_is_found_among_five_suspects_and_added() {
     assert_eq!(rig.left(), Vec::<String>::new());
 }
 
-/// A run that was ended goes on, and any number of workers gives the same bits.
+/// Checks that the log digest is the same for one worker, three workers, and a run resumed from a truncated
+/// journal.
 #[test]
 fn results_do_not_depend_on_workers_nor_on_interruptions() {
     let rig = Rig::of("bench");

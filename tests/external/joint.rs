@@ -1,8 +1,9 @@
-//! One calibration over several conditions.
+//! Tests of calibrations over several conditions.
 use crate::rig::Rig;
 use std::fs;
 
-/// A line through two points: `y = a + gain b`, one number per condition. Neither condition tells `a` from `b`.
+/// Creates a case of a line `y = a + gain b` with one measured value per condition, so that neither condition
+/// alone determines `a` and `b`.
 fn line(fitted: &str) -> Rig {
     let rig = Rig::new();
     let folder = rig.file("case");
@@ -45,7 +46,9 @@ fn line(fitted: &str) -> Rig {
     rig
 }
 
-/// Differences of an individual are joined as its residual is, by the exact sum.
+/// Checks that a joint fit over two conditions determines two unknowns that a single condition leaves
+/// undetermined. Finite differences for the Jacobian are combined over conditions in the same way as the
+/// residual.
 #[test]
 fn what_one_condition_leaves_open_two_find() {
     let rig = line("[\"low\", \"high\"]");

@@ -1,6 +1,6 @@
-//! Models that are programs of somebody's own, from the files that they come with to an answer: PEST's models beside
-//! what PEST++ found, a Python program with an effect that the case starts without, and programs that do everything
-//! wrong. The programs are Python's or the shell's; nothing else is installed.
+//! Tests of user-supplied model programs, from import to result: PEST models compared with results of PEST++,
+//! a Python program with an effect that the case initially omits, and programs that fail in every possible
+//! way. The programs need only Python or a shell.
 #![expect(
     clippy::unwrap_used,
     reason = "helpers of a test suite: to panic is to fail the test"

@@ -1,9 +1,9 @@
-//! Three models in PEST's files beside what PEST++ found with them.
+//! Tests that compare results for three imported PEST models with those of PEST++.
 use crate::rig::{Rig, source};
 use serde_json::Value;
 use std::fs;
 
-/// What PEST++ found.
+/// Returns the stored PEST++ results for a model.
 fn found(model: &str) -> Value {
     let text = fs::read_to_string(source("pest").join("pestpp.json")).unwrap();
     serde_json::from_str::<Value>(&text).unwrap()[model].take()
@@ -19,7 +19,8 @@ fn imported(model: &str) -> Rig {
     rig
 }
 
-/// The value in which PEST++ counts standard deviations: the logarithm of what it estimates by that.
+/// Transforms a parameter value to the PEST++ estimation space: log10, except for the untransformed parameter
+/// `floor` of `decay`.
 fn counted(model: &str, name: &str, value: f64) -> f64 {
     if (model, name) == ("decay", "floor") {
         value
@@ -28,8 +29,8 @@ fn counted(model: &str, name: &str, value: f64) -> f64 {
     }
 }
 
-/// The same parameters within a hundredth of PEST++'s standard deviations, the same objective to four digits, at
-/// half of its runs.
+/// Checks that parameters agree with those of PEST++ within a hundredth of its standard deviations, that the
+/// objective agrees to four digits, and that at most half as many model runs were needed.
 fn calibrated(model: &str) {
     let (rig, expected) = (imported(model), found(model));
     let result = rig.object(&["calibrate", "case", "--preset", "descent", "--run", "run"]);
@@ -75,11 +76,12 @@ fn parameters_and_objective_are_those_of_pest() {
     }
 }
 
-/// Half a 95 % interval in standard deviations.
+/// Half width of a 95 % interval in standard deviations.
 const NORMAL: f64 = 1.96;
 
-/// Standard deviations of parameters and predictions lie within a tenth of PEST++'s. Those of its predictions are
-/// its own after it has lowered the weights of large residuals, those of ours are not.
+/// Checks that standard deviations of parameters and predictions agree with those of PEST++ within a tenth.
+/// PEST++ computes its prediction uncertainties after lowering the weights of large residuals; Horsehead does
+/// not lower weights.
 #[test]
 fn uncertainties_are_those_of_pest() {
     for model in ["cantilever", "tanks"] {
@@ -112,8 +114,8 @@ fn uncertainties_are_those_of_pest() {
     }
 }
 
-/// What the control file's own folder lacks, or names otherwise, is found when the case is read: no folder stays
-/// behind that would block the next try.
+/// Checks that an import that fails while reading the new case, because a template is missing or misnames a
+/// parameter, removes the case folder so that the import can be repeated.
 #[test]
 fn an_import_that_fails_after_writing_can_be_tried_again() {
     let rig = Rig::new();

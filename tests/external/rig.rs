@@ -1,4 +1,4 @@
-//! A scratch folder with a case, a list of what may be started, and the program that is run on them.
+//! Scratch folder for a test, with a case, a list of allowed programs, and helpers that run the coordinator.
 use serde_json::Value;
 use std::{
     fs,
@@ -7,7 +7,7 @@ use std::{
 };
 use tempfile::TempDir;
 
-/// A scratch folder of one test.
+/// Temporary folder of one test.
 pub(crate) struct Rig(TempDir);
 
 impl Rig {
@@ -15,7 +15,7 @@ impl Rig {
         Self(TempDir::new().unwrap())
     }
 
-    /// With a case that was shipped with the suite, its program allowed.
+    /// Creates a test folder with a copy of a case of this suite, whose program is allowed to run.
     pub(crate) fn of(case: &str) -> Self {
         let rig = Self::new();
         copy(&source("external").join(case), &rig.file("case"));
@@ -23,8 +23,8 @@ impl Rig {
         rig
     }
 
-    /// With a case of one unknown whose program is a shell's; `model` are more lines of `[model]`, and the program
-    /// leaves one number in `out.csv`.
+    /// Creates a test folder with a case of one unknown whose model is a shell script that writes `out.csv`.
+    /// `model` holds additional lines of `[model]`.
     pub(crate) fn shell(program: &str, model: &str) -> Self {
         let rig = Self::new();
         rig.shell_case(program, model);
@@ -32,7 +32,7 @@ impl Rig {
         rig
     }
 
-    /// Writes that case.
+    /// Writes the case of one unknown with a shell script as its model, without allowing its program.
     pub(crate) fn shell_case(&self, program: &str, model: &str) {
         let folder = self.file("case");
         fs::create_dir_all(&folder).unwrap();
@@ -55,12 +55,12 @@ impl Rig {
         fs::write(folder.join("case.toml"), case).unwrap();
     }
 
-    /// A file of the folder.
+    /// Returns the path of a file in the test folder.
     pub(crate) fn file(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
 
-    /// The program with these words, in the folder, with two workers.
+    /// Runs the coordinator with these arguments in the test folder, with two workers.
     pub(crate) fn run(&self, words: &[&str]) -> Output {
         let mut command = Command::new(tests::process::coordinator_program());
         command
@@ -73,7 +73,7 @@ impl Rig {
         command.output().unwrap()
     }
 
-    /// What a command printed that must succeed.
+    /// Runs a command, asserts success, and returns its standard output.
     pub(crate) fn done(&self, words: &[&str]) -> String {
         let output = self.run(words);
         let errors = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -81,13 +81,13 @@ impl Rig {
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// The object that a command printed.
+    /// Runs a command with `--output json` and returns the parsed object.
     pub(crate) fn object(&self, words: &[&str]) -> Value {
         let words: Vec<&str> = words.iter().copied().chain(["--output", "json"]).collect();
         serde_json::from_str(&self.done(&words)).unwrap()
     }
 
-    /// What a command complained of that must fail.
+    /// Runs a command, asserts failure, and returns its standard error.
     pub(crate) fn refused(&self, words: &[&str]) -> String {
         let output = self.run(words);
         let errors = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -95,7 +95,7 @@ impl Rig {
         errors
     }
 
-    /// Changes the entry of the list.
+    /// Replaces text in the list of allowed programs, for example to change a limit.
     pub(crate) fn limit(&self, from: &str, to: &str) {
         let path = self.file("allow.toml");
         let text = fs::read_to_string(&path).unwrap();
@@ -103,7 +103,7 @@ impl Rig {
         fs::write(path, text.replace(from, to)).unwrap();
     }
 
-    /// Folders of runs that were not removed.
+    /// Returns the names of temporary run folders that were not removed.
     pub(crate) fn left(&self) -> Vec<String> {
         let entries = fs::read_dir(self.0.path()).unwrap();
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -112,13 +112,13 @@ impl Rig {
             .collect()
     }
 
-    /// Whether something is in a folder that an evaluation left.
+    /// Returns whether a folder contains files left by an evaluation.
     pub(crate) fn is_filled(&self, folder: &str) -> bool {
         fs::read_dir(self.file(folder)).is_ok_and(|mut entries| entries.next().is_some())
     }
 }
 
-/// A folder of the suites.
+/// Returns the path of a folder of the test crate.
 pub(crate) fn source(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }

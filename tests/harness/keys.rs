@@ -1,9 +1,10 @@
-//! Key material for the suites, and a raw client of the bus that keeps no rule but the transport's.
+//! Key material for the test suites, and a raw Zenoh client that follows only the rules of the transport.
 use link::keys::authority::{Authority, Validity};
 use serde_json::json;
 use std::path::Path;
 
-/// An authority, a coordinator for loopback and `hosts`, and two workers: `worker-01`, `worker-02`.
+/// Creates a certificate authority, a coordinator certificate for loopback and `hosts`, and two worker
+/// certificates: `worker-01`, `worker-02`.
 ///
 /// # Panics
 /// If the folder cannot be written.
@@ -23,11 +24,11 @@ pub fn make(folder: &Path, hosts: &[&str]) -> Authority {
     authority
 }
 
-/// A session of the bus with the certificate of a worker's folder, or with none, and with no
-/// regard for what it names.
+/// Opens a Zenoh session with the certificate of a worker's folder or with none. The session may publish
+/// under any name.
 ///
 /// # Errors
-/// The transport's words if it cannot connect within `timeout_ms`.
+/// The message of the transport if it cannot connect within `timeout_ms`.
 pub async fn raw_session(
     locator: &str,
     folder: &Path,

@@ -1,18 +1,19 @@
-//! Two machines on one: network namespaces joined by a cable that can be pulled.
+//! Two simulated machines on one host: network namespaces joined by a virtual Ethernet cable that can be
+//! unplugged.
 //!
-//! The head is at [`HEAD`], the node at [`NODE`]; nothing leads out of them.
+//! The head has the address [`HEAD`], the node has [`NODE`]; neither has a route to other networks.
 use std::{
     path::Path,
     process::{Command, Stdio},
     sync::atomic::{AtomicU32, Ordering},
 };
 
-/// Address of the head within its namespaces.
+/// IP address of the head.
 pub const HEAD: &str = "10.77.0.1";
-/// Address of the node within its namespaces.
+/// IP address of the node.
 pub const NODE: &str = "10.77.0.2";
 
-/// A head, a node and the cable between them; gone when dropped.
+/// Two network namespaces, head and node, with a virtual cable between them; deleted when dropped.
 #[derive(Debug)]
 pub struct Namespaces {
     head: String,
@@ -20,7 +21,8 @@ pub struct Namespaces {
 }
 
 impl Namespaces {
-    /// Makes them; `None` after [`crate::skip`] where this machine does not allow it.
+    /// Creates the namespaces; returns `None` after calling [`crate::skip`] where this machine does not allow
+    /// them.
     pub fn make() -> Option<Self> {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let count = COUNT.fetch_add(1, Ordering::Relaxed);
@@ -64,20 +66,21 @@ impl Namespaces {
         Ok(())
     }
 
-    /// A program to be run on the head.
+    /// Returns a command that runs a program in the namespace of the head.
     pub fn on_head(&self, program: &Path) -> Command {
         within(&self.head, program)
     }
 
-    /// A program to be run on the node.
+    /// Returns a command that runs a program in the namespace of the node.
     pub fn on_node(&self, program: &Path) -> Command {
         within(&self.node, program)
     }
 
-    /// Pulls the cable out of the head, or puts it back: the node notices nothing but silence.
+    /// Takes the head's end of the cable down (`false`) or up (`true`). The node's end stays up, so that the
+    /// node notices only missing packets.
     ///
     /// # Panics
-    /// If the namespaces are gone.
+    /// If the namespaces no longer exist.
     pub fn plug(&self, is_in: bool) {
         let state = if is_in { "up" } else { "down" };
         ip(&["-n", &self.head, "link", "set", "cable", state]).expect("the cable is there");

@@ -1,4 +1,4 @@
-//! Real processes under test: found, started, disturbed, and gone at the end.
+//! Helpers that locate, start, signal and stop real processes under test.
 use dispatch::runtime::locate;
 use rustix::process::{Pid, Signal, kill_process};
 use std::{
@@ -14,18 +14,19 @@ use std::{
 const FIRST_PORT: u32 = 20_000;
 const PORTS: u32 = 12_000;
 
-/// The worker program: `cargo test --workspace` puts it, and the coordinator's, where the suites look.
+/// Returns the path of the worker program, which `cargo test --workspace` builds together with the
+/// coordinator.
 ///
 /// # Panics
-/// If it is not there: `cargo build` makes it.
+/// If the program does not exist: `cargo build` makes it.
 pub fn worker_program() -> PathBuf {
     locate::worker_program().expect("the worker program")
 }
 
-/// The coordinator program, beside the worker's.
+/// Returns the path of the coordinator program, in the same folder as the worker program.
 ///
 /// # Panics
-/// If it is not there: `cargo build` makes it.
+/// If the program does not exist: `cargo build` makes it.
 pub fn coordinator_program() -> PathBuf {
     let program = worker_program().with_file_name("horsehead");
     let shown = program.display();
@@ -33,24 +34,25 @@ pub fn coordinator_program() -> PathBuf {
     program
 }
 
-/// A free port on loopback, as a locator.
+/// Returns a TCP locator with a free port on loopback.
 ///
 /// # Panics
-/// If the machine has none.
+/// If the machine has no free port.
 pub fn free_locator() -> String {
     free_port("tcp/127.0.0.1:0")
 }
 
-/// The same for QUIC.
+/// Returns a QUIC locator with a free port on loopback.
 ///
 /// # Panics
-/// If the machine has none.
+/// If the machine has no free port.
 pub fn free_quic_locator() -> String {
     free_port("quic/127.0.0.1:0")
 }
 
-/// Ports that no outgoing connection is given (Linux takes those from 32,768 on), each handed out once
-/// in this process: nobody takes one between here and the one who listens.
+/// Finds a free port below 32,768, where Linux does not allocate ports of outgoing connections, and replaces
+/// the port of the locator `any`. Each port is handed out once in this process, so that no other test takes
+/// it before the caller listens.
 fn free_port(any: &str) -> String {
     static HANDED_OUT: AtomicU32 = AtomicU32::new(0);
     let mut any = link::locator::Locator::parse(any).expect("a locator");
@@ -82,7 +84,7 @@ impl Process {
         Self::worker_with(connect, arguments, &[])
     }
 
-    /// Starts a worker with something in its environment.
+    /// Starts a worker with additional environment variables.
     ///
     /// # Panics
     /// If it does not start.
@@ -93,7 +95,7 @@ impl Process {
         Self::start(command)
     }
 
-    /// Starts any program, with its standard output to be read.
+    /// Starts any program with its standard output piped.
     ///
     /// # Panics
     /// If it does not start.
@@ -102,7 +104,7 @@ impl Process {
         Self(child.expect("the program starts"))
     }
 
-    /// Starts any program that writes what it has to say into a file.
+    /// Starts any program with its standard error redirected to a file.
     ///
     /// # Panics
     /// If it does not start or the file cannot be made.
@@ -112,7 +114,7 @@ impl Process {
         Self::start(command)
     }
 
-    /// Its process id.
+    /// Returns the process id.
     ///
     /// # Panics
     /// Never: ids are positive.
@@ -131,23 +133,23 @@ impl Process {
         kill_process(self.pid(), signal).expect("the process is there");
     }
 
-    /// Its standard output.
+    /// Returns the standard output of the process.
     ///
     /// # Panics
-    /// The second time.
+    /// If called a second time.
     pub fn output(&mut self) -> std::process::ChildStdout {
         self.0.stdout.take().expect("the output is read once")
     }
 
-    /// Its standard error, if it was asked for when the process was started.
+    /// Returns the standard error of the process, if it was piped at the start.
     ///
     /// # Panics
-    /// The second time, and if it was not.
+    /// If called a second time, or if the standard error was not piped.
     pub fn errors(&mut self) -> std::process::ChildStderr {
         self.0.stderr.take().expect("the errors are read once")
     }
 
-    /// Waits for its end and returns its exit code, if it was not killed.
+    /// Waits for the process to end and returns its exit code, or `None` if it was killed.
     ///
     /// # Panics
     /// If it does not end within `limit`.
@@ -169,7 +171,7 @@ impl Drop for Process {
     }
 }
 
-/// Processes whose parent is `parent`.
+/// Returns the child processes of `parent`.
 pub fn children(parent: Pid) -> Vec<Pid> {
     let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
     processes
@@ -184,14 +186,14 @@ pub fn children(parent: Pid) -> Vec<Pid> {
         .collect()
 }
 
-/// The words a process was started with; none if it has ended.
+/// Returns the command line of a process; empty if the process has ended.
 pub fn command_line(pid: Pid) -> Vec<String> {
     let words = fs::read_to_string(format!("/proc/{}/cmdline", pid.as_raw_nonzero()));
     let words = words.unwrap_or_default();
     words.split_terminator('\0').map(str::to_owned).collect()
 }
 
-/// Whether a process is there and not just waiting to be reaped.
+/// Returns whether a process exists and is not a zombie.
 pub fn is_alive(pid: Pid) -> bool {
     let stat = fs::read_to_string(format!("/proc/{}/stat", pid.as_raw_nonzero()));
     stat.is_ok_and(|stat| {
@@ -202,10 +204,10 @@ pub fn is_alive(pid: Pid) -> bool {
     })
 }
 
-/// Waits for something to become true.
+/// Waits until a condition becomes true.
 ///
 /// # Panics
-/// If it does not within `limit`.
+/// If it does not become true within `limit`.
 pub fn wait_until(what: &str, limit: Duration, mut is_true: impl FnMut() -> bool) {
     let begun = Instant::now();
     while !is_true() {

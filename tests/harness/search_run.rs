@@ -1,5 +1,5 @@
-//! A search without physics, for runs that are killed: its fitness is the length of what workers
-//! send back, so that it really depends on them, and its log has a digest.
+//! A search without physics, for tests that kill and resume runs. The fitness is the length of a worker's
+//! reply, so that it truly depends on the workers, and the log can be compared bit by bit.
 use dispatch::runtime::Dispatch;
 use protocol::{
     id::JobId,
@@ -15,18 +15,19 @@ use search::{
 };
 use std::time::Duration;
 
-/// How long a result may take.
+/// Longest time to wait for a result.
 const PATIENCE: Duration = Duration::from_mins(1);
 
-/// A search whose every individual is one short job.
+/// Search in which each individual is one short job.
 pub struct SearchRun {
-    /// The search.
+    /// Search strategy.
     pub strategy: Box<dyn Strategy>,
     delay_ms: u32,
 }
 
 impl SearchRun {
-    /// A search without generations, some 700 individuals; jobs take so long.
+    /// Creates a memetic search with a sliding window (no generation barrier) of about 700 individuals, whose
+    /// jobs each take `delay_ms`.
     ///
     /// # Panics
     /// Never: the settings lie within their range.
@@ -34,7 +35,7 @@ impl SearchRun {
         Self::of(26, seed, delay_ms)
     }
 
-    /// The same with another number of individuals: twenty and some 26 times `generations`.
+    /// Creates a memetic search with about 20 + 26 `generations` individuals.
     ///
     /// # Panics
     /// Never: the settings lie within their range.
@@ -56,10 +57,10 @@ impl SearchRun {
         }
     }
 
-    /// Has it done; `each` is called with the number of results after each of them.
+    /// Runs the search to its end; `each` is called with the number of results after each result.
     ///
     /// # Panics
-    /// If the run cannot go on, or nothing comes for a minute.
+    /// If the run cannot go on, or no result arrives for a minute.
     pub async fn run(&mut self, dispatch: &mut Dispatch, mut each: impl FnMut(usize)) {
         let mut results = 0;
         while self.strategy.finished().is_none() {
@@ -74,7 +75,7 @@ impl SearchRun {
         }
     }
 
-    /// Jobs that can be done now, by id.
+    /// Returns the jobs that the strategy proposes now, with their ids.
     pub fn ask(&mut self) -> Vec<(u64, Job)> {
         let proposals = self.strategy.ask();
         let jobs = proposals.into_iter().map(|proposal| {
@@ -94,7 +95,7 @@ impl SearchRun {
         jobs.collect()
     }
 
-    /// Takes a result.
+    /// Passes the result of a job to the strategy.
     pub fn tell(&mut self, id: u64, outcome: &Outcome) {
         let told = match outcome {
             Outcome::Done(Answer::Nothing(reply)) => Told {
@@ -109,7 +110,7 @@ impl SearchRun {
         self.strategy.tell(id, told);
     }
 
-    /// Every bit of every individual and result, in id order, as text.
+    /// Returns the bits of all individuals and their fitness, in id order, as text.
     pub fn log(&self) -> String {
         let line = |entry: &Evaluated| {
             let genes = entry.genes.iter().chain([&entry.told.fitness]);
@@ -122,7 +123,7 @@ impl SearchRun {
     }
 }
 
-/// Bytes that stand for a fitness: up to two thousand.
+/// Computes the reply length that encodes a fitness: at most 2000 bytes.
 fn reply_bytes(fitness: f64) -> u32 {
     #[expect(
         clippy::cast_possible_truncation,

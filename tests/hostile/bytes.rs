@@ -1,5 +1,5 @@
-//! Peers that do not even speak the bus's language: half frames and rubbish on its sockets, beside a
-//! run that must not notice.
+//! Tests with peers that send invalid bytes or partial frames to the coordinator's sockets while a run is
+//! going on.
 use super::{LIMIT, MEASURING, idle::first_datagrams};
 use protocol::{
     id::{RunId, draw},
@@ -21,7 +21,7 @@ use tests::{
     process::{Process, free_locator, free_quic_locator, worker_program},
 };
 
-/// So many bytes that mean nothing, another row for each `n`.
+/// Returns `length` pseudo-random bytes, different for each `n`.
 fn noise(n: u64, length: usize) -> Vec<u8> {
     let words = (0..length.div_ceil(8) as u128).map(|at| draw(&n.to_string(), at).to_le_bytes());
     let mut bytes: Vec<u8> = words.flatten().collect();
@@ -29,7 +29,8 @@ fn noise(n: u64, length: usize) -> Vec<u8> {
     bytes
 }
 
-/// What is thrown at the bus's TCP socket: its frames are a length of two bytes and a batch.
+/// Returns the `n`-th invalid message for the TCP socket, whose frames consist of a length of two bytes and a
+/// batch.
 fn rubbish(n: u64) -> Vec<u8> {
     let framed = |length: u16, body: &[u8]| [&length.to_le_bytes(), body].concat();
     let some = usize::try_from(draw("length", n.into()) % 3000).unwrap();
@@ -51,7 +52,7 @@ fn rubbish(n: u64) -> Vec<u8> {
     }
 }
 
-/// Opens connections and throws until it is told to stop; how many.
+/// Opens connections and sends invalid bytes until `stop` is set; returns the number of connections.
 fn throw_at(address: SocketAddr, lane: u64, stop: &AtomicBool) -> u64 {
     let mut thrown = 0;
     while !stop.load(Ordering::Relaxed) {
@@ -74,7 +75,8 @@ fn throw_at(address: SocketAddr, lane: u64, stop: &AtomicBool) -> u64 {
     thrown
 }
 
-/// The last line of a coordinator that came to a good end, and nothing in its log of a panic.
+/// Waits for a coordinator to exit successfully without a panic in its log, and returns the last line of its
+/// output.
 fn ends_well(coordinator: &mut Process, log: &Path) -> String {
     let mut said = String::new();
     coordinator.output().read_to_string(&mut said).unwrap();
@@ -113,8 +115,8 @@ fn rubbish_on_the_tcp_socket_costs_no_result() {
     drop(worker);
 }
 
-/// The gate sees datagrams of anybody: such as mean nothing, and beginnings of handshakes, damaged
-/// and cut.
+/// Checks that invalid datagrams at the UDP socket, including damaged and truncated QUIC handshakes, cost no
+/// result. Datagrams need no certificate to reach the coordinator.
 #[tokio::test(flavor = "multi_thread")]
 async fn rubbish_on_the_udp_socket_costs_no_result() {
     let _others = MEASURING.read().await;

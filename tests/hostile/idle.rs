@@ -1,4 +1,4 @@
-//! Peers that connect and then say nothing, as many as the machine allows.
+//! Tests with peers that connect and then send nothing, as many as the machine allows.
 use super::{LIMIT, MEASURING, processor_us, rate};
 use dispatch::runtime::{Dispatch, DispatchOptions};
 use std::{
@@ -16,18 +16,20 @@ use tests::{
     process::{Process, free_locator, free_quic_locator, wait_until, worker_program},
 };
 
-/// Handshakes that are begun and not finished.
+/// Number of handshakes that are begun and not finished.
 const BEGUN: usize = 300;
-/// What begun handshakes keep others out of a coordinator that shakes hands with one peer at a time.
+/// Longest time in which a worker must join despite unfinished handshakes; a coordinator that handled
+/// handshakes one at a time would need longer.
 const KEPT_OUT: Duration = Duration::from_secs(20);
 
-/// Connections that say nothing, fewer where the machine allows no more.
+/// Returns the number of silent connections to open (`HORSEHEAD_TEST_SILENT`, default 2000); fewer are opened
+/// where the machine allows no more.
 fn idle() -> usize {
     let asked = std::env::var("HORSEHEAD_TEST_SILENT").ok();
     asked.map_or(2000, |count| count.parse().unwrap())
 }
 
-/// First datagrams of as many different QUIC handshakes, as clients of the bus send them.
+/// Returns the first datagrams of `count` different QUIC handshakes, as Zenoh clients send them.
 pub(super) async fn first_datagrams(count: usize) -> Vec<Vec<u8>> {
     let mut tls = rustls::ClientConfig::builder_with_provider(Arc::new(
         rustls::crypto::ring::default_provider(),
@@ -54,7 +56,7 @@ pub(super) async fn first_datagrams(count: usize) -> Vec<Vec<u8>> {
     datagrams
 }
 
-/// Anybody on the network can begin handshakes and leave it at that, with no certificate at all.
+/// Checks that unfinished handshakes, which need no certificate, do not prevent a worker from joining.
 #[tokio::test(flavor = "multi_thread")]
 async fn handshakes_that_are_never_finished_keep_nobody_out() {
     let _others = MEASURING.read().await;
@@ -99,7 +101,7 @@ async fn handshakes_that_are_never_finished_keep_nobody_out() {
     drop((silent, worker));
 }
 
-/// Waits until the other end has closed all connections, and drops them.
+/// Waits until the peer has closed all connections.
 fn wait_until_closed(connections: Vec<TcpStream>) {
     for mut connection in connections {
         connection.set_read_timeout(Some(LIMIT)).unwrap();
@@ -112,8 +114,8 @@ fn wait_until_closed(connections: Vec<TcpStream>) {
     }
 }
 
-/// Connections of a local program that never say a word are closed after four seconds. Each costs
-/// less than one result does, once, and keeps nobody out meanwhile.
+/// Checks that silent local connections, which the coordinator closes after four seconds, cost less processor
+/// time each than one result does, lose no result, and do not prevent a worker from joining.
 #[tokio::test(flavor = "multi_thread")]
 async fn thousands_of_silent_connections_cost_little_and_no_result() {
     let _alone = MEASURING.write().await;
@@ -179,7 +181,8 @@ async fn thousands_of_silent_connections_cost_little_and_no_result() {
     drop((honest, second));
 }
 
-/// A shell allows its programs a thousand open files or fewer; silent peers must not use them up.
+/// Checks that more silent connections than the limit of open files of the process do not prevent a worker
+/// from joining.
 #[test]
 fn silent_connections_beyond_the_files_of_a_shell_keep_nobody_out() {
     let _others = MEASURING.blocking_read();
@@ -203,8 +206,8 @@ fn silent_connections_beyond_the_files_of_a_shell_keep_nobody_out() {
     drop((silent, worker));
 }
 
-/// Real sessions of the bus that neither announce themselves nor say anything: a measurement of what
-/// each costs a coordinator that does nothing else.
+/// Measures the processor time that real Zenoh sessions, which neither announce themselves nor send anything,
+/// cost an otherwise idle coordinator.
 ///
 /// ```text
 /// cargo test --workspace --test hostile -- --ignored --nocapture idle_sessions

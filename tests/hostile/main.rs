@@ -1,7 +1,8 @@
-//! Peers that mean no good: rubbish, lies and silence, against a coordinator at work.
+//! Tests with hostile peers, which send invalid bytes, false messages or nothing, against a working
+//! coordinator.
 //!
-//! What they cost is counted and shown (run with `--nocapture`); what is asserted is that nothing is
-//! lost, nothing false is believed, and whoever lies is told in what.
+//! The cost of the attacks is measured and printed (run with `--nocapture`); the tests assert that no result
+//! is lost, no forged result is accepted, and a peer with a wrong announcement is told which field is wrong.
 #![expect(
     clippy::unwrap_used,
     clippy::panic,
@@ -21,10 +22,10 @@ use std::{
 
 const LIMIT: Duration = Duration::from_mins(1);
 
-/// Who measures writes and is alone, so that the numbers mean something; the others read.
+/// Lock that lets a measuring test run alone (write lock), while other tests run concurrently (read lock).
 static MEASURING: tokio::sync::RwLock<()> = tokio::sync::RwLock::const_new(());
 
-/// Processor time of a process: this one, where the coordinator is in it \[us\].
+/// Returns the processor time used by a process, which may be this one if it contains the coordinator \[us\].
 fn processor_us(of: Pid) -> u64 {
     const TICK_US: u64 = 10_000;
     let stat = std::fs::read_to_string(format!("/proc/{}/stat", of.as_raw_nonzero()));
@@ -35,7 +36,7 @@ fn processor_us(of: Pid) -> u64 {
     ticks * TICK_US
 }
 
-/// Does jobs until a time is over, and returns how many a second.
+/// Runs jobs for the given time and returns the number of results per second.
 async fn rate(
     dispatch: &mut Dispatch,
     results: &mut BTreeMap<JobId, Outcome>,

@@ -1,4 +1,5 @@
-//! Peers that speak: rubbish, old versions, wrong models, and results that are not theirs to give.
+//! Tests with peers that speak the protocol but send malformed messages, old versions, wrong models, or
+//! forged results.
 use super::{LIMIT, MEASURING, rate};
 use dispatch::runtime::{Dispatch, Snapshot};
 use protocol::pumping_unit::Machine;
@@ -29,7 +30,7 @@ use tests::{
 use worker::SIMULATORS;
 use zenoh::{Session, Wait};
 
-/// A peer with the bus's own software and no manners.
+/// Peer with a real Zenoh session that ignores the rules of the protocol.
 struct Peer {
     session: Session,
     name: WorkerName,
@@ -73,7 +74,7 @@ impl Peer {
         self.throw(run, lane, frame);
     }
 
-    /// Announces until there is an answer that fits.
+    /// Announces repeatedly until an answer that satisfies `fits` arrives, and returns its run.
     fn announce_until(
         &self,
         announcement: &Announcement,
@@ -112,7 +113,7 @@ fn announcement(digest: &str) -> Announcement {
     }
 }
 
-/// A coordinator with one honest worker that has joined.
+/// Opens a coordinator with one joined, correctly behaving worker.
 async fn stage(folder: &std::path::Path) -> (Dispatch, Process, String) {
     let locator = free_locator();
     let dispatch = Dispatch::open(options(folder, Some(&locator), 0))
@@ -179,7 +180,7 @@ async fn whoever_does_not_fit_is_refused_by_the_field_that_is_wrong() {
     dispatch.close().await.unwrap();
 }
 
-/// A body as it is, to be sealed with a checksum that fits it.
+/// Message body that serialises to its raw bytes, for a frame with a matching checksum.
 struct Raw(Vec<u8>);
 
 impl Serialize for Raw {
@@ -193,14 +194,14 @@ impl Serialize for Raw {
     }
 }
 
-/// A frame that is in order around a body that is not: it gets as far as the decoder.
+/// Wraps a malformed body in a valid frame, so that it reaches the decoder.
 fn around(run: RunId, body: &[u8]) -> Vec<u8> {
     let frame = wire::seal(Kind::FromWorker, run, &Raw(body.to_vec())).unwrap();
     assert_eq!(wire::open(Kind::FromWorker, &frame).unwrap().body, body);
     frame
 }
 
-/// What is thrown to the decoder fails there and not before.
+/// Checks that a malformed body in a valid frame fails in the decoder and not before.
 #[test]
 fn damaged_bodies_reach_the_decoder() {
     let promise = around(RunId(1), &endless());
@@ -211,7 +212,7 @@ fn damaged_bodies_reach_the_decoder() {
     );
 }
 
-/// A heartbeat that promises a list longer than there is memory for.
+/// Returns a heartbeat whose encoded list length exceeds the available memory.
 fn endless() -> Vec<u8> {
     let mut body = wire::encode(&FromWorker::Beat(Beat::default())).unwrap();
     let end = body.len();
@@ -219,7 +220,7 @@ fn endless() -> Vec<u8> {
     body
 }
 
-/// Rubbish of every kind, as fast as it goes; how much was thrown.
+/// Publishes malformed frames of every kind, about 2,000 a second, until `stop` is set; returns their number.
 fn throw_rubbish(peer: &Peer, run: RunId, digest: &str, stop: &AtomicBool) -> u64 {
     let good = FromWorker::Announce(Box::new(announcement(digest)));
     let body = wire::encode(&good).unwrap();
@@ -305,7 +306,7 @@ async fn rubbish_costs_little_and_no_result() {
     assert!(thrown > 300, "{thrown}");
 }
 
-/// A peer that is admitted, does no work, and hands in results of jobs that others have.
+/// Checks that results forged by an admitted peer for jobs of other workers are not accepted.
 #[tokio::test(flavor = "multi_thread")]
 async fn forged_and_repeated_results_are_not_believed() {
     let _others = MEASURING.read().await;

@@ -1,4 +1,5 @@
-//! Derivatives as a worker gives them: of whole runs, by what a job names.
+//! Tests of derivatives of complete simulations with respect to the coefficients and effect parameters that a
+//! job names.
 #![expect(
     clippy::wildcard_enum_match_arm,
     reason = "whatever else comes back is a failed test"
@@ -14,7 +15,7 @@ use protocol::{
 };
 use worker::handler::Prepared;
 
-/// The shipped machine with long cylinders.
+/// Returns the shipped case with long (coarse) rope cylinders.
 fn coarse() -> Case {
     let long = Discretisation {
         cylinder_length_m: Some(0.15),
@@ -40,7 +41,7 @@ fn asked(case: &Case, genes: Vec<f64>, columns: Vec<Column>) -> Result<Observati
     }
 }
 
-/// Curves under a column, in double precision.
+/// Returns the unit and the curves of a derivative, in double precision.
 fn curves(derivative: &Derivative) -> (&Per, Vec<Vec<f64>>) {
     match derivative {
         Derivative::Curves { per, curves } => {
@@ -57,8 +58,8 @@ fn apart(x: &[f64], y: &[f64]) -> f64 {
     apart / norm(&mut y.iter().copied()).max(1e-300)
 }
 
-/// What a job says of a coefficient, of an effect's parameter and of an absent effect is what two whole
-/// runs beside it say, channel by channel and in the channel's unit.
+/// Checks that derivatives by a coefficient, an effect's parameter and an absent effect agree with central
+/// differences of two whole simulations, channel by channel and in the channel's unit.
 #[test]
 fn columns_are_what_whole_runs_beside_say() {
     let mut case = coarse();
@@ -126,7 +127,8 @@ fn columns_are_what_whole_runs_beside_say() {
     }
 }
 
-/// Whatever is asked for beside it, a run is the plain run and a column itself, bit for bit.
+/// Checks that requested columns leave the curves of the run unchanged bit for bit, and that each column is
+/// independent of the other columns requested.
 #[test]
 fn columns_change_nothing_else() {
     let case = coarse();
@@ -149,7 +151,7 @@ fn columns_change_nothing_else() {
     assert_eq!(ask(&["kb4"]).columns, [nothing]);
 }
 
-/// A run that fails has no columns, and its verdict is the plain run's.
+/// Checks that a failed run returns no columns and the verdict of the run without columns.
 #[test]
 fn a_run_that_fails_has_no_columns() {
     let case = coarse();
@@ -161,7 +163,8 @@ fn a_run_that_fails_has_no_columns() {
     assert_eq!(seen, plain);
 }
 
-/// What cannot be asked for names the column and what there is.
+/// Checks that a request for an unavailable column is refused with the name of the column and the known
+/// names.
 #[test]
 fn columns_that_do_not_exist_are_refused() {
     let mut case = coarse();

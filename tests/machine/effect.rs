@@ -1,4 +1,4 @@
-//! Effects on the real unit, and jobs that ask for them.
+//! Tests of effects on the real unit, and of jobs that contain effects.
 #![expect(
     clippy::wildcard_enum_match_arm,
     clippy::too_many_lines,
@@ -13,9 +13,9 @@ use protocol::{
 use simulation::effect::{Descriptor, Place, catalogue};
 use worker::handler::Prepared;
 
-/// Crank work is load work, losses and stored energy with each effect that acts on the motion, at its
-/// typical size and the recommended coefficients: to 1e-4 with half the longest step (with the whole, a
-/// worn profile comes to 1.0e-4).
+/// Checks that the energy ledger (crank work = load work + losses + stored energy) closes to 1e-4 with each
+/// effect that acts on the motion, at its typical size and the recommended coefficients. The longest step is
+/// halved, because with the full step a worn profile reaches 1.0e-4.
 #[test]
 fn energy_ledger_closes_with_every_effect() {
     let unit = unit();
@@ -41,7 +41,7 @@ fn energy_ledger_closes_with_every_effect() {
     }
 }
 
-/// Everything but the shapes of the moving machine.
+/// Reply with all curves but no snapshots of the moving machine.
 const CURVES: Reply = Reply::Curves { pictures: 0 };
 
 fn observe(case: &Case, effects: &[EffectSetting], discretisation: Discretisation) -> Observation {
@@ -72,8 +72,8 @@ fn bits(observation: &Observation) -> Vec<u64> {
         .collect()
 }
 
-/// A job's effects, the same effects in the case, and in another order: the same bits. At their
-/// absent values: those of the plain machine, which are those of a whole simulation.
+/// Checks that effects of a job, the same effects in the case, and a different order of effects give the same
+/// bits, and that effects at their absent values give those of the plain machine and of a whole simulation.
 #[test]
 fn effects_give_the_same_bits_wherever_they_are_stated() {
     let case = case();
@@ -122,7 +122,7 @@ fn effects_give_the_same_bits_wherever_they_are_stated() {
     );
 }
 
-/// Another discretisation is near, and not the same.
+/// Checks that a finer discretisation gives slightly different curves: gauges within 1 % of their range.
 #[test]
 fn a_refined_observation_is_of_the_same_machine() {
     let case = case();
@@ -144,7 +144,8 @@ fn a_refined_observation_is_of_the_same_machine() {
     }
 }
 
-/// What a worker cannot do is named by its field, whichever kind of job asks for it.
+/// Checks that unknown effects, parameters and invalid discretisations are refused by field, for every kind
+/// of job.
 #[test]
 fn what_the_model_does_not_have_is_refused_by_field() {
     let case = case();

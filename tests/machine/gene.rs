@@ -1,5 +1,5 @@
-//! Genes that are parameters of the case's effects: what a worker makes of them, and a calibration that
-//! finds them.
+//! Tests of genes that are parameters of the case's effects: their evaluation by a worker, and a calibration
+//! that recovers them.
 #![expect(
     clippy::wildcard_enum_match_arm,
     reason = "whatever else comes back is a failed test"
@@ -30,7 +30,8 @@ fn gene((id, parameter): (&str, &str), unit: &str, bounds: [f64; 2], value: f64)
     Unknown::new(name, unit, Scale::Linear, value, bounds)
 }
 
-/// The shipped machine with long cylinders and effects of these sizes, as a case that searches none.
+/// Returns the shipped case with long cylinders and the given effects, none of whose parameters is an
+/// unknown.
 fn coarse(effects: &[EffectSetting]) -> Case {
     let long = Discretisation {
         cylinder_length_m: Some(0.15),
@@ -50,14 +51,14 @@ fn moment() -> Unknown {
     gene(("pivot_friction", "moment"), "N.m", [200.0, 4000.0], 1000.0)
 }
 
-/// The same case, which searches its friction.
+/// Returns the case with the friction moment as an additional unknown.
 fn searched(case: &Case) -> Case {
     let mut case = case.clone();
     case.unknowns.push(moment());
     case
 }
 
-/// Recommended coefficients and that friction.
+/// Returns the start values of the coefficients with the given friction moment.
 fn individual(case: &Case, moment: f64) -> Vec<f64> {
     let mut genes = case.start();
     genes[10] = moment;
@@ -77,9 +78,9 @@ fn observed(prepared: &Prepared, genes: &[f64], effects: &[EffectSetting]) -> Ob
     }
 }
 
-/// Another value of the gene gives what the same value written into the case gives, to the bit, for
-/// every kind of job, and one individual leaves nothing behind for the next; at the case's value
-/// nothing changes. An effect of the job replaces the case's whole, its gene with it.
+/// Checks that a gene of an effect gives the same bits as its value written into the case, for every kind of
+/// job, and that no state is carried from one individual to the next. An effect of the job replaces that of
+/// the case entirely, including its gene.
 #[test]
 fn a_gene_of_an_effect_is_that_value_in_the_case() {
     let (stated, other) = (coarse(&[friction(1000.0)]), coarse(&[friction(1800.0)]));
@@ -123,8 +124,8 @@ fn a_gene_of_an_effect_is_that_value_in_the_case() {
     );
 }
 
-/// What cannot be simulated is refused by its field: before any individual where the interval to search
-/// is at fault, with the individual where its value is.
+/// Checks that an invalid gene is refused by field: before any individual if its bounds or unit are wrong,
+/// with the individual if its value is.
 #[test]
 fn a_gene_that_the_model_cannot_take_is_refused_by_field() {
     let refused = |failure: Failure| match failure {
@@ -182,7 +183,7 @@ fn a_gene_that_the_model_cannot_take_is_refused_by_field() {
     }
 }
 
-/// Jobs done one after the other, as a slot does them.
+/// Evaluator that runs jobs sequentially in this process, as a slot does.
 struct Here {
     prepared: Prepared,
     waiting: VecDeque<(JobId, Job)>,
@@ -233,8 +234,8 @@ fn calibrated(case: &Case, parts: Vec<Part>) -> Calibrated {
     runtime.unwrap().block_on(search).unwrap()
 }
 
-/// The record is that of a machine with another friction, and with a late load card where the case has
-/// none. A hundred individuals find both among all coefficients.
+/// Checks that fewer than 150 individuals recover the hidden friction and load-card delay of a synthetic
+/// record, among all coefficients.
 #[test]
 fn a_calibration_finds_the_sizes_of_effects() {
     let late = |time: f64| EffectSetting::new("card_time_shift", &[("time", time)]);

@@ -1,4 +1,4 @@
-//! Proofs on the real unit: the shipped case, converted as a worker does.
+//! Tests of the real unit: the shipped case, converted as a worker converts it.
 #![expect(clippy::unwrap_used, reason = "helpers of tests")]
 mod columns;
 mod effect;
@@ -26,12 +26,12 @@ fn case() -> Case {
     case::load(&folder(), &case::Overrides::default()).unwrap()
 }
 
-/// The same with its machine.
+/// Returns the shipped case together with its machine description.
 fn unit() -> PumpingUnit {
     PumpingUnit::of(case()).unwrap()
 }
 
-/// Recommended and Table 3's optimised coefficients.
+/// Returns the recommended coefficients and the optimised ones of Table 3, with names.
 fn individuals(case: &Case) -> [(&'static str, Vec<f64>); 2] {
     let optimised = folder().join("table3_optimised.toml");
     [
@@ -47,9 +47,10 @@ fn run(machine: &Machine, law: &RopeLaw, settings: &RunSettings) -> (RunResult, 
     (result, recorder)
 }
 
-/// Crank work is load work, losses and stored energy: to 1e-4 of it at the default setting of the case
-/// (measured: 4e-6 and 3e-5) and with the other Runge-Kutta method, to 2e-3 with the others, which damp by their own or
-/// sample the powers of a chattering contact only three times a step.
+/// Checks that the energy ledger (crank work = load work + losses + stored energy) closes over one
+/// revolution: to 1e-4 with the default settings of the case (measured: 4e-6 and 3e-5) and with the other
+/// Runge-Kutta method, to 2e-3 with the Rosenbrock method and to 1e-2 with the remaining methods. These have
+/// numerical damping, or sample the powers of a chattering contact only three times a step.
 #[test]
 fn energy_ledger_closes_over_one_revolution() {
     let unit = unit();
@@ -87,7 +88,8 @@ fn energy_ledger_closes_over_one_revolution() {
     }
 }
 
-/// A method with steps as stated, whatever the swing, and all the work it wants.
+/// Returns run settings with the given method, tolerance and longest step, without a swing limit on the step
+/// and without a work budget.
 fn stated(unit: &PumpingUnit, method: Method, tolerance: f64, longest_step: f64) -> RunSettings {
     RunSettings {
         method,
@@ -99,10 +101,10 @@ fn stated(unit: &PumpingUnit, method: Method, tolerance: f64, longest_step: f64)
     }
 }
 
-/// At a setting that resolves the ropes' own modes the ledger closes to 3e-4 of the crank's work with
-/// every method, and what Newton's method left of it goes with the tolerance, by half or more with each
-/// tenth of it, until rounding and quadrature are left: 5e-6. The Rosenbrock method has no such
-/// remainder: its 1e-5 to 3e-5 are what Simpson's rule makes of the powers, and go with the step.
+/// Checks that, with steps that resolve the ropes' own modes, the energy ledger closes to 3e-4 of the crank's
+/// work with every method, and that the defect is at least halved with each tenth of the Newton tolerance
+/// until it reaches the rounding and quadrature error, 5e-6. The Rosenbrock method has no Newton remainder:
+/// its 1e-5 to 3e-5 are the error of Simpson's rule for the powers and decrease with the step.
 #[test]
 fn energy_ledger_tightens_with_step_and_tolerance() {
     let unit = unit();
@@ -134,13 +136,13 @@ fn energy_ledger_tightens_with_step_and_tolerance() {
     }
 }
 
-/// The mechanism with inextensible ropes against the table of the case, which another program
+/// Checks the kinematics with inextensible ropes against the table of the case, which another program
 /// computed.
 ///
-/// The table has seven significant digits: beam angles to 5e-6 deg, and the pin angle of its first
-/// row, from which its exact turns of 0.5 deg are counted, to 5e-6 deg as well (later rows print the
-/// pin as 356.7800 for 356.77996, and are not used). The length from pin to anchor is given to 1 mm,
-/// and agrees to better than 1e-6 m: the program that made the table had the same 6.476 m.
+/// The table has seven significant digits: beam angles to 5e-6 deg, and the pin angle of its first row, from
+/// which its exact turns of 0.5 deg are counted, to 5e-6 deg as well (later rows print the pin as 356.7800
+/// for 356.77996, and are not used). The length from pin to anchor is given to 1 mm, and agrees to better
+/// than 1e-6 m: the program that made the table had the same 6.476 m.
 #[test]
 fn kinematics_agree_with_the_table_to_its_last_digit() {
     let unit = unit();
@@ -205,7 +207,8 @@ fn kinematics_agree_with_the_table_to_its_last_digit() {
     assert!(offset.abs() < 1e-5, "bottom dead centre {offset} deg");
 }
 
-/// In the symmetric unit nothing twists a rope, so torsional coefficients change no bit of a gauge.
+/// Checks that torsional coefficients change no bit of a gauge in the symmetric unit, where no load twists a
+/// rope.
 #[test]
 fn torsion_leaves_every_gauge_bit_alone() {
     let unit = unit();
@@ -227,8 +230,8 @@ fn torsion_leaves_every_gauge_bit_alone() {
     }
 }
 
-/// Every method gives the same gauges once its steps resolve the rope: to 0.1 % of their range with a
-/// method of fourth order and steps of 10 ms, to 1.5 % with one of second and steps of 4 ms.
+/// Checks that all integration methods give the same gauges if their steps resolve the rope: to 0.1 % of the
+/// range with fourth-order methods and steps of 10 ms, to 1.5 % with second-order methods and steps of 4 ms.
 #[test]
 fn gauges_do_not_depend_on_the_method() {
     let unit = unit();
@@ -259,7 +262,7 @@ fn gauges_do_not_depend_on_the_method() {
     }
 }
 
-/// Root mean square difference of two curves over the range of the second.
+/// Computes the root mean square difference of two curves divided by the range of the second.
 fn difference(a: &[f64], b: &[f64]) -> f64 {
     let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len() as f64;
     let square: Vec<f64> = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).collect();
@@ -268,7 +271,7 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
     mean(&square).sqrt() / (high - low)
 }
 
-/// A case with twice as many cylinders of half the length.
+/// Returns the unit with twice as many rope cylinders of half the length.
 fn halved(unit: &PumpingUnit) -> PumpingUnit {
     let mut fine = unit.clone();
     fine.machine.ropes.cylinder_length_m *= 0.5;
@@ -277,9 +280,9 @@ fn halved(unit: &PumpingUnit) -> PumpingUnit {
     fine
 }
 
-/// Cutting the rope into cylinders of 25 mm instead of 50 mm changes no gauge by more than
-/// 0.5 % of its range (measured: 0.25 % and 0.13 %): the same rope, its coefficients scaled with the
-/// length they stand for.
+/// Checks that dividing the rope into cylinders of 25 mm instead of 50 mm changes no gauge by more than 0.5 %
+/// of its range (measured: 0.25 % and 0.13 %). The rope stays the same, because its coefficients are scaled
+/// with the cylinder length.
 #[test]
 fn gauges_converge_with_shorter_cylinders() {
     let coarse = unit();
@@ -304,8 +307,8 @@ fn gauges_converge_with_shorter_cylinders() {
     }
 }
 
-/// The counters that the documentation states: steps, Newton iterations and factorisations of a default
-/// run. Cylinders of half the length change iterations by less than a tenth.
+/// Checks the documented counts of steps, Newton iterations and factorisations of a default run. Cylinders of
+/// half the length change the iterations by less than a tenth.
 #[test]
 fn a_default_run_costs_what_is_documented() {
     let unit = unit();

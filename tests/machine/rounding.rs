@@ -1,5 +1,5 @@
-//! What it means that a worker rounds the channels that a diagnosis works with: bytes saved, and by how
-//! much its numbers move, in units of the noise of the shipped records.
+//! Test of the rounding of channels that a worker returns for a diagnosis: the message size, and the rounding
+//! error in units of the noise of the shipped records.
 use super::folder;
 use case::{Overrides, load_with_notes};
 use discrepancy::laboratory::channels;
@@ -10,9 +10,9 @@ use protocol::case::EffectSetting;
 use protocol::job::{Answer, Individual, Job, Observation, Outcome, Reply, SimulateSpec};
 use worker::handler::Prepared;
 
-/// Orders that a diagnosis compares.
+/// Number of harmonic orders that a diagnosis compares.
 const ORDERS: usize = 120;
-/// What a message of six channels of 720 samples may take (bytes): 6,800 of them are a diagnosis.
+/// Upper limit of a message of six channels of 720 samples (bytes); in a diagnosis it has 6,800.
 const MOST_BYTES: usize = 7_000;
 
 fn done(prepared: &Prepared, individual: &Individual, reply: Reply) -> Answer {
@@ -20,7 +20,7 @@ fn done(prepared: &Prepared, individual: &Individual, reply: Reply) -> Answer {
     prepared.evaluate(&Job::Simulate(spec)).done().unwrap()
 }
 
-/// The channels as they travel, and as they were before.
+/// Returns the channels as transmitted (rounded) and as computed (exact).
 fn both(prepared: &Prepared, individual: &Individual) -> [Observation; 2] {
     let rounded = done(prepared, individual, Reply::Channels);
     let bytes = protocol::wire::encode(&Outcome::Done(rounded.clone())).unwrap();
@@ -37,9 +37,10 @@ fn both(prepared: &Prepared, individual: &Individual) -> [Observation; 2] {
     [rounded.into_channels().unwrap(), exact]
 }
 
-/// Whitened residuals move by less than three thousandths of a standard deviation each, and the whole
-/// change that a twentieth of a gene's decade or a friction makes by less than a twentieth of one:
-/// nothing that is sized or tested with them moves by more than that share of its own uncertainty.
+/// Checks that rounding moves each whitened residual by less than 3e-3 standard deviations, and moves the
+/// residual change caused by a twentieth of a decade of a gene, or by a friction, by less than 0.05 in norm.
+/// No estimate or test statistic computed from the channels moves by more than that share of its own
+/// uncertainty.
 #[test]
 fn rounded_channels_are_short_and_far_below_the_noise() {
     let loaded = load_with_notes(&folder(), &Overrides::default()).unwrap();

@@ -1,4 +1,5 @@
-//! The machine at rest at several crank angles: in equilibrium, and its gauges as statics have them.
+//! Tests of the machine at rest at several crank angles: equilibrium, and gauge readings compared with
+//! statics.
 use super::{individuals, unit};
 use case::pumping_unit::{QuasiStatic, wrapped_turn};
 use protocol::pumping_unit;
@@ -11,10 +12,10 @@ use simulation::{
 };
 use std::f64::consts::TAU;
 
-/// Crank angles before bottom dead centre \[rad\].
+/// Angles of the crank before bottom dead centre \[rad\].
 const TURNS: [f64; 6] = [0.4, 1.4, 2.4, 3.4, 4.4, 5.4];
 
-/// The machine at rest with its crank `turn` before bottom dead centre.
+/// Returns the machine settled at rest with its crank `turn` before bottom dead centre.
 fn at_rest<'a>(
     machine: &'a Machine,
     law: &RopeLaw,
@@ -31,11 +32,11 @@ fn at_rest<'a>(
     (system, State::at_rest(0.0, q))
 }
 
-/// Mode acceleration is exact statics: with the machine at rest, whatever six modes miss, the gauges
-/// read the influence lines of a rope that wraps the arc under the tension that it has there, and the
-/// head's own weight. The chain presses with its cylinders and lifts off gradually, and sinks into the
-/// recommended contact by what 2.6 % of the largest reading show; into the optimised one, or one a
-/// hundred times the recommended, by less than 1 %.
+/// Checks that gauge readings at rest agree with exact statics, which the mode acceleration method reproduces
+/// despite the truncation to six modes: the influence lines of a rope that wraps the arc under the tension at
+/// rest, plus the weight of the head. The discrete chain presses with its cylinders, lifts off gradually, and
+/// sinks into the contact: with the recommended contact this changes readings by 2.6 % of the largest, with
+/// the optimised one or one a hundred times the recommended by less than 1 %.
 #[test]
 fn gauges_at_rest_read_exact_statics() {
     let unit = unit();
@@ -69,8 +70,8 @@ fn gauges_at_rest_read_exact_statics() {
     }
 }
 
-/// What gauges read of a rope under the tension that the machine at rest has, and of the head's weight
-/// \[MPa\].
+/// Computes the exact gauge stress for a rope with the tension of the machine at rest, plus the weight of the
+/// head \[MPa\].
 fn exact_statics(
     own: &pumping_unit::Machine,
     machine: &Machine,
@@ -96,8 +97,8 @@ fn exact_statics(
     std::array::from_fn(|gauge| rope[gauge][0] + g * (s * x[gauge] + c * y[gauge]))
 }
 
-/// A run starts from equilibrium: nothing accelerates there, and the beam a tenth of a milliradian
-/// beside it does, by tens of rad/s2.
+/// Checks that a run starts from equilibrium: the beam does not accelerate there, but does by tens of rad/s2
+/// when displaced by a tenth of a milliradian.
 #[test]
 fn a_run_starts_at_rest() {
     let unit = unit();

@@ -1,4 +1,5 @@
-//! Twin ropes on the real unit, with the head's tables for a pair that the case is delivered with.
+//! Tests of twin ropes on the real unit, with the head's influence tables for a rope pair that are shipped
+//! with the case.
 use crate::{folder, individuals};
 use protocol::pumping_unit::PumpingUnit;
 use simulation::model::description::RopeLaw;
@@ -7,7 +8,8 @@ use simulation::run::{RunResult, simulate};
 use simulation::verdict::Verdict;
 use std::{fs, os::unix::fs::symlink};
 
-/// The shipped case with twin ropes at `z = +-0.12 m`, those at -z longer by so much \[mm\].
+/// Returns the shipped case with twin ropes at `z = +-0.12 m`, of which those at -z are longer by the given
+/// lengths \[mm\].
 fn twins(back_mm: f64, front_mm: f64) -> PumpingUnit {
     let scratch = tempfile::tempdir().unwrap();
     for name in ["back_head", "measured"] {
@@ -41,7 +43,8 @@ fn twisted(law: &RopeLaw, stiffer: f64, damped: f64) -> RopeLaw {
     other
 }
 
-/// Largest difference of a gauge of two runs over its range in the second, of all gauges.
+/// Computes the largest difference between the gauges of two runs, relative to the range of the gauge in the
+/// second run.
 fn apart(a: &Curves, b: &Curves) -> f64 {
     let each = a.gauge.iter().zip(&b.gauge).map(|(a, b)| {
         let low = b.iter().copied().fold(f64::MAX, f64::min);
@@ -56,8 +59,9 @@ fn mean(curve: &[f64]) -> f64 {
     curve.iter().sum::<f64>() / curve.len() as f64
 }
 
-/// Twins of equal length, in space and with the modes of both families, give the gauges of the single
-/// rope in its plane, whatever their torsion: to 1e-9 of the range (measured: 4e-11), step by step.
+/// Checks that twins of equal length, simulated in space with the modes of both families, give the gauges of
+/// the single rope in its plane for any torsional coefficients: to 1e-9 of the range (measured: 4e-11), with
+/// the same steps.
 #[test]
 fn equal_twins_are_the_single_rope_whatever_their_torsion() {
     let single = crate::unit();
@@ -75,8 +79,8 @@ fn equal_twins_are_the_single_rope_whatever_their_torsion() {
     }
 }
 
-/// A rope that is 1 mm shorter carries `dL EA / (2 L)` more where the contact is stiff, and less than
-/// that where it yields (measured: 0.98 and 0.75 of it). The energy ledger closes.
+/// Checks that a rope that is 1 mm shorter carries `dL EA / (2 L)` more where the contact is stiff, and less
+/// than that where the contact yields (measured: 0.98 and 0.75 of it), and that the energy ledger closes.
 #[test]
 fn unequal_twins_share_the_load_and_the_ledger_closes() {
     let single = crate::unit();
@@ -103,8 +107,8 @@ fn unequal_twins_share_the_load_and_the_ledger_closes() {
     }
 }
 
-/// Two gauges opposite each other on the two cheeks part, one up and one down by as much: gauge 2 is
-/// put where the mirror image of gauge 1 lies.
+/// Checks that unequal twins change two opposite gauges on the two cheeks by equal amounts with opposite
+/// signs. Gauge 2 is moved to the mirror image of gauge 1.
 #[test]
 fn gauges_on_the_two_cheeks_part_with_opposite_signs() {
     let mirrored = |back_mm: f64| {
@@ -151,9 +155,9 @@ fn gauges_on_the_two_cheeks_part_with_opposite_signs() {
     }
 }
 
-/// With unequal twins torsion reaches the gauges, and hardly: four decades of `K_44` change one by 1e-5
-/// MPa (3e-7 of its range; two runs that differ in nothing but rounding, by 1e-11), four of `C_44`, with
-/// ropes that sink into a soft contact, by 0.04 MPa.
+/// Checks that torsion of unequal twins reaches the gauges only weakly: four decades of `K_44` change a gauge
+/// by 1e-5 MPa (3e-7 of its range; runs that differ only in rounding differ by 1e-11), four decades of
+/// `C_44`, with ropes that sink into a soft contact, by 0.04 MPa.
 #[test]
 fn torsion_of_unequal_twins_reaches_the_gauges() {
     let unit = twins(1.0, 0.0);

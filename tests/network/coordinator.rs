@@ -1,9 +1,9 @@
-//! A coordinator for the network suite: does jobs for workers with certificates, and writes down
-//! what changes, and when.
+//! Coordinator program for the network suite: runs jobs on workers with certificates, and prints each change
+//! of its state with the time.
 //!
-//! `test-network-coordinator RUN_DIR LOCATOR KEYS JOBS DELAY_MS`; each line is
-//! `MS workers N done N lost N repeated N duplicates N`, the last one begins with `end`. Exits with
-//! an error if a result is not the one that the job has anywhere else.
+//! `test-network-coordinator RUN_DIR LOCATOR KEYS JOBS DELAY_MS`; each line is `MS workers N done N lost N
+//! repeated N duplicates N`, the last one begins with `end`. Exits with an error if a job has an unexpected
+//! result.
 use dispatch::runtime::{Dispatch, DispatchOptions, Snapshot};
 use protocol::id::JobId;
 use std::{
@@ -15,7 +15,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How often the state is looked at.
+/// Interval at which the state is sampled.
 const LOOK: Duration = Duration::from_millis(50);
 
 #[tokio::main]

@@ -1,6 +1,7 @@
-//! Real networks between namespaces of this machine: bad ones, cut ones, and a busy machine.
+//! Tests over real networks between namespaces of this machine: unreliable and interrupted links, and a
+//! machine with overloaded processors.
 //!
-//! Needs Linux, root and iproute2; says so and passes where they are missing.
+//! Needs Linux, root and iproute2; skipped with a message where these are missing.
 #![expect(
     clippy::unwrap_used,
     clippy::panic,
@@ -23,16 +24,17 @@ use tests::{
 };
 
 const LIMIT: Duration = Duration::from_mins(1);
-/// Where the coordinator listens, and where the bad stretch before it does.
+/// UDP port of the coordinator. `BAD_PORT` is the port of the unreliable relay in front of it.
 const PORT: u16 = 7447;
 const BAD_PORT: u16 = 7448;
-/// How long a worker may be silent before it counts as lost \[ms\].
+/// Silence after which a worker counts as lost \[ms\].
 const SILENCE_MS: u64 = 4000;
 
-/// The one that makes the machine busy runs alone; the others wait more than they compute.
+/// Lock that lets the test that overloads the machine run alone (write lock); the other tests, which mostly
+/// wait, hold it shared.
 static BUSY: RwLock<()> = RwLock::new(());
 
-/// A coordinator on the head, with its key material.
+/// Coordinator on the head, with its output, namespaces and key material.
 struct Stage {
     // the processes end before what they stand on
     coordinator: Process,
@@ -41,7 +43,7 @@ struct Stage {
     folder: tempfile::TempDir,
 }
 
-/// One line of the coordinator.
+/// State of the run as printed in one line of the coordinator.
 #[derive(Clone, Copy, Debug)]
 struct State {
     ms: u64,
@@ -71,7 +73,8 @@ impl State {
 }
 
 impl Stage {
-    /// Sets up, unless this machine has no namespaces.
+    /// Starts a coordinator on the head with this number of jobs; returns `None` if the machine supports no
+    /// namespaces.
     fn set(jobs: u64, delay_ms: u64) -> Option<Self> {
         worker_program();
         let namespaces = Namespaces::make()?;
@@ -97,7 +100,7 @@ impl Stage {
         self.folder.path().join("keys").join(name)
     }
 
-    /// Starts a worker on the node.
+    /// Starts a worker on the node, which dials the given port of the head.
     fn worker(&self, name: &str, port: u16, slots: u32) -> Process {
         let mut command = self.namespaces.on_node(&worker_program());
         command.args(["--connect", &format!("quic/{HEAD}:{port}")]);
@@ -106,7 +109,8 @@ impl Stage {
         Process::logged(command, &self.folder.path().join(format!("{name}.log")))
     }
 
-    /// Waits for a state of the run; the clock of the test runs on.
+    /// Reads lines of the coordinator until a state satisfies `is`; panics after a minute or at the end of
+    /// the run.
     fn until(&mut self, what: &str, is: impl Fn(&State) -> bool) -> State {
         let begun = Instant::now();
         loop {
@@ -125,7 +129,7 @@ impl Stage {
         }
     }
 
-    /// Waits for the last word.
+    /// Reads lines until the final state, and waits for the coordinator to exit with code 0.
     fn end(mut self) -> State {
         let begun = Instant::now();
         loop {
@@ -143,7 +147,8 @@ impl Stage {
     }
 }
 
-/// For how long the threads of a process were ready to run and did not, over how long they ran.
+/// Returns the time that the threads of a process spent runnable but waiting for a processor, divided by the
+/// time that they ran.
 fn kept_waiting(process: Pid) -> f64 {
     let threads = fs::read_dir(format!("/proc/{}/task", process.as_raw_nonzero())).unwrap();
     let (mut ran, mut waited) = (0.0, 0.0);
@@ -159,12 +164,13 @@ fn kept_waiting(process: Pid) -> f64 {
     waited / ran
 }
 
-/// Held by whoever needs the machine as it is.
+/// Acquires the shared lock of a test that needs a machine without artificial load.
 fn calm() -> RwLockReadGuard<'static, ()> {
     BUSY.read().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A fifth of all datagrams lost, a fifth doubled, all in disorder, both ways: the same results.
+/// Checks that results are the same over a network that, in both directions, loses a fifth of all datagrams,
+/// duplicates a fifth and reorders them.
 #[test]
 fn a_network_that_loses_doubles_and_reorders_changes_nothing() {
     let _calm = calm();
@@ -198,7 +204,8 @@ fn a_network_that_loses_doubles_and_reorders_changes_nothing() {
     );
 }
 
-/// The cable of one worker is pulled while it computes, and put back after eight seconds.
+/// Checks that jobs of a worker whose cable is unplugged for eight seconds during a computation are
+/// dispatched again, and that the worker rejoins.
 #[test]
 fn a_worker_that_was_cut_off_is_replaced_and_comes_back() {
     let _calm = calm();
@@ -245,8 +252,8 @@ fn a_worker_that_was_cut_off_is_replaced_and_comes_back() {
     drop((cut_off, stays));
 }
 
-/// Over QUIC nothing tells of the end of a process: one that is killed is as silent as one that is
-/// frozen.
+/// Checks that jobs of a killed and of a frozen worker are dispatched again within six seconds. QUIC does not
+/// report the end of a process, so that both are noticed only by missing heartbeats.
 #[test]
 fn workers_that_are_killed_and_frozen_over_quic_are_replaced_within_six_seconds() {
     let _calm = calm();
@@ -282,8 +289,8 @@ fn workers_that_are_killed_and_frozen_over_quic_are_replaced_within_six_seconds(
     drop((victims, stays));
 }
 
-/// Four busy programs for every core: slow, but nobody is taken for lost, for much longer than anyone
-/// may be silent.
+/// Checks that workers on a machine with four busy programs per core are slow but not declared lost, over
+/// more than twice the time after which a silent worker counts as lost.
 #[test]
 fn nobody_is_taken_for_lost_on_a_busy_machine() {
     let _alone = BUSY.write().unwrap_or_else(PoisonError::into_inner);

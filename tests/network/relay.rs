@@ -1,8 +1,10 @@
-//! A bad stretch of network: passes datagrams on, but loses, doubles, delays and reorders them.
+//! Relay program that simulates an unreliable network: forwards datagrams, but loses, duplicates, delays and
+//! reorders them.
 //!
-//! `test-relay LISTEN TARGET SEED LOSS DUPLICATION DELAY_MS`: shares from 0 to 1, both ways. (The
-//! kernel's own netem does the same, but is not in every kernel.) Each datagram waits a time of its
-//! own, so they overtake each other. Now and then a line says how many were lost and doubled.
+//! `test-relay LISTEN TARGET SEED LOSS DUPLICATION DELAY_MS`: loss and duplication are shares from 0 to 1 and
+//! apply in both directions. (The kernel's netem does the same, but is not in every kernel.) Each datagram
+//! gets its own random delay, so that datagrams overtake each other. Every hundred datagrams a line reports
+//! how many were lost and duplicated.
 use protocol::id::draw;
 use std::{
     collections::BTreeMap,
@@ -18,12 +20,12 @@ use std::{
 };
 use tokio::net::UdpSocket;
 
-/// Datagrams between two lines.
+/// Number of datagrams between two lines of output.
 const TOLD: u64 = 100;
-/// Longest datagram there can be.
+/// Longest possible datagram (bytes).
 const LONGEST: usize = 65_535;
 
-/// How the stretch misbehaves.
+/// Probabilities of loss and duplication, largest delay, and counters of the relay.
 #[derive(Clone, Debug)]
 struct Weather {
     seed: String,
@@ -36,13 +38,13 @@ struct Weather {
 }
 
 impl Weather {
-    /// A uniform number in [0, 1).
+    /// Draws a uniform number in [0, 1).
     fn draw(&self) -> f64 {
         let count = self.drawn.fetch_add(1, Ordering::Relaxed);
         (draw(&self.seed, count.into()) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// When the copies of a datagram go on; none if it is lost.
+    /// Draws the delays after which the copies of a datagram are forwarded; empty if the datagram is lost.
     fn fate(&self) -> Vec<Duration> {
         if self.draw() < self.loss {
             self.lost.fetch_add(1, Ordering::Relaxed);
@@ -56,7 +58,7 @@ impl Weather {
     }
 }
 
-/// Passes one datagram on as often and as late as the weather says.
+/// Forwards the copies of one datagram after their random delays.
 fn pass(weather: &Weather, socket: &Arc<UdpSocket>, to: SocketAddr, datagram: &[u8]) {
     for delay in weather.fate() {
         let (socket, datagram) = (Arc::clone(socket), datagram.to_vec());
@@ -68,7 +70,7 @@ fn pass(weather: &Weather, socket: &Arc<UdpSocket>, to: SocketAddr, datagram: &[
     }
 }
 
-/// Brings back what the target answers to one client, until that cannot be heard any more.
+/// Forwards the target's answers to one client until the socket fails.
 async fn answer(
     weather: Weather,
     inner: Arc<UdpSocket>,

@@ -1,7 +1,7 @@
-//! Four hosts with a real sshd each, in namespaces of this machine: behind a cable, with their own
-//! processes, host name and an empty home.
+//! Tests on four hosts with a real sshd each, in namespaces of this machine: connected by a virtual cable,
+//! with their own processes, host name and an empty home.
 //!
-//! Needs Linux, root, iproute2 and openssh-server; says so and passes where they are missing.
+//! Needs Linux, root, iproute2 and openssh-server; skipped with a message where these are missing.
 use super::*;
 use std::{
     io::{BufRead, BufReader},
@@ -16,15 +16,15 @@ use tests::{
 
 const LIMIT: Duration = Duration::from_mins(1);
 const SSHD: &str = "/usr/sbin/sshd";
-/// The coordinator's port, and those of the hosts.
+/// Port of the coordinator. `HOSTS` are the sshd ports of the hosts.
 const PORT: u16 = 7447;
 const HOSTS: [u16; 4] = [2201, 2202, 2203, 2204];
-/// Jobs, and how long each takes \[ms\]: some 25 s for eight slots.
+/// Number of jobs. With `DELAY_MS` per job, the run takes some 25 s on eight slots.
 const JOBS: &str = "1000";
 const DELAY_MS: &str = "200";
 
-/// A head and a node, and a site whose ssh reaches the hosts on it; none, after [`tests::skip`], where this machine
-/// cannot have them.
+/// Creates a head and a node, and a site whose ssh reaches hosts on the node; returns `None` after
+/// [`tests::skip`] where this machine does not allow them.
 pub(super) fn network() -> Option<(Namespaces, Site)> {
     if !Path::new(SSHD).exists() {
         tests::skip("openssh-server is not installed");
@@ -36,7 +36,7 @@ pub(super) fn network() -> Option<(Namespaces, Site)> {
     Some((namespaces, site))
 }
 
-/// Keys and configuration of the servers and of their client.
+/// Writes the keys and configuration of the SSH servers and of their client.
 fn configure(site: &Site) {
     let path = |name: &str| site.path(name).display().to_string();
     for key in ["host_key", "user_key"] {
@@ -67,7 +67,7 @@ fn configure(site: &Site) {
     fs::create_dir_all("/run/sshd").unwrap();
 }
 
-/// A host: sshd in namespaces of its own.
+/// Starts a host: sshd in its own host name, mount and process namespaces.
 pub(super) fn host(site: &Site, namespaces: &Namespaces, port: u16) -> Process {
     let script = format!(
         "hostname node{port} && mount -t tmpfs -o size=200m none /root && \
@@ -90,7 +90,7 @@ pub(super) fn host(site: &Site, namespaces: &Namespaces, port: u16) -> Process {
     Process::logged(command, &site.path(&format!("sshd{port}.log")))
 }
 
-/// A command of horsehead on the head.
+/// Runs a `horsehead` command on the head.
 pub(super) fn on_head(site: &Site, namespaces: &Namespaces, words: &[&str]) -> Output {
     let mut command = namespaces.on_head(&coordinator_program());
     let path = std::env::var("PATH").unwrap();
@@ -108,7 +108,7 @@ fn workers(site: &Site, namespaces: &Namespaces) -> Vec<Value> {
     object["workers"].as_array().cloned().unwrap_or_default()
 }
 
-/// Looks until the workers are as wanted.
+/// Polls the list of workers until `is` holds.
 fn until(site: &Site, namespaces: &Namespaces, what: &str, is: impl Fn(&[Value]) -> bool) {
     let begun = Instant::now();
     loop {

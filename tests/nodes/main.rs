@@ -1,7 +1,7 @@
-//! Workers on other nodes: brought up, listed, drained, thrown out and ended, with real processes.
+//! Tests of workers on other hosts: launched, listed, drained, expelled and stopped, with real processes.
 //!
-//! A program stands for `ssh`: it runs what it is given in a home of the host's own, on this machine. All
-//! else is real: the command line, the copy, the keys, the worker, QUIC.
+//! A script replaces `ssh`: it runs the given command on this machine with a separate home folder for each
+//! host. Command line, copying, keys, worker and QUIC are real.
 #![expect(
     clippy::unwrap_used,
     reason = "helpers of a test suite: to panic is to fail the test"
@@ -21,8 +21,8 @@ use std::{
 };
 use tests::process::{coordinator_program, free_quic_locator};
 
-/// What stands for ssh. By name some hosts refuse as the real one does, have an old C library or a
-/// full disk.
+/// Shell script that replaces ssh. Depending on the host name, it fails with a message of the real ssh, or
+/// simulates an old C library, another processor or a full disk.
 const SSH: &str = r#"#!/bin/sh
 while :; do
   case "$1" in
@@ -58,7 +58,7 @@ esac
 HOME=$home exec sh -c "$2"
 "#;
 
-/// Key material, homes of hosts, and a program that stands for ssh.
+/// Test folder with key material, home folders of hosts, and a script that replaces ssh.
 struct Site {
     folder: tempfile::TempDir,
     locator: String,
@@ -69,7 +69,7 @@ impl Site {
         Self::with_host(workers, "127.0.0.1")
     }
 
-    /// The same for a coordinator that workers dial at another address.
+    /// Creates a site whose coordinator certificate is valid for the given host.
     fn with_host(workers: u32, host: &str) -> Self {
         let site = Self {
             folder: tempfile::tempdir().unwrap(),
@@ -97,14 +97,14 @@ impl Site {
         self.folder.path().join(name)
     }
 
-    /// The program of the coordinator.
+    /// Returns a command that runs the coordinator with these arguments.
     fn command(&self, words: &[&str]) -> Command {
         let mut command = self.program(coordinator_program());
         command.args(words);
         command
     }
 
-    /// A program, with what stands for ssh before the real one.
+    /// Returns a command that runs a program with the ssh replacement first in `PATH`.
     fn program(&self, program: impl AsRef<std::ffi::OsStr>) -> Command {
         let mut command = Command::new(program);
         let path = std::env::var("PATH").unwrap();
@@ -120,13 +120,13 @@ impl Site {
         self.command(words).output().unwrap()
     }
 
-    /// `workers up` with this site's coordinator and keys.
+    /// Runs `workers up` with this site's coordinator and keys.
     fn up(&self, words: &[&str]) -> Output {
         let common = ["workers", "up", "--connect", &self.locator, "--tls", "keys"];
         self.horsehead(&[&common, words].concat())
     }
 
-    /// What `workers list` says of everybody.
+    /// Returns the workers that `workers list` prints.
     fn list(&self) -> Vec<Value> {
         let listed = self.horsehead(&["workers", "list", "--run", "run", "--output", "json"]);
         assert!(listed.status.success(), "{}", errors(&listed));
@@ -134,7 +134,7 @@ impl Site {
         object["workers"].as_array().unwrap().clone()
     }
 
-    /// The folder of a worker on a host.
+    /// Returns the folder of a worker on a host.
     fn at(&self, host: &str, name: &str) -> PathBuf {
         let entries = fs::read_dir(self.path(&format!("homes/{host}/.cache/horsehead")));
         let mut folders = entries.unwrap().flatten().map(|entry| entry.path());
@@ -145,7 +145,7 @@ impl Site {
         folders.find(is).unwrap()
     }
 
-    /// Number of a worker's process on a host.
+    /// Returns the process id of a worker on a host.
     fn process(&self, host: &str, name: &str) -> String {
         fs::read_to_string(self.at(host, name).join("process"))
             .unwrap()
@@ -154,7 +154,7 @@ impl Site {
     }
 }
 
-/// Nothing that was started may outlive a test.
+/// Stops all workers that the test started.
 impl Drop for Site {
     fn drop(&mut self) {
         let hosts = fs::read_dir(self.path("homes")).into_iter().flatten();

@@ -1,10 +1,10 @@
-//! Plans as they are printed: complete, made without asking anybody, and right in the eyes of those who
-//! check such things, where they are installed.
+//! Tests of launch plans as printed by `--dry-run`: they are complete, made without contacting a host, and
+//! accepted by linters where these are installed.
 use super::*;
 use launch::Program;
 use std::process::Stdio;
 
-/// All files of a folder, with their contents.
+/// Returns all files of a folder, recursively, with their contents.
 fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut all = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -20,7 +20,7 @@ fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     all
 }
 
-/// What a plan prints, with no other program in reach.
+/// Returns the plan that `workers up --dry-run` prints with an empty `PATH`.
 fn printed(site: &Site, words: &[&str]) -> String {
     let common = [
         "workers",
@@ -41,13 +41,13 @@ fn printed(site: &Site, words: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The text between the first line that ends with `from` and the mark behind it.
+/// Returns the here-document that follows the first `from` in a script.
 fn read_by<'a>(script: &'a str, from: &str) -> &'a str {
     let (_, text) = script.split_once(from).unwrap();
     text.split("HORSEHEAD_END\n").next().unwrap()
 }
 
-/// Has a program check a file; says so where it is missing.
+/// Runs a linter on a file and asserts success; skips the check where the linter is not installed.
 fn checked(program: &str, words: &[&str], file: &Path) {
     let output = Command::new(program)
         .args(words)
@@ -139,7 +139,7 @@ fn plans_are_printed_without_anybody_in_reach_and_nothing_is_written() {
     assert_eq!(coordinator["to"][0]["ipBlock"]["cidr"], "127.0.0.1/32");
 }
 
-/// What is printed is what is done.
+/// Checks that running a printed plan starts the same worker as the launch itself.
 #[test]
 fn a_printed_plan_does_what_a_launch_does() {
     let site = Site::new(1);
@@ -159,7 +159,7 @@ fn a_printed_plan_does_what_a_launch_does() {
     assert_eq!(site.process("a", "worker-01"), process);
 }
 
-/// What `deploy/` has for those who launch by hand.
+/// Checks the scripts and manifests in `deploy/`, which are meant for launching by hand, with linters.
 #[test]
 fn the_files_of_deploy_pass_those_who_check_such_things() {
     let deploy = Path::new(env!("CARGO_MANIFEST_DIR")).join("../deploy");
@@ -181,7 +181,8 @@ fn the_files_of_deploy_pass_those_who_check_such_things() {
     checked("systemd-analyze", &["verify", "--man=no"], &unit);
 }
 
-/// `deploy/portable.sh` keeps its word, where it has been run.
+/// Checks that workers built by `deploy/portable.sh` need no newer glibc than 2.28, if the script has been
+/// run.
 #[test]
 fn a_portable_worker_needs_no_newer_library_than_it_says() {
     let made = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/portable");

@@ -1,4 +1,5 @@
-//! Hosts on which no worker can be started: one line each, with the host, the step and the remedy.
+//! Tests of hosts on which no worker can be started: each gives one line with the host, the failed step and
+//! the remedy.
 use super::*;
 
 #[test]

@@ -1,4 +1,5 @@
-//! A run that launched its own workers, killed and started again by the same command, over a real sshd.
+//! Test of a run that launched its own workers over a real sshd, was killed, and is resumed by the same
+//! command.
 use super::{
     machines::{host, network, on_head},
     *,
@@ -16,7 +17,7 @@ use tests::{
 const LIMIT: Duration = Duration::from_mins(1);
 const PORTS: [u16; 2] = [2201, 2202];
 
-/// The shipped case with long cylinders: a simulation takes some 25 ms.
+/// Writes the shipped case with long cylinders, so that a simulation takes some 25 ms.
 fn make_case(site: &Site) {
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
     let mut copy = Command::new("cp");
@@ -36,14 +37,14 @@ fn make_case(site: &Site) {
     fs::write(file, long).unwrap();
 }
 
-/// Digest of the evaluation log that a calibration printed.
+/// Returns the digest of the evaluation log that a calibration printed.
 fn digest(output: &Output) -> String {
     assert!(output.status.success(), "{}", errors(output));
     let object: Value = serde_json::from_slice(&output.stdout).unwrap();
     object["log_digest"].as_str().unwrap().to_owned()
 }
 
-/// What a host says.
+/// Runs a script on a host by ssh and returns its output.
 fn on_host(site: &Site, namespaces: &Namespaces, port: u16, script: &str) -> String {
     let mut command = namespaces.on_head(&site.path("bin/ssh"));
     command.args(["-p", &port.to_string(), &format!("root@{NODE}"), script]);
@@ -51,7 +52,7 @@ fn on_host(site: &Site, namespaces: &Namespaces, port: u16, script: &str) -> Str
     String::from_utf8_lossy(&output.stdout).trim().to_owned()
 }
 
-/// Processes of workers on a host, in order.
+/// Returns the process ids of workers on a host.
 fn processes(site: &Site, namespaces: &Namespaces, port: u16) -> Vec<String> {
     // slots are children of the same program
     let script = "for process in /proc/[0-9]*; do \

@@ -1,13 +1,13 @@
-//! The life of workers on a run that goes on.
+//! Test of launching, draining, expelling and stopping workers during a run.
 use super::*;
 use dispatch::runtime::{Dispatch, DispatchOptions};
 use protocol::id::JobId;
 use std::time::{Duration, Instant};
 
-/// Longest wait for anything that must happen.
+/// Longest wait for an expected event.
 const LIMIT: Duration = Duration::from_secs(40);
 
-/// A run that listens, with jobs that take long enough to be seen.
+/// Opens a run that accepts remote workers, with jobs that each take `delay_ms`.
 async fn open(site: &Site, jobs: u64, delay_ms: u32) -> Dispatch {
     let options = DispatchOptions {
         pause_limit: dispatch::runtime::PAUSE_LIMIT,
@@ -21,7 +21,7 @@ async fn open(site: &Site, jobs: u64, delay_ms: u32) -> Dispatch {
     run
 }
 
-/// Looks at the workers until they are as wanted; how long that took.
+/// Polls the list of workers until `is` holds; returns the time taken.
 async fn until(site: &Site, what: &str, is: impl Fn(&[Value]) -> bool) -> Duration {
     let begun = Instant::now();
     loop {

@@ -1,4 +1,4 @@
-//! What a certificate may do once it is in: a raw client tries everything else.
+//! Tests of access control for connected certificates: a raw client attempts everything that is not allowed.
 use super::LIMIT;
 use link::{
     Blob, CoordinatorEnd, Heard,
@@ -36,9 +36,9 @@ async fn coordinator(locator: &str, keys: &Path) -> ZenohCoordinator {
     ZenohCoordinator::open(options).await.unwrap()
 }
 
-/// A coordinator, and two raw sessions with certificates and names of their own.
+/// Coordinator, and two raw sessions with their own certificates and worker names.
 struct Pair {
-    /// Keys of all three, there as long as they are.
+    /// Folder of the key material, kept until the test ends.
     folder: TempDir,
     end: ZenohCoordinator,
     one: Session,
@@ -73,7 +73,8 @@ async fn put(session: &Session, key: String, payload: &str) {
     session.put(key, payload).await.unwrap();
 }
 
-/// Speaks until the coordinator has heard it: what is said at the very first may be lost.
+/// Publishes repeatedly until the coordinator has received a message, as messages published directly after
+/// the connection may be lost.
 async fn arrive(end: &mut ZenohCoordinator, session: &Session, name: &WorkerName) {
     let speak = async {
         loop {
@@ -92,7 +93,7 @@ async fn arrive(end: &mut ZenohCoordinator, session: &Session, name: &WorkerName
     heard.await.unwrap();
 }
 
-/// Everything heard until `last` arrives, but those who arrived before.
+/// Returns everything that the coordinator receives up to the frame `last`, except frames of [`arrive`].
 async fn heard_until(end: &mut ZenohCoordinator, last: &[u8]) -> Vec<Heard> {
     let mut heard = Vec::new();
     loop {
@@ -151,7 +152,7 @@ async fn a_certificate_speaks_for_nobody_else() {
     end.close().await;
 }
 
-/// Listens to a pattern of keys and keeps what arrives.
+/// Subscribes to a key pattern and collects the received payloads.
 fn listen(session: &Session, pattern: String) -> Arc<Mutex<Vec<Vec<u8>>>> {
     let heard: Arc<Mutex<Vec<Vec<u8>>>> = Arc::default();
     let to = Arc::clone(&heard);

@@ -1,4 +1,5 @@
-//! Who gets in: with the right certificate everybody, with a wrong one nobody, and both ends say why.
+//! Tests of admission: workers with valid certificates are admitted, others are refused, and both ends report
+//! the reason.
 use super::{LIMIT, compute, options, worker};
 use dispatch::runtime::{Dispatch, DispatchError};
 use link::keys::authority::{Authority, Validity};
@@ -17,10 +18,12 @@ use tests::{
     },
 };
 
-/// What is told at the first attempt, and not after the many that a worker makes where nobody answers.
+/// Time within which a refusal must be reported: at the first attempt, not after the many retries of a worker
+/// that gets no answer.
 const AT_ONCE: Duration = Duration::from_secs(15);
 
-/// Two processes with one certificate, one with another, and a local one without any.
+/// Checks that a run is computed by two workers with the same certificate, one with another, and a local
+/// worker without a certificate.
 #[tokio::test(flavor = "multi_thread")]
 async fn a_run_is_done_by_workers_with_certificates() {
     let folder = tempfile::tempdir().unwrap();
@@ -47,7 +50,7 @@ async fn a_run_is_done_by_workers_with_certificates() {
     drop(workers);
 }
 
-/// Starts a worker that must be refused; its exit status, its words and how long it took.
+/// Starts a worker that must be refused; returns its exit code, its log and the time taken.
 fn refused(folder: &Path, locator: &str, tls: Option<&Path>) -> (Option<i32>, String, Duration) {
     let log = folder.join("worker.log");
     let command = worker(locator, tls.map(Path::to_owned), &["--slots", "1"]);
@@ -113,7 +116,7 @@ async fn a_wrong_certificate_is_refused_within_a_second_with_the_reason() {
     dispatch.close().await.unwrap();
 }
 
-/// A coordinator that is not the one that was dialled is not trusted.
+/// Checks that a worker does not trust a coordinator whose certificate is not for the dialled host.
 #[tokio::test(flavor = "multi_thread")]
 async fn a_coordinator_of_another_name_is_not_trusted() {
     let folder = tempfile::tempdir().unwrap();
@@ -139,7 +142,8 @@ async fn a_coordinator_of_another_name_is_not_trusted() {
     dispatch.close().await.unwrap();
 }
 
-/// The coordinator program says who was turned away and why, to whoever dials without our worker.
+/// Checks that the coordinator logs why it refuses a raw client, and that no private key appears in its log,
+/// arguments or run folder.
 #[tokio::test(flavor = "multi_thread")]
 async fn the_coordinator_says_why_it_refuses_a_connection() {
     let folder = tempfile::tempdir().unwrap();
@@ -204,7 +208,7 @@ async fn the_coordinator_says_why_it_refuses_a_connection() {
     }
 }
 
-/// Nobody is let in unencrypted from outside by accident.
+/// Checks that a coordinator without certificates listens on loopback only.
 #[tokio::test(flavor = "multi_thread")]
 async fn only_loopback_is_listened_on_without_certificates() {
     let folder = tempfile::tempdir().unwrap();
@@ -223,7 +227,7 @@ async fn only_loopback_is_listened_on_without_certificates() {
     }
 }
 
-/// What keeps a worker out for now is said, and tried again.
+/// Checks that a worker that cannot connect logs the reason and tries again.
 #[test]
 fn a_worker_says_what_keeps_it_from_its_coordinator() {
     let folder = tempfile::tempdir().unwrap();
@@ -250,7 +254,8 @@ fn a_worker_says_what_keeps_it_from_its_coordinator() {
     }
 }
 
-/// What a worker shows of itself at its most talkative, to whoever may read logs and process lists.
+/// Checks that a worker's private key appears neither in its debug log nor in the arguments and environment
+/// of its processes.
 #[tokio::test(flavor = "multi_thread")]
 async fn a_worker_keeps_its_key_to_itself() {
     let folder = tempfile::tempdir().unwrap();

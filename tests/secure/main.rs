@@ -1,4 +1,4 @@
-//! Certificates and access control over QUIC, on loopback, with real processes.
+//! Tests of certificates and access control over QUIC, on loopback, with real processes.
 #![expect(
     clippy::unwrap_used,
     reason = "helpers of a test suite: to panic is to fail the test"
@@ -18,7 +18,7 @@ use tests::process::worker_program;
 
 const LIMIT: Duration = Duration::from_mins(1);
 
-/// Options of a run that listens with key material.
+/// Returns options of a run that listens with the given key material.
 fn options(run_dir: &Path, locator: &str, keys: &Path, local_workers: usize) -> DispatchOptions {
     DispatchOptions {
         pause_limit: dispatch::runtime::PAUSE_LIMIT,
@@ -27,7 +27,7 @@ fn options(run_dir: &Path, locator: &str, keys: &Path, local_workers: usize) -> 
     }
 }
 
-/// The command of a worker.
+/// Returns a command that starts a worker.
 fn worker(locator: &str, tls: Option<PathBuf>, arguments: &[&str]) -> Command {
     let mut command = Command::new(worker_program());
     command

@@ -1,18 +1,18 @@
-//! The command line of `horsehead-worker`.
+//! Command line of `horsehead-worker`.
 use crate::external::start::Start;
 use clap::{Parser, Subcommand};
 use link::locator::Locator;
 use std::path::PathBuf;
 
-/// Address space of a slot's process by default (MiB): a simulation needs some tens, the reduction
-/// of a large head some thousand.
+/// Default address space of a slot's process (MiB): a simulation needs some tens, the reduction of a large
+/// head some thousand.
 pub const SLOT_MEMORY_MIB: u64 = 8192;
 
 /// Computes simulations for a Horsehead coordinator.
 ///
-/// Start any number of workers, before or after the coordinator, and stop them whenever you like:
-/// what they hold is computed by others. A worker stays when the coordinator goes away and
-/// returns what it finished meanwhile; it keeps no files.
+/// Start any number of workers, before or after the coordinator, and stop them at any time: their unfinished
+/// jobs go to other workers. A worker keeps running while the coordinator is away and delivers its finished
+/// results afterwards; it keeps no files.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "horsehead-worker",
@@ -22,7 +22,7 @@ pub const SLOT_MEMORY_MIB: u64 = 8192;
     after_help = "Examples:\n  \
         horsehead-worker --connect tcp/127.0.0.1:7447\n  \
         horsehead-worker --connect quic/head.example:7447 --tls worker-01 --idle-timeout 600\n\n\
-        Exit status: 0 ended in good order, 1 could not work, 2 wrong command line, \
+        Exit status: 0 ended normally, 1 could not work, 2 wrong command line, \
         3 refused by the coordinator, or certificates that do not fit.\n\
         HORSEHEAD_LOG sets what is logged, as in \"debug\" or \"worker=debug\"."
 )]
@@ -42,32 +42,32 @@ pub struct Cli {
     /// Simulations computed at a time [default: one per hardware thread]
     #[arg(long, value_name = "N", env = "HORSEHEAD_SLOTS", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub slots: Option<u16>,
-    /// End after so long without work [default: never]
+    /// Idle time after which the worker ends [default: never]
     #[arg(long, value_name = "SECONDS", env = "HORSEHEAD_IDLE_TIMEOUT", value_parser = clap::value_parser!(u64).range(1..))]
     pub idle_timeout: Option<u64>,
-    /// Address space that one simulation may have \[MiB\]; 0 for no limit. What needs more is
-    /// ended and counts as crashed
+    /// Address space of one simulation \[MiB\]; 0 for no limit. A simulation that needs more is ended and
+    /// counts as crashed
     #[arg(long, value_name = "MIB", env = "HORSEHEAD_SLOT_MEMORY", default_value_t = SLOT_MEMORY_MIB)]
     pub slot_memory: u64,
-    /// Belong to the process that started this one: end with it and with its run
+    /// Belong to the process that started this worker: end with that process and with its run
     #[arg(long, hide = true)]
     pub embedded: bool,
-    /// What else this program can be
+    /// Internal subcommands
     #[command(subcommand)]
     pub role: Option<Role>,
 }
 
-/// Roles that only the program itself uses.
+/// Internal roles of the program, started only by the program itself.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Role {
-    /// Compute what standard input says
+    /// Compute the jobs read from standard input
     #[command(hide = true)]
     Slot {
-        /// Address space it may have \[MiB\]; 0 for no limit
+        /// Address space of the slot process \[MiB\]; 0 for no limit
         #[arg(long, default_value_t = 0)]
         memory: u64,
     },
-    /// Become a program of this machine's list, within its limits
+    /// Start a program of this machine's list within its limits
     #[command(hide = true)]
     Start(Start),
 }

@@ -1,13 +1,13 @@
-//! One machine that evaluates: takes jobs from the bus, simulates, returns outcomes.
+//! Worker: takes jobs from the bus, simulates, returns outcomes.
 //!
 //! ```text
 //! coordinator <-- link --> session (one per process) <-- pipes --> slot processes
 //! ```
 //!
-//! A [`session`] owns the connection, the queue and the outbox; [`pool`] keeps the slots; each
-//! slot computes in a process of its own ([`slot`]), so that a job that never returns or crashes
-//! takes nothing with it. A worker keeps no files and decides nothing. [`program`] is all of that
-//! behind a command line.
+//! A [`session`] owns the connection, the queue and the outbox; [`pool`] manages the slots; each slot
+//! computes in a process of its own ([`slot`]), so that a job that crashes or never returns affects nothing
+//! else. A worker keeps no files and makes no scheduling decisions. [`program`] wraps all of that in a
+//! command line.
 pub mod cli;
 pub mod external;
 pub mod handler;
@@ -22,5 +22,5 @@ pub mod slot;
 mod stream;
 mod test_hook;
 
-/// The models that `horsehead-worker` simulates.
+/// Kinds of model that `horsehead-worker` simulates.
 pub const SIMULATORS: simulator::Simulators = &[&pumping_unit::PumpingUnits, &external::Externals];

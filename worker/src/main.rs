@@ -1,4 +1,4 @@
-//! `horsehead-worker`: see [`worker::program`].
+//! Entry point of `horsehead-worker`: see [`worker::program`].
 use std::process::ExitCode;
 
 fn main() -> ExitCode {

@@ -1,4 +1,4 @@
-//! Results that the coordinator has not acknowledged.
+//! Results that the coordinator has not yet acknowledged.
 use protocol::message::{Attempt, Done};
 use std::{
     collections::{BTreeMap, VecDeque},
@@ -7,10 +7,10 @@ use std::{
 
 const FIRST: Duration = Duration::from_secs(1);
 const LONGEST: Duration = Duration::from_secs(8);
-/// Acknowledged attempts that are remembered, so that a late copy of a job is not done again.
+/// Number of acknowledged attempts that are remembered, so that a late copy of a job is not computed again.
 const REMEMBERED: usize = 4096;
 
-/// Keeps each result until it is acknowledged, and says when to send it again.
+/// Outbox that keeps each result until it is acknowledged, and schedules its retransmission.
 #[derive(Debug, Default)]
 pub struct Outbox {
     waiting: BTreeMap<Attempt, Waiting>,
@@ -25,7 +25,7 @@ struct Waiting {
 }
 
 impl Outbox {
-    /// Takes a result that was just sent.
+    /// Adds a result that was just sent.
     pub fn put(&mut self, done: Done, now: Duration) {
         let waiting = Waiting {
             again_at: now + FIRST,
@@ -35,7 +35,7 @@ impl Outbox {
         self.waiting.insert(waiting.done.attempt, waiting);
     }
 
-    /// Forgets what is safe elsewhere.
+    /// Removes acknowledged results and remembers their attempts.
     pub fn settle(&mut self, attempts: &[Attempt]) {
         for attempt in attempts {
             if self.waiting.remove(attempt).is_some() {
@@ -44,7 +44,7 @@ impl Outbox {
         }
     }
 
-    /// Notes that an attempt needs no answer.
+    /// Remembers an attempt as settled: no further result will be sent for it.
     pub fn remember(&mut self, attempt: Attempt) {
         if self.settled.len() == REMEMBERED {
             self.settled.pop_front();
@@ -52,22 +52,22 @@ impl Outbox {
         self.settled.push_back(attempt);
     }
 
-    /// Whether an attempt is over and acknowledged.
+    /// Returns whether an attempt is settled (acknowledged or abandoned).
     pub fn is_settled(&self, attempt: Attempt) -> bool {
         self.settled.contains(&attempt)
     }
 
-    /// The result of an attempt, if it waits here.
+    /// Returns the unacknowledged result of an attempt, if there is one.
     pub fn get(&self, attempt: Attempt) -> Option<&Done> {
         self.waiting.get(&attempt).map(|waiting| &waiting.done)
     }
 
-    /// Attempts whose results wait.
+    /// Returns the attempts with unacknowledged results.
     pub fn attempts(&self) -> Vec<Attempt> {
         self.waiting.keys().copied().collect()
     }
 
-    /// Results to be sent again now: 1, 2, 4 and then every 8 s after the last time.
+    /// Returns the results to be sent again now: 1, 2, 4 and then every 8 s after the last transmission.
     pub fn due(&mut self, now: Duration) -> Vec<Done> {
         let mut due = Vec::new();
         for waiting in self.waiting.values_mut() {
@@ -80,7 +80,7 @@ impl Outbox {
         due
     }
 
-    /// Makes everything due, after a reconnection.
+    /// Makes all results due for retransmission, after a reconnection.
     pub fn hurry(&mut self) {
         for waiting in self.waiting.values_mut() {
             waiting.again_at = Duration::ZERO;
@@ -88,7 +88,7 @@ impl Outbox {
         }
     }
 
-    /// Forgets everything: the results belong to a run that is over.
+    /// Clears the outbox, because the run that its results belong to is over.
     pub fn clear(&mut self) {
         *self = Self::default();
     }

@@ -1,7 +1,7 @@
-//! The slots of a worker: each has a keeper thread here and a process that computes.
+//! Slots of a worker: each has a keeper thread in this process and a child process that computes.
 //!
-//! The keeper lives as long as the worker, because a parent-death signal follows the *thread*
-//! that started a process. It ends its process (and whatever that started) at the deadline.
+//! The keeper thread lives as long as the worker, because a parent-death signal follows the *thread* that
+//! started a process. It ends its process, and every process started by that one, at the deadline.
 mod child;
 mod keeper;
 mod task;
@@ -22,10 +22,10 @@ use std::{
 };
 use tokio::sync::mpsc::UnboundedSender;
 
-/// A keeper that does not show itself for so long is stuck, and so is the worker.
+/// Time without a pulse after which a keeper thread counts as stuck, and the worker with it.
 const STUCK: Duration = Duration::from_secs(3);
 
-/// All slots of a worker; dropping it ends their processes.
+/// All slots of a worker; their processes are ended on drop.
 #[derive(Debug)]
 pub struct Pool {
     keepers: Vec<mpsc::Sender<ToKeeper>>,
@@ -35,7 +35,7 @@ pub struct Pool {
 }
 
 impl Pool {
-    /// Starts the keepers; processes start with the first job.
+    /// Starts the keeper threads; the processes are started with their first jobs.
     ///
     /// # Errors
     /// If a thread cannot be started.
@@ -75,27 +75,27 @@ impl Pool {
         })
     }
 
-    /// Number of slots.
+    /// Returns the number of slots.
     pub fn len(&self) -> usize {
         self.keepers.len()
     }
 
-    /// Whether there is no slot.
+    /// Returns whether there is no slot.
     pub fn is_empty(&self) -> bool {
         self.keepers.is_empty()
     }
 
-    /// Gives a free slot a job.
+    /// Starts a job in a free slot.
     pub fn run(&self, slot: usize, task: Task) {
         self.tell(slot, ToKeeper::Run(task));
     }
 
-    /// Ends what a slot does, if it is still this attempt.
+    /// Cancels the job of a slot, if it still computes this attempt.
     pub fn cancel(&self, slot: usize, attempt: Attempt) {
         self.tell(slot, ToKeeper::Cancel(attempt));
     }
 
-    /// Whether all keepers do their work; without it a worker must not claim to be alive.
+    /// Returns whether all keeper threads are responsive; if not, the worker must not send heartbeats.
     pub fn is_alive(&self) -> bool {
         let now = millis(self.begun.elapsed());
         let alive =

@@ -1,26 +1,26 @@
-//! Everything that a process has started, found by who is whose parent: neither another session nor an
-//! emptied environment hides from that. It knows no slots and no jobs.
+//! Process tree below a process, found through parent process ids, so that neither a new session nor an
+//! emptied environment hides a process. Independent of slots and jobs.
 use rustix::{
     io,
     process::{Pid, Signal, kill_process},
 };
 use std::{fs, thread, time::Duration};
 
-/// How often a tree that goes on growing is looked at, and how long it is left alone between.
+/// Largest number of passes over a tree that keeps growing; `PAUSE` is the time between passes.
 const LOOKS: u32 = 500;
 const PAUSE: Duration = Duration::from_millis(2);
 
-/// A process as the system lists it.
+/// Process as listed by the system.
 #[derive(Clone, Copy, Debug)]
 struct Listed {
     pid: i32,
     parent: i32,
-    /// Whether it has ended and only its status is left.
+    /// Whether the process is a zombie: it has ended and only its status remains.
     is_over: bool,
 }
 
-/// Ends all that `root` has started, by itself or by way of others, but not `root`. What has lost its parent is
-/// found where `root` is the one that inherits it (a subreaper).
+/// Ends all direct and indirect descendants of `root`, but not `root` itself. Orphaned descendants are found
+/// only where `root` inherits them (as a subreaper).
 pub(crate) fn end_below(root: Pid) {
     for _ in 0..LOOKS {
         let living: Vec<Pid> = below(root.as_raw_nonzero().get())
@@ -38,7 +38,8 @@ pub(crate) fn end_below(root: Pid) {
     }
 }
 
-/// Ends a process and all that it has started. It is stopped first, so that it starts nothing more meanwhile.
+/// Ends a process and all its descendants. The process is stopped first, so that it starts no more of them
+/// meanwhile.
 pub(crate) fn end_with_all(root: Pid) {
     let tell = |signal| -> io::Result<()> { kill_process(root, signal) };
     drop(tell(Signal::STOP).map_err(std::io::Error::from));
@@ -46,7 +47,7 @@ pub(crate) fn end_with_all(root: Pid) {
     drop(tell(Signal::KILL).map_err(std::io::Error::from));
 }
 
-/// The processes below one that have not ended.
+/// Returns the descendants of a process that have not ended.
 fn below(root: i32) -> Vec<i32> {
     let all = listed();
     let mut found = vec![root];

@@ -1,4 +1,4 @@
-//! The program of a worker: one worker of the bus, or one of its slots, as its command line says.
+//! Main program of a worker: a worker on the bus or one of its slots, depending on the command line.
 use crate::{
     cli::{Cli, Role as CliRole},
     external,
@@ -30,10 +30,10 @@ use tokio::{
 };
 use tracing_subscriber::EnvFilter;
 
-/// How often a coordinator that does not answer is complained about.
+/// Interval between warnings about a coordinator that does not answer.
 const COMPLAINT: Duration = Duration::from_mins(5);
 
-/// Runs it to its end; these are the models that it simulates.
+/// Runs the worker program to its end; `simulators` are the kinds of model that it simulates.
 pub fn run(simulators: Simulators) -> ExitCode {
     let cli = Cli::parse();
     // a worker of somebody's own says when it is connected; a local one leaves that to its coordinator
@@ -76,7 +76,10 @@ pub fn run(simulators: Simulators) -> ExitCode {
 }
 
 fn serve(cli: &Cli, simulators: Simulators) -> anyhow::Result<ExitCode> {
-    let locator = cli.connect.as_ref().context("no coordinator was named")?;
+    let locator = cli
+        .connect
+        .as_ref()
+        .context("no coordinator address was given: set --connect or HORSEHEAD_CONNECT")?;
     if cli.embedded {
         set_parent_process_death_signal(Some(Signal::KILL))?;
     }
@@ -91,7 +94,7 @@ fn serve(cli: &Cli, simulators: Simulators) -> anyhow::Result<ExitCode> {
         simulators,
         id: draw_id(),
         slots: cli.slots.map_or_else(cores, usize::from),
-        program: env::current_exe().context("where this program lies is unknown")?,
+        program: env::current_exe().context("the path of this program cannot be determined")?,
         slot_memory_mib: cli.slot_memory,
         idle_timeout: cli.idle_timeout.map(Duration::from_secs),
         embedded: cli.embedded,
@@ -114,13 +117,13 @@ fn serve(cli: &Cli, simulators: Simulators) -> anyhow::Result<ExitCode> {
         Ending::Refused(reason) => refused(&reason),
         Ending::Unlinked => ExitCode::FAILURE,
         ending @ (Ending::Asked | Ending::RunOver | Ending::Idle) => {
-            tracing::info!("ended in good order: {ending:?}");
+            tracing::info!("ended normally: {ending:?}");
             ExitCode::SUCCESS
         }
     })
 }
 
-/// Says why this worker cannot take part until somebody changes something.
+/// Logs why this worker cannot take part until its setup is changed, and returns exit status 3.
 fn refused(reason: &dyn std::fmt::Display) -> ExitCode {
     tracing::error!("refused: {reason}");
     ExitCode::from(3)
@@ -169,7 +172,7 @@ async fn work(
     Ok(session::run(link, options, asked).await?)
 }
 
-/// Completes when a worker that may idle for so long has waited for it since `began`.
+/// Completes when the idle timeout, counted from `began`, has passed; never without a timeout.
 async fn out_of_patience(began: Instant, patience: Option<Duration>) {
     match patience {
         Some(patience) => tokio::time::sleep(patience.saturating_sub(began.elapsed())).await,
@@ -177,7 +180,8 @@ async fn out_of_patience(began: Instant, patience: Option<Duration>) {
     }
 }
 
-/// Completes when the worker is to end: by SIGTERM, SIGINT or, embedded, the end of its input.
+/// Returns a future that completes when the worker is asked to end: by SIGTERM, SIGINT or, if embedded, the
+/// end of its standard input.
 fn asked_to_end(embedded: bool) -> io::Result<impl Future<Output = ()> + Send + Unpin> {
     let mut terminate = signal(SignalKind::terminate())?;
     let mut interrupt = signal(SignalKind::interrupt())?;

@@ -1,4 +1,5 @@
-//! A worker's life on the bus: announce, take jobs, return results, until told to end.
+//! Session of a worker on the bus: announces the worker, takes jobs and returns results until there is a
+//! reason to end.
 mod case;
 mod options;
 mod proof;
@@ -20,13 +21,13 @@ use std::{
 };
 use tokio::sync::mpsc::unbounded_channel;
 
-/// How often the session looks after itself.
+/// Interval of the session's periodic tasks.
 const TICK: Duration = Duration::from_millis(250);
 
-/// How long a worker waits to be told that its leaving was heard.
+/// Time for which a leaving worker waits for the coordinator's acknowledgement.
 const FAREWELL: Duration = Duration::from_millis(500);
 
-/// Serves until there is a reason to end; `asked` is that of the outside.
+/// Serves until there is a reason to end; `asked` completes when the process is asked to end.
 ///
 /// # Errors
 /// If the slots cannot be started.

@@ -1,7 +1,7 @@
-//! What a kind of model does for a worker: all that queues, slots, replies and scores know of it.
+//! Interface of a kind of model: all that queues, slots, replies and scores know of a simulator.
 //!
-//! A new kind is a folder that implements both traits, and an entry in the list that the worker's
-//! program is given ([`crate::program::run`]).
+//! A new kind is a folder that implements [`Simulator`] and [`Model`], and an entry in the list that is
+//! passed to the worker program ([`crate::program::run`]).
 use protocol::{
     announce::{EffectDescriptor, ModelDescriptor},
     case::Case,
@@ -9,22 +9,23 @@ use protocol::{
 };
 use std::{fmt, time::Instant};
 
-/// The kinds of model that a worker program simulates.
+/// Kinds of model that a worker program simulates.
 pub type Simulators = &'static [&'static dyn Simulator];
 
-/// A kind of model.
+/// Kind of model.
 pub trait Simulator: fmt::Debug + Sync {
-    /// Its name, as cases state it.
+    /// Returns the name of the kind, as stated in cases.
     fn kind(&self) -> &'static str;
 
-    /// Names the numerics of this build: equal digests promise equal bits. It may take some tenths of
-    /// a second the first time in a process.
+    /// Returns a digest of the numerics of this build: equal digests promise equal bits. The first call in a
+    /// process may take some tenths of a second.
     fn digest(&self) -> String;
 
-    /// Effects that it can add to what a case describes.
+    /// Returns the effects that the model can add to a case.
     fn effects(&self) -> Vec<EffectDescriptor>;
 
-    /// What it announces: itself, or each of what it can be here.
+    /// Returns the descriptions to announce: one for the kind itself, or one for each variant available on
+    /// this machine.
     fn described(&self) -> Vec<ModelDescriptor> {
         vec![ModelDescriptor {
             kind: self.kind().to_owned(),
@@ -33,13 +34,14 @@ pub trait Simulator: fmt::Debug + Sync {
         }]
     }
 
-    /// Whether it simulates cases of a kind, as they name it on the wire.
+    /// Returns whether the simulator handles cases of the given kind (its name in the protocol).
     fn simulates(&self, kind: &str) -> bool {
         kind == self.kind()
     }
 
-    /// Derivatives that every worker of a run computes of the case's reference individual when it joins, beside the
-    /// curves: one of each way in which this kind of model comes by them. None where it gives none.
+    /// Returns the columns (derivatives) that every worker computes for the case's reference individual when
+    /// it joins, in addition to the curves: one for each way in which this kind of model computes
+    /// derivatives. Empty if it gives none.
     fn reference_columns(&self, _case: &Case) -> Vec<Column> {
         Vec::new()
     }
@@ -50,30 +52,29 @@ pub trait Simulator: fmt::Debug + Sync {
     /// [`Failure::Misconfigured`] naming the field of the case that it cannot be built from.
     fn prepare(&self, case: &Case) -> Result<Box<dyn Model>, Failure>;
 
-    /// Does a job that only this kind knows, without any case; what is asked and what is answered are
-    /// its own business.
+    /// Performs a job specific to this kind of model, without a case; only the kind knows the formats of
+    /// request and reply.
     ///
     /// # Errors
-    /// [`Failure::Refused`] for a name that it does not know, [`Failure::Misconfigured`] for what
-    /// cannot be done.
+    /// [`Failure::Refused`] for a name that the kind does not know, [`Failure::Misconfigured`] for a request
+    /// that cannot be done.
     fn own(&self, name: &str, body: &[u8]) -> Result<Vec<u8>, Failure>;
 }
 
-/// A model of one case, ready for any number of jobs on it; each leaves nothing behind for the next.
+/// Model of one case, ready for any number of jobs; no job leaves state behind for the next.
 pub trait Model: fmt::Debug + Send + Sync {
-    /// Simulates, and says what the channels of the condition show, exactly as computed, with their
-    /// derivatives by the columns of the job: [`protocol::job::Derivative::none`] of a model that gives
-    /// none, and nothing of a run that fails. Columns change no bit of the curves. Where
-    /// `scored_only` says that the others are not looked at, only curves of channels with a record need
-    /// be there.
+    /// Simulates, and returns the curves of the condition's channels exactly as computed, with their
+    /// derivatives by the columns of the job: [`protocol::job::Derivative::none`] for a model that gives
+    /// none, and no derivatives of a run that fails. Columns change no bit of the curves. With `scored_only`,
+    /// only curves of channels with a record are required.
     ///
     /// # Errors
     /// [`Failure::Misconfigured`] where the job does not fit the case.
     fn observe(&self, spec: &SimulateSpec, scored_only: bool) -> Result<Observation, Failure>;
 
-    /// Simulates, and says everything that can be drawn; `pictures` is how many of what
-    /// moves are wanted over the whole run, 0 for none. Derivatives come with it as with [`Self::observe`]. A
-    /// model that has nothing beside its channels need not say anything here.
+    /// Simulates, and returns everything that can be plotted; `pictures` is the number of shapes of the
+    /// moving parts to record over the whole run, 0 for none. Derivatives are computed as by
+    /// [`Self::observe`]. A model with no curves besides its channels need not override this method.
     ///
     /// # Errors
     /// As [`Self::observe`].
@@ -92,13 +93,13 @@ pub trait Model: fmt::Debug + Send + Sync {
     }
 }
 
-/// What a worker says of the models that it simulates.
+/// Returns the descriptions of all models that a worker simulates, for its announcement.
 pub fn described(simulators: Simulators) -> Vec<ModelDescriptor> {
     let all = simulators.iter();
     all.flat_map(|simulator| simulator.described()).collect()
 }
 
-/// The simulator of a case.
+/// Returns the simulator for a case.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] if there is none for its kind.

@@ -1,7 +1,7 @@
-//! The process of one slot: reads jobs from standard input, writes outcomes to standard output.
+//! Process of one slot: reads jobs from standard input, writes outcomes to standard output.
 //!
-//! It ends with its worker: at the end of its input even in the middle of a job, and by the
-//! parent-death signal should the worker be killed while this process does not read.
+//! It ends with its worker: when its input ends, even in the middle of a job, and by the parent-death signal
+//! if the worker is killed while this process does not read.
 use crate::{
     handler::{self, Prepared},
     simulator::Simulators,
@@ -27,8 +27,8 @@ use std::{
 /// Name of the thread that reads jobs.
 pub(crate) const INPUT: &str = "slot-input";
 
-/// Serves until the input ends, in at most so much address space (MiB; 0 for no limit): a job that
-/// wants more aborts this process and nothing else.
+/// Serves until the input ends, within the given address space (MiB; 0 for no limit): a job that needs more
+/// aborts this process only.
 ///
 /// # Errors
 /// If the limit cannot be set, standard output is closed or a message cannot be read.
@@ -63,12 +63,12 @@ pub fn serve(simulators: Simulators, memory_mib: u64) -> io::Result<()> {
     Ok(())
 }
 
-/// Processor time of all threads of this process so far.
+/// Returns the processor time of all threads of this process so far.
 fn processor_time() -> Duration {
     Duration::try_from(clock_gettime(ClockId::ProcessCPUTime)).unwrap_or_default()
 }
 
-/// Hands an outcome to the worker, or says that it is too long for that.
+/// Sends an outcome to the worker, or a failure if the outcome is too long to be sent.
 fn answer(out: &mut impl io::Write, outcome: Outcome, taken: Duration) -> io::Result<()> {
     let cpu_us = u64::try_from(taken.as_micros()).unwrap_or(u64::MAX);
     let say = |out: &mut _, outcome| {
@@ -78,7 +78,7 @@ fn answer(out: &mut impl io::Write, outcome: Outcome, taken: Duration) -> io::Re
     match say(out, outcome) {
         // nothing has been written of it
         Err(error) if error.kind() == io::ErrorKind::InvalidData => {
-            let how = format!("its result cannot be handed in: {error}");
+            let how = format!("its result cannot be sent to the worker: {error}");
             say(out, Outcome::Failed(Failure::crashed(how)))
         }
         said => said,

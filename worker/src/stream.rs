@@ -1,4 +1,4 @@
-//! Frames on a pipe, one after the other.
+//! Framed messages on a pipe.
 use protocol::{
     id::RunId,
     wire::{self, Kind, WireError},

@@ -1,26 +1,26 @@
-//! Jobs that misbehave, for tests of how the cluster bears it: on the worker's side alone.
+//! Misbehaving jobs, on the worker's side only, for tests of the cluster's fault tolerance.
 //!
-//! `HORSEHEAD_TEST_MISBEHAVE=17:hang,18:abort` makes the jobs that do nothing and whose payload
-//! begins with the number 17 or 18 (64 bits, little endian) behave that way, in slots of the worker
-//! that has the variable. `HORSEHEAD_TEST_TRACE=FILE` makes slots add a line to a file for each
-//! such job they begin. No message can bring either about.
+//! `HORSEHEAD_TEST_MISBEHAVE=17:hang,18:abort` makes the jobs that do nothing and whose payload begins with
+//! the number 17 or 18 (64 bits, little endian) behave that way, in slots of the worker that has the
+//! variable. `HORSEHEAD_TEST_TRACE=FILE` makes slots append a line to a file for each such job they begin. No
+//! message can trigger either.
 //!
-//! It stays in the product because the tests are about the program that is shipped: how its keeper,
-//! its pipes and its parent-death signal bear a slot that hangs, aborts or kills its worker. A program
-//! for tests alone would prove that of another one; without the variables this costs a look at the
-//! payload of jobs that do nothing.
+//! The hook is part of the product because the tests examine the program that is shipped: how its keeper, its
+//! pipes and its parent-death signal handle a slot that hangs, aborts or kills its worker. A separate test
+//! program would prove this only of itself. Without the variables the hook costs a look at the payload of
+//! jobs that do nothing.
 use protocol::job::Job;
 use rustix::process::{Signal, getppid, kill_process};
 use std::{env, fs::OpenOptions, io::Write, process::Command, thread, time::Duration};
 
-/// Behaviour by job.
+/// Environment variable that assigns behaviours to job numbers.
 const MISBEHAVE: &str = "HORSEHEAD_TEST_MISBEHAVE";
-/// Where slots note what they begin.
+/// Environment variable with the file to which slots append a line for each job they begin.
 const TRACE: &str = "HORSEHEAD_TEST_TRACE";
-/// Longer than anybody waits.
+/// Duration longer than any deadline.
 const FOR_EVER: Duration = Duration::from_hours(24 * 365);
 
-/// To be called before a job is done.
+/// Applies the configured behaviour; to be called before a job is evaluated.
 pub(crate) fn before(job: &Job) {
     let Job::Nothing { payload, .. } = job else {
         return;
@@ -83,7 +83,7 @@ fn misbehave(behaviour: &str) {
     }
 }
 
-/// Computes until this thread has had so much processor time.
+/// Computes until this thread has used the given processor time.
 fn burn(time: Duration) {
     let until = computed().saturating_add(time);
     while computed() < until {
@@ -91,7 +91,7 @@ fn burn(time: Duration) {
     }
 }
 
-/// Processor time of this thread.
+/// Returns the processor time of this thread.
 fn computed() -> Duration {
     let said = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     let nanos = said

@@ -1,4 +1,4 @@
-//! The worker program as a person starts it. (Its being here also makes `cargo test --workspace`
+//! Tests of the worker program as started by a user. (This test target also makes `cargo test --workspace`
 //! build the program that the cluster suite starts.)
 use std::process::{Command, Output};
 
@@ -49,7 +49,7 @@ fn help_shows_how_to_start_one() {
     }
 }
 
-/// A worker that nobody answers waits, and ends in good order once it has been idle long enough.
+/// Checks that a worker without a coordinator waits, and exits normally after its idle timeout.
 #[test]
 fn a_worker_without_a_coordinator_ends_after_its_idle_time() {
     let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();

@@ -1,4 +1,4 @@
-//! What a kind of model may add to how its cases are read.
+//! Interface through which a kind of model customises how its cases are read.
 use crate::{
     error::CaseError,
     general,
@@ -9,20 +9,21 @@ use crate::{
 use discrepancy::thresholds::Thresholds;
 use protocol::{case::Case, job::Numerics, wire::WireError};
 
-/// A kind of model as its cases are read.
+/// Kind of model, as seen by the code that reads cases; every method but `name` has a default for a generic
+/// model.
 pub trait CaseKind: Sync {
-    /// As cases name it.
+    /// Returns the name of the kind, as `[model] kind` of a case file states it.
     fn name(&self) -> &'static str;
 
     /// Reads a case.
     ///
     /// # Errors
-    /// What is wrong; see [`CaseError`].
+    /// Returns a [`CaseError`] that names the file or field at fault.
     fn read(&self, source: &Source<'_>) -> Result<Loaded, CaseError> {
         general::read(source)
     }
 
-    /// Reads a case and says what is in it.
+    /// Reads a case and summarises its contents.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -35,7 +36,8 @@ pub trait CaseKind: Sync {
         ))
     }
 
-    /// Which field of a case is missing where a condition has no record, and what to do.
+    /// Returns the path of the case field that is missing where a condition has no measured record, and the
+    /// remedy.
     fn missing_record(&self, condition: usize, name: &str) -> (String, String) {
         (
             format!("conditions[{condition}]"),
@@ -43,37 +45,41 @@ pub trait CaseKind: Sync {
         )
     }
 
-    /// Key of the unknowns in objects.
+    /// Returns the key under which the names of the unknowns stand in JSON output.
     fn unknowns(&self) -> &'static str {
         "unknowns"
     }
 
-    /// Values of the unknowns in a form that other programs for this kind of model read: name and text of a file.
+    /// Returns the name and text of a file with the values of the unknowns in a format that other programs
+    /// for this kind of model read, if the kind has one.
     fn gene_file(&self, _: &Case, _genes: &[f64]) -> Option<(&'static str, String)> {
         None
     }
 
-    /// Whether a simulation starts a program of which nothing is known here, not even how long it runs.
+    /// Returns whether a simulation starts an external program, whose internals and run time are unknown to
+    /// the coordinator.
     fn is_program(&self) -> bool {
         false
     }
 
-    /// Why workers of this machine cannot take part in a run on a case as things are, and what to do about it.
+    /// Returns why workers on this machine cannot currently take part in a run on a case, and the remedy;
+    /// `None` if they can.
     fn unready(&self, _: &Case) -> Option<(String, String)> {
         None
     }
 
-    /// How a diagnosis has its experiments computed, and how more finely, for the numerical check: the
-    /// finest, then what it is made of, one thing at a time. Nothing where nothing can be finer.
+    /// Returns the numerical settings for the experiments of a diagnosis, and the finer settings for its
+    /// numerical check: first the finest, then each of its refinements alone. The list is empty where nothing
+    /// can be refined.
     ///
     /// # Errors
-    /// If the case says nothing of this kind.
+    /// Returns an error if the case has no settings of this kind.
     fn numerics(&self, _: &Case, _: &Thresholds) -> Result<(Numerics, Vec<Numerics>), WireError> {
         Ok((Numerics::OF_THE_CASE, Vec::new()))
     }
 }
 
-/// A kind of which no more is known.
+/// Generic kind of model without any customisation.
 pub(crate) struct AnyKind;
 
 impl CaseKind for AnyKind {

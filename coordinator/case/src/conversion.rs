@@ -1,6 +1,6 @@
-//! Units as people write them, and what a value must be multiplied by where another one is wanted.
+//! Parsing of units in common notation, and conversion factors between units.
 
-/// A unit: its size in SI, and its powers of metre, kilogram, second and radian.
+/// Unit: its size in SI units, and its exponents of metre, kilogram, second and radian.
 type Size = (f64, [f64; 4]);
 
 const LENGTH: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
@@ -11,7 +11,7 @@ const FORCE: [f64; 4] = [1.0, 1.0, -2.0, 0.0];
 const STRESS: [f64; 4] = [-1.0, 1.0, -2.0, 0.0];
 const FREQUENCY: [f64; 4] = [0.0, 0.0, -1.0, 0.0];
 
-/// Symbols, in small letters as keys of case files have them.
+/// Unit symbols in lower case, as the keys of case files contain them, with size in SI units and dimensions.
 const SYMBOLS: &[(&str, f64, [f64; 4])] = &[
     ("m", 1.0, LENGTH),
     ("mm", 1e-3, LENGTH),
@@ -38,10 +38,11 @@ const SYMBOLS: &[(&str, f64, [f64; 4])] = &[
     ("rpm", 1.0 / 60.0, FREQUENCY),
 ];
 
-/// Multiples of newtons and pascals: of these no thousandths are written.
+/// Prefixes of newtons and pascals and their factors; `m` means mega, since milli is not used with these
+/// units.
 const MULTIPLES: [(&str, f64); 3] = [("k", 1e3), ("m", 1e6), ("g", 1e9)];
 
-/// A symbol's size in SI, and what it measures.
+/// Returns the size in SI units and the dimensions of a unit symbol.
 fn symbol(name: &str) -> Option<Size> {
     let find = |name: &str| SYMBOLS.iter().find(|(own, ..)| *own == name);
     if let Some((_, size, measure)) = find(name) {
@@ -55,8 +56,9 @@ fn symbol(name: &str) -> Option<Size> {
     })
 }
 
-/// What a value in one unit is multiplied by to be in another; none where one of them is not known or they measure
-/// different things. Written as `N/mm` and `kN.m/rad`, or as the end of a key: `n_per_mm`, `kg_m2`.
+/// Returns the factor that converts a value from one unit to another; `None` if a unit is not known, the
+/// dimensions differ or the units are equal. Units are written as `N/mm` and `kN.m/rad`, or as the suffix of
+/// a key: `n_per_mm`, `kg_m2`.
 pub fn factor(from: &str, to: &str) -> Option<f64> {
     let ((from, measure), (to, other)) = (size(from)?, size(to)?);
     let mut powers = measure.iter().zip(other);
@@ -64,7 +66,7 @@ pub fn factor(from: &str, to: &str) -> Option<f64> {
     (alike && from.total_cmp(&to).is_ne()).then(|| from / to)
 }
 
-/// What to do about a value in one unit where another one is wanted.
+/// Returns the remedy for a value that is stated in the unit `from` where `to` is expected.
 pub fn convert(from: &str, to: &str) -> String {
     factor(from, to).map_or_else(
         || format!("did you mean `{to}`?"),
@@ -77,7 +79,8 @@ pub fn convert(from: &str, to: &str) -> String {
     )
 }
 
-/// What to do about a key that is another one in another unit: `radius_mm` for `radius_m`.
+/// Returns the remedy for a key that differs from a known key only by its unit, such as `radius_mm` for
+/// `radius_m`.
 pub fn convert_key(key: &str, known: &[&str]) -> Option<String> {
     let mut ends = key.match_indices('_').map(|(at, _)| key.split_at(at + 1));
     ends.find_map(|(stem, unit)| {
@@ -92,7 +95,7 @@ pub fn convert_key(key: &str, known: &[&str]) -> Option<String> {
     })
 }
 
-/// Twelve digits at most, without zeros at the end.
+/// Formats a factor with at most twelve significant digits, without trailing zeros.
 fn digits(factor: f64) -> String {
     let rounded: f64 = format!("{factor:.11e}").parse().unwrap_or(factor);
     if (1e-4..1e7).contains(&rounded.abs()) {
@@ -102,7 +105,7 @@ fn digits(factor: f64) -> String {
     }
 }
 
-/// The size of a unit in SI.
+/// Returns the size in SI units and the dimensions of a composite unit.
 fn size(text: &str) -> Option<Size> {
     let text = text
         .to_lowercase()

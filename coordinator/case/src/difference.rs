@@ -1,10 +1,10 @@
-//! In what two readings of a case differ, in words.
+//! Description in words of the differences between two versions of a case.
 use protocol::case::{Case, Channel, Unknown};
 
-/// Most differences that are named.
+/// Maximum number of differences that are listed.
 const MOST: usize = 4;
 
-/// What of a case has changed since an earlier reading; empty where nothing has.
+/// Returns a description of the differences of a case from an earlier version; empty if there are none.
 pub fn differences(earlier: &Case, now: &Case) -> String {
     let mut all = Vec::new();
     for unknown in &now.unknowns {
@@ -42,7 +42,7 @@ pub fn differences(earlier: &Case, now: &Case) -> String {
             all.push(format!("the record of {} at {condition}", channel.title));
         } else if own != Some(channel) {
             let condition = name(now, channel.condition);
-            all.push(format!("what is said of {} at {condition}", channel.title));
+            all.push(format!("the settings of {} at {condition}", channel.title));
         }
     }
     if earlier.model != now.model {
@@ -71,7 +71,7 @@ fn of_unknown(was: &Unknown, is: &Unknown) -> String {
     let name = &is.name;
     match changed {
         Some((what, was, is)) => format!("{name} {what} {is:e}, not {was:e}"),
-        None => format!("what is said of {name}"),
+        None => format!("the settings of {name}"),
     }
 }
 

@@ -1,4 +1,4 @@
-//! TOML files: parsed into typed data, with errors that show the line and the nearest known key.
+//! Parsing of TOML files into typed data, with errors that show the source line and the nearest known key.
 use super::{
     conversion::{convert, convert_key, factor},
     error::{CaseError, damaged},
@@ -12,28 +12,28 @@ use std::{
 };
 use toml::de::{DeTable, DeValue};
 
-/// A TOML file that was read: its text is kept for the excerpts of later errors.
+/// TOML file that was read; its text is kept for the excerpts of later error messages.
 #[derive(Debug)]
 pub struct Document {
-    /// The file.
+    /// Path of the file.
     pub path: PathBuf,
     text: String,
 }
 
-/// One step of the way to a field.
+/// Step of the path to a field.
 #[derive(Debug, Clone, Copy)]
 pub enum Step<'a> {
-    /// A key of a table.
+    /// Key of a table.
     Key(&'a str),
-    /// An entry of an array.
+    /// Index of an array entry.
     Index(usize),
 }
 
 impl Document {
-    /// Reads a TOML file.
+    /// Reads a TOML file; `role` says in the error message what the file is needed for.
     ///
     /// # Errors
-    /// Missing, unreadable, empty or not text.
+    /// Returns an error for a file that is missing, unreadable, empty or not text.
     pub fn read(path: &Path, role: &str) -> Result<Self, CaseError> {
         let bytes = file::read(path, role)?;
         let text = file::text(path, file::decoded(&bytes).into_owned())?;
@@ -43,10 +43,11 @@ impl Document {
         })
     }
 
-    /// Parses the text.
+    /// Parses the text into a type.
     ///
     /// # Errors
-    /// Syntax, unknown keys (with the nearest known one), missing keys, values of another type.
+    /// Returns an error for invalid syntax, an unknown key (with the nearest known one), a missing key or a
+    /// value of another type.
     pub fn parse<T: DeserializeOwned>(&self) -> Result<T, CaseError> {
         toml::from_str(&self.text).map_err(|error| {
             let message = error.message();
@@ -63,7 +64,7 @@ impl Document {
         })
     }
 
-    /// An error about a field, with its source line.
+    /// Builds the error for a value that is not allowed in a field, with the field's source line.
     pub fn field(
         &self,
         way: &[Step<'_>],
@@ -85,10 +86,10 @@ impl Document {
         }
     }
 
-    /// Checks that a number of the file lies in an interval; NaN never does.
+    /// Checks that a number of the file lies in a closed interval; NaN is refused.
     ///
     /// # Errors
-    /// Names the field, its value and the interval with its unit.
+    /// Returns an error with the field, its value and the interval with its unit.
     pub fn within(
         &self,
         dotted: &str,
@@ -112,7 +113,7 @@ impl Document {
         ))
     }
 
-    /// Where a field stands in the text.
+    /// Returns the byte range of a field in the text.
     fn span(&self, way: &[Step<'_>]) -> Option<Range<usize>> {
         let root = DeTable::parse(&self.text).ok()?;
         let (first, rest) = way.split_first()?;
@@ -128,7 +129,7 @@ impl Document {
         Some(at.span())
     }
 
-    /// The line of a span with a marker below it.
+    /// Returns the source line of a span, with a marker line below it.
     fn excerpt(&self, span: Range<usize>) -> String {
         let before = self.text.get(..span.start).unwrap_or_default();
         let line = before.matches('\n').count();
@@ -149,7 +150,8 @@ impl Document {
     }
 }
 
-/// A line as far as a terminal shows it, with the column moved accordingly.
+/// Cuts a line of more than 120 characters to the part around a column; returns the part and the column
+/// within it.
 fn around(line: &str, column: usize) -> (String, usize) {
     const WIDEST: usize = 120;
     const BEFORE: usize = 60;
@@ -164,7 +166,7 @@ fn around(line: &str, column: usize) -> (String, usize) {
     (format!("... {part}"), column - from + 4)
 }
 
-/// The way to a field as it is written in messages: `conditions[0].speed_rpm`.
+/// Formats the path to a field as in messages: `conditions[0].speed_rpm`.
 fn dotted(way: &[Step<'_>]) -> String {
     let mut text = String::new();
     for step in way {
@@ -184,7 +186,7 @@ fn dotted(way: &[Step<'_>]) -> String {
     text
 }
 
-/// A number without needless digits.
+/// Formats a number without superfluous digits: in exponential notation below 1e-3 and from 1e5 on.
 pub fn short(value: f64) -> String {
     if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
         format!("{value:e}")
@@ -193,13 +195,14 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// Stands in the `expecting` text of a type of case files, between what is expected and an example of it.
+/// Separator in the `expecting` text of case-file types, between the expectation and an example.
 const WRITE: &str = "; write ";
 
-/// What counts are, in words.
+/// Text in messages for the type of a non-negative integer.
 const WHOLE: &str = "expected a whole number, 0 or greater";
 
-/// The first line of a library's message, without its list of alternatives.
+/// Returns the first line of a TOML library message, without its list of alternatives and with Rust type
+/// names replaced by plain words.
 fn first_line(message: &str) -> String {
     let line = message.lines().next().unwrap_or_default();
     let line = line.split_once(WRITE).map_or(line, |(line, _)| line);
@@ -217,7 +220,7 @@ fn first_line(message: &str) -> String {
     }
 }
 
-/// What to do about a message of the TOML library.
+/// Returns the remedy for a message of the TOML library.
 fn advice(message: &str) -> String {
     let mut quoted = message.split('`').skip(1).step_by(2);
     if message.starts_with("unknown field") || message.starts_with("unknown variant") {
@@ -254,17 +257,18 @@ fn advice(message: &str) -> String {
     "correct the marked place; the file must be TOML 1.0".to_owned()
 }
 
-/// Every unit a gene may have, for messages.
+/// Returns the symbols of all units an unknown may have, for messages.
 pub fn units() -> String {
     protocol::unit::Unit::ALL
         .map(protocol::unit::Unit::symbol)
         .join(", ")
 }
 
-/// Prefixes that turn a word into its opposite.
+/// Prefixes that reverse the meaning of a word.
 const OPPOSITE: [&str; 4] = ["anti", "counter", "un", "non"];
 
-/// The candidate that is most like a word, if any is much like it; never its opposite.
+/// Returns the candidate most similar to a word, if the similarity is at least 0.5; never a candidate of
+/// opposite meaning.
 pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let lower = word.to_lowercase().replace(['-', ' '], "_");
     let word = lower.strip_prefix("anti").map_or(lower.clone(), |rest| {
@@ -288,10 +292,10 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
         .map(|(candidate, _)| candidate)
 }
 
-/// Parses JSON with the file's name in the error.
+/// Parses JSON.
 ///
 /// # Errors
-/// Names the line and column of the first problem.
+/// Returns an error with the file's name and the line and column of the first problem.
 pub fn json<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, CaseError> {
     serde_json::from_slice(bytes).map_err(|error| {
         damaged(
@@ -306,7 +310,8 @@ pub fn json<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, CaseErr
 mod tests {
     use super::{advice, around, first_line, nearest};
 
-    /// A line of a hundred thousand brackets filled the terminal.
+    /// Checks that only the part of a long line around the error is shown; a line of 100,000 brackets once
+    /// filled the terminal.
     #[test]
     fn of_a_long_line_only_what_is_around_the_place_is_shown() {
         assert_eq!(around("a = 1", 4), ("a = 1".to_owned(), 4));
@@ -318,7 +323,8 @@ mod tests {
         }
     }
 
-    /// `anticlockwise` was taken for `clockwise`.
+    /// Checks that the suggested word never has the opposite meaning; `anticlockwise` was once corrected to
+    /// `clockwise`.
     #[test]
     fn the_nearest_word_is_never_the_opposite() {
         let senses = ["clockwise", "counter_clockwise"];

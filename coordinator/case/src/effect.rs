@@ -1,7 +1,7 @@
-//! Effects of a case file: numbers with their units and intervals, and where they come from.
+//! `[[effects]]` tables of a case file: effects with their parameters, units, intervals and provenance.
 //!
-//! What effects there are is the model's business and not known here: shape, units and numbers are
-//! checked, and names where workers say which they know.
+//! The effects are defined by the model and are not known here: shape, units and numbers are checked when the
+//! case is read, identifiers when workers announce the effects that they support.
 use super::{
     conversion::{convert, factor},
     document::{Document, Step, nearest, short},
@@ -13,54 +13,55 @@ use protocol::case::{EffectSetting, Scale, Unknown};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// One `[[effects]]` table.
+/// `[[effects]]` table of a case file.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CaseEffect {
-    /// Fixed identifier, as `pivot_friction`.
+    /// Identifier of the effect, as `pivot_friction`.
     pub id: String,
-    /// Its numbers by name; what is not named stays as the model has it.
+    /// Parameters of the effect by name; parameters not listed keep the model's default.
     #[serde(default)]
     pub parameters: BTreeMap<String, CaseParameter>,
-    /// Where it comes from; absent where somebody wrote it by hand.
+    /// Diagnosis that found the effect; absent for an effect written by hand.
     pub provenance: Option<Provenance>,
 }
 
-/// One number of an effect.
+/// Parameter of an effect.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CaseParameter {
-    /// Value, in `unit`.
+    /// Value of the parameter, in `unit`.
     pub value: f64,
-    /// Unit of all numbers here; it must be the one that the effect declares.
+    /// Unit of all numbers in this table; must equal the unit that the effect declares.
     pub unit: String,
-    /// Interval that holds the value with 95 % confidence, if it was estimated.
+    /// 95 % confidence interval of the value, if it was estimated.
     pub ci95: Option<[f64; 2]>,
-    /// Interval that a calibration searches; without one the parameter is no gene.
+    /// Search interval for calibration; a parameter without it is not searched.
     pub search: Option<[f64; 2]>,
 }
 
-/// Where an effect comes from: the diagnosis that named it.
+/// Provenance of an effect: the diagnosis that named it.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
-    /// Content hash of the case, with the records that it was found in.
+    /// Content hash of the case, including the records in which the effect was found.
     pub dataset: Option<String>,
-    /// Name of the run that found it.
+    /// Name of the run that found the effect.
     pub run: Option<String>,
-    /// What that run concluded, as `named`.
+    /// Verdict of that run, as `named`.
     pub verdict: Option<String>,
-    /// Identifiers that the records cannot tell from it, itself among them.
+    /// Ambiguity set: identifiers of the effects that the records cannot distinguish, including this effect's
+    /// own.
     #[serde(default)]
     pub set: Vec<String>,
-    /// Gain of log evidence over the model without it \[1\].
+    /// Gain of log evidence over the model without the effect \[1\].
     pub ln_evidence_gain: Option<f64>,
-    /// Round of the diagnosis, from 1.
+    /// Round of the diagnosis in which the effect was found, from 1.
     pub round: Option<u32>,
 }
 
 impl CaseEffect {
-    /// As it travels.
+    /// Returns the effect in the form that is sent to workers.
     pub fn setting(&self) -> EffectSetting {
         let parameters = self.parameters.iter();
         EffectSetting {
@@ -71,12 +72,12 @@ impl CaseEffect {
         }
     }
 
-    /// Units of its parameters, in the order of [`Self::setting`].
+    /// Returns the units of the parameters, in the order of [`Self::setting`].
     pub fn units(&self) -> Vec<String> {
         self.parameters.values().map(|p| p.unit.clone()).collect()
     }
 
-    /// Its parameters that are searched, in the order of [`Self::setting`].
+    /// Returns the searched parameters as unknowns, in the order of [`Self::setting`].
     pub fn genes(&self) -> impl Iterator<Item = Unknown> {
         self.parameters.iter().filter_map(|(name, p)| {
             let label = format!("{}.{name}", self.id);
@@ -92,11 +93,11 @@ impl CaseEffect {
     }
 }
 
-/// Checks shape, units and numbers; `units` are those that effects of this kind of model may have, none
-/// where nobody here knows them: then a unit is a word, and a worker refuses what is not its own.
+/// Checks shape, units and numbers of effects. `units` lists the units allowed for this kind of model; if it
+/// is empty, any unit is accepted here and a worker refuses those that it does not know.
 ///
 /// # Errors
-/// Every identifier, unit or number that cannot be right.
+/// Returns all invalid identifiers, units and numbers.
 pub fn check(document: &Document, effects: &[CaseEffect], units: &[&str]) -> Result<(), CaseError> {
     let mut faults = Faults::default();
     for (index, effect) in effects.iter().enumerate() {
@@ -125,10 +126,10 @@ pub fn check(document: &Document, effects: &[CaseEffect], units: &[&str]) -> Res
     faults.end()
 }
 
-/// Checks effects against those that workers know.
+/// Checks effects against those that workers support.
 ///
 /// # Errors
-/// Every effect and parameter that they do not know, has another unit there, or lies outside its range.
+/// Returns every effect and parameter that is not known, has another unit or lies outside its range.
 pub fn check_known(
     document: &Document,
     effects: &[CaseEffect],
@@ -186,7 +187,7 @@ pub fn check_known(
     faults.end()
 }
 
-/// Names the candidate that a word was probably meant for.
+/// Returns the remedy for a misspelt word: the nearest candidate, if there is one.
 fn meant(word: &str, candidates: &[&str]) -> String {
     let near = nearest(word, candidates.iter().copied());
     near.map_or("name one of them".to_owned(), |near| {
@@ -251,7 +252,7 @@ fn check_parameter(
             &way("value"),
             parameter.value,
             format!("a finite number of {unit}"),
-            "correct the value; a worker knows its bounds",
+            "correct the value; the workers check its bounds",
         ));
     }
     for (key, interval, is_search) in [

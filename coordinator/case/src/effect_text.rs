@@ -1,5 +1,5 @@
-//! Effects as text of a case file: tables of their own, or added to the user's file, whose comments and
-//! layout stay. Reading the text back gives the same effects, to the bit.
+//! Writing of effects and start values to a case file as TOML, preserving the file's comments and layout.
+//! Effects read back from the text are bit-identical.
 use super::{
     effect::{CaseEffect, CaseParameter, Provenance},
     error::{CaseError, damaged},
@@ -9,7 +9,7 @@ use std::path::Path;
 use support::atomic_file;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value, value};
 
-/// `[[effects]]` tables as they stand in `case.toml`; nothing of none.
+/// Returns effects as the text of `[[effects]]` tables; empty if there are no effects.
 pub fn write_effects(effects: &[CaseEffect]) -> String {
     let mut document = DocumentMut::new();
     if !effects.is_empty() {
@@ -18,11 +18,12 @@ pub fn write_effects(effects: &[CaseEffect]) -> String {
     document.to_string()
 }
 
-/// Adds effects to a case file behind those that it has, in one step: whoever reads the file meanwhile
-/// finds the old one or the new one.
+/// Appends effects to those of a case file. The file is replaced atomically, so that concurrent readers see
+/// either the old or the new version.
 ///
 /// # Errors
-/// A file that is missing or no TOML, whose `effects` are no tables, or that cannot be replaced.
+/// Returns an error if the file is missing, is not valid TOML or cannot be replaced, or if its `effects` is
+/// not an array of tables.
 pub fn append_effects(path: &Path, effects: &[CaseEffect]) -> Result<(), CaseError> {
     edit(path, |document| {
         // removed and put back: the order in the text is kept by the tables themselves
@@ -42,10 +43,11 @@ pub fn append_effects(path: &Path, effects: &[CaseEffect]) -> Result<(), CaseErr
     })
 }
 
-/// Has unknowns of a case file start from other values, by name, in one step.
+/// Replaces the start values of unknowns, given by name, in a case file; the file is replaced atomically.
 ///
 /// # Errors
-/// A file that is missing or no TOML, that has no such unknown, or that cannot be replaced.
+/// Returns an error if the file is missing, is not valid TOML, lacks one of the unknowns or cannot be
+/// replaced.
 pub fn write_starts(path: &Path, starts: &[(String, f64)]) -> Result<(), CaseError> {
     edit(path, |document| {
         let tables = document
@@ -75,7 +77,7 @@ pub fn write_starts(path: &Path, starts: &[(String, f64)]) -> Result<(), CaseErr
     })
 }
 
-/// Changes a case file in one step; comments and layout stay.
+/// Edits a case file and replaces it atomically; comments and layout are preserved.
 fn edit(
     path: &Path,
     change: impl FnOnce(&mut DocumentMut) -> Result<(), CaseError>,
@@ -97,7 +99,7 @@ fn edit(
     })
 }
 
-/// Tables that are there, and behind them those of these effects.
+/// Appends the tables of effects to existing tables.
 fn tables(mut there: ArrayOfTables, effects: &[CaseEffect]) -> Item {
     for effect in effects {
         there.push(table(effect));
@@ -105,7 +107,7 @@ fn tables(mut there: ArrayOfTables, effects: &[CaseEffect]) -> Item {
     Item::ArrayOfTables(there)
 }
 
-/// An effect as a table whose parts stand on one line each, after an empty line.
+/// Returns an effect as a table with one line per key, preceded by an empty line.
 fn table(effect: &CaseEffect) -> Table {
     let numbers = effect.parameters.iter();
     let numbers: InlineTable = numbers.map(|(name, p)| (name, parameter(p))).collect();
@@ -142,7 +144,7 @@ fn provenance(from: &Provenance) -> InlineTable {
     ])
 }
 
-/// Those parts of a table that there are.
+/// Builds an inline table from the parts that are present.
 fn present<const N: usize>(parts: [(&str, Option<Value>); N]) -> InlineTable {
     let parts = parts.into_iter();
     parts.filter_map(|(key, part)| Some((key, part?))).collect()
@@ -212,7 +214,7 @@ mod tests {
         assert!(write_effects(&[]).is_empty());
     }
 
-    /// Comments, order, spaces and even a comment behind the last line stay as the user has them.
+    /// Checks that comments, order, spaces and a comment after the last line are preserved.
     #[test]
     fn the_users_file_keeps_its_comments_and_layout() {
         let folder = tempfile::tempdir().unwrap();
@@ -262,7 +264,7 @@ mod tests {
         assert_eq!(back.effects, effects());
     }
 
-    /// What a diagnosis finds of an unknown becomes its start; everything else stays as it was written.
+    /// Checks that only the start values change and everything else stays as written.
     #[test]
     fn a_start_is_replaced_where_it_stands() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,127 +1,126 @@
-//! What can be wrong with a case: one error, one place, one remedy.
+//! Errors of a case, each with one location and one remedy.
 //!
-//! Every message names the file, then the field (or row and column), its value and what is allowed,
-//! and ends in a `help:` line that says what to do. It does not know who reads it: the command
-//! line prints it as it is.
+//! Every message names the file, then the field (or row and column), its value and what is allowed, and ends
+//! in a `help:` line with the remedy. The command line prints messages unchanged.
 use std::{fmt, io, path::Path};
 use thiserror::Error;
 
-/// Why a case cannot be used.
+/// Reason why a case cannot be used.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CaseError {
-    /// A file that is needed is not there.
+    /// Required file that does not exist.
     #[error("{}: no such file; it is {role}\nhelp: {help}", path.display())]
     Missing {
-        /// The file.
+        /// Path of the missing file.
         path: Box<Path>,
-        /// What it is needed for and who names it.
+        /// Purpose of the file, and where it is named.
         role: Box<str>,
-        /// What to do.
+        /// Remedy.
         help: Box<str>,
     },
-    /// A file cannot be read.
+    /// File that cannot be read.
     #[error("{}: cannot be read: {source}\nhelp: check that it is a file and that you may read it", path.display())]
     Unreadable {
-        /// The file.
+        /// Path of the unreadable file.
         path: Box<Path>,
-        /// What the system says.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// A file cannot be replaced.
+    /// File that cannot be replaced.
     #[error("{}: cannot be written: {source}\nhelp: check that there is room and that you may write there; the old file is unchanged", path.display())]
     Unwritable {
-        /// The file.
+        /// Path of the file that cannot be written.
         path: Box<Path>,
-        /// What the system says.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// A file as a whole is not what it should be: empty, truncated, of another format.
+    /// File that is unusable as a whole: empty, truncated or in another format.
     #[error("{}: {problem}\nhelp: {help}", path.display())]
     Damaged {
-        /// The file.
+        /// Path of the damaged file.
         path: Box<Path>,
-        /// What is wrong with it.
+        /// Description of the damage.
         problem: Box<str>,
-        /// What to do.
+        /// Remedy.
         help: Box<str>,
     },
-    /// A TOML file is malformed: syntax, an unknown or missing key, a value of another type.
+    /// Malformed TOML file: invalid syntax, an unknown or missing key, or a value of another type.
     #[error("{}: {problem}{excerpt}\nhelp: {help}", path.display())]
     Toml {
-        /// The file.
+        /// Path of the TOML file.
         path: Box<Path>,
-        /// What is wrong.
+        /// Description of the problem.
         problem: Box<str>,
-        /// The source line with a marker below it; empty where there is none.
+        /// Source line with a marker below it; empty if not available.
         excerpt: Box<str>,
-        /// What to do.
+        /// Remedy.
         help: Box<str>,
     },
-    /// A field has a value that is not allowed.
+    /// Field with a value that is not allowed.
     #[error("{}: `{field}` = {value} is not allowed{excerpt}\nallowed: {allowed}\nhelp: {help}", path.display())]
     Field {
-        /// The file.
+        /// Path of the file with the field.
         path: Box<Path>,
-        /// The field, with the tables it stands in.
+        /// Dotted path of the field within the file.
         field: Box<str>,
-        /// Its value.
+        /// Value of the field.
         value: Box<str>,
-        /// The allowed values, with the unit.
+        /// Allowed values, with the unit.
         allowed: Box<str>,
-        /// The source line with a marker below it; empty where there is none.
+        /// Source line with a marker below it; empty if not available.
         excerpt: Box<str>,
-        /// What to do.
+        /// Remedy.
         help: Box<str>,
     },
-    /// A table lacks a column.
+    /// Table without a required column.
     #[error("{}: column `{column}` is missing; the columns are: {found}\nhelp: {help}", path.display())]
     Column {
-        /// The file.
+        /// Path of the table's file.
         path: Box<Path>,
-        /// The column.
+        /// Name of the missing column.
         column: Box<str>,
-        /// The columns there are.
+        /// Names of the existing columns.
         found: Box<str>,
-        /// What to do.
+        /// Remedy.
         help: Box<str>,
     },
-    /// A cell, or a whole row, of a table has a value that is not allowed.
+    /// Table cell, or whole row, with a value that is not allowed.
     #[error("{}: row {row}, column `{column}`: {value} is not allowed\nallowed: {allowed}\nhelp: {help}", path.display())]
     Cell {
-        /// The file.
+        /// Path of the table's file.
         path: Box<Path>,
-        /// Line of the file; the header is row 1.
+        /// Row number, from 1 for the header.
         row: u64,
-        /// The column.
+        /// Name of the column.
         column: Box<str>,
-        /// What stands there.
+        /// Content of the cell.
         value: Box<str>,
-        /// The allowed values, with the unit.
+        /// Allowed values, with the unit.
         allowed: Box<str>,
-        /// What to do.
+        /// Remedy.
         help: Box<str>,
     },
-    /// Several faults that do not depend on each other; two at least.
+    /// Two or more independent errors.
     #[error("{0}")]
     Several(Several),
-    /// Two statements of a case exclude each other.
+    /// Two statements of a case that contradict each other.
     #[error("{}: {field} is {value}, but {other}\nhelp: {help}", path.display())]
     Contradiction {
-        /// The file of the first statement.
+        /// Path of the file with the first statement.
         path: Box<Path>,
-        /// What is stated.
+        /// Field of the first statement.
         field: Box<str>,
-        /// Its value.
+        /// Value of the first statement.
         value: Box<str>,
-        /// The other statement, with its place.
+        /// Second statement, with its location.
         other: Box<str>,
-        /// What to do.
+        /// Remedy.
         help: Box<str>,
     },
 }
 
-/// Faults of one case; shown one after the other.
+/// Independent errors of one case, displayed as a numbered list.
 #[derive(Debug)]
 pub struct Several(Vec<CaseError>);
 
@@ -135,17 +134,17 @@ impl fmt::Display for Several {
     }
 }
 
-/// Collects faults that do not depend on each other, so that all of them are said at once.
+/// Collector of independent errors, so that all of them are reported at once.
 #[derive(Debug, Default)]
 pub struct Faults(Vec<CaseError>);
 
 impl Faults {
-    /// Takes a result apart: the value, or none after its fault was kept.
+    /// Returns the value of a result; stores its error and returns `None` if it failed.
     pub fn take<T>(&mut self, result: Result<T, CaseError>) -> Option<T> {
         result.map_err(|fault| self.add(fault)).ok()
     }
 
-    /// Keeps a fault; one that is several, as those.
+    /// Adds an error; [`CaseError::Several`] is split into its errors.
     pub fn add(&mut self, fault: CaseError) {
         if let CaseError::Several(Several(faults)) = fault {
             self.0.extend(faults);
@@ -154,10 +153,10 @@ impl Faults {
         }
     }
 
-    /// Ends the collection.
+    /// Finishes the collection.
     ///
     /// # Errors
-    /// If any fault was kept: itself, or all of them as [`CaseError::Several`].
+    /// Returns the collected error, or all of them as [`CaseError::Several`] if there are several.
     pub fn end(mut self) -> Result<(), CaseError> {
         match self.0.len() {
             0 => Ok(()),
@@ -167,7 +166,7 @@ impl Faults {
     }
 }
 
-/// A problem of a whole file.
+/// Builds the error for a file that is unusable as a whole.
 pub fn damaged(path: &Path, problem: impl Into<String>, help: &str) -> CaseError {
     CaseError::Damaged {
         path: path.into(),
@@ -176,7 +175,7 @@ pub fn damaged(path: &Path, problem: impl Into<String>, help: &str) -> CaseError
     }
 }
 
-/// Two statements that exclude each other.
+/// Builds the error for two contradictory statements.
 pub fn contradiction(
     path: &Path,
     field: impl Into<String>,

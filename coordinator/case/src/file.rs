@@ -1,15 +1,15 @@
-//! Reading the bytes of a case's files; knows nothing of what they mean.
+//! Reading of a case's files as bytes or text, independent of their content.
 use super::error::{CaseError, damaged};
 use std::{borrow::Cow, fs, io, io::Read, path::Path};
 
-/// Largest file, unpacked (bytes): 40 hours of a 100 Hz record; a larger one is a mistake or a
-/// compression bomb.
+/// Maximum size of a file after decompression (bytes), enough for 40 hours of a 100 Hz record; a larger file
+/// is a mistake or a compression bomb.
 const LIMIT: u64 = 1 << 30;
 
-/// Makes sure that there is a file.
+/// Checks that a file exists.
 ///
 /// # Errors
-/// Missing, with `role`: what it is needed for.
+/// Returns an error that states `role`, the purpose of the file, if it is missing.
 pub fn there(path: &Path, role: &str) -> Result<(), CaseError> {
     if path.exists() {
         return Ok(());
@@ -21,13 +21,13 @@ pub fn there(path: &Path, role: &str) -> Result<(), CaseError> {
     })
 }
 
-/// What to do about a file that is missing.
+/// Remedy for a missing file.
 const MISSING: &str = "put the file there, or correct the name where it is stated";
 
-/// Reads a file whole.
+/// Reads a whole file; `role` is its purpose, for the error message.
 ///
 /// # Errors
-/// Missing (with `role`: what it is needed for), unreadable, empty or larger than 1 GiB.
+/// Returns an error for a file that is missing, unreadable, empty or larger than 1 GiB.
 pub fn read(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
     // opening a pipe would wait for somebody to write into it
     let opened = fs::metadata(path).and_then(|there| {
@@ -70,10 +70,10 @@ pub fn read(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
     Ok(bytes)
 }
 
-/// Reads a gzip file whole and unpacks it.
+/// Reads and decompresses a gzip file.
 ///
 /// # Errors
-/// As [`read`], and where the file is not gzip, is cut off or fails its checksum.
+/// As [`read`], and for a file that is not gzip data, is truncated or fails its checksum.
 pub fn read_gzip(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
     let packed = read(path, role)?;
     if !packed.starts_with(&[0x1f, 0x8b]) {
@@ -106,7 +106,7 @@ pub fn read_gzip(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
     Ok(bytes)
 }
 
-/// Reads to the end, or refuses what is larger than [`LIMIT`].
+/// Reads to the end; refuses more than [`LIMIT`] bytes.
 fn read_limited(from: impl Read, path: &Path) -> Result<io::Result<Vec<u8>>, CaseError> {
     let mut bytes = Vec::new();
     let outcome = from.take(LIMIT + 1).read_to_end(&mut bytes);
@@ -120,8 +120,8 @@ fn read_limited(from: impl Read, path: &Path) -> Result<io::Result<Vec<u8>>, Cas
     Ok(outcome.map(|_| bytes))
 }
 
-/// The bytes in UTF-8 where they are UTF-16, as spreadsheets write it: by the byte-order mark, or by the empty half of
-/// each of the first letters.
+/// Converts UTF-16, as spreadsheets write it, to UTF-8; recognised by the byte-order mark, or by zero bytes
+/// in the first two characters. Other bytes are returned unchanged.
 pub fn decoded(bytes: &[u8]) -> Cow<'_, [u8]> {
     type Unit = fn([u8; 2]) -> u16;
     let (rest, unit): (&[u8], Unit) = match bytes {
@@ -137,10 +137,10 @@ pub fn decoded(bytes: &[u8]) -> Cow<'_, [u8]> {
     Cow::Owned(letters.collect::<String>().into_bytes())
 }
 
-/// The bytes as text, without a byte-order mark.
+/// Converts bytes to text, without a byte-order mark.
 ///
 /// # Errors
-/// Names the first line that is not UTF-8.
+/// Returns an error with the number of the first line that is not UTF-8.
 pub fn text(path: &Path, bytes: Vec<u8>) -> Result<String, CaseError> {
     let text = String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();

@@ -1,7 +1,7 @@
-//! Files that give the unknowns of a case values, as `calibrated.toml` of a run.
+//! Gene files, which state values for the unknowns of a case, as `calibrated.toml` of a run.
 //!
-//! A line per unknown, `stiffness = { value = 6.2, unit = "N/mm" }`; a name with a point is quoted, as that
-//! of an effect's parameter: `"pin_clearance.force" = { value = 1500.0, unit = "N" }`.
+//! Each unknown has a line `stiffness = { value = 6.2, unit = "N/mm" }`; a name with a dot, such as a
+//! parameter of an effect, is quoted: `"pin_clearance.force" = { value = 1500.0, unit = "N" }`.
 use super::{
     conversion::convert,
     document::{Document, Step, nearest},
@@ -14,7 +14,7 @@ use protocol::{
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::Path};
 
-/// One line of a gene file.
+/// Entry of a gene file.
 #[derive(Debug, Deserialize)]
 #[serde(
     deny_unknown_fields,
@@ -25,15 +25,14 @@ struct GeneValue {
     unit: String,
 }
 
-/// Reads a gene file; values are returned in the case's units and order. They may lie outside the
-/// bounds, which are those of the search. Every unknown must have one, but for parameters of effects:
-/// one that the file does not name keeps the case's value, so files from before it was known still
-/// hold.
+/// Reads a gene file; returns the values in the case's units and order. Values may lie outside the bounds,
+/// which only limit the search. Every unknown needs an entry, except parameters of effects: without an entry
+/// these keep the case's value, so that files written before an effect was added stay usable.
 ///
 /// # Errors
-/// A missing or strange unknown, a unit that does not fit, a value that cannot be one.
+/// Returns an error for a missing or unknown name, an incompatible unit or an invalid value.
 pub fn read_genes(path: &Path, case: &Case) -> Result<Vec<f64>, CaseError> {
-    let document = Document::read(path, "the gene file that was asked for")?;
+    let document = Document::read(path, "the gene file named on the command line")?;
     let file: BTreeMap<String, GeneValue> = document.parse()?;
     for (name, entry) in &file {
         if !case.unknowns.iter().any(|unknown| unknown.name == *name) {
@@ -60,7 +59,7 @@ pub fn read_genes(path: &Path, case: &Case) -> Result<Vec<f64>, CaseError> {
     values.collect()
 }
 
-/// The value of a line in the unit of the case.
+/// Returns the value of an entry in the case's unit.
 fn value(document: &Document, unknown: &Unknown, entry: &GeneValue) -> Result<f64, CaseError> {
     let way = |key| [Step::Key(unknown.name.as_str()), Step::Key(key)];
     let GeneValue { value, unit } = entry;
@@ -88,13 +87,13 @@ fn value(document: &Document, unknown: &Unknown, entry: &GeneValue) -> Result<f6
             &way("value"),
             value,
             format!("a {allowed} number of {unit}"),
-            "correct the value; a worker knows its bounds",
+            "correct the value; the workers check its bounds",
         ));
     }
     Ok(*value)
 }
 
-/// A line about something that is no unknown of the case.
+/// Builds the error for an entry that is not an unknown of the case.
 fn strange(document: &Document, case: &Case, (name, entry): (&str, &GeneValue)) -> CaseError {
     let known: Vec<&str> = case.unknowns.iter().map(|u| u.name.as_str()).collect();
     let help = match nearest(name, known.iter().copied()) {
@@ -109,7 +108,7 @@ fn strange(document: &Document, case: &Case, (name, entry): (&str, &GeneValue)) 
     document.field(&[Step::Key(name)], entry.value, allowed, &help)
 }
 
-/// A gene file of these values, which [`read_genes`] gives back to the bit.
+/// Returns the text of a gene file; [`read_genes`] reads back bit-identical values.
 pub fn write_genes(case: &Case, values: &[f64], about: &str) -> String {
     let mut text = format!("# {about}\n");
     for (unknown, value) in case.unknowns.iter().zip(values) {

@@ -1,5 +1,5 @@
-//! The kinds of models whose cases have a form of their own: one line each. Cases of every other kind are read by the
-//! general form alone.
+//! Registry of the kinds of models that have their own case format. Cases of any other kind are read in the
+//! general form.
 use crate::{
     case_kind::{AnyKind, CaseKind},
     command::kind::Commands,
@@ -12,39 +12,40 @@ use serde::Deserialize;
 
 const ALL: &[&dyn CaseKind] = &[&PumpingUnits, &Commands];
 
-/// Part of a kind's name before its colon, which all entries of a list share: `command` of `command:decay`.
+/// Returns the part of a kind's name before its colon, which all allow-list entries share: `command` of
+/// `command:decay`.
 pub fn family(name: &str) -> &str {
     name.split_once(':').map_or(name, |(family, _)| family)
 }
 
-/// The kind of a name.
+/// Returns the kind of model with a name; a generic kind if the name is not registered.
 pub fn named(name: &str) -> &'static dyn CaseKind {
     let name = family(name);
     let mut all = ALL.iter().copied();
     all.find(|kind| kind.name() == name).unwrap_or(&AnyKind)
 }
 
-/// The kind that a case is of.
+/// Returns the kind of model of a case.
 pub fn of(case: &Case) -> &'static dyn CaseKind {
     named(&case.model.kind)
 }
 
-/// As much of a case file as any kind has.
+/// Part of a case file that cases of every kind contain.
 #[derive(Debug, Deserialize)]
 struct AnyCase {
     model: Option<AnyModel>,
 }
 
-/// `[model]`, whatever else it says.
+/// Table `[model]`, of which only `kind` is read.
 #[derive(Debug, Deserialize)]
 struct AnyModel {
     kind: Option<String>,
 }
 
-/// The kind that a case states.
+/// Returns the kind of model that a case file states.
 ///
 /// # Errors
-/// Where it states none: to guess one would be to read a case as something that it is not.
+/// Returns an error if no kind is stated; a guess could misinterpret the case.
 pub(crate) fn stated(document: &Document) -> Result<String, CaseError> {
     let kind = document
         .parse::<AnyCase>()?

@@ -1,10 +1,10 @@
-//! Reads a case folder, checks it and resolves it into plain data.
+//! Reading, checking and resolving of a case folder into plain data.
 //!
-//! A folder holds `case.toml` and the files it names. What comes out is a [`Case`](protocol::case::Case),
-//! which travels to the workers; what is wrong ends in one [`CaseError`] that names file, field, value,
-//! range and remedy; what is worth knowing is a [`Note`]. Here is what cases of all kinds share, and the
-//! general form; a kind of model that has a form of its own reads it in its own folder. Nothing here
-//! knows of dynamics, of search or of the wire.
+//! A folder holds `case.toml` and the files it names. The result is a [`Case`](protocol::case::Case), which
+//! is sent to the workers. A fault is reported as a [`CaseError`] that names file, field, value, range and
+//! remedy; a remark as a [`Note`]. This crate contains the code shared by all kinds of cases and the general
+//! form; each kind of model with a format of its own has a separate folder. The crate is independent of
+//! dynamics, search and the wire protocol.
 mod case_kind;
 pub mod command;
 pub mod conversion;

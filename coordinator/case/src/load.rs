@@ -1,4 +1,4 @@
-//! From a folder to a [`Case`]: reads `case.toml` as the kind of model that it names wants it read.
+//! Loading of a case folder as a [`Case`], by the reader of the model kind that `case.toml` names.
 use super::{
     error::CaseError,
     kind,
@@ -12,12 +12,12 @@ use std::path::Path;
 /// Loads a case folder.
 ///
 /// # Errors
-/// The first thing that is wrong; see [`CaseError`].
+/// Returns the first fault found; see [`CaseError`].
 pub fn load(folder: &Path, overrides: &Overrides) -> Result<Case, CaseError> {
     load_with_notes(folder, overrides).map(|loaded| loaded.case)
 }
 
-/// Loads a case folder, with remarks and facts.
+/// Loads a case folder, with its notes, separate cycles and effects.
 ///
 /// # Errors
 /// As [`load`].
@@ -26,7 +26,7 @@ pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, C
     kind::named(&kind::stated(&document)?).read(&Source::new(folder, overrides, &document))
 }
 
-/// Loads a case folder and says what is in it, for `horsehead case check`.
+/// Loads a case folder and summarises its contents, for `horsehead case check`.
 ///
 /// # Errors
 /// As [`load`].

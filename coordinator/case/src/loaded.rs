@@ -1,38 +1,38 @@
-//! A case as it was read, with what was found on the way.
+//! Loaded case, with its notes, separate cycles and effects.
 use super::{effect::CaseEffect, note::Note};
 use discrepancy::record::Record;
 use protocol::case::Case;
 use serde::Deserialize;
 
-/// Where records come from.
+/// Origin of a case's records.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Records {
-    /// A test.
+    /// Records measured in a test.
     #[default]
     Measured,
-    /// A computation.
+    /// Records computed by a simulation.
     Synthetic,
 }
 
-/// A case with what was found on the way.
+/// Loaded case, with its notes, separate cycles and effects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
-    /// The case.
+    /// Case in the form that is sent to workers.
     pub case: Case,
-    /// Remarks that are no errors.
+    /// Remarks that are not errors.
     pub notes: Vec<Note>,
-    /// Every cycle of each record by itself, for a diagnosis; only conditions that have a record.
+    /// Records with each cycle separate, for a diagnosis; only conditions that have a record.
     pub cycles: Vec<Record>,
-    /// Whether the case says that its records were computed; never of replaced ones.
+    /// Whether the case declares its records as synthetic; false if `--measured` replaces them.
     pub synthetic: bool,
     /// Effects as the file states them, with intervals and provenance.
     pub effects: Vec<CaseEffect>,
 }
 
 impl Loaded {
-    /// The case as it was when effects were found in it: without those whose provenance names it, by its
-    /// content hash, as their dataset, and without their genes.
+    /// Returns the case as it was before effects were found in it: without the effects whose provenance
+    /// states `dataset`, the case's content hash, and without their unknowns.
     #[must_use]
     pub fn without_found_in(mut self, dataset: &str) -> Self {
         let found = |effect: &CaseEffect| {

@@ -1,12 +1,12 @@
-//! Whether there is anything to compare with.
+//! Check that a condition has a measured record.
 use super::error::CaseError;
 use protocol::case::Case;
 use std::path::Path;
 
-/// Whether a condition has a record, which calibration, diagnosis and comparison need.
+/// Checks that a condition has a measured record, which calibration, diagnosis and comparison need.
 ///
 /// # Errors
-/// Names the case file, the condition and what to do.
+/// Returns an error with the case file, the condition and the remedy.
 pub fn require_record(folder: &Path, case: &Case, condition: usize) -> Result<(), CaseError> {
     if case.is_measured(condition) {
         return Ok(());

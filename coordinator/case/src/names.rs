@@ -1,14 +1,14 @@
-//! Names in a list of tables: short, plain, each once.
+//! Checks on the names in a list of tables: allowed characters and uniqueness.
 use super::{
     document::{Document, Step},
     error::CaseError,
 };
 
-/// Checks the names of the tables `list`, each of which is one `what`.
+/// Checks the names of the tables `list`; `what` is the word for one table in messages.
 ///
 /// # Errors
-/// Names the first that is empty, has other characters than command lines and file names bear, or is
-/// there twice; or the list, where it is empty.
+/// Returns an error for the first name that is empty, duplicate or has characters not allowed on command
+/// lines and in file names, or if the list is empty.
 pub fn check(document: &Document, list: &str, what: &str, names: &[&str]) -> Result<(), CaseError> {
     if names.is_empty() {
         return Err(document.field(
@@ -25,7 +25,7 @@ pub fn check(document: &Document, list: &str, what: &str, names: &[&str]) -> Res
     Ok(())
 }
 
-/// Checks one name, which may be there already among those that it must differ from.
+/// Checks one name; `is_there` says whether an earlier table has the same name.
 ///
 /// # Errors
 /// As [`check`].

@@ -1,12 +1,12 @@
-//! Remarks about a case that are no errors: what the user should know and may accept.
+//! Remarks on a case that are not errors, for the user's information.
 use std::{fmt, path::PathBuf};
 
-/// One remark.
+/// Remark on a file of a case.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// The file it is about.
+    /// Path of the file that the remark concerns.
     pub path: PathBuf,
-    /// What there is to know, in one sentence.
+    /// Text of the remark, one sentence.
     pub text: String,
 }
 

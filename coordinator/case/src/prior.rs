@@ -1,7 +1,7 @@
-//! What a case states of an unknown beside its bounds, in the forms in which people know it.
+//! Priors of the unknowns in the forms in which a case may state them.
 //!
-//! It acts where there is a noise model: in a diagnosis and in an identification, never in the mean squared
-//! errors of a calibration.
+//! Priors are used where there is a noise model: in a diagnosis and an identification, never in the mean
+//! squared errors of a calibration.
 use super::{
     document::{Document, Step},
     error::CaseError,
@@ -12,7 +12,7 @@ use serde::Deserialize;
 /// Half width of a 95 % interval in standard deviations.
 const NORMAL: f64 = 1.96;
 
-/// A prior as it is written.
+/// Prior in one of the forms of the case file.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(
     untagged,
@@ -20,15 +20,15 @@ const NORMAL: f64 = 1.96;
                  scale, or { value = .., deviation = .. } in decades or halves of the interval"
 )]
 pub enum PriorEntry {
-    /// 95 % lies within `[low, high]`.
+    /// Interval `[low, high]` that contains the value with 95 % probability.
     Interval([f64; 2]),
-    /// 95 % lies within `value / factor` and `value * factor`.
+    /// Value known to a factor: 95 % lies between `value / factor` and `value * factor`.
     Factor(Factor),
-    /// One standard deviation (coordinate).
+    /// Value with one standard deviation, in the search coordinate.
     Deviation(Deviation),
 }
 
-/// A value that is known to a factor.
+/// Value with the factor of its 95 % interval.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Factor {
@@ -36,7 +36,7 @@ pub struct Factor {
     factor: f64,
 }
 
-/// A value with a standard deviation.
+/// Value with its standard deviation.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Deviation {
@@ -45,10 +45,10 @@ pub struct Deviation {
 }
 
 impl PriorEntry {
-    /// The prior of an unknown; `way` is where it stands in the file.
+    /// Converts the entry to the prior of an unknown; `way` is its location in the file, for error messages.
     ///
     /// # Errors
-    /// Numbers that are no prior on the scale of the unknown.
+    /// Returns an error if the numbers are not a valid prior on the scale of the unknown.
     pub fn of(
         self,
         unknown: &Unknown,
@@ -91,8 +91,8 @@ impl PriorEntry {
     }
 }
 
-/// The prior of which 95 % lies within an interval, on the scale of an unknown: finite and ascending, and
-/// positive on a logarithmic scale.
+/// Returns the prior with 95 % of its probability in an interval, on the scale of the unknown. The interval
+/// must be finite and ascending, and positive on a logarithmic scale.
 pub(super) fn interval(unknown: &Unknown, [low, high]: [f64; 2]) -> Prior {
     match unknown.scale {
         Scale::Logarithmic => Prior {

@@ -1,30 +1,30 @@
-//! Where a case is read from.
+//! Location of a case file and of the measured files that replace its own.
 use super::{
     document::Document,
     error::{CaseError, damaged},
 };
 use std::path::{Path, PathBuf};
 
-/// What a command line may replace in a case.
+/// Parts of a case that the command line replaces.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Overrides {
-    /// Folder whose files, of the same names, replace what was measured of the case.
+    /// Folder whose files replace the measured files of the same names in the case.
     pub measured: Option<PathBuf>,
 }
 
-/// A case file with its folder.
+/// Case file, its folder, and the folder of replacement records.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'a> {
-    /// The folder: files that the case names are beside it.
+    /// Folder of the case, to which the file names in the case are relative.
     pub folder: &'a Path,
-    /// Folder whose files, of the same names, replace those of the records.
+    /// Folder whose files replace the records of the same names.
     pub measured: Option<&'a Path>,
-    /// The case file.
+    /// Parsed case file.
     pub document: &'a Document,
 }
 
 impl<'a> Source<'a> {
-    /// A case file, its folder, and what replaces a part of it.
+    /// Creates a source from a case file, its folder and the command line's overrides.
     pub fn new(folder: &'a Path, overrides: &'a Overrides, document: &'a Document) -> Self {
         Self {
             folder,
@@ -34,16 +34,16 @@ impl<'a> Source<'a> {
     }
 }
 
-/// The case file.
+/// Reads the case file.
 ///
 /// # Errors
-/// If it cannot be read, or the folder that replaces its records is not there.
+/// A case file that cannot be read, or a missing folder of replacement records.
 pub fn document(folder: &Path, overrides: &Overrides) -> Result<Document, CaseError> {
     let measured = overrides.measured.as_deref();
     if let Some(absent) = measured.filter(|path| !path.is_dir()) {
         return Err(damaged(
             absent,
-            "there is no such folder; --measured names it",
+            "the folder given by --measured does not exist",
             "give the folder that holds the records of the test",
         ));
     }

@@ -1,6 +1,7 @@
-//! What repeated measurements of one value say of it.
+//! Statistics of repeated measurements of one value.
 
-/// Mean and standard deviation (n - 1) of what there is; 0 deviation of fewer than two.
+/// Returns mean (`None` without values), standard deviation (n - 1; 0 for fewer than two values) and number
+/// of the values.
 pub fn mean_and_spread(values: impl Iterator<Item = f64> + Clone) -> (Option<f64>, f64, usize) {
     let count = values.clone().count();
     if count == 0 {

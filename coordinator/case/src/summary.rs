@@ -1,27 +1,27 @@
-//! What `horsehead case check` tells about a case that is in order.
+//! Summary that `horsehead case check` prints of a valid case.
 use super::{loaded::Loaded, note::Note};
 use discrepancy::record::{Record, Recorded};
 use std::fmt::Write as _;
 
-/// A case in short.
+/// Summary of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// Its name.
+    /// Name of the case.
     pub name: String,
-    /// Names of its conditions.
+    /// Names of the conditions.
     pub conditions: Vec<String>,
-    /// Key of the unknowns in objects.
+    /// JSON key under which a set of values of the unknowns is written.
     pub key: &'static str,
-    /// Names of its unknowns.
+    /// Names of the unknowns.
     pub unknowns: Vec<String>,
-    /// Remarks.
+    /// Remarks about the case.
     pub notes: Vec<Note>,
-    /// All of it, for people.
+    /// Human-readable text of the whole summary.
     pub text: String,
 }
 
 impl Summary {
-    /// Of a case, with what is said of it.
+    /// Creates the summary of a case with the given text.
     pub fn new(loaded: &Loaded, key: &'static str, text: String) -> Self {
         let case = &loaded.case;
         Self {
@@ -35,7 +35,7 @@ impl Summary {
     }
 }
 
-/// What is stated of a channel's errors, and what of it is held out.
+/// Describes the stated errors of a channel (noise, correlation, model error) and its held-out part.
 fn stated(record: Option<&Record>, curve: usize) -> String {
     let parts = record.iter().flat_map(|record| &record.channels);
     let parts: Vec<&Recorded> = parts.filter(|own| own.curve == curve).collect();
@@ -66,7 +66,7 @@ fn stated(record: Option<&Record>, curve: usize) -> String {
     said.join(", ")
 }
 
-/// What a case says itself, of whatever kind its model is.
+/// Describes the parts of a case that every kind of model has.
 pub fn text(loaded: &Loaded) -> String {
     let case = &loaded.case;
     let mut text = format!("model       {} ({})\n", case.name, case.model.kind);

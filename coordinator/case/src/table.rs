@@ -5,34 +5,34 @@ use super::{
 };
 use std::path::Path;
 
-/// A table that was read: the wanted columns, in the order in which they were asked for.
+/// Requested columns of a CSV table, in the order of the request.
 #[derive(Debug)]
 pub struct Table {
-    /// Numbers per wanted column.
+    /// Numbers of each requested column.
     pub columns: Vec<Vec<f64>>,
     /// Line of the file per row of numbers; the header is line 1.
     pub lines: Vec<u64>,
-    /// The names of the wanted columns.
+    /// Names of the requested columns.
     pub names: Vec<String>,
-    /// The names of the columns that were not read.
+    /// Names of the columns that were not requested.
     pub others: Vec<String>,
 }
 
-/// From this likeness on a column is a misspelt one.
+/// Normalised Damerau-Levenshtein similarity above which an unknown column name counts as a misspelling.
 const MEANT: f64 = 0.85;
 
 impl Table {
-    /// Reads the wanted columns; others are ignored. A `#` before the header is allowed.
+    /// Reads the requested columns and ignores the others. A `#` before the header is allowed.
     ///
     /// # Errors
-    /// A missing or repeated column, a row of another length, a cell that is not a finite number,
-    /// no rows at all.
+    /// A missing or repeated column, a row of another length, a cell that is not a finite number, or no rows.
     pub fn read(path: &Path, bytes: &[u8], wanted: &[&str]) -> Result<Self, CaseError> {
         Self::read_with(path, bytes, wanted, &[])
     }
 
-    /// Reads the wanted columns, and after them those of the optional ones that there are, or that a name
-    /// which nobody knows can only mean.
+    /// Reads the requested columns, followed by the optional ones that the table has. An unknown column whose
+    /// name resembles an optional one counts as its misspelling and is an error, so that no data are ignored
+    /// because of a typing error.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -110,10 +110,10 @@ impl Table {
         Ok(table)
     }
 
-    /// Reads the wanted columns of a table that has no others.
+    /// Reads the requested columns of a table that must have no others.
     ///
     /// # Errors
-    /// As [`Self::read`], and a column that is not wanted.
+    /// As [`Self::read`], and for a column that was not requested.
     pub fn read_alone(path: &Path, bytes: &[u8], wanted: &[&str]) -> Result<Self, CaseError> {
         let table = Self::read(path, bytes, wanted)?;
         match table
@@ -130,7 +130,7 @@ impl Table {
         }
     }
 
-    /// An error about one cell.
+    /// Creates an error about one cell.
     pub fn cell(
         &self,
         path: &Path,
@@ -150,7 +150,7 @@ impl Table {
     }
 }
 
-/// Names of the columns.
+/// Returns the names of the columns.
 ///
 /// # Errors
 /// A first row that cannot be read.
@@ -159,8 +159,8 @@ pub fn columns(path: &Path, bytes: &[u8]) -> Result<Vec<String>, CaseError> {
     header(path, &mut reader(&bytes).0, &mut csv::ByteRecord::new())
 }
 
-/// A reader with the character that parts the cells: a semicolon or a tabulator where the first row has one and no
-/// comma.
+/// Returns a CSV reader and its delimiter: a comma, unless the first row has none but has a semicolon or a
+/// tab.
 fn reader(bytes: &[u8]) -> (csv::Reader<&[u8]>, u8) {
     let first = bytes
         .split(|byte| *byte == b'\n')
@@ -177,7 +177,7 @@ fn reader(bytes: &[u8]) -> (csv::Reader<&[u8]>, u8) {
     (reader, between)
 }
 
-/// Reads the first row: names of the columns.
+/// Reads the column names from the first row.
 fn header(
     path: &Path,
     reader: &mut csv::Reader<&[u8]>,
@@ -208,7 +208,7 @@ fn advance(
     })
 }
 
-/// Where a column stands; a column that is `needed` itself is no misspelling of another.
+/// Returns the index of a column. A column in `needed` is never suggested as the misspelling of another.
 fn place(
     path: &Path,
     header: &[String],
@@ -241,7 +241,7 @@ fn place(
         Some((second, _)) => Err(damaged(
             path,
             format!(
-                "column `{wanted}` stands twice, in places {} and {}",
+                "column `{wanted}` occurs twice, as columns {} and {}",
                 first + 1,
                 second + 1
             ),
@@ -250,7 +250,7 @@ fn place(
     }
 }
 
-/// A cell as a finite number, with a decimal comma where no comma parts the cells.
+/// Parses a cell as a finite number; a decimal comma is accepted where the delimiter is not a comma.
 fn number(
     path: &Path,
     (line, name): (u64, &str),
@@ -281,7 +281,7 @@ fn number(
     })
 }
 
-/// At most `limit` characters of a text, for messages.
+/// Truncates a text to at most `limit` characters, for messages.
 pub fn clip(text: &str, limit: usize) -> String {
     let mut clipped: String = text.chars().take(limit).collect();
     if clipped.len() < text.len() {

@@ -1,5 +1,5 @@
-//! Whatever bytes stand in the files of a case: loading ends in a case or in an error, never in a
-//! panic, and an error always names a file of the case and a remedy.
+//! Property tests with arbitrarily mutated case files: loading returns a case or an error and never panics,
+//! and an error always names a file of the case and a remedy.
 #![expect(
     clippy::unwrap_used,
     reason = "the helpers prepare folders; a test that cannot has failed"
@@ -18,7 +18,7 @@ fn shipped() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/cyjs10-5-37hb")
 }
 
-/// The one that is compressed.
+/// Compressed file among [`FILES`].
 const PACKED: &str = "measured/test_5rpm.csv.gz";
 const FILES: [&str; 7] = [
     "case.toml",
@@ -30,7 +30,7 @@ const FILES: [&str; 7] = [
     "back_head/back_head.msh",
 ];
 
-/// One way to change a run of bytes.
+/// Mutation of a run of bytes.
 #[derive(Clone, Debug)]
 enum Mutation {
     Flip { at: usize, mask: u8 },
@@ -97,7 +97,7 @@ fn apply(bytes: &mut Vec<u8>, mutation: &Mutation) {
     }
 }
 
-/// The shipped case with one condition, which suffices and is quicker.
+/// Copies the shipped case with one condition only, which is sufficient and faster.
 fn lean_copy() -> TempDir {
     let scratch = tempfile::tempdir().unwrap();
     for folder in ["measured", "back_head"] {
@@ -126,8 +126,8 @@ fn packed(bytes: &[u8]) -> Vec<u8> {
     encoder.finish().unwrap()
 }
 
-/// A file that is whole again afterwards, whatever happens: so the next mutation finds it, or a smaller
-/// one of the same.
+/// Guard that restores the original content of a file when dropped, also after a panic, so that shrinking
+/// starts from intact files.
 struct Mutated {
     path: PathBuf,
     whole: Vec<u8>,

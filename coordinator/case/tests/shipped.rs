@@ -1,4 +1,4 @@
-//! The case that is shipped loads, and its figures are those its README states.
+//! Tests that the shipped case loads and that its figures agree with its README.
 use case::pumping_unit::{self as unit, RecordFacts, mesh};
 use case::{self, Loaded, Overrides};
 use protocol::{
@@ -26,14 +26,14 @@ fn root_mean_square(record: &ChannelRecord) -> f64 {
     (squares / record.spread.len() as f64).sqrt()
 }
 
-/// The records of a condition's gauges.
+/// Returns the gauge records of a condition.
 fn gauges(case: &Case, condition: usize) -> Vec<&ChannelRecord> {
     case.measured(condition)
         .map(|(_, _, record)| record)
         .collect()
 }
 
-/// What is known of each record.
+/// Returns the facts of each record of the shipped case.
 fn facts() -> Vec<RecordFacts> {
     let conditions = unit::figures(&shipped())
         .expect("the shipped case")
@@ -43,7 +43,7 @@ fn facts() -> Vec<RecordFacts> {
     records.map(|record| record.facts).collect()
 }
 
-/// The rows of the README's table of figures, as the records have them.
+/// Returns the rows of the README's table of figures, computed from the records.
 fn figures(loaded: &Loaded) -> [String; 3] {
     let conditions = 0..loaded.case.conditions.len();
     let records = conditions.map(|condition| gauges(&loaded.case, condition));
@@ -173,7 +173,7 @@ fn the_shipped_sheets_say_how_good_the_instruments_are() {
     );
 }
 
-/// The kinematics beside the case were computed by another program.
+/// Checks the envelope of the case against kinematics that another program computed.
 #[test]
 fn the_envelope_is_that_of_the_design_kinematics() {
     let text = fs::read_to_string(shipped().join("machine/kinematics_720.csv")).unwrap();
@@ -213,9 +213,9 @@ fn the_envelope_is_that_of_the_design_kinematics() {
     near([0.0, envelope.stroke_m], extremes("s_m"), 1e-3);
 }
 
-/// Resampling and averaging change nothing that a gauge could show: a plain mean of all samples
-/// in bins of one degree, computed here from the file, is the same curve within its noise. A shift
-/// by one grid step would show as 0.11 MPa.
+/// Checks that resampling and averaging preserve the measured curve: a plain mean of all samples in bins of
+/// one degree, computed here from the file, agrees within its noise. A shift by one grid step would appear as
+/// 0.11 MPa.
 #[test]
 fn the_averaged_record_is_the_record() {
     let case = case::load(&shipped(), &Overrides::default()).unwrap();
@@ -289,7 +289,8 @@ fn gene_files_are_read_in_the_units_of_the_case() {
     }
 }
 
-/// A faulty gene file is refused with what is wrong, its name and a remedy.
+/// Checks that a faulty gene file is rejected with an error that states the fault, the file's name and a
+/// remedy.
 fn assert_refused(file: &Path, case: &Case, fault: &str, expected: &str) {
     fs::write(file, fault).expect("a file");
     let message = case::read_genes(file, case)
@@ -302,8 +303,8 @@ fn assert_refused(file: &Path, case: &Case, fault: &str, expected: &str) {
     assert!(message.contains("\nhelp: "), "{message}");
 }
 
-/// A case that searches parameters of effects: their values go to a file and come back to the bit, zero
-/// and negative ones too; a file without them leaves them as the case has them.
+/// Checks that searched effect parameters, including zero and negative values, survive writing and reading a
+/// gene file bit for bit, and that a file without them leaves the values of the case.
 #[test]
 fn gene_files_hold_parameters_of_effects() {
     let folder = shipped();
@@ -361,7 +362,8 @@ fn gene_files_hold_parameters_of_effects() {
     );
 }
 
-/// Nodes and elements as the crate mshio reads them; volume as the modes' mass says.
+/// Checks nodes and elements of the mesh against the crate mshio, and its volume against the mass of the
+/// modes.
 #[test]
 fn the_mesh_is_read_as_by_another_reader() {
     let path = shipped().join("back_head/back_head.msh");
@@ -422,7 +424,7 @@ fn the_summary_tells_what_a_user_asks_first() {
     }
 }
 
-/// What `case new` writes loads as soon as the files it names are there.
+/// Checks that the template written by `case new` loads once the files that it names exist.
 #[test]
 fn the_template_loads_beside_its_data() {
     let scratch = tempfile::tempdir().unwrap();
@@ -470,7 +472,7 @@ fn a_folder_of_measurements_that_is_not_there_is_named_as_such() {
     };
     let error = case::load(&shipped(), &overrides).unwrap_err().to_string();
     assert!(
-        error.starts_with("no/such/folder: there is no such folder; --measured names it"),
+        error.starts_with("no/such/folder: the folder given by --measured does not exist"),
         "{error}"
     );
     let own = case::load_with_notes(&shipped(), &Overrides::default()).unwrap();

@@ -1,4 +1,4 @@
-//! What is diagnosed, and by which thresholds.
+//! Inputs of a diagnosis, with its thresholds.
 use crate::model::off::Off;
 use crate::record::measured::Record;
 use crate::thresholds::Thresholds;
@@ -7,38 +7,39 @@ use protocol::case::Unknown;
 use protocol::job::Numerics;
 use search::space::Space;
 
-/// A case with its records, and what may be suspected.
+/// Case with its records and candidate effects.
 #[derive(Clone, Debug)]
 pub struct Inputs {
-    /// The case's unknowns and their bounds.
+    /// Unknowns of the case with their bounds.
     pub space: Space,
     /// Names of the case's conditions, in its order.
     pub conditions: Vec<String>,
-    /// All unknowns of the case, of which those that are off are suspected.
+    /// All unknowns of the case; those that are switched off are candidate effects.
     pub unknowns: Vec<Unknown>,
     /// Records, the calibrated condition's first.
     pub records: Vec<Record>,
-    /// What the workers can simulate.
+    /// Effects that the workers can simulate.
     pub library: Vec<EffectDescriptor>,
     /// A calibrated point (coordinates of the space), if there is one.
     pub start: Option<Vec<f64>>,
-    /// Numerics of all experiments but that of the numerical check.
+    /// Numerics of all experiments except the numerical check.
     pub usual: Numerics,
-    /// Finer ones, for the numerical check: the finest, then what it is made of, one thing at a
-    /// time, for where the finest does not complete.
+    /// Finer numerics for the numerical check: first the finest, then its refinements one at a time, for use
+    /// where the finest does not complete.
     pub finer: Vec<Numerics>,
-    /// Preset of the search that finds the way into the valley where nothing is known.
+    /// Preset of the global search for the narrow minimum if there is no start.
     pub entrance: &'static str,
-    /// Seed of that search.
+    /// Seed of the global search.
     pub seed: u64,
-    /// How it is decided.
+    /// Thresholds of all decisions.
     pub thresholds: Thresholds,
-    /// Whether a laboratory that could differentiate is not to: every derivative is a difference.
+    /// Whether derivatives are computed by finite differences even if the laboratory can differentiate.
     pub differences: bool,
 }
 
 impl Inputs {
-    /// The effects of the library, and the case's unknowns that are off, that nobody has put aside.
+    /// Returns the effects of the library and the unknowns that are switched off, except those excluded by
+    /// the thresholds.
     pub(crate) fn considered(&self) -> impl Iterator<Item = EffectDescriptor> {
         let without = &self.thresholds.without;
         let off = Off::of(&self.unknowns).into_iter().map(|off| off.suspect);
@@ -46,7 +47,7 @@ impl Inputs {
         all.filter(|suspect| !without.contains(&suspect.id))
     }
 
-    /// A condition by its name, in words; by its place where it has none.
+    /// Returns the name of a condition with the word "condition", or its number where it has no name.
     pub(crate) fn condition(&self, place: usize) -> String {
         let name = self.conditions.get(place);
         name.map_or_else(
@@ -55,7 +56,7 @@ impl Inputs {
         )
     }
 
-    /// Records of the other conditions that are not held out.
+    /// Returns the records of the other conditions that are not held out.
     pub(crate) fn others(&self) -> impl Iterator<Item = &Record> {
         self.records
             .iter()

@@ -1,23 +1,23 @@
-//! Where experiments are done: whoever simulates batches of points.
+//! Interface to the simulation of batches of points.
 use crate::record::measured::{Curves, Record, Recorded};
 use protocol::job::{Observation, SimulateSpec, Verdict};
 
-/// A part of the diagnosis, for progress and for accounts of time.
+/// Stage of a diagnosis, for progress reports, timing and budgets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
-    /// A way into the valley in which resonances fit.
+    /// Global search for the narrow minimum in which resonances fit.
     Basin,
     /// Fit of all unknowns in the metric of the tests.
     Recalibrate,
-    /// How much the discretisation matters.
+    /// Numerical check: size of the discretisation error.
     Preflight,
-    /// Maps of the disagreement.
+    /// Localisation of the residual.
     Where,
     /// Signatures and tests of all effects.
     What,
-    /// Refits of the suspects.
+    /// Refits of the candidate effects.
     Refit,
-    /// The gap before and after.
+    /// Validation: gap before and after.
     Show,
 }
 
@@ -33,10 +33,10 @@ impl Stage {
         Self::Show,
     ];
 
-    /// In a word or two.
+    /// Returns the name of the stage as shown to users.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Basin => "way into the valley",
+            Self::Basin => "global search",
             Self::Recalibrate => "recalibration",
             Self::Preflight => "numerical check",
             Self::Where => "where",
@@ -47,34 +47,33 @@ impl Stage {
     }
 }
 
-/// Whoever simulates experiments.
+/// Simulator of batches of experiments.
 pub trait Laboratory {
-    /// Why no experiment can be done any more.
+    /// Reason why no further experiment can be simulated.
     type Error;
 
-    /// Whether observations come with the columns that a job asks for, or with a reason why not; where it
-    /// says no, differences of whole experiments do.
+    /// Returns whether observations contain the derivatives that a job requests, or the reason for their
+    /// absence; if false, finite differences of whole experiments are used instead.
     fn differentiates(&self) -> bool {
         false
     }
 
-    /// Whether a stage may begin something that it could do without.
+    /// Returns whether a stage may begin optional work.
     fn may(&mut self, stage: Stage) -> bool {
         let _ = stage;
         true
     }
 
-    /// What a stage has left of its part, in plain simulations; infinite where nothing bounds it.
+    /// Returns the remaining budget of a stage, in plain simulations; infinite without a budget.
     fn left(&self, stage: Stage) -> f64 {
         let _ = stage;
         f64::INFINITY
     }
 
-    /// Does a batch; observations in its order, nothing for an experiment that did not run to its
-    /// end.
+    /// Simulates a batch and returns its observations in order, `None` for an experiment that failed.
     ///
     /// # Errors
-    /// If nobody can do experiments any more, or the user stops.
+    /// If no worker is left, or the user stops the run.
     fn observe(
         &mut self,
         stage: Stage,
@@ -82,7 +81,8 @@ pub trait Laboratory {
     ) -> impl Future<Output = Result<Vec<Option<Observation>>, Self::Error>>;
 }
 
-/// The curves of an observation that a record has, in its order; nothing unless it is complete.
+/// Returns the curves of an observation for the channels of a record, in their order; `None` unless the
+/// observation is complete.
 pub fn channels(observation: &Observation, record: &Record) -> Option<Curves> {
     if observation.verdict != Verdict::Complete {
         return None;
@@ -91,8 +91,8 @@ pub fn channels(observation: &Observation, record: &Record) -> Option<Curves> {
     record.channels.iter().map(curve).collect()
 }
 
-/// Does a batch of experiments on a record; the curves of its channels, nothing for an experiment that
-/// failed.
+/// Simulates a batch of experiments on a record; returns the curves of its channels, `None` for an experiment
+/// that failed.
 ///
 /// # Errors
 /// Those of the laboratory.

@@ -2,97 +2,101 @@
 use crate::laboratory::Stage;
 use serde::{Deserialize, Serialize};
 
-/// How a diagnosis decides. The defaults are those of every published result.
+/// Decision thresholds of a diagnosis. The defaults are those of every published result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Thresholds {
     /// Highest order of a period that is compared.
     pub orders: usize,
-    /// Level of the family of all effects' tests.
+    /// Family-wise level of the tests of all effects.
     pub alpha: f64,
-    /// Level of the test that nothing at all is left: below it a record without a name is unresolved.
+    /// Level of the test that only noise is left: below this p-value a record to which no effect is assigned
+    /// is unresolved.
     pub adequacy: f64,
     /// Misfit from which a fit is suspected to lie outside the valley that the case describes.
     pub valley: f64,
-    /// Suspects that are refitted with all unknowns free at a time, the likeliest first: all whose own test speaks for
-    /// them, as far as a round's share of the budget for refits allows.
+    /// Number of candidate effects that are refitted at a time with all unknowns free, the most likely first:
+    /// all whose own test is significant, as far as a round's share of the budget for refits allows.
     pub suspects: usize,
-    /// Nats of log evidence, over the dispersion, that an effect must gain to be believed: odds of 20 to 1.
+    /// Gain of log evidence (nats, over the dispersion) that an effect needs to be accepted: odds of 20 to 1.
     pub gain: f64,
-    /// Nats of the predictive score (`proof::predictive`) that a name needs on all records together that took no part
-    /// in the fit, and below whose negative none of them may lie. A name that is not there reaches `ln 20` in at most
-    /// one of twenty diagnoses, whatever was searched on the fitted record.
+    /// Predictive score (nats, `proof::predictive`) that an effect needs on all records together that took no
+    /// part in the fit; no single record may score below its negative. An effect that is absent reaches `ln
+    /// 20` in at most one of twenty diagnoses, however the effect was selected on the fitted record.
     pub prediction: f64,
-    /// Share of the gap before anything was added that an effect must remove to be more than a trace, where the model
-    /// without it leaves no more than noise.
+    /// Share of the initial gap that an effect must remove to be more than a trace, where the model without
+    /// it leaves no more than noise.
     pub practical: f64,
-    /// Effects that are added at most.
+    /// Largest number of added effects.
     pub rounds: usize,
-    /// Factor by which a form of force without a cause must beat the best name.
+    /// Factor by which a probe force (a force without a physical cause) must beat the best listed effect.
     pub generic_factor: f64,
-    /// Units of `chi^2`, over the dispersion, by which it must beat it besides.
+    /// Units of `chi^2`, over the dispersion, by which a probe force must also beat the best listed effect.
     pub generic_gain: f64,
-    /// Squared cosine of projected signatures from which a form of force is a name's own.
+    /// Squared cosine of projected signatures from which a probe force counts as the same as a listed effect.
     pub alike: f64,
-    /// Noise sets that the map along the abscissa is held against.
+    /// Number of noise sets for the null distribution of the map along the abscissa.
     pub draws: usize,
-    /// Longest step of all experiments, as a share of the case's: what is enough for a search is
-    /// seen beside averaged noise.
+    /// Longest integration step of all simulations, as a share of the case's: a step that is accurate enough
+    /// for a search has errors that exceed averaged noise.
     pub step: f64,
-    /// Size of the elements of the numerical check, as a share of the case's. The fits keep the case's:
-    /// what a finer model changes counts as noise.
+    /// Element size in the numerical check, as a share of the case's. The fits keep the case's element size;
+    /// the change by the finer model counts as noise.
     pub refinement: f64,
-    /// Plain simulations after which a stage begins nothing more that it could do without, in the stages'
-    /// order; one with derivatives counts as five, and a tenth for each.
+    /// Budget of each stage in plain simulations, in the stages' order: once it is used up, a stage starts
+    /// nothing that is optional. A simulation with derivatives counts as five, plus a tenth per derivative.
     pub budget: [u32; Stage::ALL.len()],
-    /// Effects that are not considered.
+    /// Identifiers of effects that are not considered.
     pub without: Vec<String>,
 }
 
-/// Nats of log evidence, over the dispersion, and of predictive scores together, within which names are not told apart:
-/// odds of 20 to 1, from which on evidence is called strong (Kass & Raftery 1995).
+/// Margin within which effects are not told apart, in nats of log evidence over the dispersion plus
+/// predictive score: odds of 20 to 1, from which on evidence is called strong (Kass & Raftery 1995).
 pub const SET: f64 = 3.0;
 
-/// Names that may be equally likely and still be an answer: beyond, the joint or the order that they have in common is
-/// all that is known.
+/// Largest number of equally likely effects that still count as an answer: with more, only their common joint
+/// or order is reported.
 pub(crate) const MOST_NAMES: usize = 4;
 
-/// Standard deviations from what an instrument is good to within which it is no discovery: one in 370 lies beyond by
+/// Prior standard deviations within which an instrument's error is no discovery: one in 370 lies beyond by
 /// chance, and a machine has a dozen instruments.
 pub const WITHIN: f64 = 3.0;
 
-/// Largest factor by which noise variances from few cycles are widened: that of six degrees of freedom. Fewer have a
-/// variance of hardly any meaning, or none.
+/// Largest factor by which noise variances from few cycles are widened: that of six degrees of freedom. With
+/// fewer the variance of Student's distribution is hardly meaningful or does not exist.
 pub(crate) const WIDEST: f64 = 1.5;
 
-/// Share of the gain of evidence of the likeliest from which a rival is ranked with it: what explains less of the fitted
-/// record does not explain enough of another to make up for that.
+/// Share of the best effect's gain of evidence from which a rival is ranked with it: a rival that explains
+/// less of the fitted record cannot make up for that on other records.
 pub(crate) const RANKED: f64 = 0.5;
 
-/// Standard deviations from which an instrument that a fit without effects takes so far off is a sign that something else
-/// is missing: one in 16,000 lies beyond by chance. Instruments are then held within [`WITHIN`].
+/// Prior standard deviations beyond which an instrument's error in a fit without effects indicates that
+/// something else is missing: one in 16,000 lies beyond by chance. Instruments are then held within
+/// [`WITHIN`].
 pub(crate) const BEYOND: f64 = 4.0;
 
-/// Share of its range within which a size stands at a bound: less than any step of a fit.
+/// Distance to a bound, as a share of the range, within which a size counts as being on the bound: less than
+/// any step of a fit.
 pub(crate) const AT_BOUND: f64 = 1e-3;
 
-/// Tail probability of Bartlett's test below which what is left is coloured, and intervals grow by what that costs: one
-/// white record in a hundred has intervals that are too wide.
+/// Level of Bartlett's test for a coloured residual, which widens the intervals: one white record in a
+/// hundred gets intervals that are too wide.
 pub(crate) const COLOURED: f64 = 0.01;
 
-/// Share of what is left that one more step of a converged fit may promise to remove. What lies below is taken off by
-/// the tests themselves, which look at the residual after that step.
+/// Share of `chi^2` that one more step of a converged fit may still promise to remove. The tests remove a
+/// smaller remainder themselves, since they use the residual after that step.
 pub(crate) const PROMISED: f64 = 0.1;
 
-/// Factor by which the variance of a data sheet may be off, either way: a noise that is stated in one figure is rarely
-/// better known. Beyond, what is left is no noise, or not the noise that was stated.
+/// Factor by which a variance stated in a data sheet may be off, either way: noise that is stated in one
+/// figure is rarely better known. A residual beyond that is no noise, or not the stated noise.
 pub(crate) const STATED: f64 = 2.0;
 
-/// Squared distance of two effects, over the dispersion, from which they are told apart: the likelihood ratio of 1 in
-/// 250 at even odds (DISCOVERY: isolability).
+/// Squared distance of two effects, over the dispersion, from which they are told apart: a likelihood ratio
+/// of 1 in 250 at even odds (DISCOVERY: isolability).
 pub const APART: f64 = 11.0;
 
-/// Share of false entries that a map of where simulation and measurement part may hold (Benjamini & Hochberg).
+/// Share of false entries allowed in a map of the disagreement between simulation and measurement (Benjamini
+/// & Hochberg).
 pub(crate) const MAPS: f64 = 0.05;
 
 /// Share of the best joint's log Bayes factor within which joints are not told apart: latent forces along one load path

@@ -1,53 +1,54 @@
-//! What a diagnosis says: a total function of its tests.
+//! Verdict of a diagnosis as a total function of the results of its tests.
 use serde::Serialize;
 
-/// The answer.
+/// Verdict of a diagnosis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// No test rejects: what remains is noise, down to the detection limits.
+    /// No test rejects: the residual is noise, down to the detection limits.
     NothingDetected,
-    /// One effect explains it, and every rival is rejected.
+    /// One effect explains the residual, and every rival is rejected.
     Named,
-    /// One of several effects explains it; the record cannot tell which.
+    /// One of several effects explains the residual; the record cannot tell which.
     Ambiguous,
-    /// Something acts that is not in the library; a form of force at a joint describes it best.
+    /// Something acts that is not in the library; a probe force at a joint describes it best.
     Unlisted,
-    /// There is a disagreement, or a fit, that this record cannot resolve; the reason is given.
+    /// Disagreement or fit that this record cannot resolve; the reason is given.
     Unresolved,
 }
 
-/// What the tests stand on.
+/// Validity of the assumptions on which the tests rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
-    /// The fit converged, the model is fine enough, the noise was seen: tests mean what they say.
+    /// Fit converged, discretisation fine enough and noise seen: the tests are valid.
     Firm,
-    /// The noise is stated, not seen: tests mean what they say as far as the statement is right.
+    /// Noise stated, not seen: the tests are valid as far as the statement is right.
     NoiseStated,
-    /// The noise was neither seen nor stated.
+    /// Noise neither seen nor stated.
     NoiseUnknown,
-    /// Not one effect of the library was considered: nothing can be named, and nothing is unlisted.
+    /// No effect of the library considered: nothing can be named or called unlisted.
     NothingConsidered,
-    /// How far the discretisation moves the curves is not known.
+    /// Unknown discretisation error of the curves.
     Unsound,
 }
 
-/// What the tests of a diagnosis found.
+/// Results of the tests of a diagnosis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Findings {
-    /// What they stand on.
+    /// Validity of the tests' assumptions.
     pub ground: Ground,
-    /// Some family of tests rejects.
+    /// Whether some family of tests rejects.
     pub rejected: bool,
-    /// Effects that were added, each believed and worth it.
+    /// Number of added effects, each supported by the evidence and of practical size.
     pub added: usize,
-    /// Members of the largest ambiguity set among the added effects.
+    /// Size of the largest ambiguity set among the added effects.
     pub rivals: usize,
-    /// A form of force without a cause beats every name.
+    /// Whether a probe force beats every listed effect.
     pub generic: bool,
 }
 
-/// The verdict of findings. Every combination has one, and a rejection is never "nothing".
+/// Returns the verdict for the findings. Every combination has a verdict, and a rejection never yields
+/// "nothing detected".
 pub const fn verdict(findings: &Findings) -> Verdict {
     let something = findings.rejected || findings.added > 0 || findings.generic;
     let firm = matches!(findings.ground, Ground::Firm | Ground::NoiseStated);

@@ -1,8 +1,10 @@
-//! Gives jobs to workers that come and go, and keeps every result: a run without its physics.
+//! Job dispatch to workers that join and leave, with a journal that keeps every result; independent of the
+//! physics.
 //!
-//! The sans-I/O [`scheduler`] leases jobs, the [`journal`] records what came back, the [`runtime`] is the only
-//! asynchronous glue between them, the bus and the worker processes of this machine. [`account`] adds up how slots spent their time. [`simulated`] runs the scheduler
-//! on a clock of its own. Jobs are opaque here: nothing knows what a case holds.
+//! The sans-I/O [`scheduler`] leases jobs, the [`journal`] records results, and the [`runtime`] is the only
+//! asynchronous glue between scheduler, journal, bus and the worker processes of this machine. [`account`]
+//! sums how slots spent their time. [`simulated`] runs the scheduler on a simulated clock. Jobs are opaque
+//! here: no code interprets the content of a case.
 pub mod account;
 pub mod journal;
 pub mod runtime;

@@ -1,5 +1,5 @@
-//! Carries a plan out: many places at a time, each step with what it reads; a failure names the place,
-//! the step, the last words and the remedy.
+//! Execution of a launch plan: many places at a time, each step with its input; an error names the place, the
+//! step, the last line of output and the remedy.
 use super::plan::{Input, Part, Plan, Step};
 use std::{
     fs::{self, File},
@@ -13,28 +13,28 @@ use std::{
     thread,
 };
 
-/// Places at a time: more would only wait for each other on the way out of this machine.
+/// Number of places handled concurrently; more would only compete for the outgoing network of this machine.
 const AT_A_TIME: usize = 32;
 
-/// Why a plan failed at a place.
+/// Failure of a launch plan at a place.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: cannot {step}: {why}")]
 pub struct LaunchError {
-    /// The host, or "this machine".
+    /// Host name, or "this machine".
     pub place: String,
-    /// The step.
+    /// Step that failed.
     pub step: String,
-    /// What was said last.
+    /// Last line of the step's error output, or its exit status.
     pub why: String,
-    /// What to do.
+    /// Remedy.
     pub remedy: String,
 }
 
-/// Does what the plan says, and tells as it comes how it ended at each place. Once it is `cancelled`, no further step
-/// begins, and places that are left are not told of.
+/// Executes the plan and reports the result for each place as it ends. Once `cancelled` is set, no further
+/// step starts, and the remaining places are not reported.
 ///
 /// # Errors
-/// If a first step fails: then nothing was done at any place.
+/// If one of the initial steps fails; then nothing was done at any place.
 pub fn carry_out(
     plan: &Plan,
     cancelled: &AtomicBool,
@@ -63,7 +63,7 @@ pub fn carry_out(
     Ok(())
 }
 
-/// The steps of one place, in order; what the last that asks was answered.
+/// Runs the steps of one place in order; returns the output of the last step with [`Step::Run::asks`] set.
 pub(super) fn run(
     place: &str,
     steps: &[Step],
@@ -80,7 +80,7 @@ pub(super) fn run(
                     place: place.to_owned(),
                     step: format!("write {}", path.display()),
                     why: error.to_string(),
-                    remedy: "make the folder one that you may write to".to_owned(),
+                    remedy: "choose a folder for which you have write permission".to_owned(),
                 })?;
             }
             Step::Run { only_if, .. } if only_if.as_ref().is_some_and(|it| *it != answer) => {}
@@ -134,7 +134,7 @@ fn write(path: &Path, content: &str) -> io::Result<()> {
     fs::write(path, content)
 }
 
-/// Runs a command with what it reads, to its end.
+/// Runs a command with its input, to its end.
 fn call(command: &[String], input: &Input) -> io::Result<Output> {
     let mut from = None;
     let stdin = match input {
@@ -170,7 +170,9 @@ fn call(command: &[String], input: &Input) -> io::Result<Output> {
     if source.is_some_and(|status| !status.success())
         && output.as_ref().is_ok_and(|o| o.status.success())
     {
-        return Err(io::Error::other("what it was to read could not be read"));
+        return Err(io::Error::other(
+            "the command that supplies its input failed",
+        ));
     }
     output
 }
@@ -182,19 +184,19 @@ fn words_of(words: &[String]) -> Command {
     command
 }
 
-/// The last thing that was said, in one line.
+/// Returns the last non-empty line of the output, or else the exit status.
 fn last_line(said: &str, code: Option<i32>) -> String {
     let line = said.lines().map(str::trim).rfind(|line| !line.is_empty());
     line.map_or_else(
         || match code {
-            Some(code) => format!("it ended with status {code}"),
+            Some(code) => format!("exit status {code}"),
             None => "it was killed".to_owned(),
         },
         str::to_owned,
     )
 }
 
-/// What to do about the refusals of ssh that its last line does not explain to everybody.
+/// Returns a remedy for errors of ssh, and for full disks, whose last line alone does not explain them.
 fn refusal(program: &str, said: &str) -> Option<&'static str> {
     let has = |words: &str| said.contains(words);
     if has("No space left on device") || has("Disk quota exceeded") {
@@ -205,26 +207,28 @@ fn refusal(program: &str, said: &str) -> Option<&'static str> {
     }
     if has("REMOTE HOST IDENTIFICATION HAS CHANGED") {
         return Some(
-            "its key is not the one that was known: ask who runs it; if it was set up anew, \
+            "the host key has changed: ask its administrator; if the host was reinstalled, run \
              `ssh-keygen -R HOST` and log in once by hand",
         );
     }
     if has("Host key verification failed") {
         return Some(
-            "its key is not known here: log in once by hand with `ssh HOST` and compare it",
+            "the host key is unknown: log in once with `ssh HOST` and verify the fingerprint",
         );
     }
     if has("Permission denied") {
         return Some(
-            "it wants a password, which nobody is asked for here: `ssh-copy-id HOST`, or start \
+            "the host requires a password, and launches never prompt for one: run `ssh-copy-id HOST`, or start \
              ssh-agent and `ssh-add`",
         );
     }
     if has("Could not resolve hostname") {
-        return Some("see the name, or give it an entry in ~/.ssh/config");
+        return Some("check the host name, or add an entry to ~/.ssh/config");
     }
     if has("Connection refused") || has("timed out") || has("No route to host") {
-        return Some("see with `ssh HOST true` whether it is on, and its port and firewall");
+        return Some(
+            "check with `ssh HOST true` that the host is running, and check its port and firewall",
+        );
     }
     None
 }

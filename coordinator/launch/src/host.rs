@@ -1,19 +1,19 @@
-//! Hosts as people write them.
+//! Hosts in the notation of the command line and of host files.
 use std::{fmt, fs, path::Path, str::FromStr};
 use support::Problem;
 
-/// One host: what the user's ssh is told, and what is known of it.
+/// Host to launch workers on: the ssh target with optional port and slots.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Host {
-    /// `HOST` or `USER@HOST`, an alias of the user's configuration too.
+    /// `HOST` or `USER@HOST`; aliases of the user's ssh configuration are allowed.
     pub target: String,
-    /// Port, if not that of the configuration.
+    /// Port, if different from the ssh configuration.
     pub port: Option<u16>,
-    /// Simulations at a time, if not as on all others.
+    /// Number of simulations at a time, if different from the other hosts.
     pub slots: Option<u16>,
 }
 
-/// As [`FromStr`] reads it.
+/// Writes the host in the notation that [`FromStr`] parses.
 impl fmt::Display for Host {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.port {
@@ -24,14 +24,14 @@ impl fmt::Display for Host {
     }
 }
 
-/// `user@host:port`, as one word of `--ssh` or the first of a line of `--hosts`.
+/// Parses `user@host:port`, an argument of `--ssh` or the first word of a line of `--hosts`.
 impl FromStr for Host {
     type Err = Problem;
 
     fn from_str(text: &str) -> Result<Self, Problem> {
         let wrong = |why: &str| {
             Problem::new(
-                format!("\"{text}\" is no host: {why}"),
+                format!("\"{text}\" is not a valid host: {why}"),
                 "write HOST, USER@HOST or USER@HOST:PORT; IPv6 addresses as [fe80::1]:22",
             )
         };
@@ -56,10 +56,10 @@ impl FromStr for Host {
     }
 }
 
-/// The hosts of a file: one a line, with `slots=N` behind it where it differs; `#` begins a comment.
+/// Reads a host file: one host per line, followed by `slots=N` where it differs; `#` starts a comment.
 ///
 /// # Errors
-/// [`Problem`], naming the file, the line and what is wrong with it.
+/// [`Problem`], naming the file, the line and the error.
 pub fn read_hosts(file: &Path) -> Result<Vec<Host>, Problem> {
     let help = "one host a line, as `user@node7:22 slots=8`";
     let text = fs::read_to_string(file)

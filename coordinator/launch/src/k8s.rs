@@ -1,5 +1,5 @@
-//! Workers by Kubernetes: a Deployment whose pods dial the coordinator, with a `NetworkPolicy` that lets
-//! them reach nothing else and a Secret of keys that `kubectl` makes from the folder.
+//! Workers on Kubernetes: a Deployment whose pods connect to the coordinator, a `NetworkPolicy` that forbids
+//! all other traffic but DNS, and a Secret with the keys, which `kubectl` creates from the folder.
 use super::{
     plan::{Input, Part, Plan, Step},
     shell::{line, settings},
@@ -10,16 +10,16 @@ use serde_json::{Value, json};
 use std::{fmt::Write as _, net::IpAddr, path::Path};
 use support::Problem;
 
-/// Name of all objects.
+/// Name of all Kubernetes objects created.
 const NAME: &str = "horsehead-worker";
-/// Where the keys are in a pod.
+/// Mount path of the keys in a pod.
 const KEYS: &str = "/keys";
 
-/// Applies the manifests; `options` is `replicas=4` with `image`, `namespace`, `cpu` and `memory` beside
-/// it, and `name` the worker's folder of keys, which serves all pods.
+/// Plans the application of the manifests; `options` is `replicas=4`, optionally with `image`, `namespace`,
+/// `cpu` and `memory`; `name` is the worker's key folder, shared by all pods.
 ///
 /// # Errors
-/// If the options are not understood.
+/// If the options cannot be parsed.
 pub fn up(order: &WorkerOptions, options: &str, name: Option<&str>) -> Result<Plan, Problem> {
     let known = ["replicas", "image", "namespace", "cpu", "memory"];
     let given = settings("--k8s", options, &known)?;
@@ -40,7 +40,7 @@ pub fn up(order: &WorkerOptions, options: &str, name: Option<&str>) -> Result<Pl
     let (replicas, cpu) = (number("replicas", "1", 5000)?, number("cpu", "1", 4096)?);
     if !order.prologue.is_empty() {
         return Err(Problem::new(
-            "--prologue says nothing to --k8s",
+            "--prologue has no effect with --k8s",
             "put what a worker needs into its image: deploy/Containerfile",
         ));
     }
@@ -89,7 +89,7 @@ pub fn up(order: &WorkerOptions, options: &str, name: Option<&str>) -> Result<Pl
     })
 }
 
-/// Has Kubernetes make what it reads so.
+/// Builds a `kubectl apply` step that reads manifests from the given input.
 fn apply(what: &str, namespace: &str, input: Input) -> Step {
     Step::Run {
         what: what.to_owned(),
@@ -105,7 +105,7 @@ fn apply(what: &str, namespace: &str, input: Input) -> Step {
     }
 }
 
-/// Writes a secret of the keys in a folder.
+/// Returns the `kubectl` command that prints a Secret manifest of the keys in a folder.
 fn secret(folder: &Path) -> Vec<String> {
     let make = [
         "kubectl",
@@ -171,7 +171,7 @@ fn deployment(
     })
 }
 
-/// Nobody reaches a worker; it reaches names and its coordinator.
+/// Builds the network policy: no incoming connections; outgoing ones only to DNS and the coordinator.
 fn network_policy(order: &WorkerOptions) -> Value {
     let protocol = match order.connect.protocol {
         link::locator::Protocol::Tcp => "TCP",

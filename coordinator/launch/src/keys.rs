@@ -1,8 +1,8 @@
-//! Which worker's folder of key material goes to which host.
+//! Assignment of workers' key folders to hosts.
 //!
-//! A folder that was given to a host says so in a file of its own, so that the same host gets it again.
-//! Hosts beyond the folders that are there get new ones from `horsehead keys add`, whose names a
-//! running coordinator has made room for.
+//! A file in each assigned folder names its host, so that a host gets the same folder again. If there are
+//! more hosts than folders, `horsehead keys add` creates new ones, with names that a running coordinator
+//! already accepts.
 use super::{
     host::Host,
     plan::{Input, Step},
@@ -15,13 +15,14 @@ use std::{
 };
 use support::Problem;
 
-/// File in a worker's folder: the host that has a copy of it.
+/// File in a worker's key folder that names the host holding a copy of it.
 const HOST: &str = "host";
 
-/// The names of the hosts' key folders in order, and the steps that make those that are missing.
+/// Returns the key folder names of the hosts, in order, and the steps that create missing folders.
 ///
 /// # Errors
-/// If the folder cannot be used by a coordinator, or new names are needed and it cannot sign.
+/// If the folder cannot be used by a coordinator, or new names are needed and the folder cannot sign
+/// certificates.
 pub fn assign(folder: &Path, hosts: &[Host]) -> Result<(Vec<String>, Vec<Step>), Problem> {
     let keys = Keys::read(folder, Role::Coordinator).map_err(|error| {
         let help = "--tls takes the folder that `horsehead keys new DIR --host NAME` made";
@@ -50,7 +51,10 @@ pub fn assign(folder: &Path, hosts: &[Host]) -> Result<(Vec<String>, Vec<Step>),
         } else {
             let name = unused.find(vacant).ok_or_else(|| {
                 Problem::new(
-                    format!("{} has all the names that it may have", folder.display()),
+                    format!(
+                        "{}: all available worker names are in use",
+                        folder.display()
+                    ),
                     "remove folders of nodes that are gone, and their lines in `workers`",
                 )
             })?;
@@ -94,10 +98,10 @@ pub fn assign(folder: &Path, hosts: &[Host]) -> Result<(Vec<String>, Vec<Step>),
     Ok((all, steps))
 }
 
-/// The host that a worker's folder was given to.
+/// Returns the host to which a worker's key folder is assigned.
 ///
 /// # Errors
-/// If there is no such folder, or nobody was given it.
+/// If there is no such folder, or it is not assigned to a host.
 pub fn host_of(folder: &Path, name: &str) -> Result<Host, Problem> {
     let file = folder.join(name).join(HOST);
     let text = fs::read_to_string(&file).map_err(|error| {

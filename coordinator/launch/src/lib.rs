@@ -1,10 +1,9 @@
-//! Workers on other nodes: a plan of plain data that brings them up, and carrying it out.
+//! Launching of workers on other nodes: a plan of plain data, and its execution.
 //!
-//! A launcher ([`ssh`], [`slurm`], [`k8s`], [`systemd`]) writes a [`Plan`]: literal commands with what
-//! each reads, and files. `--dry-run` prints the very plan that a launch carries out ([`execute`]).
-//! Starting processes is the business of those four and of nobody here: nothing is scheduled. A plan
-//! never holds a key: commands read key material from its folder. It does not know runs, jobs, nor
-//! what a worker computes.
+//! A launcher ([`ssh`], [`slurm`], [`k8s`], [`systemd`]) builds a [`Plan`]: literal commands with their
+//! input, and files. `--dry-run` prints exactly the plan that a launch executes ([`execute`]). Scheduling
+//! processes is left to the four systems named. A plan never contains a key: commands read key material from
+//! its folder. The crate knows neither runs nor jobs nor simulations.
 pub mod doctor;
 pub mod execute;
 mod host;

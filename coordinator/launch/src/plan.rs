@@ -1,71 +1,71 @@
-//! What a launch does, as plain data, and the same as a shell script for people.
+//! Launch plan as plain data, and its rendering as a shell script.
 use super::shell::line;
 use std::{fmt, path::PathBuf};
 
-/// Ends a text that a command reads in a printed plan.
+/// Heredoc delimiter in a printed plan.
 const END: &str = "HORSEHEAD_END";
 
-/// What a command reads.
+/// Standard input of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Input {
-    /// Nothing.
+    /// Empty input.
     Nothing,
-    /// A text.
+    /// Literal text.
     Text(String),
-    /// A file.
+    /// Content of a file.
     File(PathBuf),
-    /// What another command writes: so key material reaches its place without being in the plan.
+    /// Output of another command; lets key material reach its destination without appearing in the plan.
     Command(Vec<String>),
 }
 
-/// One step.
+/// Step of a plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// Make a file, and the folders above it.
+    /// Writes a file, creating its parent folders.
     Write {
-        /// Where.
+        /// Path of the file.
         path: PathBuf,
-        /// What is in it.
+        /// Content of the file.
         content: String,
     },
-    /// Run a command.
+    /// Runs a command.
     Run {
-        /// What it is for, as in "cannot WHAT".
+        /// Purpose of the command, completing "cannot WHAT".
         what: String,
-        /// The command and its arguments.
+        /// Command with its arguments.
         command: Vec<String>,
-        /// What it reads.
+        /// Standard input of the command.
         input: Input,
-        /// It is run only if the step before it that [`Step::Run::asks`] was answered so.
+        /// Answer that the last step with [`Step::Run::asks`] must have given for the command to run.
         only_if: Option<String>,
-        /// What it writes is an answer for later steps.
+        /// Whether the command's output is an answer for later steps.
         asks: bool,
-        /// What to do if it fails.
+        /// Remedy in case of failure.
         remedy: String,
     },
 }
 
-/// Steps at one place, in order; a step that fails ends them.
+/// Steps at one place, in order; the first failure ends them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// The place, as a host.
+    /// Name of the place, such as a host.
     pub place: String,
-    /// What is there at the end, as "joined as worker-01".
+    /// Message on success, such as "joined as worker-01".
     pub then: String,
-    /// The steps.
+    /// Steps to run at the place.
     pub steps: Vec<Step>,
 }
 
-/// A launch: some steps first, then any number of parts that do not wait for one another.
+/// Launch plan: initial steps, then parts that are independent of one another.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Plan {
-    /// On this machine, before everything else.
+    /// Steps on this machine, run before all parts.
     pub first: Vec<Step>,
-    /// At every place.
+    /// Parts, one per place.
     pub parts: Vec<Part>,
 }
 
-/// The plan as a script of the POSIX shell that does the same, one place after the other.
+/// Renders the plan as an equivalent POSIX shell script that handles the places one after the other.
 impl fmt::Display for Plan {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(to, "#!/bin/sh\nset -eu")?;
@@ -133,7 +133,7 @@ impl fmt::Display for Step {
     }
 }
 
-/// A text that ends with its last line.
+/// Returns the text with a newline at its end, unless empty.
 fn whole_lines(text: &str) -> String {
     let end = if text.is_empty() || text.ends_with('\n') {
         ""

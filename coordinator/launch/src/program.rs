@@ -1,4 +1,4 @@
-//! A worker program: for which machines it was built, and the oldest C library that can run it.
+//! Worker program files: processor architecture, and the oldest C library that can run them.
 use object::{
     Endianness,
     elf::{FileHeader64, VER_FLG_WEAK},
@@ -7,26 +7,26 @@ use object::{
 use std::path::{Path, PathBuf};
 use support::Problem;
 
-/// A worker program that can be copied to other machines.
+/// Worker program that can be copied to other machines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
-    /// Its file.
+    /// Path of the program file.
     pub path: PathBuf,
-    /// Machines it runs on, as `uname -m` says.
+    /// Architecture of the program, in the notation of `uname -m`.
     pub machine: String,
-    /// Newest version of glibc whose symbols it needs, as `[2, 34]`; empty if it needs none.
+    /// Newest glibc version whose symbols the program needs, as `[2, 34]`; empty if none.
     pub glibc: Vec<u32>,
-    /// Its length (bytes).
+    /// File size \[bytes\].
     pub bytes: usize,
-    /// The start of its content's hash: the name under which nodes keep it.
+    /// First 16 digits of the hash of the content; part of the file name on nodes.
     pub hash: String,
 }
 
 impl Program {
-    /// Reads a program.
+    /// Reads a program file.
     ///
     /// # Errors
-    /// If it cannot be read or is no ELF program of 64 bits.
+    /// If it cannot be read or is no 64-bit ELF program.
     pub fn read(path: &Path) -> Result<Self, Problem> {
         let wrong = |why: String| {
             Problem::new(
@@ -47,7 +47,7 @@ impl Program {
         })
     }
 
-    /// The version of glibc, as `2.34`; 0 where there is none.
+    /// Returns the glibc version as `2.34`; `0` if none is needed.
     pub fn glibc_text(&self) -> String {
         let numbers: Vec<String> = self.glibc.iter().map(u32::to_string).collect();
         if numbers.is_empty() {
@@ -58,7 +58,7 @@ impl Program {
     }
 }
 
-/// The processor, and the newest `GLIBC_` version among those that the loader insists on.
+/// Returns the processor architecture and the newest `GLIBC_` version that the loader requires.
 fn needs(bytes: &[u8]) -> Result<(Option<&'static str>, Vec<u32>), object::read::Error> {
     let header = FileHeader64::<Endianness>::parse(bytes)?;
     let endian = header.endian()?;

@@ -1,7 +1,7 @@
-//! Words of command lines: written for a shell, and read from options.
+//! Quoting of command lines for a shell, and parsing of `KEY=VALUE` options.
 use support::Problem;
 
-/// Words as one line of shell.
+/// Quotes words as one shell command line.
 pub(super) fn line(words: &[String]) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_=+.,/:@%".contains(c);
     let quoted = words.iter().map(|word| {
@@ -14,15 +14,15 @@ pub(super) fn line(words: &[String]) -> String {
     quoted.collect::<Vec<_>>().join(" ")
 }
 
-/// A text whose lines all end.
+/// Returns the text with a newline after every line.
 pub(super) fn lines(text: &str) -> String {
     text.lines().flat_map(|line| [line, "\n"]).collect()
 }
 
-/// `KEY=VALUE,KEY=VALUE` of an option.
+/// Parses an option of the form `KEY=VALUE,KEY=VALUE`.
 ///
 /// # Errors
-/// If a part has no `=`, or its key is none of `known` where there are any.
+/// If a part has no `=`, or its key is not in a non-empty `known`.
 pub(super) fn settings(
     option: &str,
     text: &str,

@@ -1,4 +1,4 @@
-//! Workers by Slurm: one per node of an allocation, from one batch script that `sbatch` reads.
+//! Workers on Slurm: one per node of an allocation, started by one batch script passed to `sbatch`.
 use super::{
     plan::{Input, Part, Plan, Step},
     program::Program,
@@ -7,10 +7,10 @@ use super::{
 };
 use support::Problem;
 
-/// Options of sbatch that `--slurm` may set besides the number of nodes are all that it has.
+/// Plans the submission of a batch job; `--slurm` accepts every long option of `sbatch`.
 ///
-/// `options` is `nodes=4,time=02:00:00`, `arguments` what `sbatch` is given as it is. The program and
-/// the folder of keys must lie where all nodes see them; one worker's folder, `name`, serves them all.
+/// `options` is `nodes=4,time=02:00:00`; `arguments` are passed to `sbatch` unchanged. The program and the
+/// key folder must be visible on all nodes; the key folder `name` of one worker serves them all.
 ///
 /// # Errors
 /// If the options are not `KEY=VALUE`.
@@ -51,7 +51,7 @@ pub fn up(
                 only_if: None,
                 asks: false,
                 remedy: format!(
-                    "see what `sinfo` offers; more options with --sbatch-arg (typed was {})",
+                    "check the partitions with `sinfo`; pass further options with --sbatch-arg (command: {})",
                     line(&command)
                 ),
             }],
@@ -59,8 +59,8 @@ pub fn up(
     })
 }
 
-/// The batch script: it is given back to the queue where a node fails, and workers are told half a minute
-/// before the time is up.
+/// Returns the batch script: requeued if a node fails, with a signal to the workers half a minute before the
+/// time limit.
 fn script(order: &WorkerOptions, program: &Program, name: Option<&str>) -> String {
     let path = program.path.display().to_string();
     let mut worker = vec!["srun".to_owned(), path.clone()];

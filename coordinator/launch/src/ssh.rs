@@ -1,8 +1,8 @@
-//! Workers on hosts that `ssh` reaches: through the user's own `ssh`, with his configuration.
+//! Workers on hosts reachable by `ssh`, using the user's own `ssh` and its configuration.
 //!
-//! On a host everything lies below `~/.cache/horsehead` (or `$XDG_CACHE_HOME`), for its owner alone:
-//! programs by the hash of their content, copied once, and a folder per worker with its keys, log,
-//! process and command line.
+//! On a host all files lie below `~/.cache/horsehead` (or `$XDG_CACHE_HOME`), readable by their owner only:
+//! programs by the hash of their content, copied once, and a folder per worker with its keys, log, process id
+//! and command line.
 mod script;
 
 use super::{
@@ -18,8 +18,7 @@ use link::keys::{CA, WORKER};
 use std::sync::atomic::AtomicBool;
 use support::Problem;
 
-/// Options of every call: nothing is ever asked at the terminal, and a host that does not answer, or no
-/// longer, ends the call.
+/// Options of every ssh call: no prompts at the terminal, and a timeout for hosts that do not respond.
 const OPTIONS: [&str; 4] = [
     "BatchMode=yes",
     "ConnectTimeout=15",
@@ -27,8 +26,8 @@ const OPTIONS: [&str; 4] = [
     "ServerAliveCountMax=3",
 ];
 
-/// Brings up one worker per host, each with the program of its machine and keys of its own, and watches
-/// for `wait_s` seconds that it takes part (0: not at all).
+/// Plans one worker per host, each with the program for its architecture and its own keys, and a check
+/// lasting up to `wait_s` seconds that the worker takes part (0: no check).
 ///
 /// # Errors
 /// [`Problem`] if there are no keys for a host, or a host is named twice.
@@ -140,8 +139,8 @@ fn part(order: &WorkerOptions, host: &Host, name: &str, programs: &[Program], wa
     }
 }
 
-/// What tells the folders on a host of one coordinator's workers from those of another: two runs may use
-/// the same names.
+/// Returns a folder suffix, a hash of the certificate authority or of the coordinator's address, that
+/// separates workers of different coordinators on a host, since two runs may use the same worker names.
 fn mark(order: &WorkerOptions) -> String {
     let authority = order.tls.as_ref().map(|keys| std::fs::read(keys.join(CA)));
     let whose = match authority {
@@ -152,7 +151,8 @@ fn mark(order: &WorkerOptions) -> String {
     format!("-{}", hash.chars().take(8).collect::<String>())
 }
 
-/// Ends the workers of hosts: those that an order's [`WorkerOptions::owner`] has launched for its coordinator, or all.
+/// Plans the end of workers on hosts: those launched by the order's [`WorkerOptions::owner`] for its
+/// coordinator, or all.
 pub fn down(hosts: &[Host], order: Option<&WorkerOptions>) -> Plan {
     let owner = order.map_or("", |order| order.owner.as_str());
     let mark = order.map(mark).unwrap_or_default();
@@ -174,10 +174,10 @@ pub fn down(hosts: &[Host], order: Option<&WorkerOptions>) -> Plan {
     }
 }
 
-/// The address from which a host sees us come.
+/// Returns the address of this machine as seen by a host.
 ///
 /// # Errors
-/// If it cannot be reached, or its ssh does not say.
+/// If the host cannot be reached, or its ssh does not report the address.
 pub fn our_address(host: &Host) -> Result<String, LaunchError> {
     let step = Step::Run {
         what: "ask from which address we come".to_owned(),
@@ -192,7 +192,7 @@ pub fn our_address(host: &Host) -> Result<String, LaunchError> {
             return Err(LaunchError {
                 place: host.to_string(),
                 step: "ask from which address we come".to_owned(),
-                why: "its ssh does not say".to_owned(),
+                why: "its SSH_CONNECTION variable is empty".to_owned(),
                 remedy: "name the address with --advertise".to_owned(),
             });
         }
@@ -205,17 +205,17 @@ pub fn our_address(host: &Host) -> Result<String, LaunchError> {
     })
 }
 
-/// The command that shows the end of what a host's workers said.
+/// Returns the command that shows the end of the worker logs on a host.
 pub fn logs(host: &Host) -> Vec<String> {
     shell(host, &given(&script::tail()))
 }
 
-/// What a person types to see it.
+/// Returns the command line with which a user shows the worker logs of a host.
 fn log_command(host: &Host) -> String {
     format!("`horsehead workers logs --ssh {host}`")
 }
 
-/// A call of ssh with a command for the host's login shell.
+/// Builds an ssh call that runs a command in the host's login shell.
 fn shell(host: &Host, command: &str) -> Vec<String> {
     let mut words = vec!["ssh".to_owned()];
     for option in OPTIONS {
@@ -228,7 +228,7 @@ fn shell(host: &Host, command: &str) -> Vec<String> {
     words
 }
 
-/// A script as a command, for calls whose input is something else.
+/// Quotes a script as an `sh -c` command, for calls whose standard input carries data.
 fn given(script: &str) -> String {
     line(&["sh".to_owned(), "-c".to_owned(), script.to_owned()])
 }

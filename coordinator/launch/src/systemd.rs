@@ -1,4 +1,4 @@
-//! A worker of this machine that comes back with it: a unit of the user's own systemd.
+//! Worker on this machine as a unit of the user's systemd, restarted with the machine.
 use super::{
     plan::{Input, Part, Plan, Step},
     program::Program,
@@ -8,14 +8,14 @@ use super::{
 use std::path::{Path, PathBuf};
 use support::Problem;
 
-/// Name of the unit.
+/// Name of the systemd unit.
 const UNIT: &str = "horsehead-worker.service";
 
-/// Writes the unit below `configuration` (`~/.config`) and starts it; `options` may be `slots=N`, and
-/// `name` is the worker's folder of keys.
+/// Plans to write the unit below `configuration` (`~/.config`) and to start it; `options` may be `slots=N`,
+/// and `name` is the worker's key folder.
 ///
 /// # Errors
-/// If the options are not understood.
+/// If the options cannot be parsed.
 pub fn up(
     order: &WorkerOptions,
     options: &str,

@@ -1,26 +1,26 @@
-//! What every worker is told, wherever it is started.
+//! Options common to all workers, whichever launcher starts them.
 use link::locator::Locator;
 use std::path::PathBuf;
 
-/// What every worker is told, wherever it is started.
+/// Options passed to every launched worker.
 #[derive(Clone, Debug)]
 pub struct WorkerOptions {
-    /// Where it dials.
+    /// Address of the coordinator to connect to.
     pub connect: Locator,
-    /// The coordinator's folder of key material; none for `tcp/`.
+    /// Coordinator's folder of key material; `None` for `tcp/`.
     pub tls: Option<PathBuf>,
-    /// It ends after so long without work \[s\]; none for never.
+    /// Time without work after which the worker ends \[s\]; `None` for never.
     pub idle_timeout: Option<u64>,
-    /// Simulations at a time; none for one per hardware thread.
+    /// Number of simulations at a time; `None` for one per hardware thread.
     pub slots: Option<u16>,
-    /// Lines of shell that come before it, as `module load`.
+    /// Shell lines run before the worker starts, such as `module load`.
     pub prologue: String,
-    /// Name of the run that launches it and ends it; empty where a person does.
+    /// Name of the run that launches and ends the worker; empty if a user does.
     pub owner: String,
 }
 
 impl WorkerOptions {
-    /// The arguments of the worker, but for its program and its keys.
+    /// Returns the worker's command-line arguments, without program and keys.
     pub(super) fn arguments(&self) -> Vec<String> {
         let mut all = vec!["--connect".to_owned(), self.connect.to_string()];
         let mut option = |name: &str, value: Option<u64>| {

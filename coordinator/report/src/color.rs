@@ -1,46 +1,46 @@
-//! The colours of the report: of lines and words, and scales of strength and deviation.
+//! Colours of the report: lines, text, and colour scales of strength and deviation.
 //!
-//! Measured is black on a grey band, simulated is vermillion: the pair stays apart for colour-blind
-//! readers and on a grey printer. The scales are even in lightness, and dark enough to stand on white
-//! paper where they mean something.
+//! Measured is black on a grey band, simulated is vermillion: the pair can be told apart by colour-blind
+//! readers and in greyscale print. The scales are uniform in lightness, and dark enough for white paper at
+//! significant values.
 use std::fmt;
 
-/// A colour: red, green and blue.
+/// Colour with red, green and blue components.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Color(pub u8, pub u8, pub u8);
 
 impl fmt::Display for Color {
-    /// As CSS and SVG write it.
+    /// Writes the colour in the notation of CSS and SVG.
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(to, "#{:02x}{:02x}{:02x}", self.0, self.1, self.2)
     }
 }
 
-/// Text and measured curves.
+/// Colour of text and measured curves.
 pub const INK: Color = Color(0x22, 0x22, 0x22);
-/// Secondary text.
+/// Colour of secondary text.
 pub const GREY: Color = Color(0x6b, 0x6b, 0x6b);
-/// Axes.
+/// Colour of axes.
 pub const AXIS: Color = Color(0x55, 0x55, 0x55);
-/// Guide lines behind curves.
+/// Colour of guide lines behind curves.
 pub const GUIDE: Color = Color(0xe9, 0xe9, 0xe6);
-/// The guide line at zero.
+/// Colour of the guide line at zero.
 pub const ZERO: Color = Color(0xb9, 0xb9, 0xb5);
-/// Bands of spread.
+/// Colour of bands of spread.
 pub const BAND: Color = Color(0xd3, 0xd3, 0xd0);
-/// Simulated curves and the optimum.
+/// Colour of simulated curves and the optimum.
 pub const VERMILLION: Color = Color(0xc8, 0x4b, 0x11);
-/// Second simulated quantity.
+/// Colour of the second simulated quantity.
 pub const BLUE: Color = Color(0x0b, 0x5f, 0x9e);
-/// Third simulated quantity.
+/// Colour of the third simulated quantity.
 pub const GREEN: Color = Color(0x1b, 0x7a, 0x5a);
-/// Fourth simulated quantity.
+/// Colour of the fourth simulated quantity.
 pub const PURPLE: Color = Color(0x8a, 0x4f, 0x8f);
 
-/// A scale of colours, evenly spaced from its lowest value to its highest.
+/// Colour scale of five evenly spaced stops from the lowest to the highest value.
 pub struct Ramp(pub [Color; 5]);
 
-/// Strength, none to high: paper over blue to ink.
+/// Colour scale of strength, from none to high: pale over blue to near black.
 pub const STRENGTH: Ramp = Ramp([
     Color(0xf1, 0xf4, 0xf6),
     Color(0xb4, 0xcd, 0xde),
@@ -49,7 +49,7 @@ pub const STRENGTH: Ramp = Ramp([
     Color(0x08, 0x24, 0x4e),
 ]);
 
-/// Deviation, below to above: blue over paper to vermillion; its middle is none.
+/// Colour scale of signed deviation: blue for negative, pale for none, vermillion for positive.
 pub const SIGNED: Ramp = Ramp([
     Color(0x0b, 0x4a, 0x7d),
     Color(0x7f, 0xb0, 0xd2),
@@ -59,7 +59,7 @@ pub const SIGNED: Ramp = Ramp([
 ]);
 
 impl Ramp {
-    /// The colour at a share of the scale: 0 to 1, held inside; the lowest for what is no number.
+    /// Returns the colour at a share of the scale, clamped to 0 to 1; the lowest if not finite.
     pub fn at(&self, share: f64) -> Color {
         let share = if share.is_finite() { share } else { 0.0 };
         let place = 4.0 * share.clamp(0.0, 1.0);

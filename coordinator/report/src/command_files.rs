@@ -1,5 +1,5 @@
-//! What reports of such models show: what they show of any, and beside it the files that PEST leaves of a
-//! calibration, for programs that read those.
+//! Report of models that are external commands: the general report, with PEST's residual file of the
+//! calibration for programs that read it.
 use crate::{
     Drawing, Figure, General, ReportError, Section, Shown, SingleRun, Table, folder::stream,
 };
@@ -13,7 +13,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Reports with PEST's files.
+/// Drawing of the general report with PEST's files added.
 pub(crate) struct Files;
 
 impl Drawing for Files {
@@ -63,7 +63,7 @@ impl Drawing for Files {
     }
 }
 
-/// Every measured value of a condition beside what the model gives.
+/// Returns every measured value of a condition with the simulated one.
 fn residuals(shown: &Shown<'_>) -> Vec<ReiRow> {
     let external = External::of(&shown.case.model).ok();
     let measured = shown.case.measured(shown.condition);

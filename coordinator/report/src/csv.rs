@@ -1,6 +1,6 @@
-//! The channels of simulations as CSV: one row per channel and point.
+//! Channels of simulations as CSV: one row per channel and point.
 //!
-//! An empty field is a value that does not exist; numbers are written with all their digits.
+//! An empty field is a missing value; numbers are written with all their digits.
 use super::data::{Shown, SingleRun};
 use super::number::field;
 use super::words::condition_name;
@@ -20,8 +20,7 @@ const COLUMNS: [&str; 10] = [
     "simulated",
 ];
 
-/// Writes the channels of named parameter sets of one case; a failed simulation has values as far as it
-/// got.
+/// Writes the channels of named parameter sets of one case; a failed simulation has values up to its failure.
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.

@@ -1,6 +1,6 @@
-//! Plain data that a report is made of: what the study hands over, nothing drawn yet.
+//! Plain data of a report, as handed over by the study, before any drawing.
 //!
-//! Every value carries its unit in its name. Nothing here knows of files, clocks or workers.
+//! Every name of a quantity states its unit. Independent of files, clocks and workers.
 use discrepancy::identify::UnknownEstimate;
 use discrepancy::proof::gap::Gap;
 use dispatch::account::JobCost;
@@ -11,7 +11,7 @@ use protocol::job::{Curves, Evaluation, Verdict};
 /// One parameter set of a calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Individual {
-    /// Its number in the evaluation log; none where it was not proposed by the search.
+    /// Number in the evaluation log; `None` if not proposed by the search.
     pub id: Option<u64>,
     /// Gene values in declared units, in the case's order.
     pub genes: Vec<f64>,
@@ -24,59 +24,60 @@ pub struct HistoryPoint {
     pub id: u64,
     /// Generation (or batch) it was proposed in.
     pub generation: u32,
-    /// What the search wanted it for, in one word.
+    /// Purpose for which the search proposed the individual, in one word.
     pub purpose: String,
     /// Gene values in declared units, in the case's order.
     pub genes: Vec<f64>,
-    /// Objective in its squared unit if complete, a graded value above every complete one's otherwise.
+    /// Objective, in its squared unit, if complete; otherwise a graded value above that of every complete
+    /// one.
     pub fitness: f64,
-    /// Whether it was simulated to its end.
+    /// Whether the simulation ran to its end.
     pub complete: bool,
-    /// What ended it early, in words.
+    /// Reason for an early end, in words.
     pub failure: Option<String>,
-    /// What its simulation cost; none where nothing is known of it.
+    /// Cost of the simulation; `None` if unknown.
     pub cost: Option<JobCost>,
 }
 
-/// What one worker contributed.
+/// Contribution of one worker.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorkerUse {
-    /// Name of the worker, as the tables show it.
+    /// Name of the worker, as shown in tables.
     pub name: String,
-    /// Host it ran on.
+    /// Host on which the worker ran.
     pub host: String,
-    /// Simulations it ran at a time.
+    /// Number of simulations at a time.
     pub slots: u32,
-    /// Jobs whose result was accepted.
+    /// Number of accepted results.
     pub done: u64,
-    /// Jobs that could not be done there.
+    /// Number of failed jobs.
     pub failed: u64,
-    /// Time its slots spent computing, summed over slots, in seconds.
+    /// Computing time summed over slots, in seconds.
     pub busy_s: f64,
-    /// Time it was attached, in seconds.
+    /// Time connected, in seconds.
     pub present_s: f64,
 }
 
 impl WorkerUse {
-    /// Share of the worker's slot time that was spent computing, 0 to 1; none if it was never
-    /// attached for a measurable time.
+    /// Returns the share of the worker's slot time spent computing, 0 to 1; `None` if the worker was not
+    /// connected for a measurable time.
     pub fn busy_share(&self) -> Option<f64> {
         let available_s = self.present_s * f64::from(self.slots);
         (available_s > 0.0 && self.busy_s.is_finite()).then(|| self.busy_s / available_s)
     }
 }
 
-/// One parameter set under one condition: how well it agrees, and its curves.
+/// Result of one parameter set under one condition: agreement with the record, and curves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// Agreement with the record; its channels are empty if there is no record or no complete run.
+    /// Agreement with the record; without channels if there is no record or no complete simulation.
     pub evaluation: Evaluation,
-    /// The curves, as far as the simulation got.
+    /// Curves, up to a failure.
     pub curves: Curves,
 }
 
 impl Run {
-    /// The simulation, under a condition of its case.
+    /// Returns the simulation with its case and condition.
     pub const fn shown<'a>(&'a self, case: &'a Case, condition: usize) -> Shown<'a> {
         Shown {
             case,
@@ -85,7 +86,7 @@ impl Run {
         }
     }
 
-    /// What it leaves of the measured channels of a condition.
+    /// Returns the gap (share of variance left unexplained) of each measured channel of a condition.
     pub fn gaps<'a>(&self, case: &'a Case, condition: usize) -> Vec<(&'a Channel, Gap)> {
         let shown = self.shown(case, condition);
         let gap = |(_, channel, record): (usize, &'a Channel, &ChannelRecord)| {
@@ -96,19 +97,19 @@ impl Run {
     }
 }
 
-/// One simulation, to be shown.
+/// Simulation to be shown, with its case and condition.
 #[derive(Clone, Copy, Debug)]
 pub struct Shown<'a> {
-    /// The case that was simulated.
+    /// Simulated case.
     pub case: &'a Case,
     /// Index of the condition in the case.
     pub condition: usize,
-    /// Its curves, as far as it got.
+    /// Curves of the simulation, up to a failure.
     pub curves: &'a Curves,
 }
 
 impl<'a> Shown<'a> {
-    /// The curve of a channel of its condition, as far as the simulation got.
+    /// Returns the curve of a channel under its condition, up to a failure.
     pub fn channel(&self, channel: &Channel) -> &'a [f64] {
         let mut all = self.case.channels_of(channel.condition);
         let place = all.position(|(_, other)| other.name == channel.name);
@@ -117,77 +118,77 @@ impl<'a> Shown<'a> {
     }
 }
 
-/// Both parameter sets under one condition.
+/// Results of both parameter sets under one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionResult {
     /// Index of the condition in the case.
     pub condition: usize,
-    /// With the recommended parameters.
+    /// Result with the recommended parameters.
     pub recommended: Run,
-    /// With the optimised parameters.
+    /// Result with the optimised parameters.
     pub optimised: Run,
 }
 
-/// Everything that identifies how a result was made.
+/// Provenance of a result, sufficient to reproduce it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Origin {
     /// Program and version.
     pub program: String,
-    /// Command line that makes it again.
+    /// Command line that reproduces the result.
     pub command: String,
     /// Name of the run.
     pub run: String,
     /// Content hash of the case.
     pub case_hash: String,
-    /// Where the measured records came from.
+    /// Source of the measured records.
     pub measured_name: String,
-    /// Whether those records were computed, not measured on a machine.
+    /// Whether the records were computed instead of measured on a machine.
     pub synthetic: bool,
-    /// Search preset, where there was a search.
+    /// Search preset, if there was a search.
     pub preset: Option<String>,
-    /// Seed of every random choice, where there was one.
+    /// Seed of all random choices, if there was one.
     pub seed: Option<u64>,
     /// Digest of the evaluation log in index order, or of the result's bits.
     pub digest: String,
 }
 
-/// A finished (or stopped) calibration.
+/// Finished or stopped calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
-    /// The case that was calibrated.
+    /// Calibrated case.
     pub case: Case,
-    /// How it was made.
+    /// Provenance of the calibration.
     pub origin: Origin,
-    /// The starting point.
+    /// Starting point with the recommended parameters.
     pub recommended: Individual,
-    /// The best individual that was found.
+    /// Best individual found.
     pub optimised: Individual,
     /// The evaluation log in index order.
     pub history: Vec<HistoryPoint>,
-    /// Who computed.
+    /// Workers and their contributions.
     pub workers: Vec<WorkerUse>,
-    /// How all slots spent their time, in all sessions of the run.
+    /// Slot time of all workers by use, over all sessions of the run.
     pub spent: Spent,
     /// Wall time of the whole run, in seconds.
     pub wall_s: f64,
-    /// Why the search ended, in words.
+    /// Reason for which the search ended, in words.
     pub finish: String,
-    /// Results per condition; the calibrated one first by custom.
+    /// Results per condition, conventionally the calibrated condition first.
     pub conditions: Vec<ConditionResult>,
-    /// What the record says of the unknowns that were searched, to first order; empty where nobody looked.
+    /// First-order estimates of how well the record determines the searched unknowns; empty if not computed.
     pub seen: Vec<UnknownEstimate>,
     /// Further notes and warnings, one sentence each.
     pub notes: Vec<String>,
 }
 
 impl Calibration {
-    /// What the optimised parameters give under the calibrated condition.
+    /// Returns the simulation with the optimised parameters under the calibrated condition.
     pub fn optimum(&self) -> Option<Shown<'_>> {
         let result = self.calibrated()?;
         Some(result.optimised.shown(&self.case, result.condition))
     }
 
-    /// What was simulated, condition by condition, with the name of the parameters.
+    /// Returns all simulations, condition by condition, with the name of the parameter set.
     pub fn shown(&self) -> Vec<(&'static str, Shown<'_>)> {
         let both = self.conditions.iter().flat_map(|result| {
             let runs = [
@@ -199,8 +200,8 @@ impl Calibration {
         both.collect()
     }
 
-    /// How a parameter set ended under the conditions that were calibrated, and the sum of what it came to there;
-    /// none where one of them has no result.
+    /// Returns the verdict of a parameter set under the calibrated conditions, and its objective summed over
+    /// them; `None` if one of the conditions has no result.
     pub fn objective(&self, of: impl Fn(&ConditionResult) -> &Run) -> Option<(Verdict, f64)> {
         let mut whole = (Verdict::Complete, 0.0);
         for condition in self.case.objective.conditions() {
@@ -215,7 +216,7 @@ impl Calibration {
         Some(whole)
     }
 
-    /// The result under the condition that was calibrated, the first one of several.
+    /// Returns the result under the calibrated condition, the first if there are several.
     pub fn calibrated(&self) -> Option<&ConditionResult> {
         self.conditions
             .iter()
@@ -223,31 +224,32 @@ impl Calibration {
     }
 }
 
-/// One simulation, to be shown by itself.
+/// Single simulation, reported by itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SingleRun {
-    /// The case that was simulated.
+    /// Simulated case.
     pub case: Case,
-    /// How it was made.
+    /// Provenance of the simulation.
     pub origin: Origin,
     /// Index of the condition in the case.
     pub condition: usize,
-    /// Where the genes came from, as `recommended` or a file name.
+    /// Source of the genes: `recommended` or a file name.
     pub genes_name: String,
     /// Gene values in declared units, in the case's order.
     pub genes: Vec<f64>,
-    /// Agreement with the record, where it was scored.
+    /// Agreement with the record, if evaluated.
     pub evaluation: Option<Evaluation>,
-    /// The curves.
+    /// Curves, up to a failure.
     pub curves: Curves,
-    /// What they were differentiated by, in the order of their columns.
+    /// Names of the unknowns with respect to which the curves were differentiated, in the order of the
+    /// columns.
     pub derived: Vec<String>,
     /// Further notes and warnings, one sentence each.
     pub notes: Vec<String>,
 }
 
 impl SingleRun {
-    /// What was simulated.
+    /// Returns the simulation with its case and condition.
     pub const fn shown(&self) -> Shown<'_> {
         Shown {
             case: &self.case,

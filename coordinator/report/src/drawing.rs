@@ -1,38 +1,39 @@
-//! What one kind of model shows in a report beside what all of them show.
+//! Report content specific to a kind of model, in addition to the general content.
 use super::data::{Shown, SingleRun};
 use super::document::{Figure, Section, Table};
 use super::folder::ReportError;
 use protocol::case::{Case, Unknown};
 use std::path::{Path, PathBuf};
 
-/// A kind of model as reports show it.
+/// Figures, tables, sections and files of a report that depend on the kind of model.
 pub trait Drawing: Sync {
-    /// Its channels, drawn from all that was simulated.
+    /// Returns the figures of the channels, with all simulations that are shown.
     fn channels(&self, of: &Shown<'_>) -> Vec<Figure>;
 
-    /// Curves of what no channel holds.
+    /// Returns figures of curves that are not channels.
     fn figures(&self, of: &Shown<'_>) -> Vec<Figure>;
 
-    /// Sections of its own, from a simulation if there is one, with the parameters that it is named
-    /// after.
+    /// Returns additional sections, from a simulation if there is one; `whose` names the parameters that it
+    /// was run with.
     fn sections(&self, whose: &str, of: Option<&Shown<'_>>) -> Vec<Section>;
 
-    /// Where its abscissas begin, behind their name; empty where that needs no words.
+    /// Returns the description of the abscissas' origin, appended to their name; empty where none is needed.
     fn zero(&self) -> &'static str;
 
-    /// The group of a table that an unknown stands in; parameters of effects have their own.
+    /// Returns the table group of an unknown; parameters of effects have a group of their own.
     fn group(&self, unknown: &Unknown) -> &'static str;
 
-    /// One simulation in numbers: first the ranges of its curves, then everything else.
+    /// Returns the tables of one simulation: first the ranges of its curves, then all other numbers.
     fn tables(&self, run: &SingleRun) -> Vec<Table>;
 
-    /// Writes the numbers behind the figures of named simulations. Returns the paths.
+    /// Writes the data behind the figures of named simulations. Returns the paths.
     ///
     /// # Errors
     /// [`ReportError`] when a file cannot be written.
     fn files(&self, folder: &Path, runs: &[(&str, Shown<'_>)])
     -> Result<Vec<PathBuf>, ReportError>;
 
-    /// How often a second what is periodic repeats under a condition \[Hz\].
+    /// Returns the repetition frequency of a periodic process under a condition \[Hz\]; `None` where nothing
+    /// is periodic.
     fn frequency_hz(&self, case: &Case, condition: usize) -> Option<f64>;
 }

@@ -1,9 +1,9 @@
-//! What ended a simulation, in words: one line for each kind of model that has words.
+//! Descriptions of why a simulation failed: one line for each kind of model that provides some.
 use protocol::{job::Word, pumping_unit::failure};
 
 const ALL: &[&[(Word, &str)]] = &[&failure::ALL];
 
-/// What ended a simulation, in words of the kind that knows it.
+/// Returns the description of a failure code, from the kind of model that defines it.
 pub(crate) fn failure(word: Word) -> Option<&'static str> {
     let mut known = ALL.iter().copied().flatten();
     known.find(|(own, _)| *own == word).map(|(_, words)| *words)

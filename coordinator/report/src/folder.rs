@@ -1,34 +1,33 @@
-//! A report as a folder of files: `report.html`, `tables.txt`, `figures/*.svg`, and data as CSV.
+//! Output folder of a report: `report.html`, `tables.txt`, `figures/*.svg`, and data as CSV.
 use super::document::{Report, page, text};
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 use support::atomic_file::{Draft, replace};
 
-/// A report could not be written.
+/// Error when a report cannot be written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {
-    /// A file of the report could not be written.
+    /// Text, page or figure file that could not be written.
     #[error("cannot write {path}: {source}", path = path.display())]
     Write {
-        /// The file or folder.
+        /// Path of the file or folder.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// A table of numbers could not be written.
+    /// CSV file that could not be written.
     #[error("cannot write {path}: {source}", path = path.display())]
     Csv {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the writer says.
+        /// Error of the CSV writer.
         source: ::csv::Error,
     },
 }
 
-/// Writes page, text and figures into a folder, which is made if it does not exist. Returns the paths,
-/// the HTML first.
+/// Writes page, text and figures into a folder, creating it if needed. Returns the paths, the HTML first.
 ///
 /// # Errors
 /// [`ReportError::Write`] when a file cannot be written.
@@ -44,17 +43,17 @@ pub(super) fn write_report(folder: &Path, report: &Report) -> Result<Vec<PathBuf
     Ok(written)
 }
 
-/// Name of the file of a figure: nothing but letters, digits, `-` and `_` before the dot.
+/// Returns the file name of a figure; characters other than ASCII letters, digits and `-` become `_`.
 pub fn svg_name(figure: &str) -> String {
     let keep = |c: char| c.is_ascii_alphanumeric() || c == '-';
     let stem = figure.chars().map(|c| if keep(c) { c } else { '_' });
     format!("{}.svg", stem.collect::<String>())
 }
 
-/// Writes one file of text, whole or not at all.
+/// Writes a text file atomically, creating the folder if needed.
 ///
 /// # Errors
-/// [`ReportError::Write`] when it cannot be written.
+/// [`ReportError::Write`] when the file cannot be written.
 pub fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, ReportError> {
     let path = folder.join(name);
     let result = fs::create_dir_all(folder).and_then(|()| replace(&path, text.as_bytes()));
@@ -64,10 +63,10 @@ pub fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, ReportErr
     }
 }
 
-/// Writes one file of numbers, whole or not at all.
+/// Writes a CSV file atomically.
 ///
 /// # Errors
-/// [`ReportError`] when it cannot be written.
+/// [`ReportError`] when the file cannot be written.
 pub fn stream(
     folder: &Path,
     name: &str,

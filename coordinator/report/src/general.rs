@@ -1,4 +1,4 @@
-//! What reports show of any model: its channels.
+//! Report content for models of any kind: the channels.
 use super::data::{Shown, SingleRun};
 use super::document::{Figure, Section, Table};
 use super::drawing::Drawing;
@@ -8,7 +8,7 @@ use super::{chart, csv};
 use protocol::case::{Case, Unknown};
 use std::path::{Path, PathBuf};
 
-/// A model of which no more is known.
+/// Model of a kind without specific report content.
 pub struct General;
 
 impl Drawing for General {

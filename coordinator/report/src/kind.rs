@@ -1,4 +1,4 @@
-//! The kinds of models that show more in reports than all of them do: one line each.
+//! Registry of the kinds of model with specific report content: one line each.
 use crate::{
     chart::Axis, command_files::Files, drawing::Drawing, general::General, pumping_unit::Dhh,
 };
@@ -10,7 +10,7 @@ use protocol::{
 
 const ALL: &[(&str, &dyn Drawing)] = &[(Machine::KIND, &Dhh), (external::KIND, &Files)];
 
-/// How results of a case are shown.
+/// Returns the report content of a case's kind of model; the general content if the kind has none.
 pub fn of(case: &Case) -> &'static dyn Drawing {
     let name = case::kind::family(&case.model.kind);
     let mut all = ALL.iter();
@@ -18,7 +18,7 @@ pub fn of(case: &Case) -> &'static dyn Drawing {
         .map_or(&General, |(_, drawing)| *drawing)
 }
 
-/// The axis of a channel of a case.
+/// Returns the axis for an abscissa of a case.
 pub(super) fn axis(case: &Case, abscissa: &Abscissa) -> Axis {
     Axis::of(abscissa, of(case).zero())
 }

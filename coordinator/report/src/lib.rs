@@ -1,13 +1,14 @@
-//! What people see of a finished run: tables, figures, an HTML report and the data behind it.
+//! Reports of finished runs: tables, figures, HTML pages and the data behind them.
 //!
-//! Takes plain data ([`Calibration`], [`SingleRun`], [`diagnosis::Subject`], [`identification::Subject`]) and returns text, or
-//! writes a folder of files. The same data give the same bytes: nothing here reads a clock, a journal
+//! Takes plain data ([`Calibration`], [`SingleRun`], [`diagnosis::Subject`], [`identification::Subject`]) and
+//! returns text, or writes a folder of files. Output is deterministic: nothing here reads a clock, a journal
 //! or the network.
 //!
-//! From below upwards: `number`, `color` and `words` say one thing each; `document` is what every report
-//! is made of, and its forms; `table` and `chart` have what several topics share, and `drawing` is what a kind of model
-//! fills in, those of `kind`, else `general`; `section` has a file for each topic, with its tables and figures;
-//! `folder` and `write` make files of it.
+//! Layers from bottom to top: `number`, `color` and `words` format single values; `document` is the document
+//! model and its output formats; `table` and `chart` hold what several topics share; `drawing` is the trait
+//! for content specific to a kind of model, implemented in the modules registered in `kind`, else by
+//! `general`; `section` has a file for each topic, with its tables and figures; `folder` and `write` write
+//! the files.
 pub mod chart;
 pub mod color;
 mod command_files;

@@ -1,14 +1,14 @@
-//! Numbers as an engineer writes them, the same in terminals, HTML and figures.
+//! Number formatting shared by terminal, HTML and figures.
 //!
-//! Plain text only: powers of ten use Unicode superscripts, the minus is a real minus sign.
+//! Plain text only: powers of ten use Unicode superscripts, and the minus is U+2212.
 
-/// What stands where there is no value.
+/// Placeholder for a missing value.
 pub const NONE: &str = "–";
 
-/// Keeps a number and its unit or power on one line.
+/// No-break space that keeps a number and its unit or power on one line.
 const NO_BREAK: char = '\u{a0}';
 
-/// Decimal exponent of a finite, non-zero value.
+/// Returns the decimal exponent of a finite, non-zero value after rounding to three digits.
 fn exponent(value: f64) -> i32 {
     // formatting rounds as the printed digits will be, which log10().floor() does not
     let text = format!("{:.2e}", value.abs());
@@ -17,7 +17,7 @@ fn exponent(value: f64) -> i32 {
         .unwrap_or(0)
 }
 
-/// An integer as Unicode superscript.
+/// Formats an integer as Unicode superscript.
 pub fn superscript(value: i32) -> String {
     value
         .to_string()
@@ -44,7 +44,7 @@ fn signed(text: &str) -> String {
         .map_or_else(|| text.to_owned(), |rest| format!("−{rest}"))
 }
 
-/// Three significant digits; powers of ten outside 0.01 to 100 000.
+/// Formats a value with three significant digits; as a power of ten outside 0.01 to 100 000.
 pub fn figure(value: f64) -> String {
     if !value.is_finite() {
         return NONE.to_owned();
@@ -65,7 +65,7 @@ pub fn figure(value: f64) -> String {
     fixed(value, decimals)
 }
 
-/// Without decimals where it has none, else three significant digits.
+/// Formats a whole number without decimals, any other with three significant digits.
 pub fn plain(value: f64) -> String {
     if (value - value.round()).abs() < 1e-9 {
         fixed(value, 0)
@@ -74,7 +74,7 @@ pub fn plain(value: f64) -> String {
     }
 }
 
-/// A fixed number of decimals.
+/// Formats a value with a fixed number of decimals.
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return NONE.to_owned();
@@ -89,7 +89,7 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     signed(&text)
 }
 
-/// A share of 1 as per cent.
+/// Formats a share of 1 as a percentage.
 pub fn percent(share: f64) -> String {
     if !share.is_finite() {
         return NONE.to_owned();
@@ -98,7 +98,7 @@ pub fn percent(share: f64) -> String {
     format!("{}{NO_BREAK}%", fixed(100.0 * share, decimals))
 }
 
-/// How many times, with the direction in the sign of the exponent: `2.49 ×`.
+/// Formats the quotient `of / to` as a multiple: `2.49 ×`.
 pub fn ratio(of: f64, to: f64) -> String {
     let ratio = of / to;
     if ratio.is_finite() {
@@ -108,7 +108,7 @@ pub fn ratio(of: f64, to: f64) -> String {
     }
 }
 
-/// A unit as print sets it, from how files write it: `kg.m2` as `kg·m²`, `N/m^1.5` as `N/m¹·⁵`.
+/// Typesets a unit written as in files: `kg.m2` becomes `kg·m²`, `N/m^1.5` becomes `N/m¹·⁵`.
 pub fn unit(symbol: &str) -> String {
     let mut set = String::with_capacity(symbol.len() + 4);
     let mut raised = false;
@@ -127,7 +127,7 @@ pub fn unit(symbol: &str) -> String {
     set
 }
 
-/// The square of a unit as print sets it; nothing where there is no unit.
+/// Typesets the square of a unit; empty where there is no unit.
 pub fn squared(symbol: Option<&str>) -> String {
     match symbol {
         None | Some("" | "1") => String::new(),
@@ -136,7 +136,7 @@ pub fn squared(symbol: Option<&str>) -> String {
     }
 }
 
-/// A value with its unit; the unit `1` is not written.
+/// Formats a value with its unit; the unit `1` is not written.
 pub fn quantity(value: f64, symbol: &str) -> String {
     match symbol {
         _ if !value.is_finite() => NONE.to_owned(),
@@ -145,7 +145,7 @@ pub fn quantity(value: f64, symbol: &str) -> String {
     }
 }
 
-/// A whole number with thin spaces between thousands.
+/// Formats a whole number with thin spaces between thousands.
 pub fn count(value: u64) -> String {
     let digits = value.to_string();
     let mut grouped = String::with_capacity(digits.len() + digits.len() / 3);
@@ -158,7 +158,7 @@ pub fn count(value: u64) -> String {
     grouped
 }
 
-/// A duration in the unit that suits it.
+/// Formats a duration given in seconds in a suitable unit (µs to h).
 pub fn duration(seconds: f64) -> String {
     if !seconds.is_finite() || seconds < 0.0 {
         NONE.to_owned()
@@ -177,7 +177,7 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// Smallest and largest finite value.
+/// Returns the smallest and largest finite value; `None` if there is none.
 pub fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
     values
         .into_iter()
@@ -188,7 +188,7 @@ pub fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
         })
 }
 
-/// A number with all its digits, as a table of numbers has it; empty if it is none.
+/// Formats a number with full precision for a CSV field; empty if missing or not finite.
 pub fn field(value: Option<f64>) -> String {
     value
         .filter(|value| value.is_finite())
@@ -211,7 +211,8 @@ mod tests {
         assert_eq!(figure(f64::NAN), "–");
     }
 
-    /// A diagnosis on a fast model said `7.11 x 10^-7 s`.
+    /// Checks that durations are formatted in a suitable unit; a diagnosis on a fast model once printed `7.11
+    /// x 10^-7 s`.
     #[test]
     fn a_time_has_the_unit_that_suits_it() {
         for (seconds, said) in [

@@ -1,4 +1,4 @@
-//! What commands write: reports of calibrations and simulations with the data behind them.
+//! Assembly and output of calibration and simulation reports with their data.
 use super::csv;
 use super::data::{Calibration, SingleRun};
 use super::document::{Report, Table, section_text};
@@ -6,35 +6,35 @@ use super::folder::{ReportError, stream, write_report};
 use super::{kind, section, table, words};
 use std::path::{Path, PathBuf};
 
-/// The report of a calibration.
+/// Builds the report of a calibration.
 pub fn calibration(calibration: &Calibration) -> Report {
     let title = format!("Calibration of {}", calibration.case.name);
     let sections = section::calibration(calibration);
     Report::new(title, &calibration.origin.run, sections)
 }
 
-/// Parameters and errors of a calibration, for a terminal.
+/// Renders the tables of parameters and errors of a calibration for a terminal.
 pub fn parameters(calibration: &Calibration, styled: bool) -> String {
     section_text(&section::parameters(calibration), styled)
 }
 
-/// What a calibration leaves that is no noise, in words; none where it leaves noise.
+/// Describes a calibration's residual above the noise; `None` where the residual is at noise level.
 pub fn structure(calibration: &Calibration) -> Option<String> {
     words::structure(calibration)
 }
 
-/// The report of one simulation.
+/// Builds the report of one simulation.
 pub fn simulation(run: &SingleRun) -> Report {
     let title = format!("Simulation of {}", run.case.name);
     Report::new(title, &run.origin.run, section::simulation(run))
 }
 
-/// The ranges of a simulation's curves.
+/// Returns the table of the ranges of a simulation's curves.
 pub fn ranges(run: &SingleRun) -> Option<Table> {
     kind::of(&run.case).tables(run).into_iter().next()
 }
 
-/// Agreement of one simulation with its record, where there is one.
+/// Builds the table of a simulation's agreement with its record, if there is one.
 pub fn agreement(run: &SingleRun) -> Option<Table> {
     let mut rows = table::agreement(run);
     // its heading is the title here
@@ -42,8 +42,8 @@ pub fn agreement(run: &SingleRun) -> Option<Table> {
     Some(table::sums("Against the record", rows))
 }
 
-/// Writes the report of a calibration into a folder, which is made if it does not exist:
-/// `report.html`, `tables.txt`, `figures/*.svg` and the numbers of its kind of model. Returns the paths, the HTML first.
+/// Writes the report of a calibration into a folder, creating it if needed: `report.html`, `tables.txt`,
+/// `figures/*.svg` and the data files of its kind of model. Returns the paths, the HTML first.
 ///
 /// # Errors
 /// [`ReportError`] when a file cannot be written.
@@ -53,9 +53,9 @@ pub fn write_calibration(folder: &Path, of: &Calibration) -> Result<Vec<PathBuf>
     Ok(written)
 }
 
-/// Writes the report of one simulation into a folder, which is made if it does not exist:
-/// `report.html`, `tables.txt`, `figures/*.svg` and the numbers of its kind of model. Returns the paths, the
-/// HTML first.
+/// Writes the report of one simulation into a folder, creating it if needed: `report.html`, `tables.txt`,
+/// `figures/*.svg`, the data files of its kind of model and, if requested, the derivatives. Returns the
+/// paths, the HTML first.
 ///
 /// # Errors
 /// [`ReportError`] when a file cannot be written.

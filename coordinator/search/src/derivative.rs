@@ -1,24 +1,24 @@
-//! The chain rule between what a simulation is differentiated by and what a search moves.
+//! Chain rule from the derivatives that workers compute to derivatives with respect to search coordinates.
 //!
-//! A worker differentiates by an unknown of the case, or by a parameter of an effect, per decade or per
-//! unit; a search counts coordinates. What is tied to an unknown changes with it.
+//! A worker differentiates with respect to an unknown of the case or a parameter of an effect, per decade or
+//! per unit; a search varies coordinates. Unknowns tied to another one vary with it.
 use crate::space::Space;
 use protocol::job::{Column, Derivative, Per};
 use std::f64::consts::LN_10;
 
-/// A column, and how much of it there is in the change by a coordinate.
+/// Contribution of one derivative column to the derivative with respect to a coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
-    /// What is varied.
+    /// Unknown or effect parameter that the worker differentiates by.
     pub column: Column,
-    /// Its value [declared unit].
+    /// Current value of that unknown or parameter [declared unit].
     pub value: f64,
-    /// How fast that grows with the coordinate.
+    /// Derivative of the value with respect to the coordinate.
     pub rate: f64,
 }
 
 impl Term {
-    /// What a derivative per so much is multiplied by.
+    /// Returns the factor that converts a worker's derivative, per decade or per unit, to the coordinate.
     pub fn factor(&self, per: &Per) -> f64 {
         match per {
             Per::Decade => self.rate / (self.value * LN_10),
@@ -26,8 +26,8 @@ impl Term {
         }
     }
 
-    /// Adds its part to a change of a curve, which is the one of this place among the derivative's; nothing
-    /// where that is not known.
+    /// Adds the contribution of this term to the derivative `sum` of the curve with index `place`, restricted
+    /// to `rows` if given; returns `None` if the derivative is missing or its length does not match.
     pub fn add(
         &self,
         by: &Derivative,
@@ -54,7 +54,8 @@ impl Term {
     }
 }
 
-/// The terms of a change by an axis of a space at a point, where the unknowns have these values.
+/// Returns the terms of the derivative with respect to an axis of a space at the point `x`, where the
+/// unknowns have the given `values`.
 pub fn terms(space: &Space, axis: usize, x: &[f64], values: &[f64]) -> Vec<Term> {
     let moved = space.rates(axis, x[axis]);
     let term = |(position, name, rate): (usize, &str, f64)| Term {
@@ -70,8 +71,8 @@ mod tests {
     use super::*;
     use protocol::case::{Scale, Tie, Unknown};
 
-    /// With derivatives of a function by its unknowns, per decade or per unit, terms make those by the
-    /// coordinates.
+    /// Checks that the terms convert derivatives per decade and per unit into those by coordinates, against
+    /// finite differences.
     #[test]
     fn terms_make_derivatives_by_coordinates() {
         let mut unknowns = [

@@ -1,22 +1,22 @@
-//! Keyed random numbers: every draw has an address, and no generator is shared.
+//! Keyed random numbers: every draw has an address (its key), and no generator is shared.
 //!
-//! A stream is `ChaCha8` with the key (run seed, scope, generation, phase, index). Two draws with
-//! different addresses are independent, whatever was drawn before, so evaluating trials ahead of
-//! time or out of order cannot change a single bit. Conversions to reals and indices are written
-//! here, because those of libraries may change between versions.
+//! A stream is `ChaCha8` with the key (run seed, scope, generation, phase, index). Draws with different
+//! addresses are independent of each other and of earlier draws, so evaluating trials ahead of time or out of
+//! order cannot change a single bit. Conversions to reals and indices are written here, because those of
+//! libraries may change between versions.
 use rand_chacha::{
     ChaCha8Rng,
     rand_core::{Rng, SeedableRng},
 };
 
-/// The purpose a number is drawn for; part of its address.
+/// Purpose of a random draw; part of its address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// Initial population or design.
     Initial,
     /// Roulette draws of a generation.
     Selection,
-    /// Crossover of a pair.
+    /// Crossover of a pair of parents.
     Crossover,
     /// Mutation of a child.
     Mutation,
@@ -26,11 +26,11 @@ pub enum Phase {
     MutationTrial,
     /// One step of a local refinement.
     Refinement,
-    /// Noise or a resample of cycles that a statistic is held against.
+    /// Noise, or a resample of cycles, for the reference distribution of a test statistic.
     Resample,
 }
 
-/// All streams of one part of a run.
+/// Factory of the random streams of one part of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Streams {
     seed: u64,
@@ -38,12 +38,12 @@ pub struct Streams {
 }
 
 impl Streams {
-    /// Streams of a run; `scope` tells the parts of a composed strategy apart.
+    /// Creates the streams of a run; `scope` distinguishes the parts of a composed strategy.
     pub const fn new(seed: u64, scope: u32) -> Self {
         Self { seed, scope }
     }
 
-    /// The stream at an address.
+    /// Returns the stream at an address.
     pub fn at(&self, generation: u32, phase: Phase, index: usize) -> Stream {
         let mut key = [0_u8; 32];
         let address = self
@@ -61,39 +61,39 @@ impl Streams {
     }
 }
 
-/// Random numbers of one address.
+/// Random number stream at one address.
 #[derive(Clone, Debug)]
 pub struct Stream(ChaCha8Rng);
 
 impl Stream {
-    /// Uniform in [0, 1), a multiple of 2^-53.
+    /// Draws a uniform number in [0, 1), a multiple of 2^-53.
     pub fn unit(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// True with probability `p`; always draws.
+    /// Returns true with probability `p`; always draws.
     pub fn chance(&mut self, p: f64) -> bool {
         self.unit() < p
     }
 
-    /// Uniform in 0..`len`, or 0 for an empty range; the bias is below `len` / 2^64.
+    /// Draws a uniform index in 0..`len`, or 0 for an empty range; the bias is below `len` / 2^64.
     pub fn index(&mut self, len: usize) -> usize {
         let wide = (u128::from(self.0.next_u64()) * len as u128) >> 64;
         usize::try_from(wide).unwrap_or(0)
     }
 
-    /// 64 random bits.
+    /// Draws 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.0.next_u64()
     }
 
-    /// Standard normal, by Box and Muller's formula.
+    /// Draws a standard normal number by the Box-Muller transform.
     pub fn normal(&mut self) -> f64 {
         let radius = libm::sqrt(-2.0 * libm::log(1.0 - self.unit()));
         radius * libm::cos(std::f64::consts::TAU * self.unit())
     }
 
-    /// Puts items into random order.
+    /// Shuffles items into random order (Fisher-Yates).
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for last in (1..items.len()).rev() {
             items.swap(last, self.index(last + 1));

@@ -1,46 +1,48 @@
-//! The box of the unknowns that a search moves.
+//! Search space: the box of the unknowns that a search varies.
 //!
 //! A point is given by a *coordinate* per axis, 0 at the start. On a logarithmic axis it counts decades,
-//! `value = start * 10^x`; on a linear one, halves of the interval to search,
-//! `value = start + x * (upper - lower) / 2`, so that such an axis is about as long as the part of a
-//! logarithmic one that matters, and the same steps suit both.
+//! `value = start * 10^x`; on a linear one, halves of the interval to search, `value = start + x * (upper -
+//! lower) / 2`, so that a linear axis is about as long as the relevant part of a logarithmic one, and equal
+//! steps suit both.
 //!
-//! Values are those of *all* unknowns of the case, in its order: what is fixed, switched off or tied has
-//! no axis, and gets its value here and nowhere else. Nothing here knows what an unknown means.
+//! Values are those of *all* unknowns of the case, in its order: an unknown that is fixed, switched off or
+//! tied has no axis, and gets its value only here. This module does not know the meaning of an unknown.
 use protocol::case::{BadUnknown, Scale, Unknown, check_unknowns};
 
-/// Unknowns that cannot be searched.
+/// Reason why a search space cannot be built from the unknowns.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpaceError {
     /// The space has no axis.
     #[error("there is no unknown to search: each is fixed, tied or switched off")]
     Empty,
-    /// One of them is stated in a way that makes no sense.
+    /// An unknown has an invalid definition.
     #[error(transparent)]
     Unknown(#[from] BadUnknown),
-    /// A search is to start from more or fewer values than there are unknowns.
+    /// The number of starting values differs from the number of unknowns.
     #[error("the start has {found} values, but there are {expected} unknowns")]
     Length {
-        /// How many values there are.
+        /// Number of values given.
         found: usize,
-        /// How many unknowns.
+        /// Number of unknowns.
         expected: usize,
     },
 }
 
-/// One unknown that is searched: its interval, and the part of it in which models usually survive.
+/// Axis of the search space: a searched unknown, and the part of its interval in which simulations usually
+/// succeed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// The unknown, at coordinate 0 where it starts.
+    /// Searched unknown; its start value has coordinate 0.
     pub unknown: Unknown,
-    /// Its position among all unknowns.
+    /// Position of the unknown among all unknowns of the case.
     pub position: usize,
-    /// Trust interval about the start, inside the bounds (coordinate).
+    /// Trust interval about the start, inside the bounds (coordinate): the part in which simulations usually
+    /// succeed.
     pub trust: Interval,
 }
 
-/// A closed interval of coordinates.
+/// Closed interval of coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Interval {
     /// Lower end (coordinate).
@@ -50,17 +52,17 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Length (coordinate).
+    /// Returns the length of the interval (coordinate).
     pub fn length(self) -> f64 {
         self.to - self.from
     }
 
-    /// The nearest point inside.
+    /// Returns the coordinate nearest to `x` inside the interval.
     pub fn clamp(self, x: f64) -> f64 {
         x.max(self.from).min(self.to)
     }
 
-    /// The part that lies in both; a point if they do not meet.
+    /// Returns the intersection with `other`; a single point if the intervals are disjoint.
     #[must_use]
     pub fn within(self, other: Self) -> Self {
         let from = other.clamp(self.from);
@@ -83,7 +85,7 @@ impl Axis {
         axis
     }
 
-    /// The whole interval (coordinate).
+    /// Returns the whole interval between the bounds (coordinate).
     pub fn interval(&self) -> Interval {
         Interval {
             from: self.coordinate(self.unknown.lower),
@@ -91,7 +93,7 @@ impl Axis {
         }
     }
 
-    /// The value at a coordinate, never outside the bounds.
+    /// Returns the value at a coordinate, clamped to the bounds.
     pub fn value(&self, x: f64) -> f64 {
         let value = match self.unknown.scale {
             Scale::Logarithmic => self.unknown.start * libm::exp10(x),
@@ -100,7 +102,7 @@ impl Axis {
         value.clamp(self.unknown.lower, self.unknown.upper)
     }
 
-    /// How fast the value grows with the coordinate, inside the bounds [declared unit].
+    /// Returns the derivative of the value with respect to the coordinate, inside the bounds [declared unit].
     fn rate(&self, x: f64) -> f64 {
         match self.unknown.scale {
             Scale::Logarithmic => std::f64::consts::LN_10 * self.value(x),
@@ -108,7 +110,7 @@ impl Axis {
         }
     }
 
-    /// The coordinate of a value.
+    /// Returns the coordinate of a value.
     pub fn coordinate(&self, value: f64) -> f64 {
         match self.unknown.scale {
             Scale::Logarithmic => libm::log10(value / self.unknown.start),
@@ -116,38 +118,38 @@ impl Axis {
         }
     }
 
-    /// Half of the interval: the unit of a linear axis [declared unit].
+    /// Returns half the length of the interval, the unit of a linear axis [declared unit].
     fn half(&self) -> f64 {
         0.5 * (self.unknown.upper - self.unknown.lower)
     }
 }
 
-/// The box of the unknowns that are searched; at least one.
+/// Search space: the box of the searched unknowns, at least one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Space {
     axes: Vec<Axis>,
-    /// What gives each unknown its value, in the case's order.
+    /// Source of each unknown's value, in the order of the case.
     givers: Vec<Giver>,
-    /// Their names.
+    /// Names of all unknowns, in the order of the case.
     names: Vec<String>,
-    /// Where a search is to look first (coordinate), the best first.
+    /// Starting points of the search (coordinate), best first.
     starts: Vec<Vec<f64>>,
 }
 
-/// What gives an unknown its value.
+/// Source of an unknown's value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Giver {
-    /// Nothing moves it.
+    /// Constant value of an unknown without an axis.
     Held(f64),
-    /// An axis, times a ratio: 1 for its own.
+    /// Index of an axis and the ratio to its value; the ratio is 1 for the axis' own unknown.
     Axis(usize, f64),
 }
 
 impl Space {
-    /// The space of a case's unknowns.
+    /// Creates the search space of a case's unknowns.
     ///
     /// # Errors
-    /// If one is stated in a way that makes no sense, or none is to be searched.
+    /// If an unknown has an invalid definition, or no unknown is to be searched.
     pub fn new(unknowns: &[Unknown]) -> Result<Self, SpaceError> {
         check_unknowns(unknowns)?;
         let mut axes: Vec<Axis> = Vec::new();
@@ -176,12 +178,12 @@ impl Space {
         })
     }
 
-    /// The space of a case's unknowns about other values than those that it states [declared units],
-    /// one per unknown.
+    /// Creates the search space of a case's unknowns with `start` in place of the case's starting values
+    /// [declared units], one per unknown.
     ///
     /// # Errors
-    /// As [`Space::new`]; if a value lies outside its unknown's bounds. That of a tied one is not
-    /// looked at.
+    /// As [`Space::new`]; if a value lies outside its unknown's bounds. The value of a tied unknown is
+    /// ignored.
     pub fn about(unknowns: &[Unknown], start: &[f64]) -> Result<Self, SpaceError> {
         if unknowns.len() != start.len() {
             return Err(SpaceError::Length {
@@ -200,7 +202,7 @@ impl Space {
         Self::new(&moved.collect::<Vec<_>>())
     }
 
-    /// The same space, to be searched from these individuals: values of all unknowns [declared units], the
+    /// Returns the space with starting points at these individuals: values of all unknowns [declared units],
     /// best first.
     #[must_use]
     pub fn beginning_at(self, individuals: &[Vec<f64>]) -> Self {
@@ -211,40 +213,41 @@ impl Space {
         Self { starts, ..self }
     }
 
-    /// What a first population holds in its first places (coordinate), the best first.
+    /// Returns the points that open an initial population (coordinate), best first.
     pub fn starts(&self) -> &[Vec<f64>] {
         &self.starts
     }
 
-    /// Where a search of one point begins (coordinate): at the best start, or at the case's.
+    /// Returns the start of a single-point search (coordinate): the best starting point, or the start of the
+    /// case.
     pub fn origin(&self) -> Vec<f64> {
         let best = self.starts.first().cloned();
         best.unwrap_or_else(|| vec![0.0; self.dimension()])
     }
 
-    /// The unknowns that are searched.
+    /// Returns the axes, one per searched unknown.
     pub fn axes(&self) -> &[Axis] {
         &self.axes
     }
 
-    /// Position of the axis of an unknown; none if that is not searched.
+    /// Returns the position of an unknown's axis; `None` if the unknown is not searched.
     pub fn position(&self, name: &str) -> Option<usize> {
         self.axes.iter().position(|axis| axis.unknown.name == name)
     }
 
-    /// Number of axes.
+    /// Returns the number of axes.
     pub fn dimension(&self) -> usize {
         self.axes.len()
     }
 
-    /// Values of all unknowns [declared units] at a point, which has one coordinate per axis.
+    /// Returns the values of all unknowns [declared units] at a point, which has one coordinate per axis.
     pub fn values(&self, point: &[f64]) -> Vec<f64> {
         let axes = self.axes.iter().zip(point);
         let own: Vec<f64> = axes.map(|(axis, &x)| axis.value(x)).collect();
         self.expand(&own)
     }
 
-    /// Values of all unknowns where those that are searched have these [declared units].
+    /// Returns the values of all unknowns, given those of the searched unknowns [declared units].
     pub fn expand(&self, own: &[f64]) -> Vec<f64> {
         let value = |giver: &Giver| match *giver {
             Giver::Held(value) => value,
@@ -253,8 +256,8 @@ impl Space {
         self.givers.iter().map(value).collect()
     }
 
-    /// The unknowns that an axis moves: their positions, their names, and how fast each of their values
-    /// grows with its coordinate `x` [declared unit].
+    /// Returns the unknowns that an axis moves: their positions, their names, and the derivative of each
+    /// value with respect to the axis' coordinate at `x` [declared unit].
     pub fn rates(&self, axis: usize, x: f64) -> impl Iterator<Item = (usize, &str, f64)> {
         let own = self.axes[axis].rate(x);
         let givers = self.givers.iter().zip(&self.names).enumerate();
@@ -264,7 +267,7 @@ impl Space {
         })
     }
 
-    /// The point of values of all unknowns [declared units].
+    /// Returns the point (coordinates) for the values of all unknowns [declared units].
     pub fn point(&self, values: &[f64]) -> Vec<f64> {
         let axes = self.axes.iter();
         axes.map(|axis| axis.coordinate(values[axis.position]))
@@ -272,8 +275,8 @@ impl Space {
     }
 }
 
-/// The unknown that one follows by way of its ties, itself where it has none, and the ratio to it. The
-/// ties have been checked: they end.
+/// Returns the unknown at the end of a chain of ties, the unknown itself without a tie, and the ratio to it.
+/// Requires checked ties: a cycle would not terminate.
 fn leader(unknowns: &[Unknown], position: usize) -> (usize, f64) {
     let (mut at, mut ratio) = (position, 1.0);
     while let Some(tie) = &unknowns[at].tie
@@ -341,7 +344,7 @@ mod tests {
         assert_eq!(short, Err(SpaceError::Length { found, expected }));
     }
 
-    /// A value grows as its rate says, and what is tied to it with it.
+    /// Checks that the rates agree with difference quotients of the values, also for a tied unknown.
     #[test]
     fn rates_are_those_of_the_values() {
         let mut unknowns = [
@@ -373,7 +376,7 @@ mod tests {
         }
     }
 
-    /// Whatever has no axis still has a value, and the box does not know its place in the case.
+    /// Checks that fixed, tied and switched-off unknowns have values but no axis.
     #[test]
     fn only_what_moves_has_an_axis_and_all_have_values() {
         let mut unknowns = [

@@ -1,57 +1,58 @@
-//! Functions with known minima, to hold strategies to.
+//! Test functions with known minima for search strategies.
 //!
-//! Points are coordinates of the space: decades from the start, over +-4 of them. All minima are 0.
+//! Points are coordinates of the space: +-4 decades from the start. All minima are 0.
 use crate::{
     space::{Space, SpaceError},
     strategy::Told,
 };
 use protocol::case::{Scale, Shares, Shift, Unknown, Valley};
 
-/// What a function gives: the residual vector whose squared length is the fitness, or the grade of
-/// a point that fails.
+/// Value of a test function: the residual vector whose squared norm is the fitness, or the grade of a point
+/// that fails.
 type Value = Result<Vec<f64>, f64>;
 
-/// Trust in a stiffness, in a loss, and in a stiffness in series with the first (decades).
+/// Trust interval of a stiffness (decades); [`LOSS`] is that of a loss, [`SERIES`] that of a stiffness in
+/// series with the first.
 const STIFF: [f64; 2] = [-1.0, 1.5];
 const LOSS: [f64; 2] = [-1.0, 4.0];
 const SERIES: [f64; 2] = [-0.5, 3.5];
 
-/// A function with a known minimum of 0.
+/// Test function with a known minimum of 0.
 #[derive(Clone, Copy, Debug)]
 pub struct TestFunction {
-    /// Its name.
+    /// Name of the function.
     pub name: &'static str,
-    /// Where its minimum lies (coordinate); at most 10 unknowns.
+    /// Position of the minimum (coordinate); at most 10 unknowns.
     pub optimum: &'static [f64],
     value: fn(&[f64], &[f64]) -> Value,
 }
 
-/// Every published function.
+/// All test functions.
 pub const ALL: &[TestFunction] = &[SPHERE, RASTRIGIN, CLIFF, RESONANCE];
 
-/// Sum of squares: one basin, all unknowns alike.
+/// Sum of squares: one basin of attraction, all unknowns alike.
 pub const SPHERE: TestFunction = TestFunction {
     name: "sphere",
     optimum: &[0.7, -1.3, 0.2, 1.9],
     value: sphere,
 };
 
-/// Sum of squares with a ripple of half a decade: hundreds of basins.
+/// Sum of squares with a ripple of half a decade: hundreds of basins of attraction.
 pub const RASTRIGIN: TestFunction = TestFunction {
     name: "rastrigin",
     optimum: &[0.7, -1.3, 0.2, 1.9],
     value: rastrigin,
 };
 
-/// Sum of squares where everything farther than 2.5 decades from the minimum fails, with a grade.
+/// Sum of squares that fails, with a grade, at more than 2.5 decades from the minimum.
 pub const CLIFF: TestFunction = TestFunction {
     name: "cliff",
     optimum: &[0.7, -1.3, 0.2, 1.9],
     value: cliff,
 };
 
-/// Two resonators under a comb of harmonics, as of a spring under a periodic load: a valley in
-/// stiffness about 0.02 decade wide, on a plateau on which too much damping pays.
+/// Two resonators excited by many harmonics, like a spring under a periodic load: a valley in stiffness about
+/// 0.02 decade wide, on a plateau on which excessive damping lowers the fitness.
 pub const RESONANCE: TestFunction = TestFunction {
     name: "resonance",
     optimum: &[0.4, 0.26, 0.27, 0.35, 3.0, 1.03, 0.05, 0.15, 2.6, 1.31],
@@ -59,14 +60,14 @@ pub const RESONANCE: TestFunction = TestFunction {
 };
 
 impl TestFunction {
-    /// The same function with its minimum elsewhere.
+    /// Returns the same function with its minimum at another position.
     #[must_use]
     pub const fn moved(self, optimum: &'static [f64]) -> Self {
         Self { optimum, ..self }
     }
 
-    /// Its space: unknowns `x0`, `x1` and so on, +-4 decades wide. The first has a valley, which `x4` and
-    /// `x8` can hide.
+    /// Returns the function's search space: unknowns `x0`, `x1` and so on, +-4 decades wide. `x0` has a
+    /// narrow valley, which `x4` and `x8` can hide.
     ///
     /// # Panics
     /// Never: the bounds are ordered.
@@ -120,7 +121,7 @@ impl TestFunction {
         space.expect("ordered bounds about positive values")
     }
 
-    /// Its result at values of [`Self::space`].
+    /// Returns the result at values of [`Self::space`].
     pub fn tell(&self, space: &Space, genes: &[f64]) -> Told {
         match (self.value)(&space.point(genes), self.optimum) {
             Ok(residual) => Told {
@@ -134,7 +135,8 @@ impl TestFunction {
         }
     }
 
-    /// Its residual vector at values of [`Self::space`], whose squared length is the fitness; empty where it fails.
+    /// Returns the residual vector at values of [`Self::space`], whose squared norm is the fitness; empty if
+    /// the function fails at the values.
     pub fn residual(&self, space: &Space, genes: &[f64]) -> Vec<f64> {
         (self.value)(&space.point(genes), self.optimum).unwrap_or_default()
     }
@@ -168,14 +170,13 @@ fn cliff(x: &[f64], optimum: &[f64]) -> Value {
     }
 }
 
-/// The difference of two steady responses, as a mean square.
+/// Computes the residual between two steady-state responses; its squared norm is a mean square.
 ///
-/// The load excites two modes near its 60th and 80th harmonic. Their frequency follows the stiffnesses
-/// `x0` and `x8` in series, their damping the loss `x4`. The
-/// response is `H_n = 1 / (1 - r^2 + 2 i zeta r)`, `r = n / order`, and the fitness the sum over
-/// harmonics of `a_n^2 |H_n - H*_n|^2 / 2`: a valley about 0.02 decade wide in `x0`,
-/// and a plateau near 0.3 on which too much damping pays. `x3` matters a little, the other
-/// unknowns not at all; far from the start the simulation fails.
+/// The load excites two modes near its 60th and 80th harmonic. Their frequency follows the stiffnesses `x0`
+/// and `x8` in series, their damping the loss `x4`. The response is `H_n = 1 / (1 - r^2 + 2 i zeta r)`, `r =
+/// n / order`, and the fitness the sum over harmonics of `a_n^2 |H_n - H*_n|^2 / 2`: a valley about 0.02
+/// decade wide in `x0`, and a plateau near 0.3 on which excessive damping lowers the fitness. `x3` matters a
+/// little, the other unknowns not at all; far from the start the simulation fails.
 fn resonance(x: &[f64], optimum: &[f64]) -> Value {
     let limits = [
         (0, -1.2, 2.2),
@@ -208,7 +209,7 @@ fn resonance(x: &[f64], optimum: &[f64]) -> Value {
     Ok(residual)
 }
 
-/// Order [harmonics of the load] and damping ratio of both modes.
+/// Returns the order [harmonics of the load] and damping ratio of both modes.
 fn modes(x: &[f64]) -> [(f64, f64); 2] {
     let compliance = libm::exp10(0.4 - x[0]) + 0.015 * libm::exp10((2.6 - x[8]) / 1.5);
     let root = libm::sqrt(1.015 / compliance);

@@ -1,4 +1,4 @@
-//! Objects that commands print for a kind of model; the general form, for every kind, is the default of each.
+//! Output objects of the commands that depend on the kind of model; the default methods hold for every kind.
 use crate::digest::Digest;
 use discrepancy::identify::Band;
 use protocol::{
@@ -8,15 +8,15 @@ use protocol::{
 };
 use serde_json::{Map, Value, json};
 
-/// A kind of model as the coordinator knows it.
+/// Kind of model with its output formats.
 pub(crate) trait Kind: Sync {
-    /// As cases name it.
+    /// Returns the name of the kind, as in the case file.
     fn name(&self) -> &'static str;
 
-    /// Hash of all result bits: 64 hexadecimal digits. Wall time is left out.
+    /// Computes the hash of all result bits, without wall time, as 64 hexadecimal digits.
     ///
     /// # Errors
-    /// If the answer says nothing of this kind.
+    /// If the answer cannot be decoded as one of this kind.
     fn digest(&self, drawn: &Curves) -> Result<String, WireError> {
         let mut digest = Digest::of(drawn.verdict);
         for curve in &drawn.channels {
@@ -26,10 +26,10 @@ pub(crate) trait Kind: Sync {
         Ok(digest.end(drawn.verdict, &drawn.counters))
     }
 
-    /// What `simulate --output json` says of the curves.
+    /// Returns the curves as shown by `simulate --output json`.
     ///
     /// # Errors
-    /// If the answer says nothing of this kind.
+    /// If the answer cannot be decoded as one of this kind.
     fn drawn(
         &self,
         case: &Case,
@@ -53,7 +53,8 @@ pub(crate) trait Kind: Sync {
         Ok(Map::from_iter([("curves".to_owned(), curves)]))
     }
 
-    /// What `simulate --derivatives --output json` says of a derivative per `per`, channel by channel.
+    /// Returns the derivatives with respect to `per`, channel by channel, as shown by `simulate --derivatives
+    /// --output json`.
     fn derivative(
         &self,
         case: &Case,
@@ -73,8 +74,8 @@ pub(crate) trait Kind: Sync {
         Map::from_iter([("curves".to_owned(), curves)])
     }
 
-    /// What `identify --output json` says of the bands of a condition: the first channel's unit and abscissa
-    /// for all, and a channel's own where they differ.
+    /// Returns the prediction bands of a condition as shown by `identify --output json`: unit and abscissa of
+    /// the first channel for all, and those of a channel where they differ.
     fn predicted(&self, case: &Case, band: &Band) -> Map<String, Value> {
         let mut said = Map::new();
         let mut channels = case
@@ -107,13 +108,13 @@ pub(crate) trait Kind: Sync {
         said
     }
 
-    /// Key of a channel's agreement in objects, and what stands there beside it.
+    /// Returns the key of a channel's score in output objects, and further fields of that score.
     fn scored(&self, channel: &Channel, _: &ChannelScore) -> (String, Map<String, Value>) {
         (channel.name.clone(), Map::new())
     }
 }
 
-/// A kind of which no more is known.
+/// Default kind for models without formats of their own.
 pub(super) struct AnyKind;
 
 impl Kind for AnyKind {

@@ -1,5 +1,5 @@
-//! The kinds of models of which the coordinator knows more than their cases say: one line each. Every
-//! other kind is read, computed, shown and written down by the general form alone.
+//! Registry of the kinds of models with output formats of their own, one line each. Every other kind is read,
+//! computed, displayed and written in the general form.
 mod known;
 
 use known::AnyKind;
@@ -10,14 +10,14 @@ use protocol::case::Case;
 
 const ALL: &[&dyn Kind] = &[&PumpingUnits];
 
-/// The kind of a name.
+/// Returns the kind with the given name, or the default kind.
 pub(crate) fn named(name: &str) -> &'static dyn Kind {
     let name = case::kind::family(name);
     let mut all = ALL.iter().copied();
     all.find(|kind| kind.name() == name).unwrap_or(&AnyKind)
 }
 
-/// The kind that a case is of.
+/// Returns the kind of model of a case.
 pub(crate) fn of(case: &Case) -> &'static dyn Kind {
     named(&case.model.kind)
 }

@@ -1,4 +1,4 @@
-//! `horsehead head`: the flexible back head from its mesh.
+//! Command `horsehead head`: reduction of the flexible back head from its mesh.
 use super::{
     output::{self, files},
     reduce_head::reduce_head,
@@ -68,13 +68,13 @@ pub(crate) struct Arguments {
 /// Families of modes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum FamilyChoice {
-    /// Of both, those that couple most to the wrapped rope and to the beam's motion.
+    /// Modes of both families that couple most to the wrapped rope and to the beam's motion.
     Coupled,
     /// Sideways displacement changes sign across the middle.
     Symmetric,
     /// Displacement in the plane of motion changes sign.
     Antisymmetric,
-    /// The lowest of both.
+    /// Lowest modes of both families.
     Both,
 }
 
@@ -88,15 +88,17 @@ impl FamilyChoice {
     }
 }
 
-/// Most modes: beyond, a mesh of this kind no longer resolves them.
+/// Maximum number of modes; a mesh of this kind does not resolve higher ones.
 const MOST_MODES: usize = 40;
 
-/// Reduces, compares, writes.
+/// Reduces the head, compares it with the tables of the case, and writes the requested files.
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (unit, source) = load_head(&arguments.case)?;
     let PumpingUnit { case, machine } = &unit;
     if source.stale {
-        terminal::tell("note: tables of the case are missing or were computed for something else");
+        terminal::tell(
+            "note: the tables of the case are missing or were computed from other inputs (mesh, material, arc, stations or gauges); `--write` replaces them",
+        );
     }
     let modes = arguments.modes.unwrap_or(machine.run.modes);
     if !(1..=MOST_MODES).contains(&modes) {
@@ -116,7 +118,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let chosen = condition(case, arguments.condition.as_deref())?;
     let name = case.conditions[chosen].name.clone();
     let turn = quasi_static(machine, &machine.conditions[chosen])
-        .context("the crank of this case cannot turn through")?;
+        .context("the crank of this case cannot complete a revolution")?;
     let mut spec = spec(machine, &source, modes, arguments.family.families());
     if arguments.family == FamilyChoice::Coupled {
         spec.patterns = patterns(machine, &turn);
@@ -156,7 +158,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     terminal::print(arguments.output.output, tables, &object)
 }
 
-/// What is drawn of a reduced head.
+/// Collects the data for drawing the modes of a reduced head.
 fn picture<'a>(
     machine: &Machine,
     source: &'a HeadSource,
@@ -173,12 +175,12 @@ fn picture<'a>(
     }
 }
 
-/// Nodes of a mesh's surface; none of one that it lacks.
+/// Returns the nodes of a named surface of the mesh; empty if the mesh lacks it.
 fn surface<'a>(read: &'a mesh::Mesh, name: &str) -> &'a [usize] {
     read.surfaces.get(name).map_or(&[], Vec::as_slice)
 }
 
-/// The rope at its largest tension.
+/// Returns the rope wrap at the largest tension of the turn.
 fn hardest(machine: &Machine, turn: &QuasiStatic) -> RopeWrap {
     let wraps = wraps(machine, turn);
     let most = wraps.max_by(|a, b| a.tension_n.total_cmp(&b.tension_n));
@@ -189,7 +191,8 @@ fn hardest(machine: &Machine, turn: &QuasiStatic) -> RopeWrap {
     })
 }
 
-/// The rope where it covers least, half and most of the arc that it ever covers.
+/// Returns the rope wraps with the smallest, the median and the largest covered arc of the turn, used as load
+/// patterns.
 fn patterns(machine: &Machine, turn: &QuasiStatic) -> Vec<RopeWrap> {
     let mut wraps: Vec<RopeWrap> = wraps(machine, turn).collect();
     wraps.sort_by(|a, b| a.leaves_deg.total_cmp(&b.leaves_deg));
@@ -202,7 +205,7 @@ fn patterns(machine: &Machine, turn: &QuasiStatic) -> Vec<RopeWrap> {
         .collect()
 }
 
-/// The rope at every crank angle.
+/// Returns the rope wrap at every crank angle of the turn.
 fn wraps(machine: &Machine, turn: &QuasiStatic) -> impl Iterator<Item = RopeWrap> {
     let anchor_deg = machine.back_head.rope_anchor_deg;
     let places = turn.tension_n.iter().zip(&turn.contact_deg);
@@ -213,7 +216,7 @@ fn wraps(machine: &Machine, turn: &QuasiStatic) -> impl Iterator<Item = RopeWrap
     })
 }
 
-/// The job that reduces a case's head at the stations of its present tables.
+/// Builds the job that reduces the head of a case, at the arc stations of its present tables.
 fn spec(
     machine: &Machine,
     source: &HeadSource,
@@ -240,7 +243,7 @@ fn spec(
     }
 }
 
-/// A mesh as it travels.
+/// Converts a mesh into the form in which it is sent to a worker.
 fn mesh(read: &mesh::Mesh) -> HeadMesh {
     #[expect(
         clippy::cast_possible_truncation,
@@ -261,7 +264,7 @@ fn mesh(read: &mesh::Mesh) -> HeadMesh {
     }
 }
 
-/// A job and its answer each travel in one message.
+/// Checks that the job and its answer each fit into one message.
 fn check_size(spec: &ReduceHeadSpec) -> Result<(), Problem> {
     const MEBIBYTE: usize = 1 << 20;
     // what is not the fields of the answer is small beside this
@@ -281,7 +284,7 @@ fn check_size(spec: &ReduceHeadSpec) -> Result<(), Problem> {
     // positions of 24 bytes, numbers of at most 5
     let there = 24 * nodes + 5 * (spec.mesh.elements.len() + spec.mesh.rope_surface.len());
     if there > ROOM {
-        let half = "mesh the half z >= 0 alone (physical group `symmetry`), or more coarsely";
+        let half = "use a coarser mesh, or mesh only the half z >= 0 (physical group `symmetry`)";
         return Err(too_long("the description", half.to_owned()));
     }
     let field = size_of::<[f32; 3]>() * nodes;
@@ -295,7 +298,7 @@ fn check_size(spec: &ReduceHeadSpec) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Reduces on one local worker, without a run folder that outlives the command.
+/// Reduces the head on one local worker in a temporary run folder.
 fn reduce_once(mut unit: PumpingUnit, spec: &ReduceHeadSpec) -> anyhow::Result<ReducedHead> {
     // a worker builds the machine first: not with tables that are yet to come
     unit.machine.twin_ropes = None;

@@ -1,9 +1,9 @@
-//! The digest of a simulated revolution.
+//! Digest of a simulated revolution of the pumping unit.
 use crate::digest::Digest;
 use protocol::pumping_unit::Simulation;
 
-/// Over verdict, counters and every number of the curves. Wall time and the shapes of the moving machine
-/// are left out.
+/// Computes the digest over verdict, counters and every number of the curves; wall time and the recorded
+/// motion of the bodies are left out.
 pub fn simulation_digest(simulation: &Simulation) -> String {
     let mut digest = Digest::of(simulation.verdict);
     let single = [

@@ -1,4 +1,4 @@
-//! The pumping unit as the coordinator's general parts ask for it.
+//! Implementation of the kind of model "pumping unit" for the general parts of the coordinator.
 use super::{
     digest::simulation_digest,
     output::{
@@ -16,7 +16,7 @@ use protocol::{
 };
 use serde_json::{Map, Value};
 
-/// Pumping units with double horse heads.
+/// Kind of pumping units with double horse heads.
 pub(crate) struct PumpingUnits;
 
 impl Kind for PumpingUnits {

@@ -1,5 +1,5 @@
-//! What the coordinator knows of the pumping unit, the model of the kind `dhh`. Everything else there
-//! asks for it by the kind that a case names.
+//! Parts of the coordinator that are specific to the pumping unit, model kind `dhh`; the rest of the
+//! coordinator reaches them through the kind named by the case.
 pub(crate) mod command;
 mod digest;
 pub(crate) mod kind;

@@ -1,4 +1,4 @@
-//! The back head reduced anew by a worker.
+//! Reduction of the back head by a worker.
 use protocol::{
     id::JobId,
     job::{Answer, Job},
@@ -7,7 +7,7 @@ use protocol::{
 };
 use study::{self, Evaluator, Stop, StudyError, or_stop};
 
-/// Has a head reduced by a worker.
+/// Submits the reduction of a head as a job and returns its result.
 ///
 /// # Errors
 /// [`StudyError`] if the job could not be done, or the user stops.

@@ -1,40 +1,40 @@
-//! Tables on their way to files: rows are gathered and handed on by the thousand, so that an export
-//! needs no more memory for a million results than for ten thousand.
+//! Buffered output of tables: rows are collected and passed to the writer in batches, so that the memory of
+//! an export does not grow with the number of results.
 use super::{
     column::{Column, Columns, Value},
     error::StoreError,
 };
 use std::{collections::BTreeMap, mem};
 
-/// Rows of a table that are handed on at a time.
+/// Number of rows per batch of a table.
 const ROWS: usize = 4096;
 
-/// A table as a writer sees it.
+/// Schema of a table: name and columns.
 #[derive(Clone, Debug)]
 pub(super) struct Shape {
     pub(super) name: &'static str,
     pub(super) columns: Vec<Column>,
 }
 
-/// Writes tables in one form.
+/// Writer of tables in one file format.
 pub(super) trait Sink {
     /// Begins the next table.
     fn begin(&mut self, shape: &Shape) -> Result<(), StoreError>;
 
-    /// Writes rows of the table that was begun as the `place`-th, from 0.
+    /// Writes rows of a table; `place` is its index in the order in which tables were begun, from 0.
     fn write(&mut self, place: usize, rows: &[Vec<Value>]) -> Result<(), StoreError>;
 
-    /// Completes all files.
+    /// Completes and closes all files.
     fn finish(self: Box<Self>) -> Result<(), StoreError>;
 }
 
-/// A table that was begun.
+/// Handle of a table whose rows are made from `R`.
 pub(super) struct Table<R> {
     place: usize,
     columns: Columns<R>,
 }
 
-/// All tables of an export.
+/// Tables of an export with their buffered rows and their writer.
 pub(super) struct Book {
     sink: Box<dyn Sink>,
     pages: Vec<Page>,
@@ -54,7 +54,7 @@ impl Book {
         }
     }
 
-    /// Begins a table.
+    /// Begins a table and returns its handle.
     pub(super) fn begin<R: 'static>(
         &mut self,
         name: &'static str,
@@ -76,7 +76,7 @@ impl Book {
         })
     }
 
-    /// Adds a row.
+    /// Adds a row, and writes the batch once it is full.
     pub(super) fn put<R: 'static>(&mut self, to: &Table<R>, row: &R) -> Result<(), StoreError> {
         let Some(page) = self.pages.get_mut(to.place) else {
             return Ok(());
@@ -89,12 +89,12 @@ impl Book {
         self.sink.write(to.place, &mem::take(&mut page.waiting))
     }
 
-    /// What every table looks like.
+    /// Returns the schemas of all tables.
     pub(super) fn shapes(&self) -> Vec<Shape> {
         self.pages.iter().map(|page| page.shape.clone()).collect()
     }
 
-    /// Hands on what waits and completes all files; how many rows each table has.
+    /// Writes the remaining rows, completes all files, and returns the number of rows of each table.
     pub(super) fn finish(mut self) -> Result<BTreeMap<&'static str, u64>, StoreError> {
         let mut rows = BTreeMap::new();
         for (place, page) in self.pages.iter_mut().enumerate() {

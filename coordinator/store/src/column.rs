@@ -1,36 +1,37 @@
-//! Columns: each is defined once, with its name, its meaning and how it is read from a row.
+//! Columns of tables: each is defined once, with its name, its meaning and the function that reads its value
+//! from a row.
 //!
-//! Knows neither what the rows are of nor in which form they are written.
+//! Independent of the type of the rows and of the file format.
 
-/// The name of every job column: databases look rows up by it.
+/// Name of every column of job numbers; databases are indexed by this column.
 pub(super) const JOB: &str = "job";
 
-/// What a field holds.
+/// Value of a field of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
-    /// Nothing: the value does not exist.
+    /// Missing value.
     Null,
-    /// A whole number.
+    /// Integer.
     Integer(i64),
-    /// A finite number.
+    /// Finite real number.
     Real(f64),
-    /// Words.
+    /// Text.
     Text(String),
 }
 
-/// What the fields of a column hold, where they hold something.
+/// Type of the values of a column; every column may also hold missing values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// [`Value::Integer`].
+    /// Type of [`Value::Integer`].
     Integer,
-    /// [`Value::Real`].
+    /// Type of [`Value::Real`].
     Real,
-    /// [`Value::Text`].
+    /// Type of [`Value::Text`].
     Text,
 }
 
 impl Kind {
-    /// As written in the dictionary.
+    /// Returns the name of the type, as written in the dictionary table.
     pub(super) const fn as_str(self) -> &'static str {
         match self {
             Self::Integer => "integer",
@@ -40,20 +41,20 @@ impl Kind {
     }
 }
 
-/// A column as files show it.
+/// Description of a column, as shown in files.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Column {
-    /// Its name, with the unit.
+    /// Name, including the unit.
     pub(super) name: String,
-    /// What it holds.
+    /// Type of the values.
     pub(super) kind: Kind,
-    /// What it means.
+    /// Meaning of the values, for the dictionary table.
     pub(super) about: String,
 }
 
 type Read<R> = Box<dyn Fn(&R) -> Value>;
 
-/// The columns of a table whose rows are made of `R`.
+/// Columns of a table whose rows are made from `R`, with the functions that read their values.
 pub(super) struct Columns<R> {
     columns: Vec<Column>,
     read: Vec<Read<R>>,
@@ -77,7 +78,7 @@ impl<R: 'static> Columns<R> {
         self
     }
 
-    /// A column of whole numbers; one too large for a database is none.
+    /// Adds a column of integers; a number too large for `i64` becomes a missing value.
     pub(super) fn integer(
         self,
         name: &str,
@@ -91,7 +92,7 @@ impl<R: 'static> Columns<R> {
         self.add(name, about, Kind::Integer, Box::new(value))
     }
 
-    /// A column of numbers; what is not finite is none.
+    /// Adds a column of real numbers; a number that is not finite becomes a missing value.
     pub(super) fn real(
         self,
         name: &str,
@@ -105,7 +106,7 @@ impl<R: 'static> Columns<R> {
         self.add(name, about, Kind::Real, Box::new(value))
     }
 
-    /// A column of words; no words are none, since not every form can tell the two apart.
+    /// Adds a column of text; an empty text becomes a missing value, since CSV cannot distinguish the two.
     pub(super) fn text(
         self,
         name: &str,
@@ -119,7 +120,7 @@ impl<R: 'static> Columns<R> {
         self.add(name, about, Kind::Text, Box::new(value))
     }
 
-    /// The columns of a part of the row.
+    /// Adds the columns of a part of the row, which `of` returns.
     pub(super) fn with<S: 'static>(mut self, part: Columns<S>, of: fn(&R) -> &S) -> Self {
         self.columns.extend(part.columns);
         let read = part.read.into_iter();
@@ -128,12 +129,12 @@ impl<R: 'static> Columns<R> {
         self
     }
 
-    /// What files show of them.
+    /// Returns the descriptions of the columns.
     pub(super) fn columns(&self) -> &[Column] {
         &self.columns
     }
 
-    /// The fields of a row.
+    /// Returns the values of a row.
     pub(super) fn fields(&self, row: &R) -> Vec<Value> {
         self.read.iter().map(|read| read(row)).collect()
     }

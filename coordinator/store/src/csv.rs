@@ -1,4 +1,4 @@
-//! Tables as text: one file each, an empty field where a value does not exist, all digits of numbers.
+//! Tables as CSV: one file each, an empty field for a missing value, numbers with all digits.
 use super::{
     book::{Shape, Sink},
     column::Value,

@@ -1,35 +1,35 @@
-//! Why a run cannot be exported.
+//! Error type of the export of a run.
 use dispatch::journal::JournalError;
 use std::{
     io,
     path::{Path, PathBuf},
 };
 
-/// Why a run cannot be exported.
+/// Error of the export of a run.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// A file cannot be read or written.
     #[error("cannot {doing} {}: {source}", path.display())]
     Io {
-        /// What was tried.
+        /// Operation that failed, for example `write`.
         doing: &'static str,
-        /// On what.
+        /// File or folder of the operation.
         path: PathBuf,
-        /// The system's words.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// A table cannot be written.
     #[error("cannot write {}: {source}", path.display())]
     Table {
-        /// Its file.
+        /// File of the table.
         path: PathBuf,
-        /// The library's words.
+        /// Error of the file format library.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
-    /// Something else is where the export is to go.
-    #[error("{} is there already, and is no export of a run in this form", path.display())]
+    /// The target of the export exists and is not an export in this format.
+    #[error("{} already exists and is not an export of a run in this format", path.display())]
     Foreign {
-        /// The file or folder.
+        /// Existing file or folder.
         path: PathBuf,
     },
     /// The journal cannot be read.

@@ -1,4 +1,4 @@
-//! An export while it is made: events of the journal and evaluations of the study become rows.
+//! Export in progress: converts events of the journal and evaluations of the study into rows.
 use super::{
     book::Book,
     error::StoreError,
@@ -18,25 +18,25 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Why a simulation was wanted.
+/// Reason for which a simulation was requested.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Label {
-    /// Generation it was proposed in, in a search.
+    /// Generation of the search in which the individual was proposed; none outside a search.
     pub generation: Option<u32>,
-    /// What it was for.
+    /// Purpose of the simulation, as text.
     pub purpose: String,
 }
 
-/// An export that is complete.
+/// Completed export.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Exported {
-    /// Its files.
+    /// Files of the export.
     pub files: Vec<PathBuf>,
-    /// Rows of each table.
+    /// Number of rows of each table.
     pub rows: BTreeMap<&'static str, u64>,
 }
 
-/// An export that is being made.
+/// Export in progress.
 pub struct Store<'a> {
     case: &'a Case,
     draft: Draft,
@@ -45,11 +45,11 @@ pub struct Store<'a> {
 }
 
 impl<'a> Store<'a> {
-    /// Begins an export of a run over a case.
+    /// Begins an export of a run of the given case.
     ///
     /// # Errors
-    /// [`StoreError::Foreign`] if something else is in its place, [`StoreError::Io`] or
-    /// [`StoreError::Table`] if one cannot write there.
+    /// [`StoreError::Foreign`] if the target exists and is not an export, [`StoreError::Io`] or
+    /// [`StoreError::Table`] if the target cannot be written.
     pub fn begin(target: Target, case: &'a Case) -> Result<Self, StoreError> {
         let draft = Draft::begin(target)?;
         let mut book = Book::new(draft.sink()?);
@@ -65,7 +65,7 @@ impl<'a> Store<'a> {
         })
     }
 
-    /// Adds something that is known of the run as a whole.
+    /// Adds a property of the whole run to the table `run`.
     ///
     /// # Errors
     /// [`StoreError::Io`] or [`StoreError::Table`] if it cannot be written.
@@ -77,10 +77,10 @@ impl<'a> Store<'a> {
         self.book.put(&self.tables.run, &fact)
     }
 
-    /// Reads the journal and adds everything that it says by itself.
+    /// Reads the journal, adds all rows that follow from it alone, and returns its results as a recording.
     ///
     /// # Errors
-    /// [`StoreError::Journal`] if it cannot be read, others if something cannot be written.
+    /// [`StoreError::Journal`] if the journal cannot be read, other errors if a table cannot be written.
     pub fn journal(&mut self, path: &Path) -> Result<Recording, StoreError> {
         let mut folding = Folding::default();
         let mut process = None;
@@ -178,7 +178,7 @@ impl<'a> Store<'a> {
         self.book.put(&self.tables.results, &brief)
     }
 
-    /// Adds a job that the run asked for, with its result; one that simulates nothing is no row.
+    /// Adds a job that the study requested, with its result; a job that simulates nothing is ignored.
     ///
     /// # Errors
     /// [`StoreError::Io`] or [`StoreError::Table`] if it cannot be written.
@@ -222,10 +222,10 @@ impl<'a> Store<'a> {
         self.book.put(&self.tables.evaluations, &evaluated)
     }
 
-    /// Completes the export and puts it into its place.
+    /// Completes the export and moves it to its target.
     ///
     /// # Errors
-    /// [`StoreError::Io`] or [`StoreError::Table`] if something cannot be written.
+    /// [`StoreError::Io`] or [`StoreError::Table`] if a file cannot be written.
     pub fn finish(mut self) -> Result<Exported, StoreError> {
         for shape in self.book.shapes() {
             for column in shape.columns {

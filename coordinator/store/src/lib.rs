@@ -1,9 +1,10 @@
-//! A run as tables for queries, built from its journal: SQLite, CSV or Parquet.
+//! Export of a run as tables for queries, built from its journal: SQLite, CSV or Parquet.
 //!
-//! [`Store`] folds the journal into rows; what was *asked* stands in no journal, so whoever repeats
-//! the run's study on the recording ([`study::Recorded`]) hands in the simulations one by
-//! one. Rows stream: neither curves nor residuals nor tables are held in memory. The journal is the
-//! truth and is never changed; an export can always be made again, with the same content.
+//! [`Store`] converts the journal into rows. A journal does not contain the purpose of the simulations that
+//! were *asked* for; the caller therefore repeats the run's study on the recording ([`study::Recorded`]) and
+//! passes in the simulations one by one. Rows are streamed: neither curves nor residuals nor tables are held
+//! in memory. The journal is authoritative and never changed; an export can be repeated at any time with
+//! identical content.
 mod book;
 mod column;
 mod csv;

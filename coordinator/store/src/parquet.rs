@@ -1,4 +1,4 @@
-//! Tables as Parquet: one file each, every column optional, texts as UTF-8.
+//! Tables as Parquet: one file each, every column optional, text as UTF-8.
 use super::{
     book::{Shape, Sink},
     column::{Kind, Value},
@@ -20,7 +20,7 @@ use std::{
     sync::Arc,
 };
 
-/// Writes one file per table into a folder; the rows of a call are one row group.
+/// Writes one file per table into a folder; every call of `write` adds one row group.
 pub(super) struct ParquetFiles {
     folder: PathBuf,
     files: Vec<(PathBuf, Vec<Kind>, SerializedFileWriter<File>)>,
@@ -52,7 +52,8 @@ fn schema(shape: &Shape) -> Result<TypePtr, ParquetError> {
     whole.build().map(Arc::new)
 }
 
-/// Writes one column: the values there are, and for every row whether there is one.
+/// Writes one column: the existing values, and for every row a definition level that says whether its value
+/// exists.
 fn column<T: DataType>(
     writer: &mut SerializedColumnWriter<'_>,
     fields: &[Option<T::T>],

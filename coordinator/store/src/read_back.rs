@@ -1,5 +1,5 @@
-//! Tests read exports back, each form with a reader of its own; the crate's own tests and the program's include this
-//! file.
+//! Reader of exports for tests, with an independent reader for each format; included by the tests of this
+//! crate and of the program.
 use parquet::{
     file::reader::{FileReader as _, SerializedFileReader},
     record::Field,
@@ -12,23 +12,23 @@ use std::{
 };
 use store::Format;
 
-/// What a field holds.
+/// Value of a field of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
-    /// Nothing.
+    /// Missing value.
     Null,
-    /// A whole number.
+    /// Integer.
     Integer(i64),
-    /// A finite number.
+    /// Finite real number.
     Real(f64),
-    /// Words.
+    /// Text.
     Text(String),
 }
 
-/// Names of columns, and rows, by table.
+/// Column names and rows of each table, by table name.
 pub(crate) type Tables = BTreeMap<String, (Vec<String>, Vec<Vec<Value>>)>;
 
-/// All tables of an export.
+/// Reads all tables of an export.
 pub(crate) fn tables(path: &Path, format: Format) -> Tables {
     match format {
         Format::Sqlite => sqlite(path),
@@ -80,7 +80,7 @@ fn sqlite(path: &Path) -> Tables {
     names.into_iter().map(read).collect()
 }
 
-/// Name of the table and path of each file of a folder.
+/// Returns table name and path of each file in a folder.
 fn parts(folder: &Path) -> Vec<(String, std::path::PathBuf)> {
     fs::read_dir(folder)
         .expect("it is a folder")

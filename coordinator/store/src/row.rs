@@ -1,4 +1,4 @@
-//! What the rows of the tables are made of.
+//! Row types of the tables.
 use dispatch::scheduler;
 use protocol::{
     event::Finished,
@@ -7,12 +7,13 @@ use protocol::{
     message::Cost,
 };
 
-/// What a journal says of one result, without its curves.
+/// Result of a job as recorded in the journal, without residual and curves.
 #[derive(Clone, Debug)]
 pub(super) struct Brief {
     pub(super) job: JobId,
     pub(super) kind: &'static str,
-    /// The process of the run that offered it, and the offers of its job that went before there.
+    /// Coordinator process of the run that dispatched the attempt, and the number of earlier attempts of the
+    /// job in that process; none for a failure that the coordinator itself recorded.
     pub(super) offered: Option<(u32, u32)>,
     pub(super) worker: Option<WorkerId>,
     pub(super) cost: Cost,
@@ -46,7 +47,7 @@ impl Brief {
         self.simulated.map(|(_, counters)| counters)
     }
 
-    /// Mean squared error of the one of some channels that was scored.
+    /// Returns the mean squared error of the scored channel among the given ones.
     pub(super) fn mse(&self, channels: &[usize]) -> Option<f64> {
         let mut scores = self.scores.iter();
         let score = scores.find(|score| channels.contains(&score.channel))?;
@@ -54,32 +55,32 @@ impl Brief {
     }
 }
 
-/// One simulation of the run: what was asked, and what came of it.
+/// Row of the table `evaluations`: a simulation that the study requested, with its result.
 pub(super) struct Evaluated {
     pub(super) generation: Option<u32>,
     pub(super) purpose: String,
     pub(super) condition: String,
     pub(super) genes: Vec<f64>,
-    /// How many effects it had beside those of the case.
+    /// Number of effects added to those of the case.
     pub(super) effects: usize,
     pub(super) result: Brief,
 }
 
-/// Agreement of one channel.
+/// Score of one channel of one job.
 pub(super) struct Scored {
     pub(super) job: JobId,
     pub(super) score: ChannelScore,
 }
 
-/// A parameter of an effect that a simulation had beside those of the case.
+/// Parameter of an effect that a simulation added to those of the case.
 pub(super) struct Added {
     pub(super) job: JobId,
     pub(super) effect: String,
-    /// None for an effect all of whose parameters are the model's.
+    /// Name and value of the parameter; none for an effect whose parameters are all set by the model.
     pub(super) parameter: Option<(String, f64)>,
 }
 
-/// Something that happened to the run.
+/// Row of the table `events`: an event of the run.
 #[derive(Default)]
 pub(super) struct Happened {
     pub(super) at_byte: u64,
@@ -92,7 +93,7 @@ pub(super) struct Happened {
     pub(super) detail: Option<String>,
 }
 
-/// Something that is known of the run as a whole.
+/// Property of the whole run, by name.
 pub(super) struct Fact {
     pub(super) name: String,
     pub(super) value: String,

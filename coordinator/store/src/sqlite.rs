@@ -1,6 +1,7 @@
 //! Tables as one SQLite database, written in a single transaction.
 //!
-//! Nobody sees the file before it is complete, so nothing is spent on surviving a crash meanwhile.
+//! The file becomes visible only when it is complete; the database is therefore written without a rollback
+//! journal and without synchronisation.
 use super::{
     book::{Shape, Sink},
     column::{JOB, Kind, Value},
@@ -15,22 +16,22 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// What databases of ours are marked with: `HHRN`.
+/// SQLite application id of the exported databases: `HHRN`.
 pub(super) const APPLICATION: i32 = 0x4848_524e;
 
-/// Version of the tables.
+/// Version of the table schema, stored as SQLite `user_version`.
 const VERSION: i32 = 1;
 
-/// Writes all tables into one file.
+/// Writes all tables into one SQLite file.
 pub(super) struct Database {
     path: PathBuf,
     connection: Connection,
-    /// The name, the statement that adds a row, and whether rows are looked up by job.
+    /// For each table its name, its `INSERT` statement, and whether it gets an index on the job number.
     tables: Vec<(&'static str, String, bool)>,
 }
 
 impl Database {
-    /// Makes the file, which must not be there.
+    /// Creates the database file, which must not exist.
     pub(super) fn create(path: &Path) -> Result<Self, StoreError> {
         let failed = |error| StoreError::table(path, error);
         let connection = Connection::open(path).map_err(failed)?;

@@ -1,5 +1,6 @@
-//! Where an export goes: written beside its place and moved there when it is complete, so that a
-//! reader finds the old one or the new one. What is not an export of ours is left alone.
+//! Target of an export: written to a temporary folder beside the target and moved there once complete, so
+//! that readers see either the old export or the new one. Files that are not exports are never replaced
+//! without `force`.
 use super::{
     book::Sink,
     csv::CsvFiles,
@@ -16,7 +17,7 @@ use std::{
 };
 use tempfile::TempDir;
 
-/// In which form tables are written.
+/// File format of an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// One SQLite database.
@@ -28,7 +29,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// Its name.
+    /// Returns the name of the format.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Sqlite => "sqlite",
@@ -37,7 +38,7 @@ impl Format {
         }
     }
 
-    /// Name of the file or folder within a run's folder.
+    /// Returns the default name of the file or folder within a run folder.
     pub const fn usual_name(self) -> &'static str {
         match self {
             Self::Sqlite => "run.sqlite",
@@ -51,22 +52,22 @@ impl Format {
     }
 }
 
-/// Where to write, and in which form.
+/// Path and format of an export.
 #[derive(Clone, Debug)]
 pub struct Target {
-    /// The file, or the folder.
+    /// Path of the file or folder.
     pub path: PathBuf,
-    /// The form.
+    /// File format.
     pub format: Format,
-    /// Whether something else that is there may be replaced: a file as a whole, in a folder the
+    /// Whether existing content that is not an export may be replaced: a file as a whole, in a folder the
     /// files of the same names.
     pub force: bool,
 }
 
-/// Name of the export while it is written.
+/// Name of the export within its temporary folder.
 const DRAFT: &str = "export";
 
-/// An export that is being written.
+/// Export in a temporary folder, before it is moved to its target.
 #[derive(Debug)]
 pub(super) struct Draft {
     target: Target,
@@ -74,11 +75,11 @@ pub(super) struct Draft {
 }
 
 impl Draft {
-    /// Makes room for an export.
+    /// Creates the temporary folder for an export.
     ///
     /// # Errors
-    /// [`StoreError::Foreign`] if something else is in its place, [`StoreError::Io`] if one cannot
-    /// write there.
+    /// [`StoreError::Foreign`] if the target exists and is not an export, [`StoreError::Io`] if the target
+    /// cannot be written.
     pub(super) fn begin(target: Target) -> Result<Self, StoreError> {
         if !target.force && !is_replaceable(&target).map_err(StoreError::reading(&target.path))? {
             return Err(StoreError::Foreign { path: target.path });
@@ -97,7 +98,7 @@ impl Draft {
         self.scratch.path().join(DRAFT)
     }
 
-    /// What writes it.
+    /// Creates the writer for the format of the export.
     pub(super) fn sink(&self) -> Result<Box<dyn Sink>, StoreError> {
         let path = self.path();
         if self.target.format.is_folder() {
@@ -110,7 +111,7 @@ impl Draft {
         })
     }
 
-    /// Puts the complete export into its place; the paths of its files.
+    /// Moves the complete export to its target and returns the paths of its files.
     pub(super) fn publish(self) -> Result<Vec<PathBuf>, StoreError> {
         let (draft, place) = (self.path(), &self.target.path);
         let moved = if self.target.format.is_folder() {
@@ -139,7 +140,7 @@ impl Draft {
     }
 }
 
-/// The folder that something lies in.
+/// Returns the parent folder of a path; `.` for a bare file name.
 fn parent(path: &Path) -> PathBuf {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
@@ -147,7 +148,7 @@ fn parent(path: &Path) -> PathBuf {
     }
 }
 
-/// Whether nothing is there, or an export of the same form.
+/// Returns whether the target does not exist, or is an export in the same format.
 fn is_replaceable(target: &Target) -> io::Result<bool> {
     let found = match fs::symlink_metadata(&target.path) {
         Ok(found) => found,
@@ -162,7 +163,8 @@ fn is_replaceable(target: &Target) -> io::Result<bool> {
     }
 }
 
-/// A database's header names its format, and at byte 68 the application whose file it is.
+/// Returns whether a file is an SQLite database with the application id of exports, which is stored at byte
+/// 68 of its header.
 fn is_our_database(path: &Path) -> io::Result<bool> {
     let mut header = [0; 72];
     match File::open(path)?.read_exact(&mut header) {
@@ -173,7 +175,7 @@ fn is_our_database(path: &Path) -> io::Result<bool> {
     Ok(header.starts_with(b"SQLite format 3\0") && header[68..] == APPLICATION.to_be_bytes())
 }
 
-/// A folder of ours has a dictionary and nothing that is not in it.
+/// Returns whether a folder is empty, or holds a dictionary table and only files of known tables.
 fn is_our_folder(path: &Path, format: Format) -> io::Result<bool> {
     let files = entries(path)?;
     let file = |table: &str| format!("{table}.{}", format.as_str());

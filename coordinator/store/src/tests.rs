@@ -1,9 +1,10 @@
-//! Where an export may go, and that nobody finds half of one.
+//! Tests of the export target: existing foreign files are preserved, and an incomplete export is never
+//! visible.
 use super::{Exported, Format, Store, StoreError, Target, read_back, table::NAMES};
 use protocol::case::Case;
 use std::{fs, path::Path};
 
-/// The shipped case.
+/// Returns the case shipped with the project.
 fn case() -> Case {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/cyjs10-5-37hb");
     case::load(&folder, &case::Overrides::default()).unwrap()
@@ -22,7 +23,7 @@ fn write(path: &Path, format: Format, force: bool) -> Result<Exported, StoreErro
     Store::begin(target(path, format, force), &case)?.finish()
 }
 
-/// Names in a folder.
+/// Returns the sorted names of the entries of a folder.
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let mut names: Vec<String> = entries

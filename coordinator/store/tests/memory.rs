@@ -1,4 +1,4 @@
-//! An export needs no more memory for many results than for few: rows stream through it.
+//! Test that the memory of an export does not grow with the number of results, because rows are streamed.
 #![expect(
     clippy::unwrap_used,
     reason = "helpers of a test: what cannot be written or read has failed"
@@ -17,10 +17,10 @@ use protocol::{
 use std::{env, fs, path::Path, process::Command};
 use store::{Format, Label, Store, Target};
 
-/// Residuals of each result (a tenth of a real one's).
+/// Number of residuals per result (a tenth of the usual number).
 const RESIDUALS: usize = 144;
-/// What an export of fifty thousand evaluations may need beyond one of five thousand (MiB); they are
-/// 80 MiB in the journal, and more as rows.
+/// Maximum additional memory (MiB) of an export of 50,000 evaluations compared with 5,000; these evaluations
+/// take 80 MiB in the journal, and more as rows.
 const MORE_MIB: u64 = 12;
 
 fn finished(job: u64) -> Finished {
@@ -55,7 +55,7 @@ fn finished(job: u64) -> Finished {
     }
 }
 
-/// The most memory that this process has had since it was last asked (MiB).
+/// Returns the peak resident memory of this process since the previous call (MiB), and resets it.
 fn peak_mib() -> u64 {
     let status = fs::read_to_string("/proc/self/status").unwrap();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
@@ -107,11 +107,12 @@ fn fifty_thousand_evaluations_need_the_memory_of_five_thousand() {
     }
 }
 
-/// Where another process of this test writes, and how many results.
+/// Environment variable that passes the folder to the child process; [`COUNT`] passes the number of results.
 const FOLDER: &str = "STORE_MEMORY_FOLDER";
 const COUNT: &str = "STORE_MEMORY_COUNT";
 
-/// Writes a journal in a process of its own: what that needs must not be taken for an export's.
+/// Writes a journal in a child process, so that the memory needed for writing is not attributed to the
+/// export.
 fn write_elsewhere(folder: &Path, count: u64) {
     let status = Command::new(env::current_exe().unwrap())
         .args(["--exact", "writes_a_journal", "--ignored"])

@@ -1,4 +1,5 @@
-//! The loop: ask, submit, wait, tell.
+//! Search loop: asks the strategy for proposals, submits them as jobs, waits for results, and reports these
+//! to the strategy.
 use super::{
     error::StudyError,
     evaluator::Evaluator,
@@ -15,25 +16,25 @@ use protocol::{
 use search::strategy::{Best, Finish, Proposal, Residual, Strategy};
 use std::collections::BTreeMap;
 
-/// Individuals that must have failed before a search is given up because nothing else has happened.
+/// Minimum number of evaluated individuals before a search in which all have failed is given up.
 pub(super) const LEAST_TRIED: usize = 8;
 
-/// A finished search.
+/// Result of a finished search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibrated {
-    /// The best individual.
+    /// Best individual.
     pub best: Best,
-    /// Why the search ended.
+    /// Stopping criterion that ended the search.
     pub finish: Finish,
-    /// Every evaluation in index order.
+    /// All evaluations in index order.
     pub log: EvaluationLog,
 }
 
-/// Runs a search to its end; proposals are submitted under their own ids.
+/// Runs a search to its end; the id of a proposal is the number of its job.
 ///
 /// # Errors
-/// If the case or the workers make every evaluation impossible, if everything that
-/// the search begins with fails, if nobody evaluates any more, or if the user stops it.
+/// If the case or the workers make every evaluation impossible, if the whole first generation fails, if no
+/// evaluator is left, or if the user stops it.
 pub async fn calibrate<E: Evaluator>(
     evaluator: &mut E,
     case: &Case,
@@ -74,7 +75,7 @@ pub async fn calibrate<E: Evaluator>(
     }
 }
 
-/// The job of a proposal.
+/// Builds the job of a proposal.
 pub(super) fn score(case: &Case, proposal: &Proposal) -> Job {
     let individual = Individual::new(case.objective.condition, proposal.genes.clone());
     let reply = Reply::Score {
@@ -87,7 +88,8 @@ pub(super) fn score(case: &Case, proposal: &Proposal) -> Job {
     })
 }
 
-/// What a proposal is to be differentiated by: every unknown that moves.
+/// Returns the unknowns by which the job of a proposal differentiates: all that are neither fixed nor
+/// switched off, or none if no derivatives are wanted.
 fn derived(case: &Case, proposal: &Proposal) -> Vec<Column> {
     let wanted = proposal.purpose.wants_derivatives();
     let moving = case.unknowns.iter().filter(|it| !it.fixed && !it.is_off());
@@ -95,7 +97,7 @@ fn derived(case: &Case, proposal: &Proposal) -> Vec<Column> {
     columns.filter(|_| wanted).collect()
 }
 
-/// The residual of a proposal whose job wanted one and brought it, with its derivatives by name.
+/// Returns the residual and its derivatives by name, if the job of the proposal requested and returned them.
 pub(super) fn residual(case: &Case, proposal: &Proposal, outcome: &Outcome) -> Option<Residual> {
     let evaluation = outcome.answer().and_then(Answer::evaluation)?;
     let by = derived(case, proposal).into_iter();
@@ -106,8 +108,8 @@ pub(super) fn residual(case: &Case, proposal: &Proposal, outcome: &Outcome) -> O
     })
 }
 
-/// What came back of a proposal. A failure that every other individual would meet too ends the
-/// study; one that concerns this individual alone makes it the worst of all.
+/// Converts the outcome of a proposal into a log entry. A failure that would affect every other individual
+/// becomes an error, which ends the study; a failure of this individual alone gives it the worst fitness.
 pub(super) fn entry(proposal: Proposal, outcome: Outcome) -> Result<Entry, StudyError> {
     match outcome {
         Outcome::Done(answer) => match answer.into_scored() {
@@ -123,9 +125,8 @@ pub(super) fn entry(proposal: Proposal, outcome: Outcome) -> Result<Entry, Study
     }
 }
 
-/// Whether nothing is open any more of what the search began with, its first generation, and all that
-/// has come back failed. The search might go on, but a case or a machine that is set up wrongly is by
-/// far the more likely reason.
+/// Fails if all evaluations so far have failed and the first generation is complete. The search could
+/// continue, but a wrongly configured case or machine is by far the more likely reason.
 fn check_beginning(log: &EvaluationLog, open: &BTreeMap<u64, Proposal>) -> Result<(), StudyError> {
     if log.entries().any(|entry| entry.ending == Ending::Complete) {
         return Ok(());

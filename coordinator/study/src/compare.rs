@@ -1,4 +1,4 @@
-//! Scores and curves of chosen parameter sets under chosen conditions.
+//! Scores and curves of selected individuals under selected conditions.
 use super::{
     error::StudyError,
     evaluator::Evaluator,
@@ -12,59 +12,60 @@ use protocol::{
 };
 use std::collections::BTreeMap;
 
-/// What is wanted.
+/// Individuals to score and simulate under one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wanted {
     /// Index of the condition in the case.
     pub condition: usize,
-    /// Position of the first parameter set among all of this condition in the run: a job is numbered by it.
+    /// Index of the first individual among all individuals compared under this condition in the run;
+    /// determines the job numbers.
     pub first: usize,
-    /// Parameter sets, by name; gene values in declared units.
+    /// Individuals by name; values of the unknowns in declared units.
     pub individuals: Vec<(String, Vec<f64>)>,
-    /// Pictures of what moves; 0 for none.
+    /// Number of frames of the motion to record; 0 for none.
     pub pictures: u32,
-    /// What the curves are differentiated by.
+    /// Parameters by which the curves are differentiated.
     pub columns: Vec<Column>,
 }
 
-/// Pictures that show what moves without a jerk.
+/// Number of frames for a smooth animation of the motion.
 pub const PICTURES: u32 = 120;
 
-/// One parameter set under one condition.
+/// Score and curves of one individual under one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curves {
-    /// Its name.
+    /// Name of the individual.
     pub name: String,
-    /// Gene values in declared units.
+    /// Values of the unknowns in declared units.
     pub genes: Vec<f64>,
-    /// Agreement with the record; none where the condition has no record.
+    /// Score against the measured record; none where the condition has no record.
     pub evaluation: Option<Evaluation>,
-    /// The curves, as far as the simulation got.
+    /// Simulated curves, up to the end of the simulation.
     pub drawn: job::Curves,
 }
 
-/// All parameter sets under one condition.
+/// Scores and curves of all individuals under one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
     /// Index of the condition in the case.
     pub condition: usize,
-    /// In the order in which they were wanted.
+    /// Results in the order of the requested individuals.
     pub individuals: Vec<Curves>,
 }
 
-/// The two results of one parameter set, as they come in.
+/// Score and curves of one individual, filled in as results arrive.
 #[derive(Default)]
 struct Pair {
     evaluation: Option<Evaluation>,
     drawn: Option<job::Curves>,
 }
 
-/// Has every parameter set scored, where there is a record, and simulated. The id of each job
-/// depends only on condition and position, so a run that is opened again finds its results.
+/// Scores every individual, where there is a measured record, and simulates it. The job numbers depend only
+/// on condition and position, so that a resumed run finds its results in the journal.
 ///
 /// # Errors
-/// If a job cannot be done, nobody evaluates any more, or the user stops it. A simulation that
-/// ends early is a result, not an error.
+/// If a job cannot be done, no evaluator is left, or the user stops it. A simulation that ends early is a
+/// result, not an error.
 pub async fn compare<E: Evaluator>(
     evaluator: &mut E,
     case: &Case,

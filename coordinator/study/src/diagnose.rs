@@ -1,4 +1,4 @@
-//! A diagnosis on the workers.
+//! Diagnosis whose experiments are jobs of an evaluator.
 use super::{
     error::StudyError,
     evaluator::Evaluator,
@@ -10,19 +10,19 @@ use super::{
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::laboratory::Stage;
 
-/// A finished diagnosis, and what it cost.
+/// Result of a diagnosis, and its cost.
 #[derive(Clone, Debug)]
 pub struct Diagnosed {
-    /// The answer.
+    /// Result of the diagnosis.
     pub diagnosis: Diagnosis,
-    /// Stages that did experiments.
+    /// Cost of each stage that did experiments.
     pub accounts: Vec<(Stage, StageCost)>,
 }
 
-/// Diagnoses on an evaluator.
+/// Runs a diagnosis on an evaluator.
 ///
 /// # Errors
-/// If the workers cannot build the case or an effect, nobody evaluates any more, or the user stops.
+/// If the workers cannot build the case or an effect, no evaluator is left, or the user stops.
 pub async fn diagnose_on<E: Evaluator>(
     evaluator: &mut E,
     inputs: &Inputs,

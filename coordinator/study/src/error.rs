@@ -1,4 +1,4 @@
-//! Why a study stopped without a result.
+//! Errors that end a study without a result.
 use protocol::{
     id::JobId,
     job::{Failure, Word},
@@ -6,12 +6,12 @@ use protocol::{
 use search::strategy::SettingsError;
 use std::fmt;
 
-/// Why an evaluator gave up.
+/// Error of an evaluator that can no longer work.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EvaluatorError {
-    /// What happened.
+    /// Description of the error.
     pub message: String,
-    /// What to do about it, if anything.
+    /// Remedy, if there is one.
     pub help: Option<String>,
 }
 
@@ -23,58 +23,58 @@ impl fmt::Display for EvaluatorError {
 
 impl std::error::Error for EvaluatorError {}
 
-/// Why a study stopped without a result.
+/// Error that ends a study without a result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyError {
-    /// Nobody evaluates any more.
+    /// The evaluator can no longer work.
     #[error(transparent)]
     Evaluator(#[from] EvaluatorError),
-    /// The search was set up with numbers that make no search.
+    /// The settings of the search are invalid.
     #[error("the search cannot be set up: {0}")]
     Settings(#[from] SettingsError),
-    /// The case cannot be built into a model.
+    /// The workers cannot build a model from the case.
     #[error("the workers cannot build this case: {field}: {problem}")]
     Misconfigured {
-        /// Field of the case.
+        /// Invalid field of the case.
         field: String,
-        /// What is wrong with it.
+        /// Description of the problem.
         problem: String,
     },
-    /// What is to be differentiated by is unknown.
+    /// A parameter by which to differentiate is unknown.
     #[error("the workers cannot differentiate by this: {problem}")]
     Column {
-        /// What is wrong, and what was probably meant.
+        /// Description of the problem, with the name that was probably meant.
         problem: String,
     },
-    /// The workers do not do this kind of job.
+    /// The workers do not support this kind of job.
     #[error("the workers refuse this job: {reason}")]
     Refused {
-        /// What they say.
+        /// Reason given by the workers.
         reason: String,
     },
-    /// Everything that the search began with failed.
+    /// All individuals at the beginning of the search failed.
     #[error("all of the first {count} individuals failed: {how}")]
     AllFailed {
-        /// How many were tried.
+        /// Number of individuals that were evaluated.
         count: usize,
-        /// Which failures, the most frequent first.
+        /// Failures with their counts, the most frequent first.
         how: String,
-        /// The most frequent failure of the physics, if any was.
+        /// Most frequent failure of the simulated physics, if there was any.
         physics: Option<Word>,
     },
-    /// A parameter set that is to be compared could not be evaluated.
+    /// An individual that is to be compared could not be evaluated.
     #[error("{what} could not be evaluated: {failure}")]
     Unavailable {
-        /// Which parameter set, and under which condition.
+        /// Name of the individual and of the condition.
         what: String,
-        /// What happened.
+        /// Failure of the job.
         failure: Failure,
     },
     /// A worker answered a job with the result of another kind of job.
     #[error("job {id} was answered with the result of another kind of job")]
     WrongKind {
-        /// The job.
+        /// Number of the job.
         id: JobId,
     },
     /// The user asked to stop.
@@ -83,8 +83,8 @@ pub enum StudyError {
 }
 
 impl StudyError {
-    /// The error of a failure that every other job would meet too; none for one that concerns
-    /// one job alone.
+    /// Converts a failure that would affect every other job into an error; returns none for a failure of one
+    /// job alone.
     pub(super) fn hopeless(failure: &Failure) -> Option<Self> {
         match failure.clone() {
             Failure::Misconfigured { field, problem } if field.starts_with("columns") => {
@@ -98,7 +98,7 @@ impl StudyError {
         }
     }
 
-    /// The error of a job that failed where nothing can stand in for it.
+    /// Converts the failure of an indispensable job into an error.
     pub(super) fn of(failure: Failure, what: impl FnOnce() -> String) -> Self {
         Self::hopeless(&failure).unwrap_or_else(|| Self::Unavailable {
             what: what(),
@@ -106,7 +106,7 @@ impl StudyError {
         })
     }
 
-    /// What to do about it.
+    /// Returns the remedy for the error, if there is one.
     pub fn help(&self) -> Option<String> {
         let text = match self {
             Self::Evaluator(error) => return error.help.clone(),
@@ -125,10 +125,12 @@ impl StudyError {
                  bounds in the case, or another --seed, may help"
             }
             Self::AllFailed { physics: None, .. } => {
-                "no simulation was even finished: look at the workers' own messages"
+                "no job could be computed: the messages of the workers show the reason"
             }
             Self::Unavailable { .. } => "the same command tries again",
-            Self::WrongKind { .. } => "the worker is of another version: replace it",
+            Self::WrongKind { .. } => {
+                "the worker has another version: install the version of this program on its host"
+            }
             Self::Interrupted => return None,
         };
         Some(text.to_owned())

@@ -1,7 +1,8 @@
-//! Individuals that somebody else asks for, scored as they come: results in the order in which they are done.
+//! Evaluation of individuals requested by another program: scored as requests arrive, and returned in order
+//! of completion.
 //!
-//! It knows requests and results, not who asks nor how. A job is numbered by its content ([`super::job_number`]), so
-//! a run that is opened again finds in its journal whatever is asked a second time, in any order.
+//! Independent of the source and the format of the requests. A job is numbered by its content
+//! ([`super::job_number`]), so that a resumed run finds repeated requests in its journal, in any order.
 use super::{
     error::StudyError,
     evaluator::Evaluator,
@@ -15,26 +16,26 @@ use protocol::{
 use std::collections::BTreeMap;
 use tokio::sync::mpsc;
 
-/// An individual to score.
+/// Request to score an individual.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request<T> {
-    /// Whose it is.
+    /// Identification of the request, returned with its answer.
     pub tag: T,
-    /// One value for each unknown of the case, in its order [declared units].
+    /// Values of the unknowns in the order of the case [declared units].
     pub genes: Vec<f64>,
-    /// Whether its residual is wanted.
+    /// Whether the residual is to be returned.
     pub with_residual: bool,
 }
 
-/// What came of an individual; a failure that others need not meet is an answer, too.
+/// Result of scoring an individual: an evaluation, or a failure that concerns this individual alone.
 pub type Scored = Result<Evaluation, Failure>;
 
-/// Scores what is asked for until nobody asks any more; `answer` is told of each, whoever asked for the same
-/// before.
+/// Scores requested individuals until the channel of requests is closed; `answer` is called for every
+/// request, and equal requests share one job.
 ///
 /// # Errors
-/// If the case or the workers make every evaluation impossible, if nobody evaluates any more, if the
-/// user stops it, or if an answer cannot be given.
+/// If the case or the workers make every evaluation impossible, if no evaluator is left, if the user stops
+/// it, or if `answer` fails.
 pub async fn evaluate<E: Evaluator, T>(
     evaluator: &mut E,
     case: &Case,

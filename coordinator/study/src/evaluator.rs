@@ -1,4 +1,4 @@
-//! What a study needs of whoever evaluates: take jobs, give results, say who is at work.
+//! Interface between a study and the evaluator of its jobs: submission, results, and worker status.
 use super::error::{EvaluatorError, StudyError};
 use super::job_number::JobNumbers;
 use dispatch::scheduler::Completed;
@@ -9,34 +9,34 @@ use protocol::{
 };
 use std::time::Duration;
 
-/// Evaluates jobs in any order.
+/// Evaluator of jobs, which are completed in any order.
 pub trait Evaluator {
-    /// Takes a job. The id is the caller's; each is submitted once. A result that is known from
-    /// an earlier session is given again by [`Evaluator::next`].
+    /// Submits a job under an id chosen by the caller; each id is submitted once. A result known from an
+    /// earlier session is returned again by [`Evaluator::next`].
     ///
     /// # Errors
     /// If the evaluator can no longer take jobs.
     fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError>;
 
-    /// The next result. Dropping the future loses nothing.
+    /// Returns the next result. Cancellation-safe: no result is lost if the future is dropped.
     ///
     /// # Errors
     /// If no further result can come.
     fn next(&mut self) -> impl Future<Output = Result<Completed, EvaluatorError>>;
 
-    /// Numbers that jobs of earlier sessions have, for studies that number jobs by their content.
+    /// Returns the job numbers of earlier sessions, for studies that number jobs by content.
     ///
     /// # Errors
-    /// If what earlier sessions left cannot be read.
+    /// If the records of earlier sessions cannot be read.
     fn numbers(&self) -> Result<JobNumbers, EvaluatorError> {
         Ok(JobNumbers::default())
     }
 
-    /// Who is at work, now.
+    /// Returns the present status of the workers.
     fn crew(&self) -> Crew;
 }
 
-/// The answer to a job of the kind that was asked for, as `take` takes it; `what` it was about.
+/// Extracts the answer of the expected kind with `take`; `what` names the subject of the job in an error.
 ///
 /// # Errors
 /// If the job failed, or was answered as another kind of job.
@@ -53,41 +53,41 @@ pub fn answer<T>(
     take(answer).map_err(|_| StudyError::WrongKind { id })
 }
 
-/// Everyone who evaluates.
+/// Status of all workers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Crew {
-    /// Everyone who was seen in this session.
+    /// All workers that joined in this session, including those that left.
     pub workers: Vec<WorkerStatus>,
-    /// Jobs that wait for a worker.
+    /// Number of jobs waiting for a worker.
     pub queued: usize,
-    /// Jobs that are being computed.
+    /// Number of jobs being computed.
     pub running: usize,
-    /// How all slots spent their time in this session.
+    /// Time of all slots in this session, by use.
     pub spent: Spent,
-    /// For how long anybody has been computing in this session: waiting for workers, and for them to
-    /// build the model, is not part of it.
+    /// Time during which at least one worker was computing in this session; waiting for workers and for them
+    /// to build the model is excluded.
     pub computing: Duration,
 }
 
-/// One worker.
+/// Status of one worker.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WorkerStatus {
-    /// Its name.
+    /// Name of the worker.
     pub name: String,
-    /// Where it runs.
+    /// Host on which the worker runs.
     pub host: String,
-    /// Whether it is attached now.
+    /// Whether the worker is currently connected.
     pub attached: bool,
-    /// Simulations it runs at a time.
+    /// Number of simulations that the worker runs in parallel.
     pub slots: u32,
-    /// Slots that are computing now.
+    /// Number of slots that are currently computing.
     pub busy: u32,
-    /// Jobs whose result was accepted.
+    /// Number of jobs whose result was accepted.
     pub done: u64,
-    /// Jobs that could not be done there.
+    /// Number of jobs that failed on this worker.
     pub failed: u64,
-    /// Time its slots spent computing, summed over slots (s).
+    /// Computing time summed over slots (s).
     pub busy_s: f64,
-    /// Time it was attached (s).
+    /// Time connected (s).
     pub present_s: f64,
 }

@@ -1,4 +1,5 @@
-//! What a record sees, on the workers.
+//! Identification, which finds the unknowns that a measured record determines, with experiments as jobs of an
+//! evaluator.
 use super::{
     error::StudyError,
     evaluator::Evaluator,
@@ -12,16 +13,16 @@ use discrepancy::identify::{Identified, UnknownEstimate, glance, identify};
 use discrepancy::laboratory::Stage;
 use protocol::case::{Case, Channel};
 
-/// A finished identification, and what it cost.
+/// Result of an identification, and its cost.
 #[derive(Clone, Debug)]
 pub struct IdentifiedOn {
-    /// The answer; none where no fit completes.
+    /// Result of the identification; none where no fit completes.
     pub identified: Option<Identified>,
-    /// Stages that did experiments.
+    /// Cost of each stage that did experiments.
     pub accounts: Vec<(Stage, StageCost)>,
 }
 
-/// Stages that there may be.
+/// Stages that an identification may have.
 const STAGES: [Stage; 5] = [
     Stage::Basin,
     Stage::Recalibrate,
@@ -30,10 +31,10 @@ const STAGES: [Stage; 5] = [
     Stage::Show,
 ];
 
-/// Identifies on an evaluator.
+/// Runs an identification on an evaluator.
 ///
 /// # Errors
-/// If the workers cannot build the case, nobody evaluates any more, or the user stops.
+/// If the workers cannot build the case, no evaluator is left, or the user stops.
 pub async fn identify_on<E: Evaluator>(
     evaluator: &mut E,
     case: &Case,
@@ -54,10 +55,11 @@ pub async fn identify_on<E: Evaluator>(
     })
 }
 
-/// A first look at what a record sees, where the inputs start; nothing where that cannot be said.
+/// Estimates at the start values how well a measured record determines each unknown; none where no estimate
+/// is possible.
 ///
 /// # Errors
-/// If nobody evaluates any more, or the user stops.
+/// If no evaluator is left, or the user stops.
 pub async fn glance_on<E: Evaluator>(
     evaluator: &mut E,
     inputs: &Inputs,

@@ -1,37 +1,41 @@
-//! Numbers of the jobs of a run: a job keeps its number in the journal, so that a run which is opened again finds its
+//! Numbers of the jobs of a run: a job keeps its number in the journal, so that a resumed run finds its
 //! result.
 //!
-//! A search numbers its individuals from 0 in the order of its proposals, a diagnosis and an identification their
-//! experiments from [`EXPERIMENTS`] on in the order in which they ask; comparisons and the first look after a calibration
-//! have ranges of their own behind those, so that they never meet.
+//! A search numbers its individuals from 0 in the order of its proposals; a diagnosis and an identification
+//! number their experiments from [`EXPERIMENTS`] in the order of request. Comparisons and the identifiability
+//! estimate after a calibration have separate higher ranges, so that numbers never collide.
 //!
-//! Requests of `evaluate`, of a table and of a sweep come in any order, and equal ones are computed once: their numbers
-//! follow from the hashes of their content ([`JobNumbers`]). Two jobs whose hashes begin alike would share a number; the
-//! journal keeps the whole hash beside each number, and the second job takes another one.
+//! Requests of `evaluate`, of a table and of a sweep come in any order, and equal ones are computed once:
+//! their numbers are derived from the hashes of their content ([`JobNumbers`]). If the hashes of two jobs
+//! begin alike, the second job takes another number; the journal stores the whole hash with each number,
+//! which makes this unambiguous.
 use protocol::{
     id::{ContentHash, JobId},
     job::Job,
 };
 use std::collections::BTreeMap;
 
-/// The question for the effects that the workers know.
+/// Number of the job that asks a worker for its effects.
 pub(super) const LIBRARY: u64 = 0;
-/// The first experiment of a diagnosis or an identification.
+/// Number of the first experiment of a diagnosis or an identification.
 pub(super) const EXPERIMENTS: u64 = LIBRARY + 1;
-/// The first experiment of the look that follows a calibration: behind its individuals and its comparisons.
+/// Number of the first experiment of the identifiability estimate after a calibration; above the numbers of
+/// its individuals and comparisons.
 pub(super) const FIRST_LOOK: u64 = 1 << 50;
-/// The first job of a comparison: behind every individual of a search.
+/// Number of the first job of a comparison; above the number of any individual of a search.
 const COMPARISONS: u64 = 1 << 40;
 
-/// The first of the two jobs about a parameter set that is compared: eight bits of position for each condition.
+/// Returns the number of the first of the two jobs of a compared individual; each condition has room for 256
+/// positions.
 pub(super) fn of_comparison(condition: usize, position: usize) -> u64 {
     COMPARISONS + ((condition as u64) << 9) + 2 * position as u64
 }
 
-/// Bits of a hash that become a number: every table format holds integers of that size exactly.
+/// Number of bits of a hash that form a job number; every table format represents integers of this size
+/// exactly.
 const BITS: u32 = 48;
 
-/// Numbers of the jobs of one run, each for one content.
+/// Assignment of job numbers to the job contents of one run.
 #[derive(Clone, Debug)]
 pub struct JobNumbers {
     by_content: BTreeMap<ContentHash, JobId>,
@@ -46,7 +50,7 @@ impl Default for JobNumbers {
 }
 
 impl JobNumbers {
-    /// Numbers of so many bits (1 to 63), none of them taken.
+    /// Creates an empty assignment of numbers with the given number of bits (1 to 63).
     pub const fn with_bits(bits: u32) -> Self {
         Self {
             by_content: BTreeMap::new(),
@@ -55,7 +59,8 @@ impl JobNumbers {
         }
     }
 
-    /// Takes note of the number that a job has in the journal; the first entry of a number or a content counts.
+    /// Registers the number of a job from the journal; the first entry of a number or a content takes
+    /// precedence.
     pub fn note(&mut self, number: JobId, content: ContentHash) {
         if !self.by_number.contains_key(&number) && !self.by_content.contains_key(&content) {
             self.by_number.insert(number, content);
@@ -63,7 +68,8 @@ impl JobNumbers {
         }
     }
 
-    /// The number of a job: the one that it has, or the first free one from the start of its hash on.
+    /// Returns the number of a job: its registered number, or the first free one from the beginning of its
+    /// hash upwards.
     pub(super) fn number(&mut self, job: &Job) -> JobId {
         let content = job.work_hash();
         if let Some(number) = self.by_content.get(&content) {

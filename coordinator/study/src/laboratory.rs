@@ -1,7 +1,7 @@
-//! A laboratory on the workers, whose experiments are jobs.
+//! Laboratory whose experiments are jobs of an evaluator.
 //!
-//! Experiments are numbered in the order in which they are asked for, and that order depends on results
-//! alone: a run that is opened again finds every one of them in its journal.
+//! Experiments are numbered in the order in which they are requested, which depends on results alone; a
+//! resumed run therefore finds all of them in its journal.
 use super::{
     error::StudyError,
     evaluator::{Evaluator, answer},
@@ -20,33 +20,33 @@ use protocol::{
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// What one stage has cost so far.
+/// Cost of one stage so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StageCost {
-    /// Experiments that came back.
+    /// Number of completed experiments.
     pub experiments: u64,
-    /// Of those, how many did not run to their end.
+    /// Number of experiments that failed or ended early.
     pub failed: u64,
-    /// Batches in which they were asked for: what is in one is independent, one follows another.
+    /// Number of sequential batches; experiments of one batch are independent.
     pub batches: u64,
-    /// Time from the first experiment's start to the last one's end, waiting included.
+    /// Wall time of all batches, including waiting.
     pub wall: Duration,
 }
 
-/// How far a stage has come.
+/// Progress of a stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageView {
-    /// All stages that there may be, in order.
+    /// All possible stages, in order.
     pub stages: &'static [Stage],
-    /// The stage.
+    /// Current stage.
     pub stage: Stage,
-    /// Experiments of it that came back.
+    /// Number of completed experiments of the stage.
     pub done: u64,
-    /// How many more of their batch are awaited.
+    /// Number of outstanding experiments of the batch.
     pub open: usize,
-    /// What all stages have cost so far, in plain simulations.
+    /// Cost of all stages so far, in units of one plain simulation.
     pub spent: f64,
-    /// What this stage may still cost.
+    /// Remaining budget of the stage, in units of one plain simulation.
     pub left: f64,
 }
 
@@ -57,7 +57,7 @@ impl View for StageView {
 /// Asks a worker for the effects that it can simulate.
 ///
 /// # Errors
-/// If nobody answers, or the user stops.
+/// If no worker answers, or the user stops.
 pub async fn library<E: Evaluator>(
     evaluator: &mut E,
     stop: &mut Stop,
@@ -69,7 +69,7 @@ pub async fn library<E: Evaluator>(
     })
 }
 
-/// Experiments as jobs.
+/// Laboratory that submits experiments as jobs to an evaluator.
 pub(super) struct Jobs<'a, E> {
     evaluator: &'a mut E,
     watch: &'a mut dyn Watch<StageView>,
@@ -78,14 +78,14 @@ pub(super) struct Jobs<'a, E> {
     differentiates: bool,
     stages: &'static [Stage],
     costs: BTreeMap<Stage, StageCost>,
-    /// What came back so far, in plain simulations.
+    /// Cost of the completed experiments, in units of one plain simulation.
     spent: f64,
-    /// What each stage has left of its budget.
+    /// Remaining budget of each stage, in units of one plain simulation.
     left: [f64; Stage::ALL.len()],
 }
 
 impl<'a, E: Evaluator> Jobs<'a, E> {
-    /// For what is planned from such inputs in such stages; jobs are numbered from `first` on.
+    /// Creates the laboratory for the given inputs and stages; jobs are numbered from `first`.
     pub(super) fn new(
         (evaluator, first): (&'a mut E, u64),
         inputs: &Inputs,
@@ -106,7 +106,7 @@ impl<'a, E: Evaluator> Jobs<'a, E> {
         }
     }
 
-    /// Stages that did experiments, with what they cost.
+    /// Returns the cost of each stage that did experiments.
     pub(super) fn accounts(self) -> Vec<(Stage, StageCost)> {
         self.costs.into_iter().collect()
     }

@@ -1,10 +1,10 @@
-//! A calibration from the first proposal to the comparison of its result.
+//! Studies: from the first proposal of a search to the comparison of its result.
 //!
-//! [`calibrate()`] asks a search strategy for individuals, has them scored and tells the strategy
-//! the results; [`compare()`] then scores and simulates chosen parameter sets under chosen
-//! conditions; [`evaluate()`] scores what another program asks for, [`score_all()`] a list; [`Sweep`] runs many
-//! searches side by side. All see workers only through the trait [`Evaluator`], in whatever order results
-//! arrive: what they return is a function of the case, the settings and the seed.
+//! [`calibrate()`] asks a search strategy for individuals, has them scored and reports the results to the
+//! strategy; [`compare()`] then scores and simulates selected individuals under selected conditions;
+//! [`evaluate()`] scores individuals requested by another program, [`score_all()`] those of a list; [`Sweep`]
+//! runs many searches in parallel. All use workers only through the trait [`Evaluator`], with results in any
+//! order; what they return is a function of the case, the settings and the seed.
 mod calibrate;
 mod compare;
 mod diagnose;

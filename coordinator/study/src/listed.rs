@@ -1,4 +1,4 @@
-//! A list of individuals, all scored: results in the order of the list.
+//! Scoring of a list of individuals; results in the order of the list.
 use super::{
     evaluate::{Request, Scored, job, scored},
     evaluator::Evaluator,
@@ -13,11 +13,12 @@ use protocol::{
 };
 use std::collections::BTreeMap;
 
-/// Scores individuals, one value for each unknown of the case \[declared units\]; equal ones are computed once.
+/// Scores individuals, each with one value for each unknown of the case \[declared units\]; equal individuals
+/// are computed once.
 ///
 /// # Errors
-/// If the case or the workers make every evaluation impossible, if nobody evaluates any more, or if the user
-/// stops it.
+/// If the case or the workers make every evaluation impossible, if no evaluator is left, or if the user stops
+/// it.
 pub async fn score_all<E: Evaluator>(
     evaluator: &mut E,
     case: &Case,
@@ -62,7 +63,7 @@ pub async fn score_all<E: Evaluator>(
     Ok(found.into_values().collect())
 }
 
-/// The objective of a complete simulation.
+/// Returns the objective if the simulation is complete.
 fn complete(scored: &Scored) -> Option<f64> {
     let complete = |it: &&Evaluation| it.verdict == Verdict::Complete;
     let evaluation = scored.as_ref().ok().filter(complete)?;

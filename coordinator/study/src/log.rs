@@ -1,21 +1,21 @@
-//! The evaluation log: every individual of a run in index order, and its digest.
+//! Evaluation log: all individuals of a search in index order, and a digest of these.
 use protocol::job::{Evaluation, Failure, Verdict, Word};
 use search::strategy::{Proposal, Purpose, Told};
 use std::collections::BTreeMap;
 
-/// How an evaluation ended.
+/// Outcome of an evaluation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ending {
     /// The whole revolution was simulated.
     Complete,
-    /// The machine failed on the way.
+    /// The simulated machine failed before the end of the revolution.
     Physics(Word),
-    /// It could not be computed.
+    /// The job could not be computed.
     Infrastructure(Failure),
 }
 
 impl Ending {
-    /// What went wrong, in words; none if nothing did.
+    /// Describes the failure in words; returns none for a complete simulation.
     pub fn failure(&self) -> Option<String> {
         match self {
             Self::Complete => None,
@@ -25,25 +25,25 @@ impl Ending {
     }
 }
 
-/// One evaluated individual.
+/// Log entry of one evaluated individual.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// Consecutive from 0.
+    /// Index of the individual, consecutive from 0.
     pub id: u64,
-    /// Generation it was proposed in.
+    /// Generation in which the individual was proposed.
     pub generation: u32,
-    /// What the search wanted it for.
+    /// Purpose for which the search proposed the individual.
     pub purpose: Purpose,
-    /// Gene values in declared units, in the case's order.
+    /// Values of the unknowns in declared units, in the order of the case.
     pub genes: Vec<f64>,
-    /// What the search was told: the objective if complete, a grade otherwise.
+    /// Fitness reported to the search: the objective if complete, otherwise a graded penalty.
     pub fitness: f64,
-    /// How it ended.
+    /// Outcome of the evaluation.
     pub ending: Ending,
 }
 
 impl Entry {
-    /// A proposal that was evaluated.
+    /// Creates the entry of an evaluated proposal.
     pub(super) fn scored(proposal: Proposal, evaluation: &Evaluation) -> Self {
         let ending = match evaluation.verdict {
             Verdict::Complete => Ending::Complete,
@@ -52,7 +52,7 @@ impl Entry {
         Self::new(proposal, evaluation.fitness, ending)
     }
 
-    /// A proposal that could not be evaluated: worse than everything that was.
+    /// Creates the entry of a proposal that could not be evaluated, with infinite fitness.
     pub(super) fn lost(proposal: Proposal, failure: Failure) -> Self {
         Self::new(proposal, f64::INFINITY, Ending::Infrastructure(failure))
     }
@@ -74,7 +74,7 @@ impl Entry {
         }
     }
 
-    /// What the search is told.
+    /// Returns fitness and completeness as reported to the search.
     pub(super) fn told(&self) -> Told {
         Told {
             fitness: self.fitness,
@@ -83,37 +83,38 @@ impl Entry {
     }
 }
 
-/// Every individual of a run, by id.
+/// Log of all evaluated individuals of a search, by id.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EvaluationLog {
     entries: BTreeMap<u64, Entry>,
 }
 
 impl EvaluationLog {
-    /// In id order.
+    /// Returns the entries in id order.
     pub fn entries(&self) -> impl ExactSizeIterator<Item = &Entry> {
         self.entries.values()
     }
 
-    /// How many there are.
+    /// Returns the number of entries.
     pub fn len(&self) -> usize {
         self.entries.len()
     }
 
-    /// Whether there is none.
+    /// Returns whether the log has no entries.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
 
-    /// How many did not complete.
+    /// Returns the number of entries that did not complete.
     pub fn failed(&self) -> usize {
         self.entries()
             .filter(|entry| entry.ending != Ending::Complete)
             .count()
     }
 
-    /// BLAKE3 over id, gene bits and fitness bits of every entry in id order, all little endian;
-    /// 64 hexadecimal digits. Two runs with the same digest took the same path.
+    /// Computes BLAKE3 over id, gene bits and fitness bits of every entry in id order, all little endian, as
+    /// 64 hexadecimal digits. Two searches with the same digest evaluated the same individuals with the same
+    /// results.
     pub fn digest(&self) -> String {
         let mut hasher = blake3::Hasher::new();
         for entry in self.entries() {
@@ -130,7 +131,8 @@ impl EvaluationLog {
         self.entries.insert(entry.id, entry);
     }
 
-    /// Failures by frequency, as `12 x load not lifted, 3 x budget`.
+    /// Returns the failures by frequency, for example `12 x load not lifted, 3 x budget`, and the most
+    /// frequent physical failure.
     pub(super) fn failures(&self) -> (String, Option<Word>) {
         let mut counts: BTreeMap<String, (usize, Option<Word>)> = BTreeMap::new();
         for entry in self.entries() {

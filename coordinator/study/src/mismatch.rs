@@ -1,5 +1,5 @@
-//! Whether a record can be that of its channel: a sensor of reversed sign, or two columns that were exchanged, give a
-//! fit that is no fit, and nothing in its numbers says why.
+//! Consistency of measured records with their channels: a sensor of reversed sign or exchanged columns cause
+//! a bad fit whose numbers do not reveal the reason.
 use super::{
     compare::{Compared, Curves, Wanted, compare},
     error::StudyError,
@@ -11,16 +11,17 @@ use protocol::{
     job::Verdict,
 };
 
-/// By how much a record must correlate better with something else than with its own channel. Of 28 records of the
-/// shipped and the practice cases each correlates by 0.97 at least with its own channel under the recommended values,
-/// and by 0.86 at most with any other, with either sign, but for two channels that mirror each other.
+/// Minimum amount by which a record must correlate better with another curve than with its own channel. Each
+/// of 28 records of the shipped and the practice cases correlates by at least 0.97 with its own channel under
+/// the recommended values, and by at most 0.86 with any other, with either sign, except for two channels that
+/// mirror each other.
 const MARGIN: f64 = 0.2;
 
-/// The correlation from which that something else is what was recorded.
+/// Minimum correlation with another curve from which that curve is taken for the recorded one.
 const ALIKE: f64 = 0.8;
 
-/// What is wanted to look at the recommended individual under every condition with a record, the calibrated one
-/// first and with so many pictures of what moves.
+/// Returns requests for the recommended individual under every condition with a measured record; the
+/// calibrated condition comes first, with `pictures` frames of its motion.
 pub fn recommended(case: &Case, pictures: u32) -> Vec<Wanted> {
     let calibrated = case.objective.condition;
     let mut conditions: Vec<usize> = (0..case.conditions.len()).collect();
@@ -36,10 +37,11 @@ pub fn recommended(case: &Case, pictures: u32) -> Vec<Wanted> {
     conditions.into_iter().map(wanted).collect()
 }
 
-/// Simulates the recommended individual and says what [`mismatches`] does; nothing where it cannot be simulated.
+/// Simulates the recommended individual and returns its [`mismatches`]; returns none if it cannot be
+/// simulated.
 ///
 /// # Errors
-/// If no job can be done, nobody evaluates any more, or the user stops it.
+/// If no job can be done, no evaluator is left, or the user stops it.
 pub async fn check_records<E: Evaluator>(
     evaluator: &mut E,
     case: &Case,
@@ -52,8 +54,8 @@ pub async fn check_records<E: Evaluator>(
     }
 }
 
-/// Says of every record that correlates clearly better with minus its own simulation, or with another channel's, which
-/// it is and what to do; one sentence each.
+/// Returns one sentence, with a remedy, for every measured record that correlates clearly better with its own
+/// negated simulation or with that of another channel than with its own simulation.
 pub fn mismatches(case: &Case, compared: &[Compared]) -> Vec<String> {
     let first = |one: &Compared| Some((one.condition, one.individuals.first()?.clone()));
     let simulated = compared.iter().filter_map(first);
@@ -102,7 +104,8 @@ fn of_condition(case: &Case, condition: usize, curves: &Curves) -> Vec<String> {
     own.collect()
 }
 
-/// Pearson's correlation of two curves of the same points; none of curves that do not vary or differ in length.
+/// Returns Pearson's correlation of two curves at the same points; none if the curves are constant, differ in
+/// length, or have fewer than 8 points.
 fn correlation(a: &[f64], b: &[f64]) -> Option<f64> {
     if a.len() != b.len() || a.len() < 8 {
         return None;

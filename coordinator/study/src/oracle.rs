@@ -1,5 +1,5 @@
-//! An evaluator for tests that answers from a test function, in any order; the crate's own tests and the program's
-//! include this file.
+//! Evaluator for tests that answers from a test function in random order; included by the tests of this crate
+//! and of the program.
 use protocol::pumping_unit::failure;
 use protocol::{
     case::Case,
@@ -19,7 +19,7 @@ use search::{
 use std::{collections::BTreeMap, path::Path};
 use study::{Completed, Crew, Evaluator, EvaluatorError, JobNumbers};
 
-/// Answers jobs in a random order; `known` are results of an earlier session.
+/// Evaluator that answers jobs in a random order; `known` holds results of an earlier session.
 pub(crate) struct Oracle {
     pub(crate) space: Space,
     open: Vec<(JobId, Job)>,
@@ -28,7 +28,7 @@ pub(crate) struct Oracle {
     pub(crate) known: BTreeMap<JobId, Outcome>,
     pub(crate) answered: BTreeMap<JobId, Outcome>,
     pub(crate) computed: usize,
-    /// Numbers for studies that number jobs by content.
+    /// Job numbers for studies that number jobs by content.
     pub(crate) numbers: JobNumbers,
 }
 

@@ -1,6 +1,6 @@
-//! How far a calibration has come, as a fold over completed evaluations in the order of arrival.
+//! Progress of a search, accumulated over completed evaluations in the order of arrival.
 //!
-//! It is for people to watch: unlike the log it depends on arrival, and decides nothing.
+//! For display only: unlike the log it depends on the order of arrival, and it has no influence on results.
 use super::{
     log::{Ending, Entry},
     watch::View,
@@ -8,20 +8,20 @@ use super::{
 use search::strategy::{Progress, Proposal};
 use std::time::Duration;
 
-/// What a progress display shows.
+/// Progress of a search for display.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProgressView {
-    /// Generation the search is in.
+    /// Current generation of the search.
     pub generation: u32,
-    /// Generations it plans.
+    /// Planned number of generations.
     pub generations: u32,
-    /// Evaluations that came back.
+    /// Number of completed evaluations.
     pub completed: u64,
-    /// Evaluations to expect in all.
+    /// Expected total number of evaluations.
     pub expected: u64,
-    /// Of those that came back, how many failed.
+    /// Number of completed evaluations that failed.
     pub failed: u64,
-    /// How many came from an earlier session.
+    /// Number of completed evaluations that were read from an earlier session.
     pub replayed: u64,
     /// Smallest fitness of a complete individual so far.
     pub best: Option<f64>,
@@ -32,13 +32,13 @@ impl View for ProgressView {
 }
 
 impl ProgressView {
-    /// Takes one completed evaluation.
+    /// Adds a completed evaluation.
     pub fn apply(&mut self, entry: &Entry, replayed: bool) {
         let complete = entry.ending == Ending::Complete;
         self.add(complete.then_some(entry.fitness), replayed);
     }
 
-    /// The same of its objective, if it was complete.
+    /// Adds a completed evaluation by its objective; none if the evaluation failed.
     pub(super) fn add(&mut self, objective: Option<f64>, replayed: bool) {
         self.completed += 1;
         self.replayed += u64::from(replayed);
@@ -47,22 +47,22 @@ impl ProgressView {
         self.best = better.or(self.best);
     }
 
-    /// Takes what the search plans.
+    /// Updates generation and expected evaluations from the search.
     pub fn plan(&mut self, progress: &Progress) {
         self.generation = progress.generation;
         self.generations = progress.generations;
         self.expected = progress.expected_evaluations.max(self.completed);
     }
 
-    /// Evaluations per second of this session, in which workers have been computing for so long; none
-    /// before the first.
+    /// Returns the evaluations per second of this session, in which workers have been computing for
+    /// `computing`; none before the first evaluation.
     pub fn rate(&self, computing: Duration) -> Option<f64> {
         let fresh = self.completed - self.replayed;
         let seconds = computing.as_secs_f64();
         (fresh > 0 && seconds > 0.0).then(|| fresh as f64 / seconds)
     }
 
-    /// Time to the expected end; none before the first evaluation of this session.
+    /// Returns the time to the expected end; none before the first evaluation of this session.
     pub fn remaining(&self, computing: Duration) -> Option<Duration> {
         let rate = self.rate(computing)?;
         let ahead = self.expected.saturating_sub(self.completed) as f64;

@@ -1,7 +1,7 @@
-//! An evaluator that computes nothing: it knows what a journal holds and nothing else.
+//! Evaluator that computes nothing and answers from the recording of a journal.
 //!
-//! A study that runs on it takes the path that the run took, as far as the journal goes, and
-//! leaves no trace in the run's folder.
+//! A study on this evaluator repeats the run as far as the journal goes, and changes nothing in the run
+//! folder.
 use super::{
     error::EvaluatorError,
     evaluator::{Crew, Evaluator},
@@ -11,10 +11,10 @@ use dispatch::scheduler::Completed;
 use protocol::{event::Finished, id::JobId, job::Job};
 use std::collections::VecDeque;
 
-/// What is given every job with its result.
+/// Callback that receives every job with its result.
 type Seen<'a> = &'a mut dyn FnMut(&Job, &Finished) -> Result<(), EvaluatorError>;
 
-/// Results of a recording, in the order in which they are asked for.
+/// Evaluator that returns the results of a recording in the order of submission.
 pub struct Recorded<'a> {
     recording: &'a Recording,
     seen: Seen<'a>,
@@ -24,7 +24,8 @@ pub struct Recorded<'a> {
 }
 
 impl<'a> Recorded<'a> {
-    /// Over a recording; `seen` is given every job with its result, before the study is.
+    /// Creates an evaluator over a recording; `seen` is called with every job and its result before the study
+    /// receives the result.
     pub const fn new(recording: &'a Recording, seen: Seen<'a>) -> Self {
         Self {
             recording,
@@ -35,12 +36,12 @@ impl<'a> Recorded<'a> {
         }
     }
 
-    /// Jobs that were asked for and have no result in the recording.
+    /// Returns the number of submitted jobs without a result in the recording.
     pub const fn unknown(&self) -> u64 {
         self.unknown
     }
 
-    /// Whether a study asked for more than the recording holds, so that it went no further.
+    /// Returns whether the study requested more than the recording holds and could not continue.
     pub const fn ended(&self) -> bool {
         self.ended
     }
@@ -56,7 +57,7 @@ impl<'a> Recorded<'a> {
         };
         if finished.work != job.work_hash() {
             return Err(failed(&format_args!(
-                "job {id} of the journal is not the one that the run's settings lead to"
+                "job {id} of the journal differs from the job that the settings of the run produce"
             )));
         }
         (self.seen)(job, &finished)?;
@@ -84,8 +85,10 @@ impl Evaluator for Recorded<'_> {
         }
         self.ended = true;
         Err(EvaluatorError {
-            message: "the journal holds no further results that this run asked for".to_owned(),
-            help: Some("the command that began the run goes on with it".to_owned()),
+            message:
+                "the journal holds no result for the next jobs of this run: the run is incomplete"
+                    .to_owned(),
+            help: Some("run the command that began this run: it resumes the run".to_owned()),
         })
     }
 

@@ -1,11 +1,11 @@
-//! How the user stops a study.
+//! Interruption of a study by the user.
 use super::error::StudyError;
 use tokio::sync::watch;
 
-/// Becomes true when the user wants to stop.
+/// Cancellation signal: becomes true when the user wants to stop.
 pub type Stop = watch::Receiver<bool>;
 
-/// A future's result, unless the user stops first.
+/// Awaits a future unless the user stops first.
 ///
 /// # Errors
 /// [`StudyError::Interrupted`] if the user stops.

@@ -1,4 +1,4 @@
-//! The loop against an evaluator that answers from a test function, in any order.
+//! Tests of the search loop with an evaluator that answers from a test function in random order.
 use super::oracle::{Oracle, case, evaluation, physics};
 use super::*;
 use protocol::pumping_unit::failure;
@@ -219,7 +219,7 @@ async fn a_comparison_keeps_its_order_whatever_arrives_first() {
     }
 }
 
-/// What a comparison of one individual fails with where each of its jobs does.
+/// Returns the error of a comparison of one individual whose jobs all have the outcome `answer`.
 async fn comparison_fails(answer: fn(&Space, u64, &Individual) -> Outcome) -> StudyError {
     let case = case();
     let mut oracle = Oracle::new(&case, 1, answer);
@@ -246,7 +246,7 @@ async fn a_comparison_that_cannot_be_made_names_the_individual() {
     assert_eq!(error.help().unwrap(), "the same command tries again");
 }
 
-/// The same command would be refused again.
+/// Checks that an unknown column is reported as invalid input, since repeating the command would fail again.
 #[tokio::test]
 async fn a_column_that_does_not_exist_is_said_to_be_wrong() {
     let refused = |_: &Space, _: u64, _: &Individual| {
@@ -260,7 +260,7 @@ async fn a_column_that_does_not_exist_is_said_to_be_wrong() {
     assert!(error.help().unwrap().contains("EFFECT.PARAMETER"));
 }
 
-/// Asks for one individual after the other, and calls none of them initial.
+/// Strategy that proposes one individual at a time, none with the purpose "initial".
 struct OneByOne {
     genes: Vec<f64>,
     asked: u64,
@@ -316,7 +316,7 @@ impl Strategy for OneByOne {
     }
 }
 
-/// A result that is a failure of the machine for all ids below one.
+/// Returns an outcome that is a failure of the machine for ids below `from`, and complete otherwise.
 fn failing_below(from: u64, id: u64) -> Outcome {
     let verdict = if id < from {
         Verdict::Failed {
@@ -329,7 +329,7 @@ fn failing_below(from: u64, id: u64) -> Outcome {
     Outcome::Done(Answer::Scored(evaluation(1.0, verdict)))
 }
 
-/// Runs a search that asks for one after the other; which was the best.
+/// Runs a search with [`OneByOne`] and returns the id of the best individual.
 async fn one_by_one(answer: fn(&Space, u64, &Individual) -> Outcome) -> Result<u64, StudyError> {
     let case = case();
     let mut oracle = Oracle::new(&case, 1, answer);
@@ -345,8 +345,8 @@ async fn one_by_one(answer: fn(&Space, u64, &Individual) -> Outcome) -> Result<u
     found.map(|found| found.best.id)
 }
 
-/// What a strategy calls its proposals decides nothing: a few that fail first do not end the study,
-/// and many do.
+/// Checks that a few initial failures do not end the study but many do, independent of the purpose of the
+/// proposals.
 #[tokio::test]
 async fn a_search_that_begins_with_failures_goes_on_until_there_are_too_many() {
     assert_eq!(one_by_one(|_, id, _| failing_below(5, id)).await, Ok(5));
@@ -357,8 +357,8 @@ async fn a_search_that_begins_with_failures_goes_on_until_there_are_too_many() {
     );
 }
 
-/// Individuals whose hashes begin alike: each has the score of its own values, whether it is asked for one by one, in
-/// a list or by a search.
+/// Checks that individuals whose hashes begin alike each get the score of their own values, whether requested
+/// one by one, in a list or by a search.
 #[tokio::test]
 async fn jobs_whose_hashes_begin_alike_keep_their_own_results() {
     let case = case();

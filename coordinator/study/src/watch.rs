@@ -1,20 +1,20 @@
-//! Whoever watches a study: for people to see, it decides nothing.
+//! Observer of a study, for display only: no influence on results.
 use super::evaluator::Crew;
 
-/// What a study of some kind shows of itself on the way.
+/// Progress that a kind of study reports to its observer.
 pub trait View {
-    /// Why the study wants a job done.
+    /// Reason for which the study requests a job.
     type Reason: ?Sized;
 }
 
-/// Watches a study that shows itself as `V`.
+/// Observer of a study that reports its progress as `V`.
 pub trait Watch<V: View> {
-    /// A result came back, or the study planned anew.
+    /// Called when a result has arrived or the study has changed its plan.
     fn progress(&mut self, view: &V, crew: &dyn Fn() -> Crew);
 
-    /// Before anything else: how many results an earlier session left.
+    /// Called first, with the number of results of an earlier session.
     fn resumed(&mut self, _recorded: usize) {}
 
-    /// A job is going to be asked for.
+    /// Called before a job is requested.
     fn asked(&mut self, _id: u64, _reason: &V::Reason) {}
 }

@@ -1,6 +1,6 @@
-//! Files that are there whole or not at all: what is new is written beside its place and takes it in one
-//! step, so that whoever reads the file, or cuts the power, finds the old one or the new one. It does not
-//! know what the files hold.
+//! Atomic replacement of files: new content is written to a temporary file in the same folder, which is then
+//! renamed, so that readers and a power failure find either the old file or the new one. Independent of the
+//! content of the files.
 use std::{
     fs::{self, Permissions},
     io::{self, Write},
@@ -9,7 +9,8 @@ use std::{
 };
 use tempfile::NamedTempFile;
 
-/// A file that is complete, on the disk, and not yet in its place; without [`Self::publish`] it goes away.
+/// Complete file, synchronised to disk, that has not yet replaced its target; deleted unless
+/// [`Self::publish`] is called.
 #[derive(Debug)]
 pub struct Draft {
     file: NamedTempFile,
@@ -17,11 +18,11 @@ pub struct Draft {
 }
 
 impl Draft {
-    /// Writes the content beside its place. A file that is there already gives its permissions, and a
-    /// link the place that it points to.
+    /// Writes the content to a temporary file beside the target. An existing target passes on its
+    /// permissions; a symbolic link is followed.
     ///
     /// # Errors
-    /// What the system says; there is nothing left of the draft then.
+    /// The error of the operating system; the temporary file is deleted.
     pub fn new(place: &Path, content: &[u8]) -> io::Result<Self> {
         let place = fs::canonicalize(place).unwrap_or_else(|_| place.to_owned());
         let permissions = match fs::metadata(&place) {
@@ -42,10 +43,10 @@ impl Draft {
         Ok(Self { file, place })
     }
 
-    /// A file beside its place that somebody else fills, by `fill`.
+    /// Creates a temporary file beside the target and has `fill` write its content.
     ///
     /// # Errors
-    /// What the system or `fill` says; there is nothing left of the draft then.
+    /// The error of the operating system or of `fill`; the temporary file is deleted.
     pub fn filled<E: From<io::Error>>(
         place: &Path,
         fill: impl FnOnce(fs::File) -> Result<(), E>,
@@ -56,20 +57,20 @@ impl Draft {
         Ok(draft)
     }
 
-    /// Takes the place.
+    /// Replaces the target.
     ///
     /// # Errors
-    /// What the system says; the old file is still there then.
+    /// The error of the operating system; the old file is kept.
     pub fn publish(self) -> io::Result<()> {
         let persisted = self.file.persist(self.place);
         persisted.map(drop).map_err(|failed| failed.error)
     }
 }
 
-/// Replaces a file, or makes it, in one step.
+/// Replaces or creates a file atomically.
 ///
 /// # Errors
-/// What the system says; the old file is still there then.
+/// The error of the operating system; the old file is kept.
 pub fn replace(place: &Path, content: &[u8]) -> io::Result<()> {
     Draft::new(place, content)?.publish()
 }
@@ -105,7 +106,7 @@ mod tests {
         assert!(replace(&folder.path().join("no/such"), b"").is_err());
     }
 
-    /// A disk that fills up leaves the old file, and nothing half written.
+    /// Checks that a full disk leaves the old file and no incomplete one.
     #[test]
     fn a_file_that_cannot_be_filled_leaves_the_old_one() {
         let folder = tempfile::tempdir().unwrap();
@@ -123,7 +124,7 @@ mod tests {
         assert_eq!(fs::read(&place).unwrap(), b"new");
     }
 
-    /// A new file is as readable as any other that is simply written.
+    /// Checks that a new file has the default permissions of the process.
     #[test]
     fn a_new_file_has_the_permissions_of_any_other() {
         let folder = tempfile::tempdir().unwrap();

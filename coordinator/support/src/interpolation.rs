@@ -1,7 +1,7 @@
-//! Tables of points that are joined by straight lines: the value between two of them. It does not know
-//! what is tabulated.
+//! Piecewise linear interpolation in tables.
 
-/// The value at a place of an ascending table; none outside it or without a finite neighbour.
+/// Interpolates in a table with ascending abscissas; returns none outside the table or beside a value that is
+/// not finite.
 pub fn interpolated(xs: &[f64], ys: &[f64], x: f64) -> Option<f64> {
     let above = xs.partition_point(|&known| known < x);
     let right = (*xs.get(above)?, *ys.get(above)?);
@@ -12,7 +12,7 @@ pub fn interpolated(xs: &[f64], ys: &[f64], x: f64) -> Option<f64> {
     between((*xs.get(below)?, *ys.get(below)?), right, x)
 }
 
-/// The value at any place, that of the nearest end outside the table; 0 of an empty table.
+/// Interpolates in a table, with the value of the nearest end outside the table; 0 for an empty table.
 pub fn held(xs: &[f64], ys: &[f64], x: f64) -> f64 {
     let end = match xs.first() {
         Some(first) if x < *first => ys.first(),
@@ -22,7 +22,7 @@ pub fn held(xs: &[f64], ys: &[f64], x: f64) -> f64 {
     interpolated(xs, ys, x).unwrap_or_else(end)
 }
 
-/// The value at any place of a table that covers one period from 0 without repeating its first point.
+/// Interpolates in a table that covers one period from 0 without repeating its first point.
 pub fn periodic(xs: &[f64], ys: &[f64], x: f64, period: f64) -> Option<f64> {
     let place = x.rem_euclid(period);
     interpolated(xs, ys, place).or_else(|| {
@@ -31,7 +31,7 @@ pub fn periodic(xs: &[f64], ys: &[f64], x: f64, period: f64) -> Option<f64> {
     })
 }
 
-/// The value on the line through two points, if it is finite.
+/// Interpolates linearly between two points; none if the result is not finite.
 fn between((x0, y0): (f64, f64), (x1, y1): (f64, f64), x: f64) -> Option<f64> {
     let y = y0 + (y1 - y0) * (x - x0) / (x1 - x0);
     y.is_finite().then_some(y)

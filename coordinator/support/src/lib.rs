@@ -1,4 +1,4 @@
-//! Small tools that several crates of the coordinator share and that know nothing of it.
+//! General utilities shared by several crates of the coordinator.
 pub mod atomic_file;
 pub mod interpolation;
 pub mod problem;

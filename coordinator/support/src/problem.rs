@@ -1,16 +1,16 @@
-//! What cannot be done as it was asked for.
+//! User-facing error with a remedy.
 
-/// Something that cannot be done as it was asked for, and what to do instead.
+/// Error in the user's input or environment, with a remedy.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// What is wrong, with the place and the value.
+    /// Description of the error, with location and value.
     pub message: String,
-    /// What to do; may be empty.
+    /// Remedy; may be empty.
     pub remedy: String,
 }
 
 impl Problem {
-    /// What is wrong, and what to do.
+    /// Creates a problem from its message and its remedy.
     pub fn new(message: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self {
             message: message.into(),

@@ -1,6 +1,7 @@
 //! Quantiles of sorted values.
 
-/// The smallest value that so many percent of all do not exceed; none of none.
+/// Returns the smallest value that is not exceeded by `percent` percent of the values (nearest-rank
+/// quantile); none if there are no values.
 pub fn of<T: Copy>(sorted: &[T], percent: usize) -> Option<T> {
     let rank = (sorted.len() * percent).div_ceil(100).max(1);
     sorted.get(rank - 1).copied()

@@ -1,4 +1,5 @@
-//! Commands that no other suite runs, end to end: the program, a worker process, the shipped case.
+//! End-to-end tests of commands that no other suite runs, with the program, a worker process and the shipped
+//! case.
 #![expect(
     clippy::unwrap_used,
     reason = "helpers of tests: a command that cannot be run or read has failed"
@@ -6,7 +7,7 @@
 use serde_json::Value;
 use std::{fs, path::Path, process::Command};
 
-/// Runs a command with `--output json`; its object.
+/// Runs a command with `--output json` and returns its object.
 fn json(arguments: &[&str]) -> Value {
     let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
     let output = Command::new(env!("CARGO_BIN_EXE_horsehead"))
@@ -26,8 +27,8 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
 }
 
-/// The head from its mesh: frequencies of the table, exact stress beside that of the modes, and a
-/// picture with displacement of every mode and stress.
+/// Checks the reduction of the shipped mesh: frequencies of the table, exact stress against the table, and a
+/// VTU file with stress and the displacement of every mode.
 #[test]
 fn head_reduces_the_shipped_mesh_and_draws_it() {
     let scratch = tempfile::tempdir().unwrap();
@@ -65,8 +66,8 @@ fn head_reduces_the_shipped_mesh_and_draws_it() {
     }
 }
 
-/// Modes are picked by how they answer the loads of a turn, of which the strongest holds nearly all; what
-/// is left out is told, and couples less.
+/// Checks that modes are selected by their coupling to the loads of a turn, most of which falls to the
+/// strongest mode; modes that are left out are reported and couple less.
 #[test]
 fn head_picks_the_modes_that_couple() {
     let object = json(&["head", "CASE", "--modes", "3"]);
@@ -86,8 +87,8 @@ fn head_picks_the_modes_that_couple() {
     }
 }
 
-/// Connections that say nothing are held, closed by the coordinator and opened again, and the rate
-/// beside them is measured.
+/// Checks that silent connections are held, closed by the coordinator and reopened, and that the job rate
+/// beside these is measured.
 #[test]
 fn bench_dispatch_measures_beside_silent_connections() {
     let object = json(&[

@@ -1,21 +1,21 @@
-//! What a machine allows to be started for the cases of others: a list in a file of its own, which no case and no
-//! coordinator writes.
+//! List of the programs that a machine allows to be started for the cases of others. The list is a file that
+//! neither cases nor coordinators ever write.
 //!
 //! ```toml
 //! [entry.decay]
 //! program = "/usr/bin/python3"
 //! arguments = ["model.py"]
-//! files = "5f1c.."                # the case's files that this was said of; without it any
-//! cores = 1                       # what one run keeps busy
-//! at_once = 2                     # most runs at a time [as many as fit]
-//! wall_s = 3600.0                 # longest run
+//! files = "5f1c.."                # digest of the case's files that were reviewed; without it any files
+//! cores = 1                       # hardware threads that one run occupies
+//! at_once = 2                     # maximum number of simultaneous runs [as many as fit]
+//! wall_s = 3600.0                 # maximum wall time of a run
 //! memory_mib = 8192               # address space of each process, 0 for no limit
-//! output_mib = 256                # what one run may write
-//! folder = "/scratch"             # where runs have their folders [the system's folder for temporary files]
-//! environment = { OMP_NUM_THREADS = "1" }   # beside PATH, HOME, LANG, LC_ALL, TZ, TMPDIR
-//! pass = ["LM_LICENSE_FILE"]      # further variables that are handed on
-//! version = ["/usr/bin/python3", "--version"]   # machines on which it says other things do not work together
-//! keep_failed = false             # whether the folder of a failed run stays
+//! output_mib = 256                # maximum that one run may write
+//! folder = "/scratch"             # parent of the runs' folders [the system's folder for temporary files]
+//! environment = { OMP_NUM_THREADS = "1" }   # in addition to PATH, HOME, LANG, LC_ALL, TZ, TMPDIR
+//! pass = ["LM_LICENSE_FILE"]      # further variables inherited from the worker
+//! version = ["/usr/bin/python3", "--version"]   # machines with different output do not work together
+//! keep_failed = false             # whether the folder of a failed run is kept
 //! ```
 use crate::Problem;
 use serde::{Deserialize, Serialize};
@@ -27,14 +27,14 @@ use std::{
     thread,
 };
 
-/// Variable of the environment that names another file.
+/// Environment variable that overrides the path of the list of allowed programs.
 pub const VARIABLE: &str = "HORSEHEAD_ALLOW";
 
-/// All that a machine allows.
+/// List of the programs that a machine allows to be started.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Allowed {
-    /// By the name that cases use.
+    /// Allowed programs by the entry name that cases use.
     #[serde(default)]
     pub entry: BTreeMap<String, Entry>,
 }
@@ -43,42 +43,42 @@ pub struct Allowed {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Entry {
-    /// The program; absolute, or below the folder of a run.
+    /// Path of the program: absolute, or relative to the folder of a run.
     pub program: PathBuf,
-    /// Its arguments.
+    /// Arguments of the program.
     #[serde(default)]
     pub arguments: Vec<String>,
-    /// Digest of the case's files that were looked at; any are taken where there is none.
+    /// Digest of the case's files that were reviewed; without it any files are accepted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub files: Option<String>,
-    /// Hardware threads that one run keeps busy.
+    /// Hardware threads that one run occupies.
     #[serde(default = "one")]
     pub cores: u32,
-    /// Most runs at a time.
+    /// Maximum number of simultaneous runs; without it as many as the cores allow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_once: Option<u32>,
-    /// Longest run (s).
+    /// Maximum wall time of a run (s).
     #[serde(default = "hour")]
     pub wall_s: f64,
-    /// Address space of each process (MiB); 0 for no limit.
+    /// Address-space limit of each process (MiB); 0 for no limit.
     #[serde(default = "eight_gib")]
     pub memory_mib: u64,
-    /// What one run may write, its outputs included (MiB); 0 for no limit.
+    /// Maximum volume that one run may write, including its outputs (MiB); 0 for no limit.
     #[serde(default = "quarter_gib")]
     pub output_mib: u64,
-    /// Where runs have their folders.
+    /// Parent folder of the runs' folders; without it the system's folder for temporary files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub folder: Option<PathBuf>,
-    /// Variables that are set.
+    /// Environment variables that are set for the program.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub environment: BTreeMap<String, String>,
-    /// Variables that are handed on.
+    /// Names of environment variables that are inherited from the worker.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pass: Vec<String>,
-    /// A command that says the program's version.
+    /// Command that prints the program's version; machines with different output do not work together.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub version: Vec<String>,
-    /// Whether the folder of a failed run stays.
+    /// Whether the folder of a failed run is kept.
     #[serde(default)]
     pub keep_failed: bool,
 }
@@ -100,7 +100,7 @@ const fn quarter_gib() -> u64 {
 }
 
 impl Entry {
-    /// A program with its arguments, within the usual limits.
+    /// Creates an entry for a program and its arguments with default limits.
     pub fn new(program: PathBuf, arguments: Vec<String>) -> Self {
         Self {
             program,
@@ -119,7 +119,8 @@ impl Entry {
         }
     }
 
-    /// Runs that this machine holds at a time; none where slots alone limit them.
+    /// Returns the maximum number of simultaneous runs on this machine; `None` where only the number of slots
+    /// limits them.
     pub fn places(&self) -> Option<u32> {
         let threads = thread::available_parallelism().map_or(1, std::num::NonZero::get);
         let threads = u32::try_from(threads).unwrap_or(u32::MAX);
@@ -131,7 +132,7 @@ impl Entry {
     }
 }
 
-/// The file of this machine and user.
+/// Returns the path of the list for this machine and user.
 pub fn path() -> PathBuf {
     let of = |name: &str| {
         env::var_os(name)
@@ -146,17 +147,17 @@ pub fn path() -> PathBuf {
     })
 }
 
-/// Reads a list; one that is not there allows nothing.
+/// Reads a list; a file that does not exist allows nothing.
 ///
 /// # Errors
-/// A file that cannot be read, is no such list, or allows something impossible.
+/// The file cannot be read, is not a valid list, or contains an entry with impossible limits.
 pub fn read(path: &Path) -> Result<Allowed, Problem> {
     let file = path.display().to_string();
     let problem = |line, found: String| Problem {
         file: file.clone(),
         line,
         found,
-        allowed: "a list of what may be started".to_owned(),
+        allowed: "a list of allowed programs".to_owned(),
         remedy: "correct it, or remove it and allow cases anew with `horsehead allow CASE`"
             .to_owned(),
     };
@@ -187,7 +188,7 @@ pub fn read(path: &Path) -> Result<Allowed, Problem> {
     Ok(allowed)
 }
 
-/// The text of a list.
+/// Formats a list as TOML.
 pub fn text(allowed: &Allowed) -> String {
     // what is made of tables, texts and numbers can be written
     toml::to_string(allowed).unwrap_or_default()

@@ -1,8 +1,9 @@
-//! Files that other people's programs read and write, in the forms in which people have them: PEST's templates,
-//! instructions and control files, Dakota's parameters and results, tables, JSON. And what a machine allows to be
+//! Readers and writers for the files of external programs: PEST's templates, instructions and control files,
+//! Dakota's parameters and results, tables, JSON. Also the list of programs that a machine allows to be
 //! started ([`allow`]).
 //!
-//! All but that list are functions of text. Nothing here knows a case, a search or a process.
+//! Everything except [`allow`] is a pure function of text. This crate has no knowledge of cases, searches or
+//! processes.
 pub mod allow;
 pub mod dakota;
 mod number;

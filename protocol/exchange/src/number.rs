@@ -1,7 +1,7 @@
-//! Numbers as programs write them, Fortran's among them.
+//! Parsing of numbers as written by programs, including Fortran's formats.
 
-/// A finite number: `1.5`, `.5`, `1.`, `1e3`, Fortran's `1.0D+03` and, where three digits of an exponent leave no
-/// room for its letter, `1.0+103`. Blanks about it are allowed; nothing of anything else.
+/// Parses a finite number: `1.5`, `.5`, `1.`, `1e3`, Fortran's `1.0D+03` and, where a three-digit exponent
+/// leaves no room for its letter, `1.0+103`. Surrounding white space is allowed; any other text is refused.
 pub fn number(text: &str) -> Option<f64> {
     const LONGEST: usize = 100;
     let text = text.trim();

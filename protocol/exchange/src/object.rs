@@ -1,18 +1,19 @@
-//! Numbers in an object of JSON.
+//! Extraction of numbers from a JSON object.
 use crate::Problem;
 use serde_json::Value;
 
-/// A number, or a list of them: by JSON pointer (`/results/force`), or by a key of the object itself.
+/// Returns the number, or the list of numbers, at a JSON pointer (`/results/force`) or under a key of the
+/// top-level object.
 ///
 /// # Errors
-/// Text that is no JSON, a place that is not there, what is no finite number.
+/// The text is not JSON, the place does not exist, or a value is not a finite number.
 pub fn values(file: &str, text: &str, place: &str) -> Result<Vec<f64>, Problem> {
     let problem = |line, found: String| Problem {
         file: file.to_owned(),
         line,
         found,
         allowed: format!("JSON with a number or a list of numbers at `{place}`"),
-        remedy: "look at what the program wrote, and correct the place in the case".to_owned(),
+        remedy: "check the program's results file, and correct the place in the case".to_owned(),
     };
     let whole: Value = serde_json::from_str(text)
         .map_err(|error| problem(Some(error.line()), error.to_string()))?;

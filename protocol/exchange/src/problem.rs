@@ -1,23 +1,23 @@
-//! What is wrong with a file, and what to do about it.
+//! Error type for faults of a file, with the remedy.
 use std::fmt;
 
-/// A file that cannot be used as it is.
+/// Fault of a file: position, text found, text allowed, and remedy.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct Problem {
-    /// The file, as it was named.
+    /// Name of the file as given by the caller.
     pub file: String,
-    /// Its line, from 1, where one is at fault.
+    /// Line of the fault, from 1; `None` if the fault concerns the whole file.
     pub line: Option<usize>,
-    /// What stands there.
+    /// Text or value found.
     pub found: String,
-    /// What may stand there.
+    /// Description of the allowed text or value.
     pub allowed: String,
-    /// What to do.
+    /// Action that corrects the fault.
     pub remedy: String,
 }
 
 impl Problem {
-    /// In a line of a file.
+    /// Creates a problem at a line of a file.
     pub(crate) fn at(
         file: &str,
         line: usize,
@@ -52,7 +52,7 @@ impl fmt::Display for Problem {
     }
 }
 
-/// At most so many characters of a text, for messages.
+/// Shortens a text to 60 characters without control characters, for messages.
 pub(crate) fn clip(text: &str) -> String {
     const MOST: usize = 60;
     let plain = text.chars().filter(|letter| !letter.is_control());

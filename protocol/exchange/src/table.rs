@@ -1,11 +1,12 @@
-//! Columns of a table under a header.
+//! Reading of columns from a table with a header.
 use crate::{Problem, number, problem::clip};
 
-/// A column by its name: cells between commas, semicolons or blanks, as the header shows. A `#` before the header
-/// is allowed.
+/// Returns the named column of a table. The header determines the separator: commas, semicolons or white
+/// space. A `#` before the header is allowed.
 ///
 /// # Errors
-/// A table without that column, a row of another length, a cell that is no finite number, no rows.
+/// A table without the column, a row of a different length, a cell that is not a finite number, or a table
+/// without rows.
 pub fn column(file: &str, text: &str, name: &str) -> Result<Vec<f64>, Problem> {
     let mut lines = text
         .lines()
@@ -16,7 +17,7 @@ pub fn column(file: &str, text: &str, name: &str) -> Result<Vec<f64>, Problem> {
         line: None,
         found: "nothing".to_owned(),
         allowed: "a table with a header".to_owned(),
-        remedy: "look whether the program has finished it".to_owned(),
+        remedy: "check that the program has finished writing the file".to_owned(),
     })?;
     let header = header.trim_start_matches(['\u{feff}', '#']);
     let between = [Some(','), Some(';'), None]
@@ -62,7 +63,7 @@ pub fn column(file: &str, text: &str, name: &str) -> Result<Vec<f64>, Problem> {
                     line + 1,
                     found,
                     allowed,
-                    "look at what the program wrote",
+                    "check the program's results file",
                 ));
             }
         }
@@ -74,7 +75,7 @@ pub fn column(file: &str, text: &str, name: &str) -> Result<Vec<f64>, Problem> {
             1,
             "a header alone",
             allowed,
-            "look at what the program wrote",
+            "check the program's results file",
         ));
     }
     Ok(values)

@@ -1,17 +1,18 @@
-//! The door of a coordinator to the network: lets in whose certificate it knows, and nobody else.
+//! Authenticating QUIC proxy ("gate") between the network and the coordinator's router: admits only peers
+//! whose certificate is signed by the coordinator's authority and whose name is on the list of workers.
 //!
 //! ```text
 //! worker ---- QUIC, its certificate ----> gate ---- QUIC on loopback, a copy's name ----> router
 //! ```
 //!
-//! The router has no QUIC door of its own to the network, because zenoh 1.10.2 shakes hands with
-//! one peer at a time: a single datagram from anybody, certificate or not, keeps all workers out
-//! for half a minute (measured: 31 s). The gate shakes hands with many at once, gives each three
-//! seconds, makes peers prove their address once many wait, and says who was turned away and why.
-//! Behind it, a worker's streams are passed on unread over a connection of their own, which shows
-//! the router a certificate of the same name, made for this process and kept in memory. So the
-//! router's access control still goes by certificate, and the gate knows nothing of the bus but
-//! how many streams there are.
+//! The router itself does not listen for QUIC on the network, because zenoh 1.10.2 performs one handshake at
+//! a time: a single datagram from any sender, with or without a certificate, blocks all workers for half a
+//! minute (measured: 31 s). The gate performs many handshakes concurrently, gives each three seconds,
+//! requires address validation (QUIC retry) once many are pending, and logs each refusal with its reason.
+//! Behind the gate, a worker's streams are forwarded without inspection over a connection of their own, which
+//! presents to the router a certificate of the same name, made for this process and kept in memory. The
+//! router's access control therefore still works by certificate name, and the gate needs to know only the
+//! number of streams of the bus protocol.
 mod inner;
 mod listed;
 mod passing;
@@ -45,34 +46,34 @@ use tokio::{
     time::timeout,
 };
 
-/// Streams of the bus in one direction: one for each priority but the highest.
+/// Number of unidirectional streams of the bus per direction: one for each priority except the highest.
 const STREAMS: u32 = 7;
-/// Peers with which hands are shaken at a time.
+/// Maximum number of concurrent handshakes.
 const PENDING: usize = 1024;
-/// Beyond so many, peers must show first that they are where they say.
+/// Number of pending handshakes above which peers must validate their address (QUIC retry) first.
 const TRUSTING: usize = 64;
-/// How long the last words may take at the end.
+/// Maximum time for the closing exchange with peers at shutdown.
 const FAREWELL: Duration = Duration::from_millis(200);
 
-/// An open gate; nobody comes in any more once it is dropped.
+/// Running gate; dropping it closes the gate and all connections through it.
 #[derive(Debug)]
 pub(crate) struct Gate {
     endpoint: Endpoint,
     task: JoinHandle<()>,
-    /// Reads the list of names again.
+    /// Task that reads the list of workers again periodically.
     reading: JoinHandle<()>,
 }
 
-/// What is needed to let somebody in.
+/// State shared by all connections for admitting peers.
 struct House {
-    /// Who may come in by now.
+    /// Current list of workers that may join.
     listed: watch::Receiver<Listed>,
     inner: Arc<Inner>,
     refusals: Refusals,
 }
 
 impl Gate {
-    /// Opens a gate at an address, in front of a router that listens as `inner` says.
+    /// Opens a gate at an address, in front of the router described by `inner`.
     pub(crate) fn open(at: &Locator, keys: &Keys, inner: Arc<Inner>) -> Result<Self, LinkError> {
         let failed = |reason: String| LinkError::Transport {
             doing: format!("listen on {at}"),
@@ -104,7 +105,7 @@ impl Gate {
         })
     }
 
-    /// Closes the gate and the connections through it.
+    /// Closes the gate and all connections through it; waits briefly for peers to be notified.
     pub(crate) async fn close(self) {
         self.shut();
         if timeout(FAREWELL, self.endpoint.wait_idle()).await.is_err() {
@@ -146,7 +147,8 @@ fn server_config(keys: &Keys) -> Result<ServerConfig, LinkError> {
     Ok(config)
 }
 
-/// As many streams as the bus uses, so that a peer cannot open others.
+/// Returns a transport configuration that allows exactly the number of streams that the bus uses, so that
+/// peers cannot open others.
 fn streams() -> TransportConfig {
     let mut config = TransportConfig::default();
     config.max_concurrent_bidi_streams(VarInt::from_u32(1));
@@ -155,7 +157,7 @@ fn streams() -> TransportConfig {
     config
 }
 
-/// Takes connections as they come.
+/// Accepts incoming connections and handles each in a task of its own.
 async fn admit(endpoint: Endpoint, house: Arc<House>) {
     let pending = Arc::new(Semaphore::new(PENDING));
     while let Some(incoming) = endpoint.accept().await {
@@ -188,7 +190,8 @@ async fn shake(incoming: Incoming) -> Result<Connection, ConnectionError> {
     incoming.accept()?.await
 }
 
-/// Lets a peer in whose certificate was accepted, if its name is on the list.
+/// Admits a peer with a valid certificate if its name is on the list of workers and has a free connection;
+/// then forwards its streams until the connection ends.
 async fn enter(house: &House, connection: Connection, from: SocketAddr) {
     let owner = owner(&connection).unwrap_or_default();
     let Some(places) = listed::places(house.listed.clone(), &owner).await else {
@@ -220,7 +223,7 @@ async fn enter(house: &House, connection: Connection, from: SocketAddr) {
     }
 }
 
-/// Name of the certificate that the peer has shown.
+/// Returns the common name of the peer's certificate.
 fn owner(connection: &Connection) -> Option<String> {
     let shown = connection.peer_identity()?;
     let chain = shown.downcast::<Vec<CertificateDer<'static>>>().ok()?;

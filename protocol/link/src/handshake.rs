@@ -1,8 +1,8 @@
-//! One handshake with a coordinator, before the bus is opened, to learn why that would fail.
+//! Probe of a coordinator's address before the bus is opened, to learn why opening would fail.
 //!
-//! The bus itself reports every refusal as a time-out after ten seconds. This shows the same
-//! certificates to the same address and reads the answer: a host that is not known, a port that
-//! is closed, a certificate that one of the two ends does not accept.
+//! The bus itself reports every refusal as a time-out after ten seconds. The probe presents the same
+//! certificates to the same address and distinguishes an unknown host, a closed port, and a certificate that
+//! one of the two ends rejects.
 use crate::{
     LinkError, OUT_OF_DATE, Silence,
     gate::terms::{KNOCK, UNLISTED, WELCOME},
@@ -18,16 +18,16 @@ use std::{
 };
 use tokio::{net::TcpStream, time::timeout};
 
-/// How long an answer may take: then the bus tries by itself, for longer.
+/// Maximum wait for an answer to the probe.
 const PATIENCE: Duration = Duration::from_secs(3);
-/// How long a machine may take to say that a port is closed.
+/// Maximum wait for the ICMP message that reports a closed port.
 const ECHO: Duration = Duration::from_millis(200);
-/// What the alerts of TLS begin at among QUIC's error codes.
+/// Offset of TLS alerts among QUIC's error codes.
 const ALERTS: u64 = 0x100;
-/// The alert of a listener that does not know the protocol.
+/// TLS alert `no_application_protocol`, sent by a listener that does not know the probe's protocol.
 const NO_SUCH_PROTOCOL: u64 = 120;
 
-/// Whether anybody listens for plain connections there.
+/// Checks by a TCP connection whether a coordinator listens at an address.
 pub(crate) async fn knock(to: &Locator) -> Result<(), LinkError> {
     let address = resolve(to).await?;
     let silent = |how: Silence| LinkError::Silent {
@@ -46,7 +46,7 @@ pub(crate) async fn knock(to: &Locator) -> Result<(), LinkError> {
     }
 }
 
-/// Shakes hands, and says what is wrong if that fails.
+/// Performs a QUIC handshake with a coordinator and returns the cause if it fails.
 pub(crate) async fn shake(to: &Locator, keys: &Keys) -> Result<(), LinkError> {
     let address = resolve(to).await?;
     let transport = |reason: String| LinkError::Transport {
@@ -107,7 +107,8 @@ async fn resolve(to: &Locator) -> Result<SocketAddr, LinkError> {
         .ok_or_else(|| unknown("it has no address".to_owned()))
 }
 
-/// Completes only if the other machine says that nobody can be reached there.
+/// Completes only if the other machine or the network reports that the UDP port cannot be reached; pends
+/// forever otherwise.
 async fn closed(address: SocketAddr) -> Silence {
     let asked = tokio::task::spawn_blocking(move || {
         let any: SocketAddr = match address {
@@ -135,7 +136,7 @@ async fn closed(address: SocketAddr) -> Silence {
     }
 }
 
-/// What the end of the handshake means, in the words of whoever has to mend it.
+/// Translates the end of the probe connection into a result whose message names the remedy.
 fn explain(error: &ConnectionError, to: &Locator, keys: &Keys) -> Result<(), LinkError> {
     let locator = to.to_string();
     let refused = |reason: &str| LinkError::Refused {
@@ -174,7 +175,7 @@ fn explain(error: &ConnectionError, to: &Locator, keys: &Keys) -> Result<(), Lin
     })
 }
 
-/// Why this end does not take the coordinator's certificate.
+/// Returns the reason why this end rejects the coordinator's certificate.
 fn distrust(words: &str, to: &Locator, keys: &Keys) -> String {
     let has = |part: &str| words.contains(part);
     if has("UnknownIssuer") || has("BadSignature") {
@@ -197,13 +198,13 @@ fn distrust(words: &str, to: &Locator, keys: &Keys) -> String {
     words.to_owned()
 }
 
-/// Why the coordinator does not take this end's certificate: the alert it sent.
+/// Translates a TLS alert from the coordinator into the reason why it rejects this end's certificate.
 const fn alert(code: u64) -> Option<&'static str> {
     match code.checked_sub(ALERTS) {
         Some(48) => Some("it was signed by another authority than the coordinator's"),
         Some(45) => Some("it is out of date there: compare the clocks of both machines"),
         Some(44) => Some("it was revoked"),
-        Some(116) => Some("it arrived without one"),
+        Some(116) => Some("the coordinator received no certificate"),
         Some(42 | 43 | 46 | 49) => Some("it is no certificate for a worker"),
         Some(_) | None => None,
     }

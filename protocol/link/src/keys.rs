@@ -1,15 +1,15 @@
-//! Key material of one end: where it lies, whom it names, and whether it can be used at all.
+//! Key material of one end of a link: files, names and checks.
 //!
 //! ```text
 //! KEYS/ca.pem            the authority's certificate            (both ends)
-//! KEYS/ca.key            its key: signs further workers, needed by nobody at run time
+//! KEYS/ca.key            its key: signs further workers, not needed at run time
 //! KEYS/coordinator.pem   KEYS/coordinator.key                   (coordinator)
 //! KEYS/workers           names that may join, one a line        (coordinator)
 //! KEYS/NAME/ca.pem       KEYS/NAME/worker.pem   KEYS/NAME/worker.key    (one worker's folder)
 //! ```
 //!
-//! Everything that can be wrong with the files of one end is found here and told by file name,
-//! because the transport reports nothing but a time-out. Keys are read and never shown.
+//! All faults in the files of one end are detected here and reported by file name, because the transport
+//! reports nothing but a time-out. Keys are read and never displayed.
 pub mod authority;
 mod certificate;
 mod error;
@@ -32,7 +32,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Environment variable: the folder of this end's key material.
+/// Environment variable with the folder of this end's key material.
 pub const FOLDER_VARIABLE: &str = "HORSEHEAD_TLS";
 
 /// Key material that has been read and checked.
@@ -45,10 +45,10 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// Reads and checks the folder of one end.
+    /// Reads and checks the key folder of one end.
     ///
     /// # Errors
-    /// [`KeyError`], naming the file and what is wrong with it.
+    /// [`KeyError`], which names the file and the fault.
     pub fn read(folder: &Path, role: Role) -> Result<Self, KeyError> {
         let [certificate_file, _] = role.files();
         let mut keys = Self {
@@ -71,32 +71,32 @@ impl Keys {
         Ok(keys)
     }
 
-    /// The certificate's name, of a worker; empty for a coordinator.
+    /// Returns the common name of a worker's certificate; empty for a coordinator.
     pub fn owner(&self) -> &str {
         &self.owner
     }
 
-    /// The names that may join, of a coordinator; empty for a worker.
+    /// Returns the names of the workers that may join; empty for a worker's keys.
     pub const fn workers(&self) -> &BTreeSet<String> {
         &self.workers
     }
 
-    /// The names that may join by now: the list is a file that people edit while a run goes on.
+    /// Reads the names of the workers that may join from the file again, which users edit during a run.
     pub(crate) fn workers_now(&self) -> Result<BTreeSet<String>, KeyError> {
         read_workers(&self.folder.join(WORKERS))
     }
 
-    /// Path of the authority's certificate.
+    /// Returns the path of the authority's certificate.
     pub fn ca(&self) -> PathBuf {
         self.folder.join(CA)
     }
 
-    /// Path of this end's certificate.
+    /// Returns the path of this end's certificate.
     pub fn certificate(&self) -> PathBuf {
         self.folder.join(self.role.files()[0])
     }
 
-    /// Path of this end's private key.
+    /// Returns the path of this end's private key.
     pub fn key(&self) -> PathBuf {
         self.folder.join(self.role.files()[1])
     }

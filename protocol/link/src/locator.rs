@@ -1,29 +1,29 @@
-//! Addresses of the form `PROTOCOL/HOST:PORT`, and which of them may be listened on.
+//! Locators of the form `PROTOCOL/HOST:PORT`, and the check of which ones a coordinator may listen on.
 use crate::LinkError;
 use std::net::{IpAddr, TcpListener, UdpSocket};
 
-/// An address of the bus, taken apart.
+/// Parsed address of the bus.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Locator {
-    /// `tcp` or `quic`.
+    /// Protocol: `tcp` or `quic`.
     pub protocol: Protocol,
-    /// Name or address; an IPv6 address keeps its brackets.
+    /// Host name or address; an IPv6 address keeps its brackets.
     pub host: String,
-    /// Port; 0 stands for any free one where one listens.
+    /// Port; 0 in a listening address stands for any free port.
     pub port: u16,
 }
 
-/// A transport of the bus.
+/// Transport protocol of the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Protocol {
-    /// Unencrypted; for loopback.
+    /// TCP, unencrypted; for loopback.
     Tcp,
-    /// Encrypted and authenticated both ways.
+    /// QUIC, encrypted and mutually authenticated.
     Quic,
 }
 
 impl Protocol {
-    /// As written in a locator.
+    /// Returns the name used in locators.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Tcp => "tcp",
@@ -33,7 +33,7 @@ impl Protocol {
 }
 
 impl Locator {
-    /// Reads `PROTOCOL/HOST:PORT`.
+    /// Parses `PROTOCOL/HOST:PORT`.
     ///
     /// # Errors
     /// [`LinkError::Locator`] or [`LinkError::Protocol`].
@@ -64,21 +64,21 @@ impl Locator {
         })
     }
 
-    /// The host without the brackets of an IPv6 address.
+    /// Returns the host without the brackets of an IPv6 address.
     pub fn bare_host(&self) -> &str {
         self.host.trim_start_matches('[').trim_end_matches(']')
     }
 
-    /// Whether only this machine can reach it.
+    /// Returns whether the address is reachable from this machine only.
     pub fn is_loopback(&self) -> bool {
         let bare = self.bare_host();
         bare == "localhost" || bare.parse::<IpAddr>().is_ok_and(|ip| ip.is_loopback())
     }
 
-    /// Whether a coordinator may listen on it.
+    /// Checks whether a coordinator may listen on the address.
     ///
     /// # Errors
-    /// [`LinkError::Exposed`] for unencrypted addresses that others can reach, unless `insecure`.
+    /// [`LinkError::Exposed`] for unencrypted addresses that other machines can reach, unless `insecure`.
     pub fn permit(&self, insecure: bool) -> Result<(), LinkError> {
         match self.protocol {
             Protocol::Quic => Ok(()),
@@ -89,7 +89,7 @@ impl Locator {
         }
     }
 
-    /// The same address with a free port in place of 0.
+    /// Returns the address with port 0 replaced by a free port.
     ///
     /// # Errors
     /// [`LinkError::Transport`] if the machine has none.
@@ -110,7 +110,8 @@ impl Locator {
         Ok(self)
     }
 
-    /// Where a worker on the same machine connects to a coordinator that listens here.
+    /// Returns the address by which a worker on the same machine connects to a coordinator that listens on
+    /// this address.
     #[must_use]
     pub fn from_here(&self) -> Self {
         let host = match self.host.as_str() {

@@ -1,6 +1,6 @@
-//! A link within one process that misbehaves on purpose: seeded loss, duplication, delay.
+//! Link within one process with simulated faults: seeded loss, duplication and delay.
 //!
-//! Reordering needs no rule of its own: each copy of a frame waits its own time.
+//! Reordering needs no rule of its own, because each copy of a frame has its own delay.
 use crate::{Blob, CoordinatorEnd, Heard, LinkError, WorkerEnd};
 use protocol::{
     id::{ContentHash, RunId, WorkerId, draw},
@@ -17,21 +17,21 @@ use std::{
 };
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
-/// How the link misbehaves.
+/// Fault model of a memory link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Faults {
-    /// Where the draws begin.
+    /// Seed of the pseudo-random draws.
     pub seed: u64,
     /// Share of frames that are lost \[1\].
     pub loss: f64,
     /// Share of frames that arrive twice \[1\].
     pub duplication: f64,
-    /// Longest delay of a frame.
+    /// Maximum delay of a frame; delays are uniform between 0 and this value.
     pub delay: Duration,
 }
 
 impl Faults {
-    /// A link that does what it should.
+    /// Link without faults.
     pub const NONE: Self = Self {
         seed: 0,
         loss: 0.0,
@@ -40,7 +40,7 @@ impl Faults {
     };
 }
 
-/// What the ends share.
+/// State shared by the ends of a memory link.
 #[derive(Debug)]
 struct Shared {
     faults: Faults,
@@ -51,14 +51,14 @@ struct Shared {
 }
 
 impl Shared {
-    /// A uniform number in [0, 1).
+    /// Draws a uniform number in [0, 1).
     fn draw(&self) -> f64 {
         let count = self.drawn.fetch_add(1, Ordering::Relaxed);
         let place = u128::from(self.faults.seed) << 64 | u128::from(count);
         (draw("faults", place) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Hands something on as often and as late as the faults say.
+    /// Delivers a frame zero, one or two times, each time with a delay, according to the fault model.
     fn pass(&self, deliver: impl Fn() + Send + Clone + 'static) {
         let copies = if self.draw() < self.faults.loss {
             0
@@ -82,12 +82,12 @@ impl Shared {
     }
 }
 
-/// Where workers join.
+/// Connection point through which workers join a memory link.
 #[derive(Clone, Debug)]
 pub struct Hub(Arc<Shared>);
 
 impl Hub {
-    /// A coordinator's end, and the place where workers join it.
+    /// Creates a coordinator's end and the hub through which workers join it.
     pub fn new(faults: Faults, blob: Blob) -> (MemoryCoordinator, Self) {
         let (to_coordinator, heard) = unbounded_channel();
         let shared = Arc::new(Shared {
@@ -104,7 +104,7 @@ impl Hub {
         (coordinator, Self(shared))
     }
 
-    /// A worker's end.
+    /// Creates a worker's end.
     pub fn worker(&self, id: WorkerId) -> MemoryWorker {
         let (sender, frames) = unbounded_channel();
         self.0
@@ -120,7 +120,7 @@ impl Hub {
     }
 }
 
-/// The coordinator's end of a memory link.
+/// Coordinator's end of a memory link.
 #[derive(Debug)]
 pub struct MemoryCoordinator {
     shared: Arc<Shared>,
@@ -158,7 +158,7 @@ impl CoordinatorEnd for MemoryCoordinator {
     }
 }
 
-/// A worker's end of a memory link; dropping it is seen as a loss.
+/// Worker's end of a memory link; the coordinator sees its drop as a loss of the worker.
 #[derive(Debug)]
 pub struct MemoryWorker {
     id: WorkerId,

@@ -1,21 +1,21 @@
-//! What a list of unknowns must be before anybody searches in it.
+//! Validation of a list of unknowns before a search.
 use super::unknown::{Scale, Unknown};
 use std::fmt;
 
-/// An unknown that cannot be searched as it is stated.
+/// Unknown with a fault that prevents a search.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BadUnknown {
-    /// Its position in the list.
+    /// Position of the unknown in the list.
     pub position: usize,
-    /// Its name.
+    /// Name of the unknown.
     pub name: String,
-    /// Which field is wrong, as case files call it.
+    /// Field with the fault, named as in case files.
     pub field: &'static str,
-    /// What that is.
+    /// Value found.
     pub found: String,
-    /// What it may be.
+    /// Description of the allowed values.
     pub allowed: String,
-    /// What to do about it.
+    /// Remedy.
     pub remedy: &'static str,
 }
 
@@ -38,12 +38,12 @@ impl fmt::Display for BadUnknown {
 
 impl std::error::Error for BadUnknown {}
 
-/// Checks a list of unknowns: names, bounds, starts, and what they say of each other.
+/// Checks a list of unknowns: names, bounds, starts, prior knowledge and references to each other.
 ///
-/// Bounds are those of a search: of an unknown that is fixed or tied they are not looked at.
+/// Bounds are those of a search, so they are not checked for unknowns that are fixed or tied.
 ///
 /// # Errors
-/// The first that does not hold.
+/// The first fault found.
 pub fn check_unknowns(unknowns: &[Unknown]) -> Result<(), BadUnknown> {
     let list = List { unknowns };
     for position in 0..unknowns.len() {
@@ -94,7 +94,7 @@ impl List<'_> {
         Ok(())
     }
 
-    /// Numbers, in order, and positive where only that has a logarithm.
+    /// Checks that start and bounds are finite, in order, and positive on a logarithmic scale.
     fn values(&self, position: usize) -> Result<(), BadUnknown> {
         let unknown = &self.unknowns[position];
         let Unknown {
@@ -130,14 +130,15 @@ impl List<'_> {
         Ok(())
     }
 
-    /// What is known beside the bounds: trust, prior, absence, valley.
+    /// Checks the optional information: trusted interval, prior, absent value, difference step, suspect and
+    /// valley.
     fn knowledge(&self, position: usize) -> Result<(), BadUnknown> {
         let unknown = &self.unknowns[position];
         if let Some([from, to]) = unknown.trust
             && !(from <= 0.0 && 0.0 <= to && from < to)
         {
             let found = format!("[{from}, {to}]");
-            let allowed = "from 0 or less to 0 or more, counted from the start";
+            let allowed = "an interval that contains 0, the start";
             let remedy = "widen it, or leave it out";
             return Err(self.bad(position, "trust", (found, allowed), remedy));
         }
@@ -168,7 +169,7 @@ impl List<'_> {
         }
         if unknown.suspect.is_some() && unknown.absent.is_none() {
             let found = "without `absent`";
-            let allowed = "said of an unknown with a value at which it does nothing";
+            let allowed = "given only together with `absent`";
             let remedy = "state `absent`, or leave it out";
             return Err(self.bad(position, "suspect", (found, allowed), remedy));
         }
@@ -196,7 +197,7 @@ impl List<'_> {
         Ok(())
     }
 
-    /// A tie leads, at once or by way of others, to an unknown that moves.
+    /// Checks that a tie leads, directly or through other ties, to an unknown that is neither fixed nor tied.
     fn tie(&self, position: usize) -> Result<(), BadUnknown> {
         let unknown = &self.unknowns[position];
         let Some(tie) = &unknown.tie else {
@@ -235,7 +236,7 @@ impl List<'_> {
         )
     }
 
-    /// It starts where its tie puts it.
+    /// Checks that the start of a tied unknown equals the value given by its tie.
     fn tied_start(&self, position: usize) -> Result<(), BadUnknown> {
         let unknown = &self.unknowns[position];
         let tie = unknown.tie.as_ref();
@@ -279,7 +280,7 @@ mod tests {
         }
     }
 
-    /// The field of the first that is wrong, and the message.
+    /// Returns the field and the message of the first fault.
     fn refused(unknowns: &[Unknown]) -> (&'static str, String) {
         let bad = check_unknowns(unknowns).unwrap_err();
         (bad.field, bad.to_string())

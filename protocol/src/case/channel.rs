@@ -1,43 +1,45 @@
-//! What a simulation shows and a record measures: curves, each with a name, a unit and the places
-//! where its values stand. It knows nothing of the machine that they belong to.
+//! Channels: simulated and measured curves, each with a name, a unit and an abscissa. Independent of the
+//! machine.
 use super::objective::Offset;
 use serde::{Deserialize, Serialize};
 
-/// One curve of a simulation under one condition, and what was measured of it.
+/// Signal of a simulation under one condition, with its measured record if there is one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Channel {
-    /// Short name that no other channel of its condition has, as `force`.
+    /// Short name, unique within its condition, e.g. `force`.
     pub name: String,
-    /// The name in words, as `force at the support`.
+    /// Description in words, e.g. `force at the support`.
     pub title: String,
-    /// Unit of its values, as written; nothing converts it.
+    /// Unit of the values, as text; no conversion is made.
     pub unit: String,
     /// Index of its condition in the case.
     pub condition: usize,
-    /// Where its values stand.
+    /// Abscissa of the values.
     pub abscissa: Abscissa,
-    /// Standard deviation of the noise of one value, in [`Self::unit`]; none where nobody states it.
+    /// Standard deviation of the measurement noise of one value, in [`Self::unit`]; `None` if not stated.
     pub noise: Option<f64>,
-    /// The worker rounds the curve to whole multiples of two to this power, far below the noise, so
-    /// that it travels and is kept in a fifth of the bytes (`crate::curve`); none leaves it exact.
+    /// Exponent of the rounding step: the worker rounds the curve to whole multiples of two to this power,
+    /// far below the noise, which reduces its encoded size to a fifth (`crate::curve`). `None` leaves the
+    /// curve exact.
     pub step: Option<i32>,
-    /// Factor of each value's difference before anything is done with it: a value of weight 2 counts four
-    /// times, and its noise is half of [`Self::noise`]. Positive; empty where all count alike.
+    /// Weights of the values: each difference is multiplied by its weight before further use, so a value of
+    /// weight 2 counts four times and its noise is half of [`Self::noise`]. Positive; empty where all weights
+    /// are 1.
     #[serde(with = "crate::curve")]
     pub weights: Vec<f64>,
-    /// Whether its values have a zero.
+    /// Whether the values have an absolute zero.
     pub offset: Offset,
-    /// What was measured, as scores compare it; none where nothing is compared.
+    /// Measured record used for scoring; `None` for a channel that was not measured.
     pub record: Option<ChannelRecord>,
 }
 
 impl Channel {
-    /// Whether its values have a zero, so that the constant of a difference counts.
+    /// Returns whether the values have an absolute zero, so that a constant difference counts as an error.
     pub fn is_absolute(&self) -> bool {
         self.offset == Offset::Fixed
     }
 
-    /// Multiplies a curve's differences by the weights of their values.
+    /// Multiplies the differences of a curve by the weights of their values.
     pub fn weigh(&self, differences: &mut [f64]) {
         for (difference, weight) in differences.iter_mut().zip(&self.weights) {
             *difference *= weight;
@@ -45,30 +47,29 @@ impl Channel {
     }
 }
 
-/// The axis along which a curve is given.
+/// Abscissa along which a curve is given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Abscissa {
-    /// What is counted along it, as `time`.
+    /// Name of its quantity, e.g. `time`.
     pub name: String,
-    /// Its unit, as written.
+    /// Unit, as text.
     pub unit: String,
-    /// Where the values stand, ascending.
+    /// Positions of the values, ascending.
     #[serde(with = "crate::curve")]
     pub points: Vec<f64>,
-    /// After how much the curve begins anew; none where it does not.
+    /// Period after which the curve repeats; `None` for a curve that is not periodic.
     pub period: Option<f64>,
 }
 
-/// What was measured of a channel, averaged over repeated cycles, on its abscissa.
+/// Measured record of a channel, averaged over repeated cycles and sampled on the channel's abscissa.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChannelRecord {
-    /// Number of cycles that were averaged.
+    /// Number of cycles averaged.
     pub cycles: usize,
     /// Mean over the cycles, in the channel's unit.
     #[serde(with = "crate::curve")]
     pub mean: Vec<f64>,
-    /// Standard deviation between the cycles, in the channel's unit; zeros where there is one cycle
-    /// only.
+    /// Standard deviation between the cycles, in the channel's unit; zeros if there is only one cycle.
     #[serde(with = "crate::curve")]
     pub spread: Vec<f64>,
 }

@@ -1,9 +1,9 @@
-//! Working conditions.
+//! Working conditions of a case.
 use serde::{Deserialize, Serialize};
 
-/// One working condition.
+/// Working condition under which the machine is simulated and measured, such as a speed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Condition {
-    /// Short name, as `5rpm`.
+    /// Short name, e.g. `5rpm`.
     pub name: String,
 }

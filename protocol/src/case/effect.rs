@@ -1,21 +1,21 @@
-//! Effects that a case adds to its machine: ordinary physics, named and sized.
+//! Effects that a case adds to its machine, each a named physical effect with parameter values.
 //!
-//! What effects there are, and what their numbers mean, is a model's business: it comes in a
-//! worker's announcement ([`crate::announce::EffectDescriptor`]). Here they are names and numbers.
+//! The available effects and the meaning of their parameters are defined by the model and described in a
+//! worker's announcement ([`crate::announce::EffectDescriptor`]). This module holds only names and numbers.
 use serde::{Deserialize, Serialize};
 
-/// One effect with its numbers.
+/// Effect with its parameter values.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EffectSetting {
-    /// Fixed identifier, as `pivot_friction`.
+    /// Fixed identifier, e.g. `pivot_friction`.
     pub id: String,
-    /// Names and values, in the units that the effect declares. What is not named keeps the value
-    /// that the model gives it: absent for a size, typical for a shape.
+    /// Names and values of parameters, in the units declared by the effect. Parameters not listed keep the
+    /// model's default: the absent value for a size, the typical value for a shape.
     pub parameters: Vec<(String, f64)>,
 }
 
 impl EffectSetting {
-    /// An effect with its numbers.
+    /// Creates an effect from its identifier and parameter values.
     pub fn new(id: &str, parameters: &[(&str, f64)]) -> Self {
         Self {
             id: id.to_owned(),
@@ -27,7 +27,7 @@ impl EffectSetting {
     }
 }
 
-/// The effects of a case with those of a job added: an effect that both name is the job's.
+/// Combines the effects of a case with those of a job; an effect named by both is taken from the job.
 pub fn merged(case: &[EffectSetting], job: &[EffectSetting]) -> Vec<EffectSetting> {
     let kept = case
         .iter()

@@ -1,8 +1,8 @@
-//! A case, resolved: everything a worker needs to simulate a machine and to score it against its
-//! records, as plain data with the unit in every name.
+//! Resolved case: all data that a worker needs to simulate a machine and to score it against its records, as
+//! plain data with the unit in every name.
 //!
-//! The coordinator reads and validates case *files* and builds this; its encoded bytes travel as
-//! one blob, named by their content hash. Nothing here knows of files, of TOML or of dynamics.
+//! The coordinator reads and validates case *files* and builds a [`Case`]; its encoded bytes travel as one
+//! blob, identified by their content hash. This module is independent of files, of TOML and of dynamics.
 mod bad_unknown;
 mod channel;
 mod condition;
@@ -21,45 +21,47 @@ pub use unknown::{Prior, Scale, Shares, Shift, Tie, Unknown, Valley};
 
 use serde::{Deserialize, Serialize};
 
-/// A machine, its records and what is asked of them. Its default is empty: enough for jobs that do nothing.
+/// Machine with its measured records and its objective. The default is an empty case, which suffices for jobs
+/// that simulate nothing.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Case {
     /// Name of the machine.
     pub name: String,
-    /// Which model simulates it, and what that model alone understands.
+    /// Kind of model and its model-specific settings.
     pub model: ModelSettings,
-    /// What the model has beside that: effects with their numbers.
+    /// Effects added to the model, with their parameter values.
     pub effects: Vec<EffectSetting>,
-    /// Units in which the case states those numbers, effect by effect in the same order; a worker
-    /// refuses one that is not its own. Empty where nobody stated any.
+    /// Units in which the case states the parameters of [`Self::effects`], per effect and in the same order;
+    /// a worker refuses a unit other than its own. Empty if none were stated.
     pub effect_units: Vec<Vec<String>>,
-    /// The unknown numbers, in the order of every individual's values; parameters of
-    /// [`Self::effects`] start at the values that they have there.
+    /// Unknowns, in the order of every individual's values; those that are parameters of [`Self::effects`]
+    /// start at the values given there.
     pub unknowns: Vec<Unknown>,
     /// Working conditions.
     pub conditions: Vec<Condition>,
-    /// What a simulation shows under each condition, with what was measured of it.
+    /// Channels of the simulation under each condition, with their measured records.
     pub channels: Vec<Channel>,
-    /// What a calibration minimises.
+    /// Objective that a calibration minimises.
     pub objective: Objective,
 }
 
 impl Case {
-    /// Position of a condition by its name.
+    /// Returns the index of a condition by its name.
     pub fn condition(&self, name: &str) -> Option<usize> {
         self.conditions
             .iter()
             .position(|condition| condition.name == name)
     }
 
-    /// The channels of a condition with their places in [`Self::channels`], in the order in which
-    /// replies give their curves.
+    /// Returns the channels of a condition with their indices in [`Self::channels`], in the order of the
+    /// curves in replies.
     pub fn channels_of(&self, condition: usize) -> impl Iterator<Item = (usize, &Channel)> {
         let channels = self.channels.iter().enumerate();
         channels.filter(move |(_, channel)| channel.condition == condition)
     }
 
-    /// The channels of a condition that were measured, with their places and records.
+    /// Returns the measured channels of a condition, with their indices in [`Self::channels`] and their
+    /// records.
     pub fn measured(
         &self,
         condition: usize,
@@ -68,12 +70,12 @@ impl Case {
             .filter_map(|(at, channel)| Some((at, channel, channel.record.as_ref()?)))
     }
 
-    /// Whether anything was measured under a condition.
+    /// Returns whether any channel was measured under a condition.
     pub fn is_measured(&self, condition: usize) -> bool {
         self.measured(condition).next().is_some()
     }
 
-    /// The unit of the channels that the objective sums; none where they have not one in common.
+    /// Returns the common unit of the channels in the objective; `None` if their units differ.
     pub fn objective_unit(&self) -> Option<&str> {
         let mut units = self.objective.terms.iter().filter_map(|term| {
             let channel = self.channels.iter().find(|it| it.name == term.channel)?;
@@ -83,13 +85,13 @@ impl Case {
         units.all(|unit| unit == first).then_some(first)
     }
 
-    /// The values that a search starts from, in declared units.
+    /// Returns the start values of the unknowns, in declared units.
     pub fn start(&self) -> Vec<f64> {
         self.unknowns.iter().map(|unknown| unknown.start).collect()
     }
 
-    /// Whether parameters of effects are among the unknowns: then every individual is a machine of
-    /// its own.
+    /// Returns whether any unknown is a parameter of an effect, in which case each individual needs a machine
+    /// model of its own.
     pub fn has_unknown_effects(&self) -> bool {
         let mut unknowns = self.unknowns.iter();
         unknowns.any(|unknown| unknown.of_effect().is_some())

@@ -1,37 +1,37 @@
-//! Which model a case is of, and what that model alone understands of it.
+//! Kind of model of a case, with its model-specific settings.
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-/// A model's own part of a case. Everybody else carries it as it is.
+/// Model-specific part of a case, opaque to everything except the model.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ModelSettings {
-    /// Name of the kind of model; workers announce which kinds they simulate.
+    /// Name of the kind of model; workers announce the kinds that they simulate.
     pub kind: String,
-    /// What the model alone understands; hexadecimal digits in files of text.
+    /// Encoded settings understood only by the model; written as hexadecimal digits in text formats.
     #[serde(serialize_with = "write", deserialize_with = "read")]
     pub settings: Vec<u8>,
-    /// How equal the results of equal jobs are.
+    /// Reproducibility of the results.
     pub repeats: Repeats,
-    /// How long one simulation may take (s), where the model itself ends it; none where that follows from how long
-    /// others took.
+    /// Time limit of one simulation (s), where the model enforces one itself; `None` if the limit follows
+    /// from the duration of other simulations.
     pub deadline_s: Option<f64>,
 }
 
-/// How equal the results of equal jobs are on all machines. Where their bits are not, the first result counts and
-/// nobody is asked for the same thing twice.
+/// Reproducibility of the results of equal jobs across machines. Where results are not bitwise equal, the
+/// first result counts and no job is computed twice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Repeats {
-    /// Every bit of them.
+    /// Bitwise equal.
     #[default]
     Bits,
-    /// Values differ by no more than this share of their channel's root mean square.
+    /// Equal within this fraction of the root mean square of each channel.
     Within(f64),
-    /// Nobody says.
+    /// Unknown reproducibility.
     Unknown,
 }
 
 impl ModelSettings {
-    /// Of a model that computes the same bits everywhere.
+    /// Creates the settings of a model with bitwise reproducible results.
     pub const fn exact(kind: String, settings: Vec<u8>) -> Self {
         Self {
             kind,

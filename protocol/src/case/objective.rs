@@ -1,24 +1,24 @@
-//! What a calibration minimises: mean squared errors of chosen channels.
+//! Objective of a calibration: weighted mean squared errors of selected channels.
 use serde::{Deserialize, Serialize};
 
 /// Weighted sum of mean squared errors.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Objective {
-    /// Index of the condition that is calibrated, the first one of several.
+    /// Index of the calibrated condition; the first if there are several.
     pub condition: usize,
-    /// Further conditions that are calibrated with it: an individual is simulated under each, and their sums are
-    /// added up.
+    /// Indices of further calibrated conditions: an individual is simulated under each, and the weighted sums
+    /// are added.
     pub others: Vec<usize>,
-    /// What is summed; the same under every condition that is scored.
+    /// Terms of the sum, the same under every scored condition.
     pub terms: Vec<Term>,
 }
 
-/// One channel of an objective.
+/// Channel in an objective, with its weight.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Term {
     /// Name of the channel.
     pub channel: String,
-    /// Factor of its mean squared error.
+    /// Factor on the mean squared error of the channel.
     pub weight: f64,
 }
 
@@ -26,25 +26,25 @@ pub struct Term {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Offset {
-    /// The sensor has no absolute zero: the mean difference is removed first, and only how it moves counts.
+    /// No absolute zero: the mean difference is removed first, so only the variation counts.
     #[default]
     Free,
-    /// Absolute values are compared: the constant of a difference counts.
+    /// Absolute zero: a constant difference counts as an error.
     Fixed,
 }
 
 impl Objective {
-    /// The conditions that are calibrated, the first one first.
+    /// Returns the indices of the calibrated conditions, beginning with [`Self::condition`].
     pub fn conditions(&self) -> impl Iterator<Item = usize> {
         std::iter::once(self.condition).chain(self.others.iter().copied())
     }
 
-    /// Whether a condition is calibrated.
+    /// Returns whether a condition is calibrated.
     pub fn holds(&self, condition: usize) -> bool {
         self.conditions().any(|own| own == condition)
     }
 
-    /// Whether a channel of this name is summed.
+    /// Returns whether a channel of this name is part of the objective.
     pub fn names(&self, channel: &str) -> bool {
         self.terms.iter().any(|term| term.channel == channel)
     }

@@ -1,115 +1,117 @@
-//! The unknown numbers of a case: what a search moves, and what is known of each before it starts.
+//! Unknowns of a case: the numbers that a search varies, with the knowledge about each before the search.
 //!
-//! Steps of a search are in *coordinates*, 0 at the start: decades on a logarithmic scale, halves of the
-//! interval on a linear one. Nothing here knows what an unknown means to the model that it belongs to.
+//! Steps of a search are measured in *coordinates*, 0 at the start: decades on a logarithmic scale, halves of
+//! the interval on a linear one. This module is independent of the meaning of an unknown in its model.
 use serde::{Deserialize, Serialize};
 
-/// How equal steps of a search change a value.
+/// Scale of an unknown: effect of equal search steps on its value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scale {
-    /// By equal factors: what is positive and known to an order of magnitude.
+    /// Equal steps multiply by equal factors; for positive values known to an order of magnitude.
     Logarithmic,
-    /// By equal amounts: what may be zero or negative.
+    /// Equal steps add equal amounts; for values that may be zero or negative.
     Linear,
 }
 
-/// One unknown number with the interval to search.
+/// Unknown with its search interval.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Unknown {
-    /// Its name in files and tables. That of an effect's parameter is `effect.parameter`.
+    /// Name in files and tables; `effect.parameter` for a parameter of an effect.
     pub name: String,
-    /// What it is, in words.
+    /// Description in words.
     pub title: String,
-    /// Its symbol, an index behind `_`; the name where it has none.
+    /// Symbol, with an index after `_`; the name if the unknown has no symbol.
     pub symbol: String,
-    /// Unit of its values, a word.
+    /// Unit of the values, as text.
     pub unit: String,
-    /// How equal steps change it.
+    /// Scale on which the unknown is searched.
     pub scale: Scale,
-    /// Where a search starts: its recommended value.
+    /// Start value of a search: the recommended value.
     pub start: f64,
-    /// Smallest value to search.
+    /// Lower bound of the search.
     pub lower: f64,
-    /// Largest value to search.
+    /// Upper bound of the search.
     pub upper: f64,
-    /// From where to where models usually survive (coordinates); the whole interval where nobody knows.
+    /// Interval in which simulations usually succeed (coordinates); `None` for the whole search interval.
     pub trust: Option<[f64; 2]>,
-    /// Its valley, if that is too narrow to be met by chance.
+    /// Valley of the objective along this unknown, if it is too narrow to be found by random sampling.
     pub valley: Option<Valley>,
-    /// What is known of it beside its bounds.
+    /// Prior knowledge of the value in addition to the bounds.
     pub prior: Option<Prior>,
-    /// The value at which it does nothing, if there is one. Where it starts there it is off: held, and
-    /// not searched.
+    /// Value at which the unknown has no effect, if there is one. An unknown that starts at this value is
+    /// switched off: held there and not searched.
     pub absent: Option<f64>,
-    /// Whether it is held at its start.
+    /// Whether the unknown is held at its start.
     pub fixed: bool,
-    /// The unknown that it follows, if it follows one.
+    /// Tie to another unknown, if this one follows another.
     pub tie: Option<Tie>,
-    /// What differences move it by (coordinate), where its model says what suits it.
+    /// Finite-difference step (coordinate), if the model states a suitable one.
     pub step: Option<f64>,
-    /// Name of what is suspected together with it where it is off: unknowns of one suspect act together.
+    /// Name of the suspected cause to which the unknown belongs while it is switched off; unknowns with the
+    /// same name are switched on together.
     pub suspect: Option<String>,
 }
 
-/// How the valley of an unknown is found: by scanning it on a grid, along several lines.
+/// Scan for the valley of an unknown: a grid of values along several lines.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Valley {
-    /// Where the grid begins (coordinate).
+    /// First grid value (coordinate).
     pub from: f64,
-    /// Where it ends (coordinate).
+    /// Last grid value (coordinate).
     pub to: f64,
-    /// Its spacing, about the width of the valley (coordinate).
+    /// Grid spacing, about the width of the valley (coordinate).
     pub step: f64,
-    /// Other unknowns that can hide the valley, each with the shift that uncovers it. A search scans
-    /// with every set of them.
+    /// Other unknowns that can hide the valley, each with the shift that reveals it. A search scans with
+    /// every subset of these shifts.
     pub uncovered_by: Vec<Shift>,
-    /// The unknown that must lie near a share of the scanned one for the valley to show. A diagnosis
-    /// scans with every share.
+    /// Unknown that must lie near a fraction of the scanned one for the valley to show. A diagnosis scans
+    /// with every fraction.
     pub shares: Option<Shares>,
-    /// What else can stand in for the scanned one: further sets of lines of a diagnosis, one per shift.
+    /// Shifts of other unknowns that can compensate for a wrong value of the scanned one; a diagnosis scans
+    /// an additional set of lines for each.
     pub stand_ins: Vec<Shift>,
 }
 
-/// An unknown moved for a whole line of a scan.
+/// Displacement of an unknown along a whole line of a scan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shift {
-    /// Its name.
+    /// Name of the displaced unknown.
     pub unknown: String,
-    /// By how much (coordinate).
+    /// Displacement (coordinate).
     pub by: f64,
 }
 
-/// An unknown held at shares of another.
+/// Unknown held at fractions of the scanned unknown.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shares {
-    /// Its name.
+    /// Name of the held unknown.
     pub unknown: String,
-    /// Its value over that of the scanned one, one per set of lines [its unit over that of the scanned].
+    /// Ratios of the held unknown's value to the scanned one's, one per set of lines [held unit / scanned
+    /// unit].
     pub of_scanned: Vec<f64>,
 }
 
-/// What is known of an unknown before anything is measured: a value, and how far from it the truth is
-/// rarely found.
+/// Prior of an unknown, i.e. its knowledge before any measurement: most likely value and standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Prior {
-    /// The likeliest value [the unknown's unit].
+    /// Most likely value [the unknown's unit].
     pub value: f64,
-    /// One standard deviation (coordinate).
+    /// Standard deviation (coordinate).
     pub deviation: f64,
 }
 
-/// Always this ratio of another unknown.
+/// Fixed ratio of an unknown to another unknown.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tie {
-    /// Name of the other one.
+    /// Name of the other unknown.
     pub to: String,
-    /// Its value over that of the other [its unit over that of the other].
+    /// Value of the tied unknown divided by that of the other [tied unit / other unit].
     pub ratio: f64,
 }
 
 impl Unknown {
-    /// One that is searched, and of which no more is known.
+    /// Creates an unknown that is searched, without optional information.
     pub fn new(
         name: impl Into<String>,
         unit: impl Into<String>,
@@ -138,12 +140,12 @@ impl Unknown {
         }
     }
 
-    /// Whether it starts where it does nothing: then it is held there.
+    /// Returns whether the unknown is switched off, i.e. starts at its absent value and is held there.
     pub fn is_off(&self) -> bool {
         self.absent == Some(self.start)
     }
 
-    /// Effect and parameter, if it is a parameter of one of the case's effects.
+    /// Returns the names of effect and parameter if the unknown is a parameter of an effect.
     pub fn of_effect(&self) -> Option<(&str, &str)> {
         self.name.split_once('.')
     }

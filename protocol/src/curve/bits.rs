@@ -1,16 +1,16 @@
-//! Rice's code of whole numbers, bit by bit; it knows nothing of curves.
+//! Rice coding of whole numbers at the level of bits, independent of curves.
 
-/// The most bits of a difference below its run of ones.
+/// Maximum number of low bits of a difference, i.e. of the Rice parameter.
 pub(super) const WIDEST: u8 = 32;
-/// So many ones announce a whole difference instead of its upper part.
+/// Number of ones that marks an escape: the whole difference follows instead of its upper part.
 const LONGEST_RUN: u64 = 24;
 
-/// Why bytes are no curve.
+/// Error for bytes that are not an encoded curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("bytes that are no curve: {0}")]
+#[error("invalid curve encoding: {0}")]
 pub(super) struct Malformed(pub(super) &'static str);
 
-/// Bits that the code of numbers takes whose lower parts have so many.
+/// Returns the number of bits of the Rice code of all differences with `width` low bits each.
 pub(super) fn coded_bits(differences: &[u64], width: u8) -> u64 {
     let coded = |difference: &u64| match difference >> width {
         high @ 0..LONGEST_RUN => high + 1 + u64::from(width),
@@ -19,14 +19,14 @@ pub(super) fn coded_bits(differences: &[u64], width: u8) -> u64 {
     differences.iter().map(coded).sum()
 }
 
-/// Bits one after the other, the lowest of a byte first.
+/// Writer of single bits, beginning with the lowest bit of each byte.
 pub(super) struct BitWriter {
     pub(super) bytes: Vec<u8>,
     at: usize,
 }
 
 impl BitWriter {
-    /// Behind bytes, with room for so many bits.
+    /// Creates a writer that appends to `bytes`, with room for `bits` bits.
     pub(super) fn after(mut bytes: Vec<u8>, bits: u64) -> Self {
         let at = 8 * bytes.len();
         let more = usize::try_from(bits.div_ceil(8)).unwrap_or_default();
@@ -34,7 +34,7 @@ impl BitWriter {
         Self { bytes, at }
     }
 
-    /// Adds a difference whose lower part has so many bits.
+    /// Appends the Rice code of a difference with `width` low bits.
     pub(super) fn difference(&mut self, difference: u64, width: u8) {
         let high = difference >> width;
         if high < LONGEST_RUN {
@@ -46,7 +46,7 @@ impl BitWriter {
         }
     }
 
-    /// Adds the lowest bits of a number.
+    /// Appends the lowest `bits` bits of a number.
     fn put(&mut self, number: u64, bits: u64) {
         for place in 0..bits {
             if let Some(byte) = self.bytes.get_mut(self.at / 8) {
@@ -57,7 +57,7 @@ impl BitWriter {
     }
 }
 
-/// Reads what a [`BitWriter`] wrote.
+/// Reader of the output of a [`BitWriter`].
 pub(super) struct BitReader<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -69,7 +69,10 @@ impl<'a> BitReader<'a> {
     }
 
     fn bit(&mut self) -> Result<u64, Malformed> {
-        let byte = self.bytes.get(self.at / 8).ok_or(Malformed("it is cut"))?;
+        let byte = self
+            .bytes
+            .get(self.at / 8)
+            .ok_or(Malformed("the bytes end too early"))?;
         let bit = byte >> (self.at % 8) & 1;
         self.at += 1;
         Ok(u64::from(bit))
@@ -83,7 +86,7 @@ impl<'a> BitReader<'a> {
         Ok(number)
     }
 
-    /// Takes a difference whose lower part has so many bits.
+    /// Reads the Rice code of a difference with `width` low bits.
     ///
     /// # Errors
     /// [`Malformed`] at the end of the bytes.

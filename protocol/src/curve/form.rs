@@ -1,20 +1,22 @@
-//! A curve as bytes: multiples of a step by their differences, or doubles.
+//! Encoding of a curve as bytes: differences of multiples of a step, or doubles.
 use super::bits::{BitReader, BitWriter, Malformed, WIDEST, coded_bits};
 
-/// First byte of a curve that travels as doubles; otherwise it is the order of the differences.
+/// First byte of a curve encoded as doubles; in the short form the first byte is the order of the
+/// differences.
 const DOUBLES: u8 = 255;
-/// Highest order of the differences: beyond it rounding grows faster than a curve's own bends shrink.
+/// Highest order of the differences; at higher orders the rounding error grows faster than the differences of
+/// a smooth curve shrink.
 const HIGHEST_ORDER: u8 = 4;
-/// A multiple must be a whole number that a double can hold.
+/// Maximum magnitude of a multiple, such that a double represents all smaller whole numbers exactly.
 pub(super) const MOST_MULTIPLE: i64 = 1 << 53;
-/// The most samples in the short form, so that a message takes little more memory than it has bytes;
-/// longer curves travel as doubles.
+/// Maximum number of samples in the short form, which bounds the memory needed to decode a message; longer
+/// curves are encoded as doubles.
 pub(super) const MOST_SAMPLES: usize = 1 << 16;
-/// Exponents of steps whose multiples and reciprocals are ordinary numbers.
+/// Exponents of steps for which all multiples and the reciprocal are normal numbers.
 const EXPONENTS: std::ops::RangeInclusive<i32> = -512..=400;
 const OUT_OF_RANGE: Malformed = Malformed("a value is out of range");
 
-/// The bytes of a curve.
+/// Encodes a curve in the shorter of the two forms.
 pub(super) fn encode(curve: &[f64]) -> Vec<u8> {
     if curve.is_empty() {
         return Vec::new();
@@ -31,7 +33,8 @@ pub(super) fn encode(curve: &[f64]) -> Vec<u8> {
         })
 }
 
-/// The greatest power of two that all values are whole multiples of, and the multiples.
+/// Returns the exponent of the greatest power of two that divides all values, and the multiples of it; `None`
+/// if the curve has no short form.
 fn multiples(curve: &[f64]) -> Option<(i32, Vec<i64>)> {
     let is_plain = |value: &f64| value.is_finite() && (*value != 0.0 || value.is_sign_positive());
     if curve.len() > MOST_SAMPLES || !curve.iter().all(is_plain) {
@@ -56,7 +59,7 @@ fn multiples(curve: &[f64]) -> Option<(i32, Vec<i64>)> {
     Some((exponent, multiples))
 }
 
-/// The exponent of the lowest bit that is set in a finite number other than zero.
+/// Returns the exponent of the lowest set bit of a finite nonzero number.
 const fn lowest_bit(value: f64) -> i32 {
     let bits = value.to_bits();
     let exponent = ((bits >> 52) & 0x7ff) as i32;
@@ -69,12 +72,12 @@ const fn lowest_bit(value: f64) -> i32 {
     exponent - 1075 + mantissa.trailing_zeros().cast_signed()
 }
 
-/// Two to the exponent, exactly.
+/// Returns two to the power of `exponent`, exactly.
 pub(super) fn power(exponent: i32) -> f64 {
     2.0_f64.powi(exponent)
 }
 
-/// The shortest form of multiples.
+/// Encodes multiples in the short form with the order and width that give the fewest bits.
 fn short(exponent: i32, multiples: &[i64]) -> Vec<u8> {
     let forms = (0..=HIGHEST_ORDER).map(|order| {
         let differences = differences(order, multiples);
@@ -97,7 +100,8 @@ fn short(exponent: i32, multiples: &[i64]) -> Vec<u8> {
     to.bytes
 }
 
-/// Differences of an order, as if zeros went before; signs in the lowest bit.
+/// Returns the differences of the given order, with zeros before the first sample; zigzag-coded, i.e. with
+/// the sign in the lowest bit.
 fn differences(order: u8, multiples: &[i64]) -> Vec<u64> {
     let mut before = [0; HIGHEST_ORDER as usize];
     let difference = |multiple: &i64| {
@@ -110,7 +114,8 @@ fn differences(order: u8, multiples: &[i64]) -> Vec<u64> {
     multiples.iter().map(difference).collect()
 }
 
-/// How many bits the middle one of all differences has: those of the ends are large.
+/// Returns the median bit length of the differences, which is robust against the large differences at the
+/// start.
 fn usual_bits(differences: &[u64]) -> u8 {
     let mut bits: Vec<u32> = differences
         .iter()
@@ -123,16 +128,16 @@ fn usual_bits(differences: &[u64]) -> u8 {
         .map_or(0, |bits| bits.min(WIDEST))
 }
 
-/// The curve of bytes; there is one way to write it.
+/// Decodes a curve; only the canonical encoding is accepted.
 ///
 /// # Errors
-/// [`Malformed`] if they are none.
+/// [`Malformed`] if the bytes are not the encoding of a curve.
 pub(super) fn decode(bytes: &[u8]) -> Result<Vec<f64>, Malformed> {
     let curve = read(bytes)?;
     if encode(&curve) == bytes {
         Ok(curve)
     } else {
-        Err(Malformed("it is written otherwise than it should be"))
+        Err(Malformed("it is not the canonical encoding"))
     }
 }
 
@@ -165,7 +170,7 @@ fn read(bytes: &[u8]) -> Result<Vec<f64>, Malformed> {
     }
 }
 
-/// What differences of an order add up to.
+/// Inverse of the differences: running sums of the given order.
 struct Sums {
     before: [i64; HIGHEST_ORDER as usize],
     order: usize,

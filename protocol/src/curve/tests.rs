@@ -1,4 +1,4 @@
-//! What comes back, how long it is, and what is refused.
+//! Tests of the curve encoding: lossless round trip, length, and refusal of invalid bytes.
 
 use super::form::{MOST_MULTIPLE, MOST_SAMPLES, decode, encode, power};
 use super::rounded;
@@ -8,7 +8,8 @@ fn bits(curve: &[f64]) -> Vec<u64> {
     curve.iter().map(|value| value.to_bits()).collect()
 }
 
-/// Steps of any size, any bits at all, and whole numbers as large as they may be.
+/// Generates curves: multiples of steps of any size, arbitrary bit patterns, arbitrary doubles, and whole
+/// numbers up to the limit.
 fn curve() -> impl Strategy<Value = Vec<f64>> {
     prop_oneof![
         (vec(-1e6..1e6, 0..60), -600..420_i32).prop_map(|(curve, exponent)| {
@@ -34,8 +35,8 @@ proptest! {
         prop_assert_eq!(bits(&decode(&bytes).unwrap()), bits(&curve));
     }
 
-    /// Whatever comes is refused, or a curve of as many samples as there are bits that is written so
-        /// and in no other way.
+    /// Checks that any bytes are either refused or the canonical encoding of a curve with at most as many
+    /// samples as there are bits.
     #[test]
     fn any_bytes_are_a_curve_or_refused(
         mut bytes in vec(any::<u8>(), 8..300),
@@ -93,7 +94,8 @@ fn smooth_curves_are_short_and_others_are_never_lost() {
     );
 }
 
-/// A megabyte of a hostile message is not eight of memory.
+/// Checks that the number of samples in the short form is limited, so that a hostile message cannot demand
+/// far more memory than its own size.
 #[test]
 fn a_short_form_has_so_many_samples_at_most() {
     let zeros = |samples: usize| {

@@ -1,4 +1,4 @@
-//! The channels of a simulation: what a diagnosis needs of a run.
+//! Result of a simulation with the channels of the case, as a diagnosis needs it.
 use super::derivative::Derivative;
 use super::verdict::{Counters, Verdict};
 use crate::{
@@ -7,27 +7,26 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// The channels of one run.
+/// Channels of one run.
 ///
-/// The worker rounds them before anybody uses them, to the channels' own steps: what a run computes
-/// with, what its journal holds and what a report reads again are the same numbers
-/// (`crate::curve`).
+/// The worker rounds them to the channels' own steps before any further use, so that computations, the
+/// journal and reports all use the same numbers (`crate::curve`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Observation {
-    /// How it ended.
+    /// Verdict on how the run ended.
     pub verdict: Verdict,
-    /// What it cost.
+    /// Counters of the run's cost.
     pub counters: Counters,
-    /// One curve per channel of the condition, in the case's order and the channel's unit, as far as
-    /// the run got.
+    /// Curves of the condition's channels, in the case's order and the channel's unit; truncated where the
+    /// run ended early.
     #[serde(with = "crate::curve::each")]
     pub curves: Vec<Vec<f64>>,
-    /// Derivatives by the columns that were asked for, in their order; none of a run that failed.
+    /// Derivatives with respect to the requested columns, in their order; empty for a failed run.
     pub columns: Vec<Derivative>,
 }
 
 impl Observation {
-    /// With its curves in whole steps of their channels, those of a condition.
+    /// Returns the observation with its curves rounded to the steps of the channels of a condition.
     #[must_use]
     pub fn rounded(self, case: &Case, condition: usize) -> Self {
         let curves = self.curves.into_iter().zip(case.channels_of(condition));

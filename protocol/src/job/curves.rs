@@ -1,25 +1,25 @@
-//! Everything of a simulation that can be drawn.
+//! Result of a simulation with all data that can be plotted.
 use super::derivative::Derivative;
 use super::verdict::{Counters, Verdict};
 use serde::{Deserialize, Serialize};
 
-/// The curves of one run, exactly as computed.
+/// Curves of one run, exactly as computed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Curves {
-    /// How it ended.
+    /// Verdict on how the run ended.
     pub verdict: Verdict,
-    /// What it cost.
+    /// Counters of the run's cost.
     pub counters: Counters,
     /// Wall time on the worker \[s\]; not part of any digest.
     pub wall_s: f64,
-    /// One curve per channel of the condition, in the case's order and the channel's unit, as far as
-    /// the run got.
+    /// Curves of the condition's channels, in the case's order and the channel's unit; truncated where the
+    /// run ended early.
     pub channels: Vec<Vec<f64>>,
-    /// Derivatives by the columns that were asked for, in their order; none of a run that failed.
+    /// Derivatives with respect to the requested columns, in their order; empty for a failed run.
     pub columns: Vec<Derivative>,
-    /// Wall time of the run with all its columns \[s\]; 0 where none were asked for.
+    /// Wall time of the run including all its columns \[s\]; 0 if none were requested.
     pub columns_wall_s: f64,
-    /// What else the model can show, as it alone understands it; empty where it has nothing more.
+    /// Further model output, in an encoding that only the model understands; empty if there is none.
     #[serde(with = "serde_bytes")]
     pub details: Vec<u8>,
 }

@@ -1,22 +1,23 @@
-//! What a simulation is differentiated by, and what comes of it.
+//! Sensitivities of a simulation: the requested columns of the Jacobian and their values.
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Most columns of one job: what comes back must fit into a message.
+/// Largest number of derivative columns in one job, so that the answer fits into one message.
 pub const MOST_COLUMNS: usize = 500;
 
-/// What a simulation is differentiated by.
+/// Quantity with respect to which a simulation is differentiated: one column of the Jacobian.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Column {
-    /// An unknown of the case, or `EFFECT.PARAMETER` of an effect, whether the case has it or not.
+    /// Name of an unknown of the case, or `EFFECT.PARAMETER` of an effect, whether or not the case contains
+    /// that effect.
     pub name: String,
-    /// Values of the parameters of an effect that the case does not have, by name, in their declared
-    /// units; what is not named is absent (sizes) or typical (shapes).
+    /// Values of the parameters of an effect that is not part of the case, by name, in their declared units.
+    /// A parameter that is not listed takes its absent value (sizes) or its typical value (shapes).
     pub values: Vec<(String, f64)>,
 }
 
 impl Column {
-    /// By something that the case has.
+    /// Creates a column for an unknown or an effect parameter that the case contains.
     pub fn of(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -25,12 +26,12 @@ impl Column {
     }
 }
 
-/// By how much of it a derivative is taken.
+/// Increment of the quantity to which a derivative refers.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Per {
-    /// A decade of the value.
+    /// Derivative per decade of the value.
     Decade,
-    /// One of a unit.
+    /// Derivative per one of the named unit.
     Unit(String),
 }
 
@@ -43,32 +44,32 @@ impl fmt::Display for Per {
     }
 }
 
-/// The derivative of a simulation's channels by one column.
+/// Derivative of all channels of a simulation with respect to one column.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Derivative {
-    /// It has one.
+    /// The model computed the derivative.
     Curves {
-        /// By how much of it.
+        /// Increment to which the derivative refers.
         per: Per,
-        /// One curve per channel of the condition, in the case's order, in the channel's unit per `per`;
-        /// empty for a channel that the model does not differentiate. In single precision: four digits
-        /// of a derivative are exact.
+        /// Derivative curves, one per channel of the condition in the case's order, in the channel's unit per
+        /// `per`; empty for a channel that the model does not differentiate. Single precision suffices: about
+        /// four digits of a derivative are exact.
         curves: Vec<Vec<f32>>,
     },
-    /// It changes nothing, as the model is: zeros everywhere.
+    /// The derivative is zero everywhere: in this model the column has no influence on any channel.
     Nothing {
-        /// As above.
+        /// Increment to which the derivative refers.
         per: Per,
     },
-    /// It has none, and differences of whole runs must do.
+    /// The model cannot compute the derivative; finite differences of whole runs are needed.
     Missing {
-        /// Why.
+        /// Reason why the derivative is not available.
         reason: String,
     },
 }
 
 impl Derivative {
-    /// Of a model that differentiates nothing: differences must do for every column.
+    /// Returns [`Derivative::Missing`] for every column, for a model that computes no derivatives.
     pub fn none(columns: &[Column]) -> Vec<Self> {
         let none = |_: &Column| Self::Missing {
             reason: "this model gives no derivatives".to_owned(),
@@ -77,7 +78,7 @@ impl Derivative {
     }
 }
 
-/// A curve in the precision in which derivatives travel.
+/// Converts a curve to single precision, in which derivatives are transmitted.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "derivatives travel in single precision"

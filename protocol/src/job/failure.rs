@@ -1,4 +1,4 @@
-//! What else than its answer can come of a job.
+//! Reasons why a job ends without an answer.
 use super::left::Left;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -6,41 +6,42 @@ use std::fmt;
 /// Why a job could not be done.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Failure {
-    /// It ran longer than its deadline and was ended.
+    /// The run exceeded its deadline and was terminated.
     Deadline {
         /// The deadline \[ms\].
         limit_ms: u64,
-        /// What it left until then.
+        /// Files left in the run's folder up to that moment.
         left: Left,
     },
-    /// The process that computed it ended by itself.
+    /// The slot process that computed the job exited or was killed.
     Crashed {
         /// Exit status or signal, in words.
         how: String,
-        /// What it left behind.
+        /// Files left in the run's folder.
         left: Left,
     },
-    /// The worker that computed it was lost, as often as the retry limit allows.
+    /// The worker was lost on every attempt at the job, as often as the retry limit allows.
     Lost {
-        /// How many workers were lost over it.
+        /// Number of workers lost while they computed the job.
         workers: u32,
     },
-    /// The worker will not do this kind of job.
+    /// The worker does not accept this kind of job.
     Refused {
-        /// Why.
+        /// Reason given by the worker.
         reason: String,
     },
     /// The case cannot be built into a model.
     Misconfigured {
-        /// Which field of the case.
+        /// Name of the field of the case.
         field: String,
-        /// What is wrong with it and what to do.
+        /// Description of the error in the field and of its remedy.
         problem: String,
     },
 }
 
 impl Failure {
-    /// A case or a job that cannot be built into a model: the field, and what is wrong with it.
+    /// Creates a [`Failure::Misconfigured`] from the field of the case or job and the description of the
+    /// error.
     pub fn misconfigured(field: impl Into<String>, problem: impl Into<String>) -> Self {
         Self::Misconfigured {
             field: field.into(),
@@ -48,19 +49,20 @@ impl Failure {
         }
     }
 
-    /// A process that ended by itself and left nothing.
+    /// Creates a [`Failure::Crashed`] without files.
     pub const fn crashed(how: String) -> Self {
         let left = Left::NONE;
         Self::Crashed { how, left }
     }
 
-    /// A run that was ended at its deadline \[ms\] and left nothing.
+    /// Creates a [`Failure::Deadline`] with its limit \[ms\] and without files.
     pub const fn deadline(limit_ms: u64) -> Self {
         let left = Left::NONE;
         Self::Deadline { limit_ms, left }
     }
 
-    /// What the run left in its folder, as far as it travelled.
+    /// Returns the files left in the run's folder, as far as they were transmitted; `None` for failures that
+    /// start no run.
     pub const fn left(&self) -> Option<&Left> {
         match self {
             Self::Deadline { left, .. } | Self::Crashed { left, .. } => Some(left),
@@ -68,7 +70,7 @@ impl Failure {
         }
     }
 
-    /// Name of the kind, as written in tables.
+    /// Returns the name of the kind of failure, as written in tables.
     pub const fn kind(&self) -> &'static str {
         match self {
             Self::Deadline { .. } => "deadline",
@@ -86,18 +88,20 @@ impl fmt::Display for Failure {
             Self::Deadline { limit_ms, .. } => {
                 write!(to, "it ran longer than {:.1} s", *limit_ms as f64 / 1000.0)
             }
-            Self::Crashed { how, .. } => write!(to, "the process that computed it ended: {how}"),
+            Self::Crashed { how, .. } => {
+                write!(to, "the process that computed the job ended: {how}")
+            }
             Self::Lost { workers } => write!(to, "{workers} workers were lost over it"),
-            Self::Refused { reason } => write!(to, "the worker refused it: {reason}"),
+            Self::Refused { reason } => write!(to, "the worker refused the job: {reason}"),
             Self::Misconfigured { field, problem } => write!(to, "{field}: {problem}"),
         }
     }
 }
 
-/// The answer is that of another kind of job than the one that was given.
+/// Error: the answer belongs to another kind of job than the one that was dispatched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("it was answered with the result of a {answered} job")]
+#[error("the worker returned the result of a {answered} job instead of the requested kind")]
 pub struct WrongKind {
-    /// Name of the kind that was answered.
+    /// Name of the kind of job that the answer belongs to.
     pub answered: &'static str,
 }

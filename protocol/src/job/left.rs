@@ -1,36 +1,35 @@
-//! What a failed run left in its folder, for somebody who was not there.
+//! Files left in the folder of a failed run, transmitted for diagnosis elsewhere.
 use crate::file::File;
 use serde::{Deserialize, Serialize};
 
-/// Files of a failed run, beside those that its case brought along.
+/// Files in the folder of a failed run, without those that the case supplied.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Left {
-    /// What was small enough to travel.
+    /// Files, or ends of files, small enough to be transmitted.
     pub files: Vec<File>,
-    /// What was not, or is no plain file: where it lay, how long it was (bytes), and how many of its last bytes
-    /// are among [`Self::files`].
+    /// Entries that were not transmitted as a whole because they are too long or not regular files.
     pub shortened: Vec<Shortened>,
 }
 
-/// A file that did not travel as a whole.
+/// File of a failed run that was transmitted in part or not at all.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shortened {
-    /// Where it lay below the folder.
+    /// Path relative to the run's folder.
     pub path: String,
-    /// Its length (bytes).
+    /// Length of the file (bytes).
     pub bytes: u64,
-    /// How many of its last bytes travel (bytes).
+    /// Number of bytes at the end of the file that were transmitted.
     pub kept: u64,
 }
 
 impl Left {
-    /// Nothing is known of the run's folder.
+    /// Empty set of files, for a run whose folder is not known.
     pub const NONE: Self = Self {
         files: Vec::new(),
         shortened: Vec::new(),
     };
 
-    /// Whether nothing is known of the run's folder.
+    /// Returns whether no file of the run's folder is recorded.
     pub const fn is_empty(&self) -> bool {
         self.files.is_empty() && self.shortened.is_empty()
     }

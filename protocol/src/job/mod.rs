@@ -1,15 +1,15 @@
-//! What a worker can be asked to do, and what it answers: one kind per file.
+//! Kinds of jobs that a worker can do, and their answers: one kind per file.
 //!
-//! A bad candidate is *not* an error: its [`Verdict`] is data for the search and is never
-//! retried. [`Failure`] is infrastructure: the job could not be done.
+//! An infeasible individual is *not* an error: its [`Verdict`] is data for the search and the job is never
+//! retried. A [`Failure`] concerns the infrastructure: the job could not be done.
 //!
-//! # What a new kind of job costs
-//! Eight files. Here: a file with what is asked and what is answered, and in this one a variant of
-//! [`Job`] and of [`Answer`], its name, and how to take the answer. In `worker/src/handler`: a file
-//! that does it and a line in `mod.rs`. In `coordinator/src/study`: a file that asks for it and a line
-//! in `mod.rs`. The wire changes with it: `wire::VERSION` and `protocol/tests/wire_form.txt`. Nobody
-//! else lists the kinds. Another reply of a simulation is cheaper: a variant of [`Reply`] and of
-//! [`Answer`], and a file in `worker/src/handler`.
+//! # Adding a kind of job
+//! Eight files change. Here: a new file with request and answer, and in this file a variant of [`Job`] and of
+//! [`Answer`], its name, and the function that extracts the answer. In `worker/src/handler`: a file that does
+//! the job and a line in `mod.rs`. In `coordinator/src/study`: a file that requests it and a line in
+//! `mod.rs`. The wire format changes too: `wire::VERSION` and `protocol/tests/wire_form.txt`. No other place
+//! lists the kinds. Another reply of a simulation needs less: a variant of [`Reply`] and of [`Answer`], and a
+//! file in `worker/src/handler`.
 mod channels;
 mod curves;
 mod derivative;
@@ -33,55 +33,55 @@ pub use word::Word;
 use crate::{announce::EffectDescriptor, id::ContentHash, wire};
 use serde::{Deserialize, Serialize};
 
-/// Names of the kinds of jobs, simulations by their reply: what workers announce, what tables show,
-/// and by what time limits are kept, since one kind takes minutes where others take seconds.
+/// Names of the kinds of jobs, with one name per reply of a simulation. Workers announce these names, tables
+/// show them, and time limits are kept by them, since some kinds take minutes and others seconds.
 pub mod kind {
-    /// Simulate and compare with the records.
+    /// Simulate and compare with the recordings.
     pub const SCORE: &str = "score";
     /// Simulate and return the measured channels.
     pub const CHANNELS: &str = "channels";
     /// Simulate and return everything that can be drawn.
     pub const CURVES: &str = "curves";
-    /// What one kind of model alone knows.
+    /// Job that only one kind of model understands (`Job::Own`).
     pub const OWN: &str = "own";
-    /// Say which effects there are.
+    /// List the effects that the model can add.
     pub const DESCRIBE: &str = "describe";
-    /// Do nothing.
+    /// Do nothing (`Job::Nothing`).
     pub const NOTHING: &str = "nothing";
 
-    /// All that a worker of this build does, in the order in which it says so.
+    /// All kinds that a worker of this build does, in the order of its announcement.
     pub const ALL: [&str; 6] = [SCORE, CHANNELS, CURVES, OWN, DESCRIBE, NOTHING];
 }
 
-/// One unit of work; a pure function of itself and the case it names.
+/// Unit of work: its answer is a pure function of the job and of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Job {
     /// Simulate an individual.
     Simulate(SimulateSpec),
-    /// Do what only the kind of model knows that the case is of; the model's data play no part.
+    /// Do a job that only the case's kind of model understands; the model's data play no part.
     Own {
-        /// Which of its own jobs.
+        /// Name of the job among those of the kind of model.
         name: String,
-        /// What is asked, as that kind writes it.
+        /// Request, encoded by the kind of model.
         #[serde(with = "serde_bytes")]
         body: Vec<u8>,
     },
-    /// Say which effects the model can add to a machine.
+    /// List the effects that the model can add to a machine.
     Describe,
-    /// Do nothing, return at once: measures the bus.
+    /// Do nothing and return; measures latency and throughput of the bus.
     Nothing {
-        /// Bytes that travel to the worker.
+        /// Bytes sent to the worker.
         #[serde(with = "serde_bytes")]
         payload: Vec<u8>,
-        /// Bytes that travel back.
+        /// Number of bytes to send back.
         reply_bytes: u32,
-        /// How long the slot is held \[ms\].
+        /// Time for which the slot is occupied \[ms\].
         delay_ms: u32,
     },
 }
 
 impl Job {
-    /// Name of the kind, as workers announce it.
+    /// Returns the name of the kind of job, as workers announce it.
     pub const fn kind(&self) -> &'static str {
         match self {
             Self::Simulate(spec) => match spec.reply {
@@ -95,7 +95,7 @@ impl Job {
         }
     }
 
-    /// What is simulated; none where nothing is.
+    /// Returns the simulated individual; `None` for a job without a simulation.
     pub const fn individual(&self) -> Option<&Individual> {
         match self {
             Self::Simulate(spec) => Some(&spec.individual),
@@ -103,37 +103,36 @@ impl Job {
         }
     }
 
-    /// The name of this piece of work: the hash of the encoded job.
+    /// Returns the hash of the encoded job, which identifies this piece of work.
     pub fn work_hash(&self) -> ContentHash {
         // a job that cannot be encoded cannot be sent either; all of those share one name
         ContentHash::of(&wire::encode(self).unwrap_or_default())
     }
 }
 
-/// What a [`Job`] that was done came to.
+/// Answer to a [`Job`] that was done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Answer {
-    /// Of [`Reply::Score`].
+    /// Answer to [`Reply::Score`].
     Scored(Evaluation),
-    /// Of [`Reply::Channels`].
+    /// Answer to [`Reply::Channels`].
     Channels(Observation),
-    /// Of [`Reply::Curves`].
+    /// Answer to [`Reply::Curves`].
     Curves(Box<Curves>),
-    /// Of [`Job::Own`], as that kind writes it.
+    /// Answer to [`Job::Own`], encoded by the kind of model.
     Own(#[serde(with = "serde_bytes")] Vec<u8>),
-    /// Of [`Job::Describe`].
+    /// Answer to [`Job::Describe`].
     Described(Vec<EffectDescriptor>),
-    /// Of [`Job::Nothing`].
+    /// Answer to [`Job::Nothing`].
     Nothing(#[serde(with = "serde_bytes")] Vec<u8>),
 }
 
-/// How to take an answer of the kind that was asked for.
+/// Defines a method of [`Answer`] that returns the content of one variant.
 macro_rules! taken {
     ($($name:ident: $variant:ident -> $content:ty, $what:literal;)*) => {$(
         #[doc = $what]
-        ///
         /// # Errors
-        /// [`WrongKind`] if it is another kind's.
+        /// [`WrongKind`] if the answer belongs to another kind of job.
         pub fn $name(self) -> Result<$content, WrongKind> {
             match self {
                 Self::$variant(content) => Ok(content),
@@ -145,15 +144,15 @@ macro_rules! taken {
 
 impl Answer {
     taken! {
-        into_scored: Scored -> Evaluation, "The answer to [`Reply::Score`].";
-        into_channels: Channels -> Observation, "The answer to [`Reply::Channels`].";
-        into_curves: Curves -> Box<Curves>, "The answer to [`Reply::Curves`].";
-        into_own: Own -> Vec<u8>, "The answer to [`Job::Own`].";
-        into_described: Described -> Vec<EffectDescriptor>, "The answer to [`Job::Describe`].";
-        into_nothing: Nothing -> Vec<u8>, "The answer to [`Job::Nothing`].";
+        into_scored: Scored -> Evaluation, "Returns the answer to [`Reply::Score`].";
+        into_channels: Channels -> Observation, "Returns the answer to [`Reply::Channels`].";
+        into_curves: Curves -> Box<Curves>, "Returns the answer to [`Reply::Curves`].";
+        into_own: Own -> Vec<u8>, "Returns the answer to [`Job::Own`].";
+        into_described: Described -> Vec<EffectDescriptor>, "Returns the answer to [`Job::Describe`].";
+        into_nothing: Nothing -> Vec<u8>, "Returns the answer to [`Job::Nothing`].";
     }
 
-    /// Name of the kind of job that it answers, as [`Job::kind`].
+    /// Returns the name of the kind of job that was answered, as [`Job::kind`] does.
     pub const fn kind(&self) -> &'static str {
         match self {
             Self::Scored(_) => kind::SCORE,
@@ -165,7 +164,7 @@ impl Answer {
         }
     }
 
-    /// Agreement with the record; none where nothing was compared.
+    /// Returns the comparison with the recordings; `None` for a job that compares nothing.
     pub const fn evaluation(&self) -> Option<&Evaluation> {
         match self {
             Self::Scored(evaluation) => Some(evaluation),
@@ -177,7 +176,7 @@ impl Answer {
         }
     }
 
-    /// How the simulation ended and what it cost; none where nothing was simulated.
+    /// Returns the verdict and the work counters of the simulation; `None` for a job without a simulation.
     pub fn simulation(&self) -> Option<(Verdict, Counters)> {
         match self {
             Self::Scored(evaluation) => Some((evaluation.verdict, evaluation.counters)),
@@ -188,17 +187,17 @@ impl Answer {
     }
 }
 
-/// What came of a [`Job`].
+/// Result of a [`Job`]: its answer or the reason of its failure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Outcome {
-    /// It was done.
+    /// The job was done.
     Done(Answer),
-    /// It could not be done.
+    /// The job could not be done.
     Failed(Failure),
 }
 
 impl Outcome {
-    /// Name of the kind of job that was done, as [`Job::kind`]; `failed` if it was not.
+    /// Returns the name of the kind of job that was done, as [`Job::kind`] does; `failed` if the job failed.
     pub const fn kind(&self) -> &'static str {
         match self {
             Self::Done(answer) => answer.kind(),
@@ -206,7 +205,7 @@ impl Outcome {
         }
     }
 
-    /// The answer, if the job was done.
+    /// Returns the answer if the job was done.
     pub const fn answer(&self) -> Option<&Answer> {
         match self {
             Self::Done(answer) => Some(answer),
@@ -214,7 +213,7 @@ impl Outcome {
         }
     }
 
-    /// The answer, or why there is none.
+    /// Returns the answer as a result.
     ///
     /// # Errors
     /// [`Failure`] if the job could not be done.
@@ -225,7 +224,8 @@ impl Outcome {
         }
     }
 
-    /// How the simulation ended and what it cost; none where nothing was simulated.
+    /// Returns the verdict and the work counters of the simulation; `None` for a failed job or a job without
+    /// a simulation.
     pub fn simulation(&self) -> Option<(Verdict, Counters)> {
         self.answer()?.simulation()
     }

@@ -1,4 +1,4 @@
-//! What to simulate, how finely, and what to say of it: the one job of all simulations.
+//! Simulation job: individual, numerical settings, requested reply and derivatives.
 use super::derivative::Column;
 use crate::case::EffectSetting;
 use serde::{Deserialize, Serialize};
@@ -6,19 +6,19 @@ use serde::{Deserialize, Serialize};
 /// A simulation of an individual under one condition.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulateSpec {
-    /// Of what.
+    /// Individual to simulate.
     pub individual: Individual,
-    /// How finely, and by what method.
+    /// Numerical settings that override those of the case.
     pub numerics: Numerics,
-    /// What is wanted of it.
+    /// Kind of answer requested.
     pub reply: Reply,
-    /// What it is differentiated by, at most [`super::MOST_COLUMNS`]; derivatives come with curves and with
-    /// residuals.
+    /// Columns of the requested derivatives, at most [`super::MOST_COLUMNS`]; derivatives are returned with
+    /// curves and with residuals.
     pub columns: Vec<Column>,
 }
 
 impl SimulateSpec {
-    /// A simulation that is computed as the case says.
+    /// Creates a simulation with the numerical settings of the case and without derivatives.
     pub const fn new(individual: Individual, reply: Reply) -> Self {
         Self {
             individual,
@@ -29,29 +29,30 @@ impl SimulateSpec {
     }
 }
 
-/// How a model is computed where a job wants it otherwise than the case: bytes that the model alone
-/// understands, as its own part of the case is. Empty: as the case says.
+/// Numerical settings of one job that override those of the case, as bytes that only the model understands,
+/// like the model settings in the case. Empty: the settings of the case apply.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Numerics(#[serde(with = "serde_bytes")] pub Vec<u8>);
 
 impl Numerics {
-    /// Nothing is computed otherwise than the case says.
+    /// No override: the numerical settings of the case apply.
     pub const OF_THE_CASE: Self = Self(Vec::new());
 }
 
-/// What is simulated under a condition: values of the unknowns, and effects beside those of the case.
+/// Individual under one condition: values of the unknowns, and effects in addition to those of the case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Individual {
     /// Index of the condition in the case.
     pub condition: usize,
     /// Gene values in declared units, in the case's order.
     pub genes: Vec<f64>,
-    /// Effects beside those of the case; the same identifier replaces the case's.
+    /// Effects in addition to those of the case; an effect with the identifier of one of the case's replaces
+    /// it.
     pub effects: Vec<EffectSetting>,
 }
 
 impl Individual {
-    /// With the effects of the case alone.
+    /// Creates an individual with the effects of the case only.
     pub const fn new(condition: usize, genes: Vec<f64>) -> Self {
         Self {
             condition,
@@ -61,22 +62,22 @@ impl Individual {
     }
 }
 
-/// What is wanted of a simulation.
+/// Kind of answer requested from a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Reply {
-    /// Agreement with the record: an [`super::Evaluation`].
+    /// Agreement with the recordings: an [`super::Evaluation`].
     Score {
-        /// Whether the residual vector is wanted too.
+        /// Whether the residual vector is returned too.
         with_residual: bool,
-        /// Whether it is simulated under every condition of the objective, of which its own is the first, and
-        /// their scores are joined; else under its own alone.
+        /// Whether every condition of the objective is simulated, the individual's own condition first, and
+        /// their scores are combined; otherwise only the individual's own condition.
         whole: bool,
     },
-    /// The measured channels alone: an [`super::Observation`].
+    /// Measured channels only: an [`super::Observation`].
     Channels,
-    /// Everything that can be drawn: a [`super::Curves`].
+    /// All curves and pictures that can be drawn: a [`super::Curves`].
     Curves {
-        /// Pictures of what moves, over the whole run; 0 for none.
+        /// Number of snapshots of the moving machine, over the whole run; 0 for none.
         pictures: u32,
     },
 }

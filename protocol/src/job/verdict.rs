@@ -1,23 +1,23 @@
-//! How a simulation ended, and what it cost.
+//! Verdict on a simulation and its work counters.
 use super::word::Word;
 use serde::{Deserialize, Serialize};
 
-/// How a simulation ended.
+/// Verdict on a simulation: complete, or failed with the cause and the progress.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Verdict {
     /// The whole revolution was simulated.
     Complete,
-    /// The machine failed on the way; data for the search, never retried.
+    /// The simulation failed for a physical or numerical reason; data for the search, never retried.
     Failed {
-        /// What happened, in the word of its model.
+        /// Cause of the failure, as named by the model.
         kind: Word,
-        /// How far it got.
+        /// Progress at the failure.
         reached: Reached,
     },
 }
 
 impl Verdict {
-    /// `complete`, or what ended it early, as written in tables.
+    /// Returns `complete` or the name of the cause of failure, as written in tables.
     pub fn as_str(&self) -> &str {
         match self {
             Self::Complete => "complete",
@@ -25,7 +25,8 @@ impl Verdict {
         }
     }
 
-    /// Share of the static load that it failed at \[1\]; none if it got further.
+    /// Returns the share of the static load at which the simulation failed \[1\]; `None` if it reached
+    /// motion.
     pub const fn load_fraction(&self) -> Option<f64> {
         match self {
             Self::Failed {
@@ -36,8 +37,8 @@ impl Verdict {
         }
     }
 
-    /// Share of the simulated time that it failed at \[1\]; none if it did not get so far or is
-    /// complete.
+    /// Returns the share of the simulated time at which the simulation failed \[1\]; `None` if it failed
+    /// before motion or is complete.
     pub const fn time_fraction(&self) -> Option<f64> {
         match self {
             Self::Failed {
@@ -49,32 +50,32 @@ impl Verdict {
     }
 }
 
-/// How far a failed simulation got.
+/// Progress of a failed simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Reached {
-    /// It failed while the static load was applied.
+    /// Failure while the static load was applied: share of the load reached \[1\].
     LoadFraction(f64),
-    /// It failed in motion, after this share of the simulated time.
+    /// Failure in motion: share of the simulated time reached \[1\].
     TimeFraction(f64),
 }
 
-/// Work counters of one simulation; deterministic.
+/// Work counters of one simulation, identical in every repetition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
-    /// Accepted steps.
+    /// Number of accepted time steps.
     pub steps: u64,
-    /// Rejected steps.
+    /// Number of rejected time steps.
     pub rejected_steps: u64,
-    /// Newton iterations, settle included.
+    /// Number of Newton iterations, including those of the static equilibrium.
     pub newton_iterations: u64,
-    /// Tangent evaluations.
+    /// Number of tangent (Jacobian) evaluations.
     pub jacobians: u64,
-    /// Factorisations.
+    /// Number of matrix factorisations.
     pub factorizations: u64,
 }
 
 impl Counters {
-    /// Adds the work of another simulation.
+    /// Adds the counters of another simulation, saturating.
     pub const fn add(&mut self, other: &Self) {
         self.steps = self.steps.saturating_add(other.steps);
         self.rejected_steps = self.rejected_steps.saturating_add(other.rejected_steps);
@@ -85,8 +86,8 @@ impl Counters {
         self.factorizations = self.factorizations.saturating_add(other.factorizations);
     }
 
-    /// Each with the name that tables and files give it and with what it counts, in one order for
-    /// all of them.
+    /// Returns each counter with its name in tables and files and with a description; the order is the same
+    /// wherever counters are listed.
     pub const fn named(&self) -> [(&'static str, &'static str, u64); 5] {
         [
             ("steps", "accepted steps", self.steps),

@@ -1,8 +1,8 @@
-//! A model's own word for something, as short data that can be copied.
+//! Short identifier defined by a model, stored inline so that it can be copied.
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 use std::fmt;
 
-/// Up to 31 small letters, digits and `_`, as `step_underflow`.
+/// Identifier of up to 31 lower-case letters, digits and `_`, such as `step_underflow`.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Word {
     letters: [u8; Self::MOST],
@@ -10,10 +10,11 @@ pub struct Word {
 }
 
 impl Word {
-    /// Most letters of a word.
+    /// Largest length of an identifier (bytes).
     pub const MOST: usize = 31;
 
-    /// A word; none of a text that is none.
+    /// Creates an identifier; `None` if the text is too long or contains other characters than lower-case
+    /// letters, digits and `_`.
     pub const fn of(text: &str) -> Option<Self> {
         let bytes = text.as_bytes();
         if bytes.len() > Self::MOST {
@@ -36,15 +37,15 @@ impl Word {
         Some(Self { letters, length })
     }
 
-    /// A word that a program states itself.
+    /// Creates an identifier from a text that is part of the program.
     ///
     /// # Panics
-    /// Where the text is none: of a constant, when it is compiled.
+    /// If the text is not a valid identifier; for a constant, at compile time.
     pub const fn new(text: &str) -> Self {
         Self::of(text).expect("a word of small letters, digits and `_`")
     }
 
-    /// As it was written.
+    /// Returns the identifier as text.
     pub fn as_str(&self) -> &str {
         let letters = self
             .letters
@@ -53,7 +54,7 @@ impl Word {
         std::str::from_utf8(letters).unwrap_or_default()
     }
 
-    /// With spaces, as a sentence has it.
+    /// Returns the identifier with spaces in place of `_`, for use in a sentence.
     pub fn spoken(&self) -> String {
         self.as_str().replace('_', " ")
     }
@@ -80,7 +81,7 @@ impl Serialize for Word {
 impl<'de> Deserialize<'de> for Word {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         let text = String::deserialize(from)?;
-        Self::of(&text).ok_or_else(|| D::Error::custom(format!("\"{text}\" is no word")))
+        Self::of(&text).ok_or_else(|| D::Error::custom(format!("\"{text}\" is not a valid identifier: at most 31 lower-case letters, digits and `_`")))
     }
 }
 

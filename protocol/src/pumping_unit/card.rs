@@ -1,14 +1,14 @@
-//! Load at the suspension point over a turn.
+//! Load at the suspension point over one crank revolution.
 use serde::{Deserialize, Serialize};
 
-/// Load at the suspension point over one turn, periodic.
+/// Load at the suspension point over one crank revolution, periodic.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoadCard {
     /// Crank angle from bottom dead centre, equally spaced from 0, without 360 \[deg\].
     pub turn_deg: Vec<f64>,
-    /// Load, positive downwards \[N\]; same length.
+    /// Load, positive downwards \[N\]; one value per crank angle.
     pub load_n: Vec<f64>,
-    /// What is done to the card before it is applied.
+    /// Smoothing applied to the card before use.
     pub smoothing: Smoothing,
 }
 

@@ -1,9 +1,9 @@
-//! The unknowns of every machine: stiffness and damping of a rope and its contact (paper, section 5.1).
-//! What is known of them, and how they are searched, is the case's.
+//! Unknowns of every machine: stiffness and damping of a rope and its contact (paper, section 5.1). Bounds,
+//! scale and prior knowledge of the unknowns belong to the case.
 use crate::unit::Unit;
 use serde::{Deserialize, Serialize};
 
-/// A coefficient of rope or contact; the order is that of the paper's chromosome, and of a case's unknowns.
+/// Coefficient of rope or contact; the order is that of the paper's chromosome and of a case's unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Coefficient {
@@ -44,12 +44,12 @@ impl Coefficient {
         Self::Cc,
     ];
 
-    /// The coefficient of that name.
+    /// Returns the coefficient with a name as in [`Coefficient::as_str`].
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|one| one.as_str() == name)
     }
 
-    /// As written in files and on the wire to other programs.
+    /// Returns the name used in files and in messages to other programs.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Kb1 => "kb1",
@@ -65,7 +65,7 @@ impl Coefficient {
         }
     }
 
-    /// What it is, in words.
+    /// Returns a short description for people.
     pub const fn title(self) -> &'static str {
         match self {
             Self::Kb1 => "axial stiffness",
@@ -81,7 +81,7 @@ impl Coefficient {
         }
     }
 
-    /// The SI unit its value has inside the dynamics.
+    /// Returns the SI unit of the value inside the dynamics.
     pub const fn si_unit(self) -> Unit {
         match self {
             Self::Kb1 | Self::Kb23 => Unit::NewtonPerMetre,

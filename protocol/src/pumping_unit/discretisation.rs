@@ -1,4 +1,4 @@
-//! How space and time are divided where a job divides them otherwise than the case.
+//! Discretisation of space and time in a job that overrides the settings of the case.
 use super::Integrator;
 use crate::{
     job::Numerics,
@@ -6,31 +6,31 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// How space and time are divided; what is absent stays as the case has it.
+/// Discretisation of space and time; absent fields keep the values of the case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Discretisation {
-    /// Length of a rope cylinder \[m\]; both ropes keep their lengths, which it must divide.
+    /// Length of a rope cylinder \[m\]; must divide the lengths of both ropes, which do not change.
     pub cylinder_length_m: Option<f64>,
-    /// Crank angle that is run before the recorded revolution \[deg\].
+    /// Crank angle simulated before the recorded revolution \[deg\].
     pub lead_in_deg: Option<f64>,
-    /// Number of head modes.
+    /// Number of modes of the back head.
     pub modes: Option<usize>,
-    /// Method of integration.
+    /// Time integration method.
     pub integrator: Option<Integrator>,
-    /// Longest step \[s\].
+    /// Largest time step \[s\].
     pub longest_step_s: Option<f64>,
-    /// Whether the longest step stays as long on a machine that swings fast, where it would be
-    /// shortened otherwise: comparisons of methods are made at the step that they name.
+    /// Whether the largest step is also used on a machine whose beam oscillates fast, where the step is
+    /// shortened otherwise; needed to compare methods at a stated step.
     pub step_as_stated: bool,
-    /// Tolerance of the integrator, relative to its built-in error scales; so large a one that no
-    /// step is ever rejected makes the longest step a fixed one.
+    /// Tolerance of the integrator, relative to its built-in error scales. A tolerance so large that no step
+    /// is rejected gives a fixed step.
     pub tolerance: Option<f64>,
-    /// Newton iterations after which the run ends.
+    /// Limit on Newton iterations; the run ends when it is reached.
     pub budget: Option<u64>,
 }
 
 impl Discretisation {
-    /// Nothing is divided otherwise than in the case.
+    /// No override: the discretisation of the case applies.
     pub const OF_THE_CASE: Self = Self {
         cylinder_length_m: None,
         lead_in_deg: None,
@@ -42,10 +42,10 @@ impl Discretisation {
         budget: None,
     };
 
-    /// That of a job.
+    /// Decodes the discretisation of a job.
     ///
     /// # Errors
-    /// [`WireError`] for bytes that say nothing of a pumping unit.
+    /// [`WireError`] if the bytes are not the settings of a pumping unit.
     pub fn of(numerics: &Numerics) -> Result<Self, WireError> {
         if numerics.0.is_empty() {
             return Ok(Self::OF_THE_CASE);
@@ -53,10 +53,10 @@ impl Discretisation {
         wire::decode(&numerics.0)
     }
 
-    /// As a job carries it.
+    /// Encodes the discretisation for a job.
     ///
     /// # Errors
-    /// [`WireError::TooLong`] beyond what a message may hold.
+    /// [`WireError::TooLong`] beyond the size limit of a message.
     pub fn numerics(&self) -> Result<Numerics, WireError> {
         if *self == Self::OF_THE_CASE {
             return Ok(Numerics::OF_THE_CASE);

@@ -1,4 +1,4 @@
-//! Everything of a simulation that can be drawn.
+//! Curves and snapshots of a simulated pumping unit, for plots and animations.
 use super::Sensor;
 use crate::{
     job::{Counters, Curves, Verdict},
@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 /// Curves of one revolution; every vector has one entry per crank angle reached.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Simulation {
-    /// How it ended.
+    /// Verdict of the simulation.
     pub verdict: Verdict,
-    /// What it cost.
+    /// Work counters of the simulation.
     pub counters: Counters,
     /// Wall time on the worker \[s\]; not part of the digest.
     pub wall_s: f64,
@@ -19,12 +19,14 @@ pub struct Simulation {
     pub turn_deg: Vec<f64>,
     /// Stress at gauges 1 to 4 \[MPa\].
     pub gauge_mpa: [Vec<f64>; 4],
-    /// Axial force in the back rope's first joint, at the crossbeam; of two ropes together \[N\].
+    /// Axial force in the first joint of the back rope, at the crossbeam; sum of both ropes on a twin-rope
+    /// machine \[N\].
     pub back_rope_tension_n: Vec<f64>,
-    /// Axial force in the front rope's joint at the suspension; of two ropes together \[N\].
+    /// Axial force in the front rope's joint at the suspension; sum of both ropes on a twin-rope machine
+    /// \[N\].
     pub front_rope_tension_n: Vec<f64>,
-    /// By how much of two ropes the one at +z pulls more, back and front \[N\]; empty where there is
-    /// one.
+    /// Tension of the rope at +z minus that at -z on a twin-rope machine, back and front \[N\]; empty with
+    /// single ropes.
     pub tension_difference_n: [Vec<f64>; 2],
     /// Beam angle \[deg\].
     pub beam_deg: Vec<f64>,
@@ -38,14 +40,14 @@ pub struct Simulation {
     pub crank_torque_n_m: Vec<f64>,
     /// Modal coordinates of the back head, mode by mode [kg^1/2 m].
     pub modal: Vec<Vec<f64>>,
-    /// Energy over the recorded revolution.
+    /// Energy balance of the recorded revolution.
     pub energy: Energy,
-    /// Shapes for the moving machine; empty unless asked for.
+    /// Snapshots of the moving machine; empty unless requested.
     pub motion: Vec<Motion>,
 }
 
 impl Simulation {
-    /// The curve of a channel by its name; empty where a pumping unit has none of that name.
+    /// Returns the curve of the channel with that name; empty if a pumping unit has no such channel.
     pub fn channel(&self, name: &str) -> &[f64] {
         match Sensor::named(name) {
             Some(Sensor::Gauge(number)) => &self.gauge_mpa[usize::from(number) - 1],
@@ -55,18 +57,18 @@ impl Simulation {
         }
     }
 
-    /// What the model of a pumping unit says beside the channels.
+    /// Decodes the model-specific part of the curves.
     ///
     /// # Errors
-    /// [`WireError`] where another model drew them.
+    /// [`WireError`] if the curves come from another kind of model.
     pub fn of(curves: &Curves) -> Result<Self, WireError> {
         wire::decode(&curves.details)
     }
 
-    /// As it travels, with the curves of the channels.
+    /// Encodes the simulation together with the curves of the channels.
     ///
     /// # Errors
-    /// [`WireError::TooLong`] beyond what a message may hold.
+    /// [`WireError::TooLong`] beyond the size limit of a message.
     pub fn into_curves(self, channels: Vec<Vec<f64>>) -> Result<Curves, WireError> {
         Ok(Curves {
             verdict: self.verdict,
@@ -80,22 +82,22 @@ impl Simulation {
     }
 }
 
-/// Where the energy of the recorded revolution went \[J\].
+/// Energy balance of the recorded revolution \[J\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
-    /// Work of the crank pin on the rod.
+    /// Work of the crank pin on the connecting rod \[J\].
     pub input_j: f64,
-    /// Work on the polished-rod load.
+    /// Work done on the polished-rod load \[J\].
     pub output_j: f64,
-    /// Lost in rope joints, contact and head damping.
+    /// Energy dissipated in rope joints, contact and head damping \[J\].
     pub dissipated_j: f64,
-    /// Gain of kinetic, gravitational and elastic energy.
+    /// Increase of kinetic, gravitational and elastic energy \[J\].
     pub stored_j: f64,
-    /// |input - output - dissipated - stored| over the larger of input and output work.
+    /// |input - output - dissipated - stored| over the larger of input and output work \[1\].
     pub relative_error: f64,
 }
 
-/// One snapshot of the machine in the ground frame.
+/// Snapshot of the machine in the ground frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
     /// Crank angle from bottom dead centre \[deg\].
@@ -110,14 +112,14 @@ pub struct Motion {
     pub suspension_m: [f32; 2],
     /// Centres of the back rope's cylinders from the crossbeam on, x, y \[m\].
     pub back_rope_m: Vec<[f32; 2]>,
-    /// Axial force in the joint before each of those cylinders \[N\].
+    /// Axial force in the joint before each cylinder of the back rope \[N\].
     pub back_tension_n: Vec<f32>,
-    /// Contact force on each of those cylinders \[N\].
+    /// Contact force on each cylinder of the back rope \[N\].
     pub back_contact_n: Vec<f32>,
     /// Centres of the front rope's cylinders from the suspension on, x, y \[m\].
     pub front_rope_m: Vec<[f32; 2]>,
-    /// Axial force in the joint before each of those cylinders \[N\].
+    /// Axial force in the joint before each cylinder of the front rope \[N\].
     pub front_tension_n: Vec<f32>,
-    /// Contact force on each of those cylinders \[N\].
+    /// Contact force on each cylinder of the front rope \[N\].
     pub front_contact_n: Vec<f32>,
 }

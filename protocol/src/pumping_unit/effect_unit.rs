@@ -1,7 +1,6 @@
-//! Units of the machine's effects.
+//! Units of the parameters of the pumping unit's effects.
 
-/// Units that parameters of effects may have, as written; what they measure is the effect's
-/// business.
+/// Symbols of all units that parameters of effects may have; each effect defines its quantity itself.
 pub const EFFECT_UNITS: [&str; 19] = [
     "1",
     "m",

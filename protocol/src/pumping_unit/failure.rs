@@ -1,22 +1,22 @@
-//! What ends a run of a pumping unit early.
+//! Causes that end a simulation of a pumping unit early.
 use crate::job::Word;
 
-/// A rope joint stretched beyond its limit.
+/// Cause: a rope joint stretched beyond its limit.
 pub const OVERSTRETCHED_ROPE: Word = Word::new("overstretched_rope");
-/// The rope sank through the surface of a head.
+/// Cause: the rope penetrated the surface of a head.
 pub const ROPE_THROUGH_HEAD: Word = Word::new("rope_through_head");
-/// The beam left its working range.
+/// Cause: the beam left its working range.
 pub const BEAM_OVERTRAVEL: Word = Word::new("beam_overtravel");
-/// The load stayed below its lowest design position.
+/// Cause: the load stayed below its lowest design position.
 pub const LOAD_NOT_LIFTED: Word = Word::new("load_not_lifted");
-/// A cylinder turned over, out of its chain.
+/// Cause: a rope cylinder turned over.
 pub const TUMBLED_CYLINDER: Word = Word::new("tumbled_cylinder");
-/// The step size fell below its limit.
+/// Cause: the step size fell below its limit.
 pub const STEP_UNDERFLOW: Word = Word::new("step_underflow");
-/// The iteration budget was used up.
+/// Cause: the iteration budget was used up.
 pub const BUDGET: Word = Word::new("budget");
 
-/// Each of them with what it says, as a part of a sentence.
+/// All causes, each with a description that can be part of a sentence.
 pub const ALL: [(Word, &str); 7] = [
     (
         OVERSTRETCHED_ROPE,

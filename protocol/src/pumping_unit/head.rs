@@ -1,9 +1,9 @@
-//! The flexible back head after reduction: fixed-interface modes and static influence lines.
+//! Reduced model of the flexible back head: fixed-interface modes and static influence lines.
 //!
-//! Both are tables over the angle `psi` of the rope arc (seen from the arc's centre, beam frame).
+//! Both are tables over the angle `psi` along the rope arc (about the arc's centre, beam frame).
 use serde::{Deserialize, Serialize};
 
-/// Mass-normalised fixed-interface modes, as a case carries them.
+/// Mass-normalised fixed-interface modes of the back head, as stored in a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModalHead {
     /// Natural frequencies, ascending \[Hz\]; length n.
@@ -14,7 +14,7 @@ pub struct ModalHead {
     pub arc_deg: Vec<f64>,
     /// Outward radial shape per mode and station [m per unit modal coordinate]; n x s.
     pub radial: Vec<Vec<f64>>,
-    /// Tangential shape (towards increasing psi) per mode and station; n x s.
+    /// Tangential shape (towards increasing psi) per mode and station [m per unit modal coordinate]; n x s.
     pub tangential: Vec<Vec<f64>>,
     /// Gauge stress per mode and gauge [MPa per unit modal coordinate]; n x 4.
     pub gauge_stress_mpa: Vec<[f64; 4]>,
@@ -23,22 +23,23 @@ pub struct ModalHead {
     /// Static gauge stress per unit base acceleration in x, y [MPa per m/s2] and about the pivot
     /// [MPa per rad/s2]; 3 x 4.
     pub inertia_stress_mpa: [[f64; 4]; 3],
-    /// How gauge stress follows from modes and forces.
+    /// Method that recovers gauge stress from modes and forces.
     pub stress: StressRecovery,
     /// Mass of the meshed steel \[kg\].
     pub mass_kg: f64,
-    /// Exact static gauge stress per newton.
+    /// Static influence lines of the gauges.
     pub influence: Influence,
 }
 
-/// How gauge stress follows from modal coordinates and forces.
+/// Method that recovers gauge stress from modal coordinates and forces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StressRecovery {
-    /// Exact statics by influence lines, and what the modes move beyond their own static answer.
+    /// Mode acceleration: exact static stress by influence lines, plus the deviation of the modes from their
+    /// own static response.
     #[default]
     ModeAcceleration,
-    /// The modes alone: what a truncated set leaves out is lost.
+    /// Mode displacement: stress from the modes alone; the static contribution of truncated modes is lost.
     ModeDisplacement,
 }
 

@@ -1,4 +1,4 @@
-//! The machine of a case: what a case of this kind says to its own model alone.
+//! Machine data of a case: settings that only the pumping-unit model reads.
 use super::{
     BackHead, Beam, Contact, Crank, FrontHead, LoadCard, ModalHead, Rod, Ropes, RunSettings,
     Suspension, TwinRopes,
@@ -9,69 +9,73 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// A pumping unit under its working conditions.
+/// Pumping unit and its working conditions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// Acceleration of gravity, downwards [m/s2].
     pub gravity_m_s2: f64,
-    /// Walking beam with everything rigid on it.
+    /// Walking beam with all parts rigidly attached to it.
     pub beam: Beam,
-    /// Prescribed crank.
+    /// Crank with prescribed motion.
     pub crank: Crank,
     /// Connecting rods and crossbeam.
     pub rod: Rod,
     /// Carrier bar with clamp and load cell.
     pub suspension: Suspension,
-    /// Both ropes.
+    /// Back rope and front rope.
     pub ropes: Ropes,
     /// Contact between rope and heads.
     pub contact: Contact,
-    /// Front head: an arc about the beam pivot.
+    /// Front head: circular arc about the beam pivot.
     pub front_head: FrontHead,
-    /// Back head: an arc about its own centre, flexible.
+    /// Back head: circular arc about its own centre, flexible.
     pub back_head: BackHead,
     /// Modes and influence lines of the back head.
     pub modal_head: ModalHead,
-    /// Two ropes on each head in place of one, if there are.
+    /// Twin ropes on each head; `None` for a machine with single ropes.
     pub twin_ropes: Option<TwinRopes>,
-    /// Speed and load under each condition of the case, in its order.
+    /// Speed and load of each condition of the case, in the case's order.
     pub conditions: Vec<WorkingCondition>,
-    /// How a run is started, sampled and integrated.
+    /// Settings of start, sampling and integration of a run.
     pub run: RunSettings,
 }
 
-/// What a condition of a case means to the machine.
+/// Operating data of the machine under one condition of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WorkingCondition {
     /// Crank speed [revolutions per minute].
     pub speed_rpm: f64,
     /// Counterweight moment at the crank [N m].
     pub counterweight_moment_n_m: f64,
-    /// Load at the suspension point.
+    /// Load at the suspension point over the crank angle.
     pub card: LoadCard,
 }
 
 impl Machine {
-    /// The kind of model, as cases and workers name it: double horse heads.
+    /// Name of this kind of model in cases and announcements: double horse head.
     pub const KIND: &'static str = "dhh";
 
-    /// The machine of a case.
+    /// Decodes the machine of a case.
     ///
     /// # Errors
-    /// [`WireError::Malformed`] for a case of another kind, or settings of another version.
+    /// [`WireError::Malformed`] for a case of another kind of model, or for settings of another version.
     pub fn of(case: &Case) -> Result<Self, WireError> {
         if case.model.kind != Self::KIND {
             return Err(WireError::Malformed {
-                reason: format!("its model is `{}`, not `{}`", case.model.kind, Self::KIND),
+                reason: format!(
+                    "the case's model is `{}`, not `{}`",
+                    case.model.kind,
+                    Self::KIND
+                ),
             });
         }
         wire::decode(&case.model.settings)
     }
 
-    /// As a case carries it.
+    /// Encodes the machine as the model settings of a case.
     ///
     /// # Errors
-    /// [`WireError::TooLong`] beyond what a message may hold.
+    /// [`WireError::TooLong`] beyond the size limit of a message.
     pub fn settings(&self) -> Result<ModelSettings, WireError> {
         Ok(ModelSettings::exact(
             Self::KIND.to_owned(),
@@ -80,29 +84,29 @@ impl Machine {
     }
 }
 
-/// A case of this kind with its machine.
+/// Case of a pumping unit with its decoded machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PumpingUnit {
-    /// What every model's case says.
+    /// Case, in the form common to all models.
     pub case: Case,
-    /// What this one's says beside.
+    /// Decoded machine data.
     pub machine: Machine,
 }
 
 impl PumpingUnit {
-    /// Takes the machine out of a case.
+    /// Decodes the machine of a case.
     ///
     /// # Errors
-    /// As [`Machine::of`].
+    /// Those of [`Machine::of`].
     pub fn of(case: Case) -> Result<Self, WireError> {
         let machine = Machine::of(&case)?;
         Ok(Self { case, machine })
     }
 
-    /// Puts the machine, as it is now, into its case.
+    /// Encodes the current machine into its case.
     ///
     /// # Errors
-    /// As [`Machine::settings`].
+    /// Those of [`Machine::settings`].
     pub fn into_case(mut self) -> Result<Case, WireError> {
         self.case.model = self.machine.settings()?;
         Ok(self.case)

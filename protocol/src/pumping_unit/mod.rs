@@ -1,9 +1,8 @@
-//! The pumping unit with double horse heads: what its cases, jobs and answers say beside what every
-//! model's do.
+//! Pumping unit with double horse heads: the model-specific content of its cases, jobs and answers.
 //!
-//! The words of one model, plain data with the unit in every name. Only its own folders know them:
-//! this one, that of the worker which simulates it and that of the coordinator which reads and draws
-//! it. Nothing here knows of files or of dynamics.
+//! Plain data of one model, with the unit in every name. Only three folders know this data: this one, the
+//! folder of the worker that simulates the machine, and the folder of the coordinator that reads and draws
+//! it. This module knows nothing of files or of dynamics.
 mod card;
 mod coefficient;
 mod discretisation;

@@ -4,16 +4,16 @@
 //! from +x. "Beam frame" is this frame turned with the beam; at beam angle 0 they coincide.
 use serde::{Deserialize, Serialize};
 
-/// Walking beam with both heads and everything rigid on it.
+/// Walking beam with both heads and all parts rigidly attached to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Beam {
-    /// Moment of inertia of the whole assembly about the pivot [kg m2].
+    /// Moment of inertia of the whole beam assembly about the pivot [kg m2].
     pub inertia_kg_m2: f64,
-    /// Static moment of the assembly's weight at beam angle 0 [N m]; positive lowers the front.
+    /// Static moment of the beam assembly's weight at beam angle 0 [N m]; positive lowers the front.
     pub gravity_moment_n_m: f64,
-    /// The weight times the height of its centre of mass above the pivot at beam angle 0 [N m]; 0,
-    /// on a line with the pivot, where none is stated. Positive where the beam is top-heavy.
+    /// Weight of the beam assembly times the height of its centre of mass above the pivot at beam angle 0 [N
+    /// m]; positive for a top-heavy beam. Default 0: centre of mass at the height of the pivot.
     #[serde(default)]
     pub gravity_height_moment_n_m: f64,
 }
@@ -29,7 +29,7 @@ pub enum TurnSense {
 }
 
 impl std::fmt::Display for TurnSense {
-    /// As case files write it.
+    /// Writes the name used in case files.
     fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         to.write_str(match self {
             Self::Clockwise => "clockwise",
@@ -38,13 +38,13 @@ impl std::fmt::Display for TurnSense {
     }
 }
 
-/// Prescribed crank.
+/// Crank with prescribed motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Crank {
-    /// Shaft centre \[m\].
+    /// Shaft centre, x \[m\].
     pub center_x_m: f64,
-    /// Shaft centre \[m\].
+    /// Shaft centre, y \[m\].
     pub center_y_m: f64,
     /// Distance from the shaft to the crank pin \[m\].
     pub radius_m: f64,
@@ -58,11 +58,11 @@ pub struct Crank {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rod {
-    /// From the crank pin to the rope's revolute joint \[m\].
+    /// Distance from the crank pin to the revolute joint of the rope \[m\].
     pub length_m: f64,
     /// Mass \[kg\].
     pub mass_kg: f64,
-    /// From the crank pin to the centre of mass \[m\].
+    /// Distance from the crank pin to the centre of mass \[m\].
     pub center_of_mass_m: f64,
     /// Moment of inertia about its own centre of mass [kg m2].
     pub inertia_kg_m2: f64,
@@ -76,7 +76,7 @@ pub struct Suspension {
     pub mass_kg: f64,
 }
 
-/// Both ropes: chains of equal cylinders.
+/// Back and front rope: chains of equal cylinders.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ropes {
@@ -86,17 +86,17 @@ pub struct Ropes {
     pub cylinder_length_m: f64,
     /// Density [kg/m3].
     pub density_kg_m3: f64,
-    /// Length of cylinder that the genes' stiffness and damping belong to \[m\]; chains of other
-    /// pitch are scaled so that the rope stays the same.
+    /// Cylinder length for which the genes' stiffness and damping hold \[m\]; for chains of another pitch the
+    /// coefficients are scaled so that the rope stays the same.
     pub reference_length_m: f64,
     /// Stiffness of the two end joints of a rope.
     pub ends: RopeEnds,
-    /// Preload of every joint: its pull where nothing is stretched \[N\]; 0 where none is stated.
+    /// Preload of every joint: its tension at zero elongation \[N\]; default 0.
     #[serde(default)]
     pub preload_n: f64,
-    /// Cylinders between crossbeam and back head.
+    /// Number of cylinders between crossbeam and back head.
     pub back_cylinders: usize,
-    /// Cylinders between front head and suspension point.
+    /// Number of cylinders between front head and suspension point.
     pub front_cylinders: usize,
 }
 
@@ -104,10 +104,10 @@ pub struct Ropes {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RopeEnds {
-    /// Half a pitch each (twice the coefficients): the rope's compliance is exactly that of its
-    /// length, whatever the pitch.
+    /// Half a pitch at each end joint (twice the coefficients): the rope's compliance is exactly that of its
+    /// length for every pitch.
     HalfPitch,
-    /// A whole pitch each, like every other joint.
+    /// Whole pitch at each end joint, as in every other joint.
     WholePitch,
 }
 
@@ -127,7 +127,7 @@ pub struct Contact {
 pub struct FrontHead {
     /// Radius of the rope's centre line on the arc: the front arm \[m\].
     pub radius_m: f64,
-    /// Where the rope is fixed, in the beam frame \[deg\].
+    /// Angle of the rope's fixing point, in the beam frame \[deg\].
     pub rope_anchor_deg: f64,
 }
 
@@ -137,10 +137,10 @@ pub struct FrontHead {
 pub struct BackHead {
     /// Radius of the rope's centre line on the arc \[m\].
     pub radius_m: f64,
-    /// Centre of the arc in the beam frame \[m\].
+    /// Centre of the arc in the beam frame, x \[m\].
     pub center_x_m: f64,
-    /// Centre of the arc in the beam frame \[m\].
+    /// Centre of the arc in the beam frame, y \[m\].
     pub center_y_m: f64,
-    /// Where the rope is fixed, as seen from the centre, in the beam frame \[deg\].
+    /// Angle of the rope's fixing point about the arc's centre, in the beam frame \[deg\].
     pub rope_anchor_deg: f64,
 }

@@ -1,18 +1,19 @@
-//! Reduce the flexible back head: from its mesh to modes along the rope arc and influence lines.
+//! Reduction of the flexible back head from its mesh to modes along the rope arc and influence lines.
 //!
-//! It travels as a job of the pumping unit's own ([`crate::job::Job::Own`]), which this asks and
-//! [`ReducedHead`] answers. Depends on nothing of the case: mesh, material, gauges and arc travel with the job (about 1 MB
-//! for 14,000 bricks, 60 bytes per 10-node tetrahedron).
+//! The reduction travels as a model-specific job of the pumping unit ([`crate::job::Job::Own`]) with a
+//! [`ReduceHeadSpec`] as request and a [`ReducedHead`] as answer. It does not depend on the case: mesh,
+//! material, gauges and arc travel with the job (about 1 MB for 14,000 bricks, 60 bytes per 10-node
+//! tetrahedron).
 use super::{Influence, TwinHead};
 use serde::{Deserialize, Serialize};
 
-/// Name of the job that takes a [`ReduceHeadSpec`] and gives a [`ReducedHead`].
+/// Name of the job with the request [`ReduceHeadSpec`] and the answer [`ReducedHead`].
 pub const REDUCE_HEAD: &str = "reduce_head";
 
-/// What to reduce, and to what.
+/// Request for the reduction of a head: mesh, material, gauges, stations and modes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReduceHeadSpec {
-    /// The head in the beam frame.
+    /// Mesh of the head in the beam frame.
     pub mesh: HeadMesh,
     /// Young's modulus \[Pa\].
     pub young_pa: f64,
@@ -30,35 +31,37 @@ pub struct ReduceHeadSpec {
     pub probes_deg: Vec<f64>,
     /// Number of modes n.
     pub modes: usize,
-    /// Families of modes to take them from.
+    /// Symmetry families from which the modes are taken.
     pub families: Vec<ModeFamily>,
-    /// Ropes as they lie in a turn: the modes that couple most to them and to the beam's motion are
-    /// returned. Without any, the lowest.
+    /// Rope positions over a turn as static load patterns: the modes that couple most to them and to the
+    /// beam's motion are returned. If empty, the lowest modes are returned.
     pub patterns: Vec<RopeWrap>,
-    /// Two ropes on the head, where there are two: their tables are wanted as well.
+    /// Pair of ropes on the head of a twin-rope machine, for which the antisymmetric tables are returned as
+    /// well.
     pub pair: Option<RopePair>,
-    /// A static load whose field is wanted; with it the whole fields of all modes are returned.
+    /// Static load whose displacement and stress fields are returned; with it the fields of all modes are
+    /// returned too.
     pub fields: Option<RopeWrap>,
 }
 
-/// A mesh that is its own mirror image in z = 0, or the half of one.
+/// Finite-element mesh of a head that is symmetric about z = 0, whole or half.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HeadMesh {
-    /// Positions \[m\].
+    /// Node positions \[m\].
     pub nodes_m: Vec<[f64; 3]>,
-    /// What its elements are.
+    /// Type of all elements.
     pub kind: ElementKind,
-    /// Indices of nodes, element after element, in Gmsh's order.
+    /// Node indices, element after element, in Gmsh's node order.
     pub elements: Vec<u32>,
-    /// Nodes of the pin holes, which are held.
+    /// Indices of the nodes at the pin holes, which are fixed.
     pub held: Vec<u32>,
-    /// Faces of the surface under the rope: indices of nodes, face after face.
+    /// Faces of the surface under the rope: node indices, face after face.
     pub rope_surface: Vec<u32>,
-    /// Whether it is the half z >= 0 of the head.
+    /// Whether the mesh is only the half z >= 0 of the head.
     pub half: bool,
 }
 
-/// What a mesh consists of: all its elements are of one kind.
+/// Type of the elements of a mesh, the same for all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ElementKind {
@@ -70,7 +73,7 @@ pub enum ElementKind {
 }
 
 impl ElementKind {
-    /// Nodes of an element.
+    /// Returns the number of nodes of an element.
     pub const fn nodes(self) -> usize {
         match self {
             Self::Hexahedron => 8,
@@ -78,7 +81,7 @@ impl ElementKind {
         }
     }
 
-    /// Nodes of a face.
+    /// Returns the number of nodes of a face.
     pub const fn face_nodes(self) -> usize {
         match self {
             Self::Hexahedron => 4,
@@ -87,51 +90,51 @@ impl ElementKind {
     }
 }
 
-/// A strain gauge along y, read as stress: Young's modulus times strain.
+/// Strain gauge in the y direction; its stress reading is Young's modulus times strain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HeadGauge {
-    /// Its middle in the beam frame \[m\].
+    /// Centre of the gauge in the beam frame \[m\].
     pub position_m: [f64; 3],
-    /// Its length \[m\].
+    /// Gauge length \[m\].
     pub length_m: f64,
 }
 
-/// How modes mirror in z = 0.
+/// Symmetry of modes about the plane z = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ModeFamily {
-    /// Sideways displacement changes sign: the modes that a rope over the whole width drives.
+    /// Lateral (z) displacement changes sign across z = 0: the modes excited by a rope over the whole width.
     Symmetric,
-    /// Displacement in the plane of motion changes sign.
+    /// In-plane displacement changes sign across z = 0.
     Antisymmetric,
 }
 
-/// A rope wrapped around the head, at rest.
+/// Rope wrapped around the head, at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RopeWrap {
-    /// Its tension \[N\].
+    /// Tension \[N\].
     pub tension_n: f64,
-    /// Where it is fixed \[deg\].
+    /// Angle of the fixing point \[deg\].
     pub anchor_deg: f64,
-    /// Where it leaves the arc \[deg\].
+    /// Angle at which the rope leaves the arc \[deg\].
     pub leaves_deg: f64,
 }
 
 /// Two ropes side by side on the head.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RopePair {
-    /// Distance of either from the plane z = 0 \[m\].
+    /// Distance of each rope from the plane z = 0 \[m\].
     pub offset_m: f64,
     /// Number of antisymmetric modes.
     pub modes: usize,
 }
 
-/// A reduced head.
+/// Result of the reduction of a head.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReducedHead {
     /// Modes, lowest first; n.
     pub modes: Vec<HeadMode>,
-    /// Modes that couple less, lowest first; empty without patterns.
+    /// Modes that were computed but couple less than the returned ones, lowest first; empty without patterns.
     pub left_out: Vec<LeftOutMode>,
     /// Static gauge stress per newton at the stations.
     pub influence: Influence,
@@ -140,62 +143,63 @@ pub struct ReducedHead {
     pub inertia_stress_mpa: [[f64; 4]; 3],
     /// Outward radial displacement at probe j per inward newton at probe i [m/N]; p x p.
     pub compliance_m_per_n: Vec<Vec<f64>>,
-    /// What two ropes ask for; none unless asked for.
+    /// Antisymmetric tables for twin ropes; `None` unless requested.
     pub twin: Option<TwinHead>,
     /// Mass of the meshed steel \[kg\].
     pub mass_kg: f64,
-    /// Its centre \[m\].
+    /// Centre of mass of the meshed steel, x and y \[m\].
     pub center_of_mass_m: [f64; 2],
-    /// Its moment of inertia about the pivot [kg m2].
+    /// Moment of inertia of the meshed steel about the pivot [kg m2].
     pub inertia_about_pivot_kg_m2: f64,
-    /// Unknown displacements of the half that was solved.
+    /// Number of unknown displacements in the solved half model.
     pub unknowns: usize,
-    /// Solves that the modes took.
+    /// Number of linear solves (Lanczos steps) for the modes.
     pub lanczos_steps: usize,
     /// Wall time on the worker \[s\].
     pub wall_s: f64,
-    /// Whole fields; none unless asked for.
+    /// Fields over the whole mesh; `None` unless requested.
     pub fields: Option<HeadFields>,
 }
 
 impl ReducedHead {
-    /// Whether its modes were picked by how they couple to load patterns.
+    /// Returns whether the modes were selected by their coupling to load patterns.
     pub const fn coupled(&self) -> bool {
         !self.left_out.is_empty()
     }
 }
 
-/// One mode of unit modal mass.
+/// Mode shape with unit modal mass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeadMode {
-    /// Its family.
+    /// Symmetry family of the mode.
     pub family: ModeFamily,
     /// Natural frequency \[Hz\].
     pub frequency_hz: f64,
     /// Outward radial displacement at the stations [m per unit modal coordinate]; s.
     pub radial: Vec<f64>,
-    /// Tangential displacement towards increasing psi; s.
+    /// Tangential displacement towards increasing psi at the stations [m per unit modal coordinate]; s.
     pub tangential: Vec<f64>,
     /// Gauge stress [MPa per unit modal coordinate].
     pub gauge_stress_mpa: [f64; 4],
     /// Integrals of density times `(phi_x, phi_y, x phi_y - y phi_x)`.
     pub participation: [f64; 3],
-    /// Largest share of any load pattern's static energy that it holds \[1\]; 0 without patterns.
+    /// Largest share of the static energy of any load pattern that the mode represents \[1\]; 0 without
+    /// patterns.
     pub coupling: f64,
 }
 
-/// A mode that was looked at and not returned.
+/// Mode that was computed but not returned.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeftOutMode {
-    /// Its family.
+    /// Symmetry family of the mode.
     pub family: ModeFamily,
     /// Natural frequency \[Hz\].
     pub frequency_hz: f64,
-    /// Largest share of any load pattern's static energy that it would hold \[1\].
+    /// Largest share of the static energy of any load pattern that the mode would represent \[1\].
     pub coupling: f64,
 }
 
-/// Fields over the whole mesh, for pictures: single precision.
+/// Fields over the whole mesh for pictures, in single precision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeadFields {
     /// Displacement per mode and node [m per unit modal coordinate].

@@ -1,29 +1,29 @@
-//! How a run is started, sampled and integrated.
+//! Settings of start, sampling and integration of a run.
 use serde::{Deserialize, Serialize};
 
-/// How a run is started, sampled and integrated.
+/// Settings of start, sampling and integration of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunSettings {
-    /// Spacing of the output on crank angle \[deg\]; divides 360.
+    /// Spacing of the output in crank angle \[deg\]; divides 360.
     pub output_step_deg: f64,
-    /// Crank angle that is run before the recorded revolution \[deg\].
+    /// Crank angle simulated before the recorded revolution \[deg\].
     pub lead_in_deg: f64,
-    /// Time in which the crank is brought from rest to full speed \[s\].
+    /// Time in which the crank accelerates from rest to full speed \[s\].
     pub ramp_s: f64,
-    /// Method of integration.
+    /// Time integration method.
     pub integrator: Integrator,
     /// Spectral radius at infinite frequency of [`Integrator::GeneralizedAlpha`], 0 to 1 \[1\].
     #[serde(default = "half")]
     pub spectral_radius: f64,
-    /// Longest step \[s\]; it bounds how coarsely the rope's own modes are resolved. It holds where the
-    /// beam swings slowly on its ropes; stiffer ropes get shorter steps in proportion.
+    /// Largest time step \[s\]; limits how coarsely the rope's own modes are resolved. The value applies
+    /// where the beam oscillates slowly on its ropes; stiffer ropes get proportionally shorter steps.
     pub longest_step_s: f64,
     /// Tolerance of the integrator, relative to its built-in error scales.
     pub tolerance: f64,
     /// Number of head modes that are simulated.
     pub modes: usize,
-    /// Newton iterations that one run may take before it is given up.
+    /// Newton iterations after which a run is given up.
     #[serde(default = "iterations")]
     pub iteration_budget: u64,
 }
@@ -36,7 +36,7 @@ const fn half() -> f64 {
     0.5
 }
 
-/// Methods of integration.
+/// Time integration method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Integrator {
@@ -50,7 +50,8 @@ pub enum Integrator {
     GeneralizedAlpha,
     /// Backward differentiation of variable step, orders 1 and 2.
     Bdf,
-    /// The same with orders 1 to 5, for comparison: they are unstable on lightly damped modes.
+    /// Backward differentiation of variable step, orders 1 to 5, for comparison only: the higher orders are
+    /// unstable on lightly damped modes.
     Bdf5,
 }
 
@@ -65,7 +66,7 @@ impl Integrator {
         Self::Bdf5,
     ];
 
-    /// As written in case files.
+    /// Returns the name used in case files.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::TrBdf2 => "tr_bdf2",

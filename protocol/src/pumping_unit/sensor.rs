@@ -2,7 +2,7 @@
 //! the torque at its crank.
 use crate::case::{Abscissa, Channel, Offset};
 
-/// What one channel is a curve of.
+/// Measured quantity of one channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sensor {
     /// Stress at a gauge, by its number, 1 to 4.
@@ -14,7 +14,7 @@ pub enum Sensor {
 }
 
 impl Sensor {
-    /// All of them, in the order of every case's channels.
+    /// All sensors, in the order of every case's channels.
     pub const ALL: [Self; 6] = [
         Self::Gauge(1),
         Self::Gauge(2),
@@ -24,7 +24,8 @@ impl Sensor {
         Self::Torque,
     ];
 
-    /// Its channel under a condition on an output grid of crank angles \[deg\], without a record.
+    /// Creates the sensor's channel under a condition, on an output grid of crank angles \[deg\], without a
+    /// recording.
     pub fn channel(self, condition: usize, turn_deg: Vec<f64>) -> Channel {
         // the steps are about a thousandth of the noise that a cycle of a record has: 0.12 kPa, a
         // micrometre, 0.12 N m
@@ -52,12 +53,12 @@ impl Sensor {
         }
     }
 
-    /// Whether it is a strain gauge.
+    /// Returns whether the sensor is a strain gauge.
     pub const fn is_gauge(self) -> bool {
         matches!(self, Self::Gauge(_))
     }
 
-    /// Name of its channel.
+    /// Returns the name of the sensor's channel.
     pub fn name(self) -> String {
         match self {
             Self::Gauge(number) => format!("gauge_{number}"),
@@ -66,12 +67,12 @@ impl Sensor {
         }
     }
 
-    /// The sensor whose channel has a name.
+    /// Returns the sensor whose channel has the given name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|sensor| sensor.name() == name)
     }
 
-    /// Number of the gauge whose channel has a name.
+    /// Returns the number of the gauge whose channel has the given name.
     pub fn gauge(name: &str) -> Option<u8> {
         match Self::named(name)? {
             Self::Gauge(number) => Some(number),

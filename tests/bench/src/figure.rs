@@ -1,5 +1,5 @@
-//! Error against work as SVG, one curve per method of integration: Newton iterations on the left, wall
-//! time on the right, both axes logarithmic.
+//! SVG figure of error against work, one curve per time integration method: Newton iterations on the left,
+//! wall time on the right, both axes logarithmic.
 use crate::work::{Comparison, Point};
 use maud::{Markup, html};
 use protocol::pumping_unit::Integrator;
@@ -9,21 +9,21 @@ const WIDTH: f64 = 960.0;
 const HEIGHT: f64 = 400.0;
 const TOP: f64 = 34.0;
 const BOTTOM: f64 = 334.0;
-/// Left and right end of either panel; names of the methods stand at the right of the second one.
+/// Left and right end of each panel in pixels; names of the methods stand at the right of the second panel.
 const PANELS: [(f64, f64); 2] = [(66.0, 418.0), (458.0, 810.0)];
-/// An error that serves a calibration \[%\].
+/// Error that is acceptable for a calibration \[%\]; drawn as a dashed line.
 const WANTED: f64 = 1.0;
 
-/// Two axes at right angles do the same: a range of values over a stretch of the page.
+/// Logarithmic axis, horizontal or vertical: maps a range of values to a range of pixels.
 struct Axis {
-    /// Whole powers of ten around all values.
+    /// Exponents of the powers of ten that enclose all values.
     powers: (i32, i32),
     from: f64,
     to: f64,
 }
 
 impl Axis {
-    /// Around all positive values; one decade without any.
+    /// Creates an axis that encloses all positive values; one decade if there are none.
     #[expect(clippy::cast_possible_truncation, reason = "powers of ten of a number")]
     fn around(values: impl Iterator<Item = f64>, (from, to): (f64, f64)) -> Self {
         let powers = values.filter(|&v| v > 0.0).map(f64::log10);
@@ -46,13 +46,13 @@ impl Axis {
         self.from + (self.to - self.from) * (value.log10() - low) / (high - low)
     }
 
-    /// Values that are marked.
+    /// Returns the values of the tick marks.
     fn ticks(&self) -> impl Iterator<Item = f64> {
         (self.powers.0..=self.powers.1).map(|power| 10_f64.powi(power))
     }
 }
 
-/// What a panel shows along its lower axis.
+/// Measure of work on the horizontal axis of a panel.
 struct Measure {
     title: &'static str,
     of: fn(&Point) -> f64,
@@ -80,8 +80,8 @@ const fn color(integrator: Integrator) -> &'static str {
     }
 }
 
-/// Draws all methods: dots are runs, lines join those of a method that no other one beats; dashed, one
-/// per cent.
+/// Draws all methods: dots are runs, lines are the Pareto front of each method, a dashed line marks an error
+/// of one per cent.
 pub(crate) fn error_against_work(all: &Comparison) -> String {
     let errors = all.points.iter().filter_map(|point| point.error);
     let errors = errors.map(|error| 100.0 * error).chain([WANTED]);
@@ -134,7 +134,8 @@ fn panel(all: &Comparison, measure: &Measure, ends: (f64, f64), y: &Axis) -> Mar
     }
 }
 
-/// Names at the right edge, at the height of each method's most accurate run or below the one above.
+/// Draws the methods' names at the right edge, each at the height of the method's most accurate run or below
+/// the name above.
 fn names(all: &Comparison, y: &Axis) -> Markup {
     const LINE: f64 = 14.0;
     let last = |method| {

@@ -1,4 +1,5 @@
-//! `bench integrators`: accuracy against work, by method of integration, as table, CSV and figure.
+//! Command `bench integrators`: accuracy against work for each time integration method, as table, CSV and
+//! figure.
 use crate::figure::error_against_work;
 use crate::machine::MachineChoice;
 use crate::output::{Output, table};
@@ -11,7 +12,7 @@ use report::pumping_unit::integrator_name;
 use report::words;
 use std::path::PathBuf;
 
-/// Compare methods of integration: error of the gauge curves against Newton iterations and time.
+/// Compare time integration methods: error of the gauge curves against Newton iterations and wall time.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -19,22 +20,22 @@ Examples:
   bench integrators cases/cyjs10-5-37hb --methods esdirk4,rodas4 --levels 4
   bench integrators cases/cyjs10-5-37hb --methods bdf --levels 1 --fixed
 
---out takes integrators.svg and integrators.csv. Runs follow one another, so that wall times do not
+--out writes integrators.svg and integrators.csv. Runs are made one at a time, so that wall times do not
 disturb each other.")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     machine: MachineChoice,
-    /// Parameters: a gene file, such as a run's `calibrated.toml`; the recommended ones by default.
+    /// Gene file with the parameters, such as a run's `calibrated.toml`; the recommended values by default.
     #[arg(long, value_name = "FILE")]
     genes: Option<PathBuf>,
     /// Methods, as written in case files; all by default.
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = method)]
     methods: Vec<Integrator>,
-    /// How many levels of accuracy, from the coarse end; 0 for all.
+    /// Number of accuracy levels, from the coarsest; 0 for all.
     #[arg(long, value_name = "N", default_value_t = 0)]
     levels: usize,
-    /// Run the reference paper's fixed step of 1e-5 s too, over the whole run: some 1.5 million steps,
-    /// about a minute.
+    /// Also run the reference paper's fixed step of 1e-5 s over the whole run: some 1.5 million steps, about
+    /// a minute.
     #[arg(long)]
     fixed: bool,
     #[command(flatten)]
@@ -45,11 +46,11 @@ fn method(typed: &str) -> Result<Integrator, String> {
     let found = Integrator::ALL.into_iter().find(|m| m.as_str() == typed);
     found.ok_or_else(|| {
         let known = Integrator::ALL.map(Integrator::as_str);
-        format!("there are: {}", known.join(", "))
+        format!("unknown method; the methods are: {}", known.join(", "))
     })
 }
 
-/// Runs, compares, writes.
+/// Runs all methods and writes the comparison.
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let machine = arguments.machine.load()?;
     let case = &machine.case;
@@ -74,7 +75,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let all = compare(&machine, &plan, done)?;
     let apart = all.resolution;
     output.tell(&format!(
-        "two converged runs: {apart:.1e} of the range apart"
+        "the two reference runs differ by {apart:.1e} of the range"
     ))?;
     output.write("integrators.svg", || Ok(error_against_work(&all).into()))?;
     output.write("integrators.csv", || rows(&all.points))?;
@@ -93,7 +94,7 @@ fn limits(point: &Point) -> String {
     format!("{}, {:e} s", point.tolerance, point.longest_step_s)
 }
 
-/// The error, or why there is none.
+/// Returns the error of a run in per cent, or the verdict of a failed run.
 fn end(point: &Point) -> String {
     match point.error {
         Some(error) => format!("{:.3} %", 100.0 * error),
@@ -101,8 +102,8 @@ fn end(point: &Point) -> String {
     }
 }
 
-/// Every run of every method; the fastest one of a method with an error below one per cent of the
-/// range is marked.
+/// Builds the table of every run of every method; an asterisk marks each method's fastest run with an error
+/// below one per cent of the range.
 fn side_by_side(all: &Comparison) -> Table {
     let mut table = table(&[
         "method",
@@ -149,8 +150,8 @@ mod tests {
         arguments: Arguments,
     }
 
-    /// Methods side by side: every run complete, the more accurate method more accurate, figure and
-    /// table written; the fixed step, which takes a minute, only when it is asked for.
+    /// Checks that all runs are complete, that the more accurate method has the smaller error, that figure
+    /// and table are written, and that the fixed step, which takes a minute, runs only on request.
     #[test]
     fn error_and_work_are_measured_drawn_and_written() {
         let scratch = tempfile::tempdir().unwrap();

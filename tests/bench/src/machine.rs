@@ -1,4 +1,4 @@
-//! The machine of a case under one condition, and one simulation of it.
+//! Machine of a case under one condition, simulated in this process.
 use anyhow::{Context as _, anyhow, bail};
 use case::{Overrides, load};
 use clap::Args;
@@ -10,34 +10,37 @@ use protocol::{
 use std::path::PathBuf;
 use worker::handler::Prepared;
 
-/// Which machine is simulated.
+/// Machine to simulate.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct MachineChoice {
     /// Case folder, with `case.toml` in it.
     #[arg(value_name = "CASE")]
     case: PathBuf,
-    /// Working condition; that of the case's objective by default.
+    /// Name of the condition; by default that of the case's objective.
     #[arg(long, value_name = "NAME")]
     condition: Option<String>,
 }
 
-/// A machine that can be simulated, from several threads at once.
+/// Machine ready for simulation, also from several threads at once.
 pub(crate) struct Machine {
-    /// Its case.
+    /// Case of the machine.
     pub(crate) case: Case,
     prepared: Prepared,
     condition: usize,
 }
 
 impl MachineChoice {
-    /// Reads the case and builds its machines.
+    /// Reads the case and builds its models.
     pub(crate) fn load(&self) -> anyhow::Result<Machine> {
         let case = load(&self.case, &Overrides::default())?;
         let condition = match &self.condition {
             None => case.objective.condition,
             Some(name) => case.condition(name).with_context(|| {
                 let known: Vec<&str> = case.conditions.iter().map(|c| c.name.as_str()).collect();
-                format!("no condition `{name}`; there are: {}", known.join(", "))
+                format!(
+                    "the case has no condition `{name}`; its conditions are: {}",
+                    known.join(", ")
+                )
             })?,
         };
         let prepared = match Prepared::new(worker::SIMULATORS, &case) {
@@ -53,7 +56,7 @@ impl MachineChoice {
 }
 
 impl Machine {
-    /// One simulation of an individual.
+    /// Simulates an individual.
     pub(crate) fn simulate(
         &self,
         genes: &[f64],
@@ -70,7 +73,7 @@ impl Machine {
             columns: Vec::new(),
         });
         let done = self.prepared.evaluate(&job).done();
-        let answer = done.map_err(|failure| anyhow!("not simulated: {failure}"))?;
+        let answer = done.map_err(|failure| anyhow!("the simulation failed: {failure}"))?;
         let curves = answer.into_curves()?;
         Ok(Simulation::of(&curves)?)
     }

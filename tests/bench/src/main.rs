@@ -1,8 +1,8 @@
-//! What developers measure of the dynamics: accuracy against work by method of integration, and how
-//! individuals end all over the box of genes.
+//! Developers' measurements of the dynamics: accuracy against work for each time integration method, and
+//! verdicts of individuals over the whole search box.
 //!
-//! Simulates in this process by the worker's own handlers; knows nothing of the bus, of searches and
-//! of reports. `--help` of a command has examples.
+//! Simulates in this process with the worker's handlers; knows nothing of the bus, of searches and of
+//! reports. `--help` of a command has examples.
 mod figure;
 mod integrators;
 mod machine;
@@ -13,7 +13,7 @@ mod work;
 
 use clap::{Parser, Subcommand};
 
-/// Measures what accuracy costs, and what a search may meet.
+/// Measure the cost of accuracy and the verdicts over the search box.
 #[derive(Debug, Parser)]
 #[command(name = "bench", max_term_width = 100)]
 struct Cli {

@@ -1,5 +1,5 @@
-//! Where results go: tables or one JSON object on standard output, files into a folder, the rest to
-//! standard error.
+//! Output of results: tables or one JSON object on standard output, files in a folder, progress on standard
+//! error.
 use anyhow::Context as _;
 use clap::{Args, ValueEnum};
 use comfy_table::{CellAlignment, LineStyle, Table, presets};
@@ -8,7 +8,7 @@ use std::fs;
 use std::io::{self, Write as _};
 use std::path::PathBuf;
 
-/// How results are printed.
+/// Format of printed results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Form {
     /// A table for people.
@@ -17,19 +17,19 @@ enum Form {
     Json,
 }
 
-/// Where results go.
+/// Options for the output of results.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Output {
-    /// Folder for files; none are written without.
+    /// Folder for output files; without it none are written.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// How results are printed.
+    /// Format of printed results.
     #[arg(long, value_enum, default_value = "table")]
     output: Form,
 }
 
 impl Output {
-    /// Prints one result.
+    /// Prints a result as a table or as JSON.
     pub(crate) fn print(&self, table: &Table, object: &impl Serialize) -> anyhow::Result<()> {
         let text = match self.output {
             Form::Table => table.to_string(),
@@ -38,7 +38,7 @@ impl Output {
         Ok(writeln!(io::stdout().lock(), "{text}")?)
     }
 
-    /// Writes a file, if there is a folder for it.
+    /// Writes a file into the output folder, if one is given.
     pub(crate) fn write(
         &self,
         name: &str,
@@ -55,7 +55,7 @@ impl Output {
         self.tell(&format!("wrote {}", path.display()))
     }
 
-    /// Prints a line beside the results, for people only.
+    /// Prints a progress line to standard error, except with JSON output.
     pub(crate) fn tell(&self, line: &str) -> anyhow::Result<()> {
         match self.output {
             Form::Table => Ok(writeln!(io::stderr().lock(), "{line}")?),
@@ -64,7 +64,7 @@ impl Output {
     }
 }
 
-/// A table with this head; numbers stand at the right.
+/// Creates a table with the given header; all columns but the first are right-aligned.
 pub(crate) fn table(head: &[&str]) -> Table {
     let mut table = Table::new();
     table.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));

@@ -1,34 +1,36 @@
-//! How individuals of a whole box ended, counted: by verdict, with what they cost.
+//! Statistics of the individuals of a search box: counts per verdict, with their cost.
 use protocol::job::{Counters, Reached, Verdict};
 use serde::Serialize;
 
-/// One individual.
+/// Verdict and cost of one individual.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Ended {
-    /// How it ended.
+    /// Verdict of its simulation.
     pub(crate) verdict: Verdict,
-    /// Work.
+    /// Work counters of its simulation.
     pub(crate) counters: Counters,
-    /// Wall time \[s\].
+    /// Wall time of its simulation \[s\].
     pub(crate) wall_s: f64,
 }
 
-/// Individuals that ended alike.
+/// Group of individuals with the same verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Class {
-    /// `complete`, a kind of failure, or `failed` for all of them.
+    /// Name of the verdict: `complete`, a kind of failure, or `failed` for all failures together.
     pub(crate) verdict: String,
-    /// `under_load` or `in_motion`; none for complete runs and for all failures together.
+    /// Stage of the failure, `under_load` or `in_motion`; `None` for complete runs and for all failures
+    /// together.
     pub(crate) stage: Option<&'static str>,
-    /// How many.
+    /// Number of individuals.
     pub(crate) runs: usize,
-    /// Newton iterations: the median, what nine in ten do not exceed, the most.
+    /// Newton iterations: median, 90th percentile, maximum.
     pub(crate) newton_iterations: [u64; 3],
-    /// Wall time \[s\], the same.
+    /// Wall time: median, 90th percentile, maximum \[s\].
     pub(crate) wall_s: [f64; 3],
 }
 
-/// The individuals by how they ended, the commonest first, then all that failed, if any did.
+/// Groups the individuals by verdict, the most frequent first, followed by the group of all failures if there
+/// are any.
 pub(crate) fn classes(individuals: &[Ended]) -> Vec<Class> {
     let mut kinds: Vec<(&str, Option<&'static str>)> = Vec::new();
     for kind in individuals.iter().map(|one| kind(&one.verdict)) {
@@ -53,7 +55,7 @@ pub(crate) fn classes(individuals: &[Ended]) -> Vec<Class> {
     classes
 }
 
-/// A verdict without how far it got.
+/// Returns the name and the stage of a verdict, without the progress.
 fn kind(verdict: &Verdict) -> (&str, Option<&'static str>) {
     match verdict {
         Verdict::Complete => ("complete", None),

@@ -1,8 +1,7 @@
-//! `bench box`: how individuals end all over the box that a search may propose from, and what that
-//! costs.
+//! Command `bench box`: verdicts and cost of individuals spread over the whole search box.
 //!
-//! Points are a seeded Latin hypercube over the logarithms of the genes, so the same case, seed and
-//! number of points are the same individuals. Everything but the wall times is deterministic.
+//! The points are a seeded Latin hypercube over the logarithms of the genes, so that the same case, seed and
+//! number of points give the same individuals. Everything but the wall times is deterministic.
 use crate::machine::{Machine, MachineChoice};
 use crate::output::{Output, table};
 use crate::verdicts::{Class, Ended, classes};
@@ -17,31 +16,31 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::thread;
 
-/// Simulate individuals from all over the box of genes: verdicts, Newton iterations, times.
+/// Simulate individuals over the whole search box: verdicts, Newton iterations, times.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   bench box cases/cyjs10-5-37hb --points 1000 --out box
   bench box cases/cyjs10-5-37hb --points 200 --decades 1 --threads 1
 
---out takes box.csv, one row per individual. Every run ends complete or with a named failure, within its
+--out writes box.csv, one row per individual. Every run ends complete or with a named failure, within its
 budget of iterations. Verdicts and iterations are the same on any machine; times are those of a run that
 has a core to itself: with as many threads as cores they disturb each other a little, with other programs
 at work a lot.")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     machine: MachineChoice,
-    /// How many individuals.
+    /// Number of individuals.
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     points: u32,
-    /// No farther from the recommended values than so many decades (of a parameter of an effect, halves
-    /// of its interval); to the bounds of the case by default.
+    /// Largest distance from the recommended values in decades (for a parameter of an effect, in half-widths
+    /// of its interval); by default the bounds of the case.
     #[arg(long, value_name = "X", value_parser = decades)]
     decades: Option<f64>,
     /// Seed of the points.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Simulations at the same time [default: one per core].
+    /// Number of simultaneous simulations [default: one per core].
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
     #[command(flatten)]
@@ -56,7 +55,7 @@ fn decades(typed: &str) -> Result<f64, String> {
     Err("must be above 0, at most 100".to_owned())
 }
 
-/// What `--output json` prints.
+/// Result printed by `--output json`.
 #[derive(Debug, Serialize)]
 struct Object<'a> {
     points: u32,
@@ -64,7 +63,7 @@ struct Object<'a> {
     classes: &'a [Class],
 }
 
-/// Runs, counts, writes.
+/// Simulates the individuals, counts their verdicts and writes the results.
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let machine = arguments.machine.load()?;
     let individuals = individuals(&Space::new(&machine.case.unknowns)?, arguments);
@@ -95,7 +94,8 @@ fn individuals(space: &Space, arguments: &Arguments) -> Vec<Vec<f64>> {
     points.iter().map(|point| space.values(point)).collect()
 }
 
-/// Simulates all individuals on some threads, and tells of every hundredth; returns them in their order.
+/// Simulates all individuals on several threads, reports progress after every hundred, and returns the
+/// results in the order of the individuals.
 fn simulate(
     machine: &Machine,
     individuals: &[Vec<f64>],
@@ -133,7 +133,7 @@ fn simulate(
     Ok(ended.into_iter().flatten().collect())
 }
 
-/// Individuals as CSV: genes in declared units, how each ended, what it cost.
+/// Formats the individuals as CSV: genes in declared units, verdict and cost.
 fn rows(case: &Case, genes: &[Vec<f64>], ended: &[Ended]) -> anyhow::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let rest = [
@@ -167,7 +167,7 @@ fn rows(case: &Case, genes: &[Vec<f64>], ended: &[Ended]) -> anyhow::Result<Vec<
     Ok(writer.into_inner()?)
 }
 
-/// One row per verdict, the commonest first, then all that failed.
+/// Builds the table with one row per verdict, the most frequent first, followed by all failures together.
 fn counted(classes: &[Class]) -> Table {
     let mut table = table(&[
         "verdict",

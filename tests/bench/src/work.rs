@@ -1,9 +1,9 @@
-//! Accuracy of the gauge curves against work, for every method of integration.
+//! Accuracy of the gauge curves against work, for every time integration method.
 //!
-//! Two runs of different fourth-order methods at a hundredth of the usual tolerance are the truth;
-//! where they differ, nothing can be resolved. A method is run along a ladder of tolerances and
-//! longest steps: which of the two limits it differs from method to method, so that only the
-//! undominated points of each count. Everything but the wall times is deterministic.
+//! The reference solution is computed with two fourth-order methods at a hundredth of the usual tolerance;
+//! their difference is the smallest error that can be resolved. A method is run at a ladder of tolerances and
+//! largest steps. Which of the two limits the accuracy differs between methods, so that only the
+//! Pareto-optimal points of each count. Everything but the wall times is deterministic.
 use crate::machine::Machine;
 use anyhow::ensure;
 use protocol::pumping_unit::Integrator;
@@ -13,7 +13,7 @@ use protocol::{
 };
 use serde::Serialize;
 
-/// Tolerance and longest step \[s\], from coarse to fine.
+/// Pairs of tolerance and largest step \[s\], from coarse to fine.
 const LADDER: [(f64, f64); 9] = [
     (1.0, 0.05),
     (1.0, 0.03),
@@ -26,13 +26,13 @@ const LADDER: [(f64, f64); 9] = [
     (0.001, 0.005),
 ];
 
-/// How the truth is computed: tolerance and longest step \[s\].
+/// Tolerance and largest step \[s\] of the reference solution.
 const TRUTH: (f64, f64) = (1e-3, 2e-3);
 
-/// Newton iterations that one point may take: ten of the most expensive ordinary ones.
+/// Limit on Newton iterations of one point: ten times the most expensive ordinary run.
 const BUDGET: u64 = 120_000;
 
-/// The step that the reference paper's program was given, throughout; the tolerance rejects nothing.
+/// Fixed step used throughout in the reference paper; with this tolerance no step is rejected.
 const FIXED: Integration = Integration {
     integrator: Integrator::Bdf,
     longest_step_s: 1e-5,
@@ -40,7 +40,7 @@ const FIXED: Integration = Integration {
     budget: u64::MAX,
 };
 
-/// How one run is integrated: with these steps, whatever the swing.
+/// Integration settings of one run; the steps are not shortened on fast-oscillating machines.
 #[derive(Clone, Copy, Debug)]
 struct Integration {
     integrator: Integrator,
@@ -63,50 +63,50 @@ impl Integration {
     }
 }
 
-/// What is compared.
+/// Settings of a comparison.
 pub(crate) struct Plan {
     /// Gene values in declared units.
     pub(crate) genes: Vec<f64>,
-    /// Methods.
+    /// Time integration methods to compare.
     pub(crate) methods: Vec<Integrator>,
-    /// How many levels of the ladder, from the coarse end; 0 for the whole of it.
+    /// Number of levels of the ladder, from the coarsest; 0 for all.
     pub(crate) levels: usize,
-    /// Whether the reference paper's fixed step is run too, whole: it takes as long as hundreds of
-    /// ordinary runs.
+    /// Whether the reference paper's fixed step is also run over the whole revolution, which takes as long as
+    /// hundreds of ordinary runs.
     pub(crate) fixed: bool,
 }
 
-/// One run; a row of `integrators.csv`.
+/// Result of one run; a row of `integrators.csv`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Point {
-    /// Method.
+    /// Time integration method.
     pub(crate) integrator: Integrator,
-    /// Tolerance.
+    /// Tolerance of the integrator.
     pub(crate) tolerance: f64,
-    /// Longest step \[s\].
+    /// Largest step \[s\].
     pub(crate) longest_step_s: f64,
-    /// How it ended.
+    /// Verdict of the simulation.
     #[serde(skip)]
     pub(crate) verdict: Verdict,
     /// Whether the whole revolution was simulated.
     pub(crate) complete: bool,
-    /// Accepted steps.
+    /// Number of accepted steps.
     pub(crate) steps: u64,
-    /// Steps that were taken back.
+    /// Number of rejected steps.
     pub(crate) rejected_steps: u64,
-    /// Newton iterations; of a Rosenbrock method, linear solutions.
+    /// Number of Newton iterations; for a Rosenbrock method, of linear solves.
     pub(crate) newton_iterations: u64,
-    /// Tangents.
+    /// Number of tangent evaluations.
     pub(crate) jacobians: u64,
-    /// Factorisations.
+    /// Number of factorisations.
     pub(crate) factorizations: u64,
     /// Wall time \[s\].
     pub(crate) wall_s: f64,
-    /// Root mean square difference to the truth over the range of the worst gauge; none unless
-    /// complete.
+    /// Root mean square difference from the reference solution over the range, for the worst gauge \[1\];
+    /// `None` unless complete.
     #[serde(rename = "error_over_range")]
     pub(crate) error: Option<f64>,
-    /// Defect of the energy ledger over the work.
+    /// Error of the energy balance over the work \[1\].
     pub(crate) energy_error: f64,
 }
 
@@ -131,20 +131,19 @@ impl Point {
     }
 }
 
-/// All methods side by side; what `--output json` prints.
+/// Results of all methods; printed by `--output json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Comparison {
-    /// How far the two candidates for the truth are apart, as an error.
+    /// Difference between the two reference solutions, as an error \[1\].
     pub(crate) resolution: f64,
-    /// Method by method, from the coarse end of the ladder.
+    /// Results method by method, from the coarse end of the ladder.
     pub(crate) points: Vec<Point>,
-    /// The reference paper's kind of step, over the whole run; none unless asked for.
+    /// Result with the reference paper's fixed step; `None` unless requested.
     pub(crate) fixed_step: Option<Point>,
 }
 
 impl Comparison {
-    /// The complete points of a method that no other of its points beats in both work and error,
-    /// by work.
+    /// Returns the Pareto front (work, error) of a method's complete points, sorted by work.
     pub(crate) fn front(
         &self,
         integrator: Integrator,
@@ -165,7 +164,7 @@ impl Comparison {
     }
 }
 
-/// Runs the comparison, one run after the other, so that wall times do not disturb each other.
+/// Runs the comparison, one run after another, so that wall times do not disturb each other.
 pub(crate) fn compare(
     machine: &Machine,
     plan: &Plan,
@@ -201,7 +200,10 @@ pub(crate) fn compare(
     })
 }
 
-/// A run that is as good as exact.
+/// Computes a reference solution whose error is negligible.
+///
+/// # Errors
+/// A run that is not complete.
 fn converged(machine: &Machine, plan: &Plan, integrator: Integrator) -> anyhow::Result<Simulation> {
     let (tolerance, longest_step_s) = TRUTH;
     let integration = Integration {
@@ -213,13 +215,14 @@ fn converged(machine: &Machine, plan: &Plan, integrator: Integrator) -> anyhow::
     let simulation = machine.simulate(&plan.genes, integration.discretisation())?;
     ensure!(
         simulation.verdict == Verdict::Complete,
-        "these parameters have no complete run to compare with ({:?}): choose others with --genes",
+        "the reference run with these parameters is not complete ({:?}): choose other parameters with --genes",
         simulation.verdict
     );
     Ok(simulation)
 }
 
-/// Largest root mean square difference of a gauge over its range; none unless both are complete.
+/// Returns the largest root mean square difference of a gauge over its range \[1\]; `None` unless the
+/// simulation is complete.
 fn worst_gauge(simulation: &Simulation, truth: &Simulation) -> Option<f64> {
     if simulation.verdict != Verdict::Complete {
         return None;

@@ -1,4 +1,4 @@
-//! The encoded case, which a worker fetches by its hash and then believes.
+//! Fuzz target: encoded cases, which workers fetch by hash.
 #![no_main]
 use fuzz::property::wire::is_canonical;
 use libfuzzer_sys::fuzz_target;

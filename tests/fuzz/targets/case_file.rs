@@ -1,4 +1,4 @@
-//! `case.toml` as people write it.
+//! Fuzz target: the reader of `case.toml`.
 #![no_main]
 use fuzz::{FOLDER, property::file::is_a_case_or_refused};
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Bytes as they arrive.
+//! Fuzz target: the frame decoder on arbitrary bytes.
 #![no_main]
 use fuzz::property::wire::is_a_frame_or_refused;
 use libfuzzer_sys::fuzz_target;

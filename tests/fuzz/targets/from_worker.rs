@@ -1,4 +1,4 @@
-//! Bodies of [`FromWorker`] messages, and of what a slot says, which nest the same types.
+//! Fuzz target: bodies of [`FromWorker`] and [`FromSlot`] messages, which nest the same types.
 #![no_main]
 use fuzz::property::wire::is_canonical_in_frame;
 use libfuzzer_sys::fuzz_target;

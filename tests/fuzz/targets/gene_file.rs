@@ -1,4 +1,4 @@
-//! Gene files as people write them.
+//! Fuzz target: the reader of gene files.
 #![no_main]
 use case::{Overrides, load};
 use fuzz::{FOLDER, property::file::are_genes_or_refused};

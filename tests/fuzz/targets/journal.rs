@@ -1,7 +1,7 @@
-//! A journal of sound records, damaged records and rubbish between them.
+//! Fuzz target: the journal reader on intact entries, damaged entries and random bytes between them.
 //!
-//! The first byte of each stretch says whether its bytes become a record with mark and checksum;
-//! the second how long it is.
+//! The first byte of each segment decides whether its bytes become an entry with mark and checksum; the
+//! second byte is the length.
 #![no_main]
 use fuzz::{
     FOLDER,

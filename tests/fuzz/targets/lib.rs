@@ -1,9 +1,9 @@
-//! What the targets share: the properties, and a place for files.
+//! Code shared by the fuzz targets: the tested properties and a scratch folder.
 pub mod property;
 
 use std::{fs, path::PathBuf, sync::LazyLock};
 
-/// A folder of this process, in memory-backed storage where there is such.
+/// Scratch folder of this process, in memory-backed storage if available.
 pub static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
     let shared = PathBuf::from("/dev/shm");
     let base = if shared.is_dir() { shared } else { std::env::temp_dir() };

@@ -1,4 +1,4 @@
-//! Load cards as people write them.
+//! Fuzz target: the reader of load cards.
 #![no_main]
 use fuzz::{FOLDER, property::file::is_a_card_or_refused};
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Gmsh meshes.
+//! Fuzz target: the reader of Gmsh meshes.
 #![no_main]
 use fuzz::{FOLDER, property::file::is_a_mesh_or_refused};
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Names as peers and people write them: keys of the bus, names of certificates, addresses.
+//! Fuzz target: parsers of bus keys, certificate owner names and addresses.
 #![no_main]
 use libfuzzer_sys::fuzz_target;
 use link::locator::Locator;

@@ -1,4 +1,4 @@
-//! The samples of a gauge record.
+//! Fuzz target: the reader of gauge records.
 #![no_main]
 use fuzz::property::file::are_samples_or_refused;
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Bodies of [`ToWorker`] messages, and of what a slot is told, which nest the same types.
+//! Fuzz target: bodies of [`ToWorker`] and [`ToSlot`] messages, which nest the same types.
 #![no_main]
 use fuzz::property::wire::is_canonical_in_frame;
 use libfuzzer_sys::fuzz_target;

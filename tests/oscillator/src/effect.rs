@@ -1,27 +1,27 @@
-//! Effects that the oscillator may have beside its springs and dampers, each in closed form.
+//! Effects that may be added to the oscillator with its springs and dampers, each with an exact solution.
 //!
-//! What an effect does to a motion, [`crate::simulate`] knows; here they are described, and their
-//! numbers are read from a case or a job.
+//! This module describes the effects and reads their parameters from a case or a job; [`crate::simulate`]
+//! applies them to the motion.
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
 use protocol::case::EffectSetting;
 
-/// The numbers of all effects, zero where one is absent.
+/// Parameters of all effects, zero where an effect is absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effects {
     /// Dry friction of the guide \[N\].
     pub friction_n: f64,
-    /// Second order of the drive's force, cosine and sine part \[N\].
+    /// Cosine and sine coefficient of the second harmonic of the driving force \[N\].
     pub second_order_n: [f64; 2],
-    /// First order of the foundation's motion, cosine and sine part \[mm\].
+    /// Cosine and sine coefficient of the first harmonic of the foundation's motion \[mm\].
     pub base_mm: [f64; 2],
     /// Time constant of the force sensor \[ms\].
     pub lag_ms: f64,
 }
 
-/// One number of an effect, for the table below: name, unit, sign, greatest value, typical value.
+/// Parameter of an effect in the table below: name, unit, sign, greatest value, typical value.
 type Number = (&'static str, &'static str, Sign, f64, f64);
 
-/// Every effect: identifier, title, joint, place and numbers.
+/// Effect in the table below: identifier, title, joint, place and parameters.
 type Row = (
     &'static str,
     &'static str,
@@ -67,7 +67,7 @@ const TABLE: [Row; 4] = [
     ),
 ];
 
-/// What the model can add to the oscillator.
+/// Returns the descriptors of the effects that the model can add to the oscillator.
 pub fn descriptors() -> Vec<EffectDescriptor> {
     let number = |&(name, unit, sign, greatest, typical): &Number| ParameterDescriptor {
         name: name.to_owned(),
@@ -95,7 +95,7 @@ pub fn descriptors() -> Vec<EffectDescriptor> {
     TABLE.iter().map(row).collect()
 }
 
-/// The unit of a number of an effect; none where there is no such number.
+/// Returns the unit of a parameter of an effect; `None` if there is no such parameter.
 pub fn unit(id: &str, parameter: &str) -> Option<&'static str> {
     let row = TABLE.iter().find(|row| row.0 == id)?;
     let number = row.4.iter().find(|number| number.0 == parameter)?;
@@ -103,10 +103,10 @@ pub fn unit(id: &str, parameter: &str) -> Option<&'static str> {
 }
 
 impl Effects {
-    /// From settings.
+    /// Reads the effects from settings.
     ///
     /// # Errors
-    /// The first field that the model does not have, or that is beyond its bounds, and why.
+    /// The first field that the model does not have, or that is beyond its bounds, and the reason.
     pub fn read(settings: &[EffectSetting]) -> Result<Self, (String, String)> {
         let mut all = Self::default();
         for setting in settings {
@@ -114,8 +114,9 @@ impl Effects {
                 let field = format!("{}.{name}", setting.id);
                 let refused = |why: String| (field.clone(), why);
                 let slot = all.slot(&setting.id, name);
-                let slot =
-                    slot.ok_or_else(|| refused("the oscillator has no such number".to_owned()))?;
+                let slot = slot.ok_or_else(|| {
+                    refused("the oscillator has no such effect parameter".to_owned())
+                })?;
                 let row = TABLE.iter().find(|row| row.0 == setting.id);
                 let numbers = row.map_or(&[][..], |row| row.4);
                 let bound = numbers.iter().find(|number| number.0 == name);
@@ -128,7 +129,7 @@ impl Effects {
                 });
                 if value.is_nan() || value.abs() > bound {
                     return Err(refused(format!(
-                        "is {value}; it is at most {bound} in size"
+                        "is {value}, but its magnitude must be at most {bound}"
                     )));
                 }
                 *slot = *value;

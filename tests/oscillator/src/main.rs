@@ -1,4 +1,4 @@
-//! A worker that simulates oscillators: the suites' own, never shipped.
+//! Worker program that simulates oscillators, used only by the test suites and never shipped.
 use oscillator::simulator::Oscillators;
 use std::process::ExitCode;
 

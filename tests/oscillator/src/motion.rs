@@ -1,18 +1,18 @@
-//! How the mass moves, exactly: pieces between standstills, each a sum of exponentials.
+//! Exact motion of the mass as pieces between standstills, each a sum of exponentials.
 //!
-//! With dry friction the equation is linear as long as the mass slides one way, and the mass stands
-//! while nothing overcomes the friction. So a motion is cut where its velocity changes sign; only
-//! those moments are searched for numerically. Without dry friction there is one piece. Sensors that
-//! read wrongly, units and conditions are not known here: everything is in SI.
+//! With dry friction the equation is linear as long as the mass slides in one direction, and the mass stands
+//! while the force on it does not exceed the friction. A motion is therefore divided where its velocity
+//! changes sign; only those times are found numerically. Without dry friction there is one piece. All
+//! quantities are in SI units; sensor errors, units of the case and conditions are handled elsewhere.
 use crate::sum::Sum;
 use nalgebra::Complex;
 
-/// The mass with its springs and dampers.
+/// Parameters of the mass, its springs and damper, friction and force sensor.
 #[derive(Clone, Copy, Debug)]
 pub struct Oscillator {
     /// Moving mass \[kg\].
     pub mass: f64,
-    /// Stiffness of both springs together [N/m].
+    /// Stiffness of both springs in parallel [N/m].
     pub stiffness: f64,
     /// Viscous damping [N s/m].
     pub damping: f64,
@@ -22,7 +22,7 @@ pub struct Oscillator {
     pub lag: f64,
 }
 
-/// What moves it.
+/// Excitation of the oscillator.
 #[derive(Clone, Debug, Default)]
 pub struct Drive {
     /// Force on the mass \[N\].
@@ -31,18 +31,18 @@ pub struct Drive {
     pub base: Sum,
 }
 
-/// Where a motion begins.
+/// State of the oscillator and its force sensor at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
     /// Displacement of the mass \[m\].
     pub x: f64,
-    /// Its velocity [m/s].
+    /// Velocity of the mass [m/s].
     pub v: f64,
     /// Reading of the force sensor \[N\].
     pub reading: f64,
 }
 
-/// A part of a motion without a standstill, or one standstill.
+/// Piece of a motion: sliding in one direction, or one standstill.
 #[derive(Clone, Debug)]
 struct Piece {
     begins: f64,
@@ -62,40 +62,42 @@ impl Piece {
     }
 }
 
-/// A motion over some time.
+/// Motion over an interval of time, as consecutive pieces.
 #[derive(Clone, Debug)]
 pub struct Motion(Vec<Piece>);
 
 impl Motion {
-    /// The state at a time \[s\] that is not before its beginning.
+    /// Returns the state at a time \[s\]; `None` if the motion has no piece.
     pub fn state(&self, t: f64) -> Option<State> {
         let piece = self.0.iter().rev().find(|piece| piece.begins <= t);
         Some(piece.or(self.0.first())?.state(t))
     }
 
-    /// Number of its pieces.
+    /// Returns the number of pieces.
     pub const fn pieces(&self) -> usize {
         self.0.len()
     }
 }
 
-/// No motion: it neither comes to rest nor repeats itself.
+/// Error for a motion that neither comes to rest nor becomes periodic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Restless;
 
-/// Pieces of one motion before it is given up.
+/// Maximum number of pieces of one motion.
 const MOST_PIECES: usize = 2000;
-/// Periods after which a driven motion must repeat itself, and how well, relative to its size.
+/// Maximum number of periods in which a driven motion must become periodic, to the relative tolerance
+/// `REPEATS`.
 const MOST_PERIODS: usize = 600;
 const REPEATS: f64 = 1e-11;
-/// Looks at the velocity in every radian of the fastest part of the motion.
+/// Samples of the velocity per radian of the fastest component of the motion, in the search for a change of
+/// sign.
 const LOOKS: f64 = 8.0;
 
 impl Oscillator {
-    /// The motion that repeats itself after `period` \[s\].
+    /// Computes the periodic motion of period `period` \[s\].
     ///
     /// # Errors
-    /// [`Restless`] where dry friction and drive find no common rhythm.
+    /// [`Restless`] if the motion with dry friction does not become periodic.
     pub fn steady(&self, drive: &Drive, period: f64) -> Result<Motion, Restless> {
         let x = self.answer(drive);
         let free = self.piece(drive, 0.0, x, None);
@@ -117,10 +119,10 @@ impl Oscillator {
         Err(Restless)
     }
 
-    /// The motion from a state on, for `span` \[s\].
+    /// Computes the motion from an initial state over `span` \[s\].
     ///
     /// # Errors
-    /// [`Restless`] where it stops and goes on without end.
+    /// [`Restless`] if the motion has more than the maximum number of pieces.
     pub fn go(&self, drive: &Drive, start: State, span: f64) -> Result<Motion, Restless> {
         let mut pieces = Vec::new();
         let (mut state, mut now) = (start, 0.0);
@@ -144,8 +146,9 @@ impl Oscillator {
         Err(Restless)
     }
 
-    /// The sign of the velocity from a state on; none where the mass stands, and 0 without dry friction,
-    /// when it makes no difference. What `stood` till now has been overcome, whatever the last bit says.
+    /// Returns the sign of the velocity just after a state: `None` if the mass stands, 0 without dry
+    /// friction, where the sign is not needed. A mass that `stood` until now slides, because its friction has
+    /// been overcome, regardless of rounding.
     fn way(&self, drive: &Drive, state: &State, now: f64, stood: bool) -> Option<f64> {
         if self.friction <= 0.0 {
             return Some(0.0);
@@ -157,7 +160,7 @@ impl Oscillator {
         (stood || pull.abs() > self.friction).then(|| pull.signum())
     }
 
-    /// Force on the mass beside dry friction, from `now` on.
+    /// Computes the force on the mass without dry friction, from `now` on.
     fn pull(&self, drive: &Drive, x: &Sum, now: f64) -> Sum {
         let through = self.through_springs(drive, x, now);
         drive
@@ -166,7 +169,7 @@ impl Oscillator {
             .plus(&through.through(|_| (-1.0).into()))
     }
 
-    /// Force on the foundation through springs and damper, from `now` on.
+    /// Computes the force on the foundation through springs and damper, from `now` on.
     fn through_springs(&self, drive: &Drive, x: &Sum, now: f64) -> Sum {
         let base = drive.base.since(now).through(|_| (-1.0).into());
         x.clone()
@@ -174,7 +177,7 @@ impl Oscillator {
             .through(|s| s * self.damping + self.stiffness)
     }
 
-    /// What the drive alone brings about in the long run.
+    /// Computes the steady-state response to the excitation, without dry friction.
     fn answer(&self, drive: &Drive) -> Sum {
         let by_base = drive.base.through(|s| s * self.damping + self.stiffness);
         drive
@@ -184,7 +187,7 @@ impl Oscillator {
             .through(|s| (s * s * self.mass + s * self.damping + self.stiffness).inv())
     }
 
-    /// Sliding from a state on, towards positive or negative x.
+    /// Computes the displacement while sliding from a state in the direction `way` (1 or -1).
     fn sliding(&self, drive: &Drive, state: &State, now: f64, way: f64) -> Sum {
         let held = Sum::constant(-way * self.friction / self.stiffness);
         let rest = self.answer(drive).since(now).plus(&held);
@@ -194,7 +197,8 @@ impl Oscillator {
         rest.plus(&Sum::term(a, r)).plus(&Sum::term(-a + dx, q))
     }
 
-    /// Rates of the free motion [1/s]; two that are equal are taken apart by a millionth.
+    /// Computes the eigenvalues of the free motion [1/s]; equal eigenvalues are separated by a relative 1e-6,
+    /// so that the solution stays a sum of two exponentials.
     fn own_rates(&self) -> [Complex<f64>; 2] {
         let half = 0.5 * self.damping / self.mass;
         let square = self.stiffness / self.mass;
@@ -207,8 +211,8 @@ impl Oscillator {
         [root.sqrt() - half, -root.sqrt() - half]
     }
 
-    /// A piece of this displacement with what the force sensor reads, from its last reading on; none
-    /// where it has read for ever.
+    /// Builds a piece with the given displacement and the reading of the force sensor. `last` is the sensor's
+    /// initial reading; without it, the sensor is in its steady state.
     fn piece(&self, drive: &Drive, begins: f64, x: Sum, last: Option<f64>) -> Piece {
         let force = self.through_springs(drive, &x, begins);
         let reading = if self.lag > 0.0 {
@@ -226,8 +230,8 @@ impl Oscillator {
         }
     }
 
-    /// When a piece ends: its velocity changes sign, or the pull overcomes the friction; `span` at the
-    /// latest.
+    /// Finds the end of a piece: the time at which the velocity changes sign or the force overcomes the
+    /// friction, at most `span`.
     fn end(&self, drive: &Drive, piece: &Piece, way: Option<f64>, span: f64) -> f64 {
         let over: Box<dyn Fn(f64) -> bool> = match way {
             Some(0.0) => return span,
@@ -253,7 +257,8 @@ impl Oscillator {
     }
 }
 
-/// The first moment, to the last bit, of what is not yet so at `before` and is so at `after`.
+/// Bisects to machine precision for the time at which a condition that is false at `before` and true at
+/// `after` becomes true.
 fn boundary(is_so: &dyn Fn(f64) -> bool, mut before: f64, mut after: f64) -> f64 {
     loop {
         let middle = f64::midpoint(before, after);

@@ -1,20 +1,21 @@
-//! What the rig would have measured: runs of hidden values with noise, period by period, as a table.
+//! Synthetic measurements: simulated curves with noise, repeated over periods, as a table.
 use search::random::{Phase, Stream, Streams};
 use std::fmt::Write as _;
 
-/// A measurement of one condition.
+/// Measurement of one condition.
 #[derive(Clone, Debug)]
 pub struct Measurement<'a> {
-    /// Heading and values of the column of places.
+    /// Heading and values of the abscissa.
     pub places: (&'a str, &'a [f64]),
-    /// Heading, true values and standard deviation of the noise of every channel.
+    /// Heading, true values and standard deviation of the noise of each channel.
     pub channels: &'a [(&'a str, Vec<f64>, f64)],
-    /// Number of periods, or of times that the mass was let go.
+    /// Number of periods, or of releases of the mass.
     pub repeats: usize,
 }
 
 impl Measurement<'_> {
-    /// As a CSV table, one row per place and repeat; the same seed gives the same table.
+    /// Writes the measurement as a CSV table, one row per abscissa value and repeat; the same seed gives the
+    /// same table.
     pub fn table(&self, seed: u64) -> String {
         let mut noise: Stream = Streams::new(seed, 0).at(0, Phase::Resample, 0);
         let names = self.channels.iter().map(|(name, _, _)| *name);

@@ -1,17 +1,17 @@
-//! What a case says to the oscillator alone, as it travels: text that nobody on the way understands.
+//! Settings of a case that only the oscillator reads; they are transmitted as uninterpreted text.
 use serde::Deserialize;
 
-/// Everything beside unknowns, channels and records.
+/// Oscillator settings of a case, apart from unknowns, channels and records.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// What `[model]` says beside its kind.
+    /// Settings in `[model]` apart from its kind.
     pub model: Rig,
-    /// What `[[conditions]]` say beside their names, in the case's order.
+    /// Settings in `[[conditions]]` apart from their names, in the case's order.
     pub conditions: Vec<Excitation>,
 }
 
-/// The rig.
+/// Settings of the test rig.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rig {
@@ -19,39 +19,39 @@ pub struct Rig {
     pub stop_mm: f64,
 }
 
-/// What moves the mass under one condition: a shaker, or a hand that lets it go.
+/// Excitation of the mass under one condition: a shaker, or a release from a displacement.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Excitation {
-    /// Frequency of the shaker's first order \[Hz\]; none where the mass is let go.
+    /// Frequency of the shaker's first harmonic \[Hz\]; none where the mass is released.
     pub drive_hz: Option<f64>,
-    /// Orders of the shaker's force.
+    /// Harmonics of the shaker's force.
     #[serde(default)]
     pub drive: Vec<Order>,
-    /// Displacement from which the mass is let go \[mm\].
+    /// Displacement from which the mass is released \[mm\].
     #[serde(default)]
     pub release_mm: f64,
 }
 
-/// One order of the shaker's force.
+/// Harmonic of the shaker's force.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Order {
-    /// How many times a turn.
+    /// Order of the harmonic: number of periods per turn of the shaker.
     pub order: u32,
     /// Amplitude \[N\].
     pub amplitude_n: f64,
-    /// Lead over the shaker's zero, in its own turns \[deg\].
+    /// Phase lead of the harmonic, in degrees of its own period \[deg\].
     pub phase_deg: f64,
 }
 
 impl Settings {
-    /// Reads them.
+    /// Parses the settings.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// A message that says which field is wrong.
     pub fn read(bytes: &[u8]) -> Result<Self, String> {
-        let text = std::str::from_utf8(bytes).map_err(|_| "is no text".to_owned())?;
+        let text = std::str::from_utf8(bytes).map_err(|_| "is not valid UTF-8 text".to_owned())?;
         let read: Self = toml::from_str(text).map_err(|error| error.to_string())?;
         let turns = |hz: f64| hz > 0.0 && hz.is_finite();
         match read

@@ -1,7 +1,6 @@
-//! One run of the rig: the mass moves, the sensors read.
+//! One simulation of the test rig: motion of the mass and readings of the sensors.
 //!
-//! It knows names of channels and numbers in the units of the case; how cases and jobs travel, it does
-//! not know.
+//! Channels have their names and units of the case here; encoding of cases and jobs is handled elsewhere.
 use crate::{
     effect::Effects,
     motion::{Drive, Oscillator, State},
@@ -15,7 +14,7 @@ use std::f64::consts::TAU;
 pub struct Values {
     /// Mass of the carriage \[kg\].
     pub mass_kg: f64,
-    /// Mass of the shaker's armature, which moves with it \[kg\].
+    /// Mass of the shaker's armature, which moves with the carriage \[kg\].
     pub armature_kg: f64,
     /// Stiffness of the spring on the left [N/mm].
     pub left_n_per_mm: f64,
@@ -23,9 +22,9 @@ pub struct Values {
     pub right_n_per_mm: f64,
     /// Damping [N s/m].
     pub damping_n_s_per_m: f64,
-    /// Lead of the shaker's force over the zero of its turn \[deg\].
+    /// Phase lead of the shaker's force \[deg\].
     pub lead_deg: f64,
-    /// By how much a newton on the foundation moves the reading of the displacement [mm/N].
+    /// Crosstalk: change of the displacement reading per newton on the foundation [mm/N].
     pub crosstalk_mm_per_n: f64,
 }
 
@@ -39,7 +38,7 @@ pub enum Sensor {
 }
 
 impl Sensor {
-    /// The sensor of a channel of this name, and its unit.
+    /// Returns the sensor of a channel of this name, and its unit.
     pub fn named(name: &str) -> Option<(Self, &'static str)> {
         match name {
             "displacement" => Some((Self::Displacement, "mm")),
@@ -49,24 +48,24 @@ impl Sensor {
     }
 }
 
-/// What a run came to.
+/// Result of a simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// One curve per channel that was asked for, as far as the run got.
+    /// Curve of each requested channel, up to the time at which the simulation ended.
     pub curves: Vec<Vec<f64>>,
-    /// What ended it early.
+    /// Reason for an early end, if any.
     pub failed: Option<&'static str>,
-    /// Pieces of the motion.
+    /// Number of pieces of the motion.
     pub pieces: usize,
 }
 
-/// What ends a run early.
+/// Failure kind: the mass strikes the stop.
 pub const STRIKES: &str = "strikes_the_stop";
-/// The other thing that does.
+/// Failure kind: the motion does not become periodic.
 pub const RESTLESS: &str = "no_common_rhythm";
 
-/// Runs the rig; each channel is a sensor with the places it is read at, degrees of the shaker's turn or
-/// seconds after the mass is let go.
+/// Simulates the rig. Each channel is a sensor with its abscissa values: degrees of the shaker's turn, or
+/// seconds after the release.
 pub fn run(
     rig: &Rig,
     excitation: &Excitation,
@@ -119,7 +118,7 @@ pub fn run(
     }
 }
 
-/// What a sensor shows of a state.
+/// Computes the reading of a sensor in a state, including crosstalk.
 fn reading(sensor: Sensor, state: &State, values: &Values) -> f64 {
     match sensor {
         Sensor::Displacement => 1e3 * state.x + values.crosstalk_mm_per_n * state.reading,
@@ -127,7 +126,7 @@ fn reading(sensor: Sensor, state: &State, values: &Values) -> f64 {
     }
 }
 
-/// The shaker's force and the foundation's motion.
+/// Builds the shaker's force and the foundation's motion.
 fn drive(excitation: &Excitation, hz: f64, lead_deg: f64, effects: &Effects) -> Drive {
     let turn = TAU * hz;
     let lead = lead_deg.to_radians();
@@ -152,7 +151,7 @@ fn drive(excitation: &Excitation, hz: f64, lead_deg: f64, effects: &Effects) -> 
     }
 }
 
-/// The mass drawn aside, held, and let go.
+/// Computes the motion of a mass that is displaced, held and released.
 fn released(
     oscillator: &Oscillator,
     excitation: &Excitation,

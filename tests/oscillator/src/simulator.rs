@@ -1,4 +1,4 @@
-//! The oscillator as a worker's program sees it: cases and jobs in, curves out.
+//! Simulator interface of the oscillator for the worker: takes cases and jobs, returns curves.
 use crate::{
     effect::{self, Effects},
     settings::Settings,
@@ -15,20 +15,20 @@ use protocol::{
 };
 use worker::simulator::{Model, Simulator};
 
-/// Every oscillator.
+/// Simulator of models of the kind `oscillator`.
 #[derive(Clone, Copy, Debug)]
 pub struct Oscillators;
 
-/// An oscillator of one case.
+/// Oscillator prepared for one case.
 #[derive(Debug)]
 struct Prepared {
     case: Case,
     settings: Settings,
-    /// Sensors of each condition's channels.
+    /// Sensors of the channels of each condition.
     sensors: Vec<Vec<Sensor>>,
 }
 
-/// Unknowns that every case must have, in the order of [`Values`], with their units.
+/// Unknowns that each case must have, in the order of [`Values`], with their units.
 const UNKNOWNS: [(&str, &str); 7] = [
     ("mass", "kg"),
     ("armature", "kg"),
@@ -58,12 +58,12 @@ impl Simulator for Oscillators {
 
     fn own(&self, name: &str, _: &[u8]) -> Result<Vec<u8>, Failure> {
         Err(Failure::Refused {
-            reason: format!("an oscillator knows no job `{name}`"),
+            reason: format!("the oscillator model does not support the job `{name}`"),
         })
     }
 }
 
-/// A run with everything in it, whose bits name this build's numerics.
+/// Simulates a reference with all effects; its bits identify the numerics of this build.
 fn reference() -> Run {
     let excitation = crate::settings::Excitation {
         drive_hz: Some(6.5),
@@ -110,7 +110,8 @@ impl Prepared {
         for (name, unit) in UNKNOWNS {
             let found = case.unknowns.iter().find(|unknown| unknown.name == name);
             if found.is_none_or(|unknown| unknown.unit != unit) {
-                let problem = format!("there must be one named {name}, in {unit}");
+                let problem =
+                    format!("the case must have an unknown named {name} with the unit {unit}");
                 return Err(Failure::misconfigured("unknowns", problem));
             }
         }
@@ -118,7 +119,7 @@ impl Prepared {
             let known = Sensor::named(&channel.name).filter(|(_, unit)| *unit == channel.unit);
             let problem = || {
                 format!(
-                    "{} in {} is nothing that the rig shows",
+                    "the rig does not measure {} in {}; it measures displacement in mm and force in N",
                     channel.name, channel.unit
                 )
             };
@@ -151,7 +152,8 @@ impl Prepared {
         Ok(prepared)
     }
 
-    /// The effects of the case with those of a job; parameters that are unknowns have its values.
+    /// Merges the effects of the case with those of a job; effect parameters that are unknowns take the
+    /// values of the individual.
     fn effects(&self, individual: &Individual) -> Result<Effects, Failure> {
         let mut own = self.case.effects.clone();
         for (unknown, value) in self.case.unknowns.iter().zip(&individual.genes) {
@@ -235,7 +237,8 @@ impl Model for Prepared {
     }
 }
 
-/// How a run ended; one that struck the stop got as far as its shortest curve.
+/// Returns the verdict of a simulation; if the mass struck the stop, the fraction reached is that of the
+/// shortest curve.
 fn verdict(run: &Run, channels: &[(Sensor, &[f64])]) -> Verdict {
     let Some(kind) = run.failed else {
         return Verdict::Complete;

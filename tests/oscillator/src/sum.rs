@@ -1,69 +1,68 @@
-//! Sums of complex exponentials, `Re sum_j a_j exp(s_j t)`: what every motion of a linear system is
-//! made of. What moves, and why, is not known here.
+//! Sums of complex exponentials, `Re sum_j a_j exp(s_j t)`, the form of every motion of a linear system.
 use nalgebra::Complex;
 
-/// One exponential: amplitude and rate [1/s].
+/// Exponential term: amplitude and rate [1/s].
 type Term = (Complex<f64>, Complex<f64>);
 
-/// The real part of a sum of exponentials, a function of time.
+/// Real part of a sum of complex exponentials, a function of time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sum(Vec<Term>);
 
 impl Sum {
-    /// One exponential.
+    /// Creates a single exponential.
     pub fn term(amplitude: Complex<f64>, rate: Complex<f64>) -> Self {
         Self(vec![(amplitude, rate)])
     }
 
-    /// What never changes.
+    /// Creates a constant function.
     pub fn constant(value: f64) -> Self {
         Self::term(Complex::from(value), Complex::from(0.0))
     }
 
-    /// `amplitude cos(rate t + phase)`; rate in rad/s, phase in rad.
+    /// Creates `amplitude cos(rate t + phase)`; rate in rad/s, phase in rad.
     pub fn cosine(amplitude: f64, rate: f64, phase: f64) -> Self {
         let turned = exp(Complex::new(0.0, phase)) * amplitude;
         Self::term(turned, Complex::new(0.0, rate))
     }
 
-    /// Value at a time \[s\].
+    /// Returns the value at a time \[s\].
     pub fn at(&self, t: f64) -> f64 {
         self.0.iter().map(|(a, s)| (a * exp(s * t)).re).sum()
     }
 
-    /// Both together.
+    /// Adds another sum.
     #[must_use]
     pub fn plus(mut self, other: &Self) -> Self {
         self.0.extend_from_slice(&other.0);
         self
     }
 
-    /// What a linear system answers in the long run: each exponential times the system's transfer
+    /// Computes the steady-state response of a linear system: each exponential times the system's transfer
     /// function at its rate.
     #[must_use]
     pub fn through(&self, transfer: impl Fn(Complex<f64>) -> Complex<f64>) -> Self {
         Self(self.0.iter().map(|(a, s)| (a * transfer(*s), *s)).collect())
     }
 
-    /// The derivative.
+    /// Computes the time derivative.
     #[must_use]
     pub fn rate(&self) -> Self {
         self.through(|s| s)
     }
 
-    /// The same function of a clock that starts at `t`.
+    /// Shifts the origin of time to `t`.
     #[must_use]
     pub fn since(&self, t: f64) -> Self {
         self.through(|s| exp(s * t))
     }
 
-    /// Greatest number of radians that any of its exponentials turns in a second [rad/s].
+    /// Returns the greatest angular frequency of the exponentials [rad/s].
     pub fn fastest(&self) -> f64 {
         self.0.iter().map(|(_, s)| s.im.abs()).fold(0.0, f64::max)
     }
 }
 
-/// The exponential function, with the same bits on every processor.
+/// Computes the complex exponential with the same bits on every processor.
 fn exp(z: Complex<f64>) -> Complex<f64> {
     let (sine, cosine) = libm::sincos(z.im);
     Complex::new(cosine, sine) * libm::exp(z.re)

@@ -1,4 +1,4 @@
-//! Random numbers by purpose: what is drawn for one thing never changes what is drawn for another.
+//! Random number streams by purpose: draws for one purpose never change those for another.
 use libm::{cos, exp, log, sqrt};
 use rand_chacha::{
     ChaCha8Rng,
@@ -6,12 +6,12 @@ use rand_chacha::{
 };
 use std::f64::consts::TAU;
 
-/// Numbers that are drawn for one purpose.
+/// Random number stream for one purpose.
 #[derive(Clone, Debug)]
 pub struct Draw(ChaCha8Rng);
 
 impl Draw {
-    /// The numbers of a seed for a purpose.
+    /// Creates the stream of a seed and a purpose.
     pub fn new(seed: u64, purpose: &str) -> Self {
         let mut hasher = blake3::Hasher::new_derive_key("horsehead blind suite draws");
         hasher.update(&seed.to_le_bytes());
@@ -19,38 +19,38 @@ impl Draw {
         Self(ChaCha8Rng::from_seed(*hasher.finalize().as_bytes()))
     }
 
-    /// Uniform in [0, 1).
+    /// Draws a uniform number in [0, 1).
     pub fn unit(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Uniform between two numbers.
+    /// Draws a uniform number between two bounds.
     pub fn between(&mut self, lower: f64, upper: f64) -> f64 {
         lower + (upper - lower) * self.unit()
     }
 
-    /// Uniform in the logarithm between two positive numbers.
+    /// Draws a log-uniform number between two positive bounds.
     pub fn log_between(&mut self, lower: f64, upper: f64) -> f64 {
         exp(self.between(log(lower), log(upper)))
     }
 
-    /// Normal with mean 0 and variance 1.
+    /// Draws a standard normal number.
     pub fn normal(&mut self) -> f64 {
         let radius = sqrt(-2.0 * log(1.0 - self.unit()));
         radius * cos(TAU * self.unit())
     }
 
-    /// Normal, cut at two standard deviations.
+    /// Draws a standard normal number, clamped to two standard deviations.
     pub fn cut_normal(&mut self) -> f64 {
         self.normal().clamp(-2.0, 2.0)
     }
 
-    /// -1 or 1.
+    /// Draws a sign, -1 or 1.
     pub fn sign(&mut self) -> f64 {
         if self.unit() < 0.5 { -1.0 } else { 1.0 }
     }
 
-    /// A place in a list of `len` entries; 0 for an empty one.
+    /// Draws an index into a list of `len` entries; 0 for an empty list.
     pub fn index(&mut self, len: usize) -> usize {
         #[expect(
             clippy::cast_possible_truncation,

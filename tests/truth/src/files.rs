@@ -1,4 +1,4 @@
-//! A test record as a delivered folder: load cards, samples and data sheets by condition.
+//! Test record as delivered files: load cards, samples and data sheets by condition.
 use crate::chain::{Sample, Sensors};
 use crate::law::Tolerance;
 use anyhow::{Context as _, ensure};
@@ -9,12 +9,12 @@ use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 
-/// What is recorded beside angle and load.
+/// Channels that are recorded in addition to angle and load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Channels {
-    /// Which of gauges 1 to 4.
+    /// Whether each of gauges 1 to 4 is recorded.
     pub gauges: [bool; 4],
-    /// Whether position and torque are.
+    /// Whether position and torque are recorded.
     pub others: bool,
 }
 
@@ -28,21 +28,21 @@ impl Default for Channels {
 }
 
 impl Channels {
-    /// Gauges 1 and 3 and nothing else, as the paper's.
+    /// Gauges 1 and 3 only, as in the paper.
     pub const TWO: Self = Self {
         gauges: [true, false, true, false],
         others: false,
     };
 
-    /// With these gauges alone.
+    /// Returns these channels with only the given gauges.
     ///
     /// # Errors
-    /// None of them, or one that is none of 1 to 4.
+    /// If no gauge is given, or a number is not in 1 to 4.
     pub fn with_gauges(self, numbers: &[usize]) -> anyhow::Result<Self> {
         let known = numbers.iter().all(|number| (1..=4).contains(number));
         ensure!(
             known && !numbers.is_empty(),
-            "gauges are 1 to 4, one at least"
+            "gauge numbers must be between 1 and 4, and at least one gauge must be given"
         );
         Ok(Self {
             gauges: [1, 2, 3, 4].map(|gauge| numbers.contains(&gauge)),
@@ -50,7 +50,7 @@ impl Channels {
         })
     }
 
-    /// Places of the gauges that are there.
+    /// Returns the zero-based indices of the recorded gauges.
     fn gauges(self) -> impl Iterator<Item = usize> {
         (0..4).filter(move |k| self.gauges[*k])
     }
@@ -65,29 +65,29 @@ impl Display for Channels {
     }
 }
 
-/// What is delivered of one condition.
+/// Data delivered for one condition.
 #[derive(Clone, Debug)]
 pub struct Delivered<'a> {
-    /// Name of the condition, as `5rpm`.
+    /// Name of the condition, for example `5rpm`.
     pub condition: &'a str,
     /// Crank speed [1/min].
     pub rpm: f64,
-    /// Cycles, about.
+    /// Approximate number of cycles.
     pub cycles: usize,
-    /// Load over one turn, equally spaced \[N\].
+    /// Load over one turn, at equally spaced crank angles \[N\].
     pub card: &'a [f64],
-    /// Samples that arrived.
+    /// Samples that were received.
     pub samples: &'a [Sample],
-    /// Samples that did not.
+    /// Number of lost samples.
     pub lost: usize,
-    /// What is recorded.
+    /// Recorded channels.
     pub channels: Channels,
 }
 
-/// Writes `card_C.csv`, `test_C.csv.gz` and `test_C.toml` into a folder.
+/// Writes `card_C.csv`, `test_C.csv.gz` and `test_C.toml` of condition C into a folder.
 ///
 /// # Errors
-/// What the file system refuses.
+/// If a file cannot be written.
 pub fn write(
     folder: &Path,
     name: &str,
@@ -214,7 +214,7 @@ cycle_to_cycle_variation = {load}
     )
 }
 
-/// How good each instrument is.
+/// Formats the stated instrument tolerances as the `[tolerance]` table of the data sheet.
 fn stated(tolerance: &Tolerance) -> anyhow::Result<String> {
     let keys = toml::to_string(tolerance)?;
     Ok(format!(

@@ -1,8 +1,8 @@
-//! Intervals of a share that was counted.
+//! Confidence intervals of proportions.
 use statrs::distribution::{Beta, ContinuousCDF};
 
-/// Clopper-Pearson: the 95 % interval of the share behind `hits` of `trials`; everything where there
-/// were none.
+/// Computes the Clopper-Pearson 95 % interval of a proportion from `hits` of `trials`; the whole unit
+/// interval without trials.
 pub fn clopper_pearson(hits: usize, trials: usize) -> [f64; 2] {
     const TAIL: f64 = 0.025;
     let (k, n) = (hits as f64, trials as f64);
@@ -26,7 +26,7 @@ pub fn clopper_pearson(hits: usize, trials: usize) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    /// Against tables of the method, and against its own definition by the binomial's tails.
+    /// Checks the intervals against published tables and against their definition by binomial tails.
     #[test]
     fn intervals_are_those_of_the_binomial() {
         let [lower, upper] = clopper_pearson(0, 60);

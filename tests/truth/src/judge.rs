@@ -1,36 +1,36 @@
-//! What a verdict is worth, once the answer is open.
+//! Scoring of verdicts against the true hidden effects.
 use crate::law::Nuisances;
 use crate::plan::{Answer, AnswerEffect, Stratum};
 use crate::verdict::{Limit, Nuisance, Verdict};
 
-/// One set with its answer and its verdict.
+/// Test set with its true answer and its verdict.
 #[derive(Clone, Debug)]
 pub struct Trial {
     /// Name of the set.
     pub name: String,
-    /// What was hidden.
+    /// True hidden effects and other drawn values.
     pub answer: Answer,
-    /// What was said.
+    /// Verdict of the diagnosis.
     pub verdict: Verdict,
 }
 
-/// What became of a single hidden effect. Every set is one of these.
+/// Result for a set with a single hidden effect; the variants are exhaustive and exclude each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It is the first name.
+    /// Named first: the hidden effect is the first effect named.
     Right,
-    /// It is in the set of the first name.
+    /// Indistinguishable: the hidden effect is in the ambiguity set of the first effect named.
     InSet,
-    /// It is not named, and listed as what the record cannot show.
+    /// Unobservable: no effect is named, and the hidden effect is listed as absorbed by other unknowns.
     Absorbed,
-    /// It is not named.
+    /// Missed: no effect is named, and the hidden effect is not listed as absorbed.
     Missed,
-    /// Something else is named whose set does not hold it.
+    /// Wrong: another effect is named, whose ambiguity set does not contain the hidden one.
     False,
 }
 
 impl Outcome {
-    /// Every outcome, with its words.
+    /// All outcomes with their descriptions in the table.
     pub const ALL: [(Self, &'static str); 5] = [
         (Self::Right, "first name right"),
         (Self::InSet, "in the set of another name"),
@@ -41,7 +41,7 @@ impl Outcome {
 }
 
 impl Trial {
-    /// What became of its first hidden effect.
+    /// Classifies the result for the first hidden effect.
     pub fn outcome(&self) -> Outcome {
         if self.first_is_right() {
             Outcome::Right
@@ -60,18 +60,18 @@ impl Trial {
         self.answer.effects.iter().any(|effect| effect.id == id)
     }
 
-    /// Names that are right.
+    /// Counts the named effects that are hidden in the set.
     pub fn right(&self) -> usize {
         self.verdict.added().filter(|id| self.hides(id)).count()
     }
 
-    /// Names that are wrong, with sets that do not hold the truth.
+    /// Counts the named effects whose ambiguity sets contain no hidden effect.
     pub fn false_names(&self) -> usize {
         let wrong = |id: &&str| !self.verdict.set_of(id).iter().any(|id| self.hides(id));
         self.verdict.added().filter(wrong).count()
     }
 
-    /// Whether the first name's set holds the truth.
+    /// Returns whether the ambiguity set of the first named effect contains a hidden effect.
     pub fn covered(&self) -> bool {
         self.verdict
             .added()
@@ -79,14 +79,15 @@ impl Trial {
             .is_some_and(|first| self.verdict.set_of(first).iter().any(|id| self.hides(id)))
     }
 
-    /// Whether the first name is hidden.
+    /// Returns whether the first named effect is a hidden one.
     pub fn first_is_right(&self) -> bool {
         self.verdict.added().next().is_some_and(|id| self.hides(id))
     }
 
-    /// Size of the first hidden effect in units of the detection limit that a diagnosis of an empty set with the same noise,
-    /// cycles and channels printed for it; none where there is no such set, or the record cannot show the effect. The
-    /// limit that its own diagnosis prints knows what is hidden.
+    /// Computes the ratio of the first hidden effect's size to its detection limit: the median of the limits
+    /// reported for sets without a hidden effect that have the same noise, cycles and channels. `None` if
+    /// there is no such set, or the record cannot show the effect. The limit reported for the set itself is
+    /// not used, because it depends on the hidden effect.
     pub fn over_limit(&self, all: &[Self]) -> Option<f64> {
         let effect = self.answer.effects.first()?;
         let alike = |other: &&Self| {
@@ -105,7 +106,8 @@ impl Trial {
         Some(effect.value.abs() / limits.get(limits.len() / 2)?)
     }
 
-    /// Relative errors of the hidden effects' sizes that are named, and whether their intervals hold them.
+    /// Returns the relative size error of each hidden effect that was named, and whether its 95 % interval
+    /// contains the true size.
     pub fn size_errors(&self) -> Vec<(f64, bool)> {
         let effects = self.answer.effects.iter();
         effects
@@ -127,19 +129,20 @@ impl Trial {
         Some(((size.value / effect.value - 1.0).abs(), covered))
     }
 
-    /// Whether the verdict says that the record cannot show the first hidden effect.
+    /// Returns whether the verdict lists the first hidden effect as absorbed, i.e. not observable in the
+    /// record.
     pub fn said_absorbed(&self) -> bool {
         let first = self.answer.effects.first();
         first.is_some_and(|effect| self.verdict.absorbed.iter().any(|own| own.id == effect.id))
     }
 
-    /// Whether it names nothing and nobody.
+    /// Returns whether the verdict names no effect.
     pub fn names_nobody(&self) -> bool {
         self.verdict.added().next().is_none()
     }
 
-    /// Intervals of instruments that hold what was drawn, and how many there are; with an effect of the same
-    /// kind hidden there is none.
+    /// Counts the 95 % intervals of instrument nuisance parameters that contain the drawn value, and all such
+    /// intervals. Nuisance parameters whose effect is hidden or named are not counted.
     pub fn nuisances_held(&self) -> [usize; 2] {
         let judged = self.verdict.nuisances.iter().filter_map(|own| {
             let truth = drawn(&self.answer.nuisances, own)?;
@@ -150,7 +153,7 @@ impl Trial {
         [judged.iter().filter(|held| **held).count(), judged.len()]
     }
 
-    /// One word on a self.
+    /// Returns a short label of the result for the report.
     pub fn mark(&self) -> &'static str {
         if self.false_names() > 0 {
             "FALSE NAME"
@@ -178,14 +181,14 @@ impl Trial {
     }
 }
 
-/// Whether a limit's parameter is the one that was drawn; where effects have one number for each gauge
-/// (`step_1`), any of them.
+/// Returns whether a limit's parameter is the drawn one; for effects with one parameter per gauge (`step_1`),
+/// any gauge matches.
 fn same(parameter: &str, effect: &AnswerEffect) -> bool {
     let stem = parameter.trim_end_matches(|c: char| c.is_ascii_digit());
     parameter == effect.parameter || stem.trim_end_matches('_') == effect.parameter
 }
 
-/// What was drawn of what a verdict gives an interval of.
+/// Returns the drawn value of a nuisance parameter.
 fn drawn(truth: &Nuisances, own: &Nuisance) -> Option<f64> {
     let gauge = own.parameter.strip_prefix("gain_").map(str::parse::<usize>);
     match (own.id.as_str(), gauge) {

@@ -1,4 +1,4 @@
-//! Tests of judge and table: what a few verdicts are worth, and how they are counted.
+//! Tests of scoring and table: outcomes of a few verdicts, and their counts.
 use crate::files::Channels;
 use crate::judge::{Outcome, Trial};
 use crate::law::Nuisances;

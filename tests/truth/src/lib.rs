@@ -1,10 +1,10 @@
-//! The blind suite: test records of a machine that hides an effect, sealed answers, and what verdicts
-//! about them are worth.
+//! Blind test suite: generates records of a machine with a hidden effect, seals the answers, and scores the
+//! verdicts of a diagnosis.
 //!
-//! The machine is the case's drawing with other coefficients, another discretisation, another
-//! integrator and other laws ([`law`]) than those of the program that is judged, read by a whole
-//! measuring chain ([`chain`]). That program gets files and nothing else: nothing of it may depend on
-//! this crate. Nothing here knows how a diagnosis works.
+//! The machine is the case's drawing with other coefficients, another discretisation, another integrator and
+//! other laws ([`law`]) than those of the program under test, observed through a complete measuring chain
+//! ([`chain`]). The program under test receives files only: none of its code may depend on this crate, and
+//! this crate does not know how a diagnosis works.
 pub mod chain;
 pub mod draw;
 pub mod files;

@@ -1,5 +1,5 @@
-//! The machine as it really is: the case's drawing, discretised and integrated otherwise than the
-//! program that is judged does it, with the hidden effects in it.
+//! Simulation of the true machine: the case's drawing with hidden effects, discretised and integrated
+//! differently from the program under test.
 use crate::draw::Draw;
 use crate::law::Law;
 use crate::turn::{Turn, Watch};
@@ -18,21 +18,21 @@ use simulation::run::{RunSettings, simulate};
 use simulation::verdict::Verdict;
 use std::sync::Arc;
 
-/// How finely the truth is computed.
+/// Resolution of the truth simulation in space and time.
 #[derive(Clone, Copy, Debug)]
 pub struct Fineness {
     /// Length of a rope cylinder \[m\].
     pub cylinder: f64,
     /// Longest step of TR-BDF2 \[s\].
     pub step: f64,
-    /// Head modes beside those of the case, as far as there are any.
+    /// Number of head modes added to those of the case, limited to those available.
     pub more_modes: usize,
-    /// Samples of a turn.
+    /// Number of samples per crank revolution.
     pub samples: usize,
 }
 
 impl Fineness {
-    /// Against a case with cylinders of 50 mm.
+    /// Resolution for a case with cylinders of 50 mm.
     pub const FULL: Self = Self {
         cylinder: 0.025,
         step: 0.002,
@@ -40,7 +40,7 @@ impl Fineness {
         samples: 1440,
     };
 
-    /// Against a case with long cylinders, where minutes count.
+    /// Resolution for a case with cylinders longer than 75 mm, where a run must be quick.
     pub const COARSE: Self = Self {
         cylinder: 0.075,
         step: 0.004,
@@ -49,9 +49,9 @@ impl Fineness {
     };
 }
 
-/// The middle of what coefficients are drawn about: Table 3 of the paper, optimised. Its axial damping,
-/// 5201 N.s/m, leaves the rope's swinging undamped for minutes; a steel rope loses some per cent a
-/// cycle, which is about this.
+/// Median of each drawn coefficient: the optimised column of Table 3 of the paper, except for the axial
+/// damping. The paper's 5201 N.s/m leaves axial vibrations of the rope undamped for minutes; a steel rope
+/// loses some per cent of its energy per cycle, which the value here gives approximately.
 const MIDDLE: [(Coefficient, f64); 10] = [
     (Coefficient::Kb1, 7.81e8),
     (Coefficient::Kb23, 2.26e8),
@@ -65,14 +65,15 @@ const MIDDLE: [(Coefficient, f64); 10] = [
     (Coefficient::Cc, 1020.0),
 ];
 
-/// Standard deviation of the logarithm of a coefficient; cut at twice that.
+/// Standard deviation of the logarithm of a drawn coefficient; the distribution is truncated at twice this
+/// value.
 const SPREAD: f64 = 0.35;
 
-/// Coefficients of a rope nobody has a data sheet of, in the case's units and order; parameters of the
-/// case's effects are as the case has them.
+/// Draws rope coefficients, in the units and the order of the case's unknowns; parameters of the case's
+/// effects keep their start values.
 ///
 /// # Errors
-/// A case that lacks one of the ten.
+/// An unknown of the case that is not among the ten rope coefficients.
 pub fn genes(case: &Case, draw: &mut Draw) -> anyhow::Result<Vec<f64>> {
     let genes = case.unknowns.iter().map(|gene| {
         if gene.of_effect().is_some() {
@@ -81,19 +82,19 @@ pub fn genes(case: &Case, draw: &mut Draw) -> anyhow::Result<Vec<f64>> {
         let (_, middle) = MIDDLE
             .iter()
             .find(|(name, _)| gene.name == name.as_str())
-            .with_context(|| format!("no middle for {}", gene.name))?;
+            .with_context(|| format!("no median value is known for the unknown {}", gene.name))?;
         let value = middle * libm::exp(SPREAD * draw.cut_normal());
         Ok(value.clamp(gene.lower, gene.upper))
     });
     genes.collect()
 }
 
-/// What differs from cycle to cycle.
+/// Changes of load and speed between cycles.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Variation {
-    /// Share by which the load's swing is larger.
+    /// Relative increase of the load's deviation from its mean.
     pub load: f64,
-    /// Share by which the crank is faster.
+    /// Relative increase of the crank speed.
     pub speed: f64,
 }
 
@@ -106,10 +107,11 @@ impl Effect for Variation {
     }
 }
 
-/// One turn of the machine with the laws that act in it, as its sensors see it.
+/// Simulates one crank revolution of the machine under `laws` and returns the readings of ideal sensors,
+/// changed by those laws that act on instruments.
 ///
 /// # Errors
-/// A case that cannot be refined so, or a machine that does not come round.
+/// A case that cannot be refined to `fineness`, or a simulation that does not complete the revolution.
 pub fn turn(
     unit: &PumpingUnit,
     condition: usize,
@@ -148,7 +150,10 @@ pub fn turn(
     let mut watch = Watch::default();
     let result = simulate(&machine, &law, &settings, &mut watch);
     if result.verdict != Verdict::Complete {
-        bail!("the machine does not come round: {:?}", result.verdict);
+        bail!(
+            "the simulation did not complete a revolution: {:?}",
+            result.verdict
+        );
     }
     let mut turn = watch.turn(&machine, &law);
     for law in laws {
@@ -158,5 +163,5 @@ pub fn turn(
 }
 
 fn refused(failure: &Failure) -> anyhow::Error {
-    anyhow!("the case is refused: {failure:?}")
+    anyhow!("the worker refused the case: {failure:?}")
 }

@@ -1,4 +1,5 @@
-//! `truth make`, `truth open`, and `truth run`, which does both with a diagnosis in between.
+//! Command line program `truth`: `make` generates sealed sets, `open` scores verdicts, `run` does both with a
+//! diagnosis in between, `searches` compares calibrations.
 use anyhow::{Context as _, bail, ensure};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use protocol::pumping_unit::PumpingUnit;
@@ -32,28 +33,28 @@ enum Command {
     Searches(SearchesOf),
 }
 
-/// Make sets of records, each in a folder with a random name, and seal what they hide.
+/// Make sets of records, each in a folder with a random name, and seal the answers.
 #[derive(Debug, Args)]
 struct Make {
-    /// Case folder whose machine it is.
+    /// Case folder of the machine.
     #[arg(long)]
     case: PathBuf,
-    /// Where the folders go.
+    /// Folder to write the sets into.
     #[arg(long)]
     out: PathBuf,
-    /// File of the answers; those of earlier sets stay in it. Keep it away from the records.
+    /// File of the answers; those of earlier sets are kept. Keep it away from the records.
     #[arg(long)]
     answers: PathBuf,
-    /// What everything is drawn from; whoever knows it can draw the answers.
+    /// Seed of all random draws; keep it secret, since it reproduces the answers.
     #[arg(long)]
     seed: u64,
-    /// What the sets test.
+    /// Kind of hidden effects in the sets.
     #[arg(long, value_enum)]
     stratum: StratumChoice,
-    /// Effect to hide, instead of one that is drawn; of a double one or both, by commas.
+    /// Effect to hide instead of a drawn one; for `double` one or two, separated by commas.
     #[arg(long, value_name = "ID", value_delimiter = ',')]
     effect: Vec<String>,
-    /// Its size in units of its typical size, instead of one that is drawn.
+    /// Size of the effect as a multiple of its typical size, instead of a drawn one.
     #[arg(long, value_name = "TIMES", allow_negative_numbers = true)]
     times: Option<f64>,
     /// Factor on the noise of all sensors.
@@ -62,19 +63,19 @@ struct Make {
     /// Cycles of each record.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=200))]
     cycles: u16,
-    /// Factor on what instruments, saddle bearing and balance are off by; 0 for a record without.
+    /// Factor on the errors of instruments, saddle bearing and balance; 0 for none.
     #[arg(long, default_value_t = 1.0)]
     nuisances: f64,
     /// Gauges that are recorded.
     #[arg(long, value_delimiter = ',', default_value = "1,2,3,4")]
     gauges: Vec<usize>,
-    /// Leave position and torque out.
+    /// Leave out position and torque.
     #[arg(long)]
     without_others: bool,
-    /// Cylinders of 75 mm, for a case whose own are longer.
+    /// Simulate with cylinders of 75 mm, for a case whose cylinders are longer.
     #[arg(long)]
     coarse: bool,
-    /// Number of sets; each next one takes the next seed.
+    /// Number of sets; the seed increases by one from set to set.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1000))]
     count: u16,
 }
@@ -102,80 +103,80 @@ impl From<StratumChoice> for Stratum {
     }
 }
 
-/// Make sets, diagnose each, and print what the verdicts are worth. What is there already is not done again:
-/// a run that was stopped goes on.
+/// Make sets, diagnose each, and print the table of scores. Finished sets are kept: a run that was stopped
+/// continues.
 #[derive(Debug, Args)]
 struct Run {
-    /// Case folder whose machine it is.
+    /// Case folder of the machine.
     #[arg(long)]
     case: PathBuf,
-    /// Where records, answers, verdicts and the table go.
+    /// Folder for records, answers, verdicts and the table.
     #[arg(long)]
     out: PathBuf,
-    /// The program that is judged; its worker lies beside it.
+    /// The program under test; its worker must be in the same folder.
     #[arg(long)]
     horsehead: PathBuf,
-    /// What everything is drawn from.
+    /// Seed of all random draws.
     #[arg(long)]
     seed: u64,
-    /// Sets with one effect. Of four sets one has gauges 1 and 3 alone.
+    /// Number of sets with one effect. One in four has gauges 1 and 3 only.
     #[arg(long, default_value_t = 30)]
     singles: u16,
-    /// Sets without any.
+    /// Number of sets without an effect.
     #[arg(long, default_value_t = 20)]
     zeros: u16,
-    /// Sets with two.
+    /// Number of sets with two effects.
     #[arg(long, default_value_t = 12)]
     doubles: u16,
-    /// Sets with one that the library does not name.
+    /// Number of sets with one effect that the library does not contain.
     #[arg(long, default_value_t = 10)]
     outside: u16,
-    /// Sets with a card that was cut to its first harmonics.
+    /// Number of sets with a load card truncated to its first harmonics.
     #[arg(long, default_value_t = 4)]
     cards: u16,
-    /// Begin no further set after so many hours.
+    /// Start no further set after this many hours.
     #[arg(long, value_name = "H")]
     hours: Option<f64>,
 }
 
-/// Calibrate records by several searches and seeds, and print a table of objectives, stiffness and cost. What is there
-/// already is not run again.
+/// Calibrate records by several searches and seeds, and print a table of objectives, stiffness and cost.
+/// Existing results are not computed again.
 #[derive(Debug, Args)]
 struct SearchesOf {
-    /// Case folder; its own record is the first.
+    /// Case folder; its own record is calibrated first.
     #[arg(long)]
     case: PathBuf,
     /// Folders of other records.
     #[arg(long, value_name = "DIR", num_args = 1..)]
     records: Vec<PathBuf>,
-    /// Files of what the records hide.
+    /// Files of answers with the hidden coefficients of the records.
     #[arg(long, value_name = "FILE", num_args = 1..)]
     answers: Vec<PathBuf>,
-    /// The program that is judged; its worker lies beside it.
+    /// The program under test; its worker must be in the same folder.
     #[arg(long)]
     horsehead: PathBuf,
-    /// Searches, by the names of their presets.
+    /// Names of the search presets.
     #[arg(long, value_delimiter = ',', default_value = "quick,memetic")]
     presets: Vec<String>,
-    /// Seeds of each.
+    /// Seeds used with each preset.
     #[arg(long, value_delimiter = ',', default_value = "1,2,3")]
     seeds: Vec<u64>,
-    /// Where results and the table go.
+    /// Folder for results and the table.
     #[arg(long)]
     out: PathBuf,
 }
 
-/// Open the answers and print what the verdicts are worth.
+/// Open the answers and print the table of scores.
 #[derive(Debug, Args)]
 struct Open {
     /// File of the answers.
     #[arg(long)]
     answers: PathBuf,
-    /// Folder of the verdicts: NAME.json is what `horsehead diagnose CASE --measured .../NAME --output json`
-    /// printed.
+    /// Folder of the verdicts: NAME.json is the output of `horsehead diagnose CASE --measured .../NAME
+    /// --output json`.
     #[arg(long)]
     verdicts: PathBuf,
-    /// What the answers were committed to when the records were given away.
+    /// Commitment that `truth make` printed for the answers.
     #[arg(long, value_name = "HEX")]
     commitment: Option<String>,
 }
@@ -209,7 +210,7 @@ fn make_sets(arguments: &Make) -> anyhow::Result<()> {
     };
     ensure!(
         asked.len() <= most,
-        "--effect: sets of this stratum hide {most} at most"
+        "--effect: a set of this stratum hides at most {most} effect(s)"
     );
     let mut sealed = Sealed::load_or_new(&arguments.answers)?;
     let mut commitment = String::new();
@@ -252,7 +253,7 @@ fn open(arguments: &Open) -> anyhow::Result<()> {
     if let Some(committed) = &arguments.commitment
         && *committed != commitment
     {
-        bail!("the answers are not those that were committed to: {commitment}");
+        bail!("the answers do not match --commitment; the commitment of the file is {commitment}");
     }
     let judged = judged(sealed, &arguments.verdicts)?;
     say(&format!("commitment {commitment}\n\n{judged}"))
@@ -299,7 +300,7 @@ fn compare(arguments: &SearchesOf) -> anyhow::Result<()> {
     say(&table)
 }
 
-/// The table of all sets that have a verdict.
+/// Returns the score table of all sets that have a verdict.
 fn judged(sealed: Sealed, verdicts: &Path) -> anyhow::Result<String> {
     let mut trials = Vec::new();
     let mut without = 0;
@@ -318,7 +319,7 @@ fn judged(sealed: Sealed, verdicts: &Path) -> anyhow::Result<String> {
     Ok(table(&trials, without)?)
 }
 
-/// To standard output; a reader that has gone is no error.
+/// Writes text to standard output; ignores a closed pipe.
 fn say(text: &str) -> anyhow::Result<()> {
     match io::stdout().lock().write_all(text.as_bytes()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),

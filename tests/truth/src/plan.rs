@@ -1,4 +1,5 @@
-//! What is hidden in a set of records: effects, their sizes and coefficients, all drawn from a seed.
+//! Random plan of a set of records: hidden effects, their sizes and the rope coefficients, all drawn from a
+//! seed.
 use crate::chain::{MORE_LOAD, MORE_SPEED, Sample, Sensors, Turns, record};
 use crate::draw::Draw;
 use crate::files::{Channels, Delivered, write};
@@ -10,26 +11,26 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
 
-/// What a set of records is to test.
+/// Stratum of the suite: the kind of hidden effects in a set of records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stratum {
-    /// One effect that the library names, of a size that machines have.
+    /// One effect that the library contains, of a realistic size.
     Single,
-    /// Nothing.
+    /// No hidden effect.
     Zero,
-    /// Two effects that the library names.
+    /// Two effects that the library contains.
     Double,
-    /// One effect that it does not name.
+    /// One effect that the library does not contain.
     Outside,
-    /// One effect that it names, too small to be seen.
+    /// One effect that the library contains, too small to be detected.
     Below,
     /// A delivered card that lacks the load's higher harmonics.
     Card,
 }
 
 impl Stratum {
-    /// All of them, in the order of tables.
+    /// All strata, in the order of the tables.
     pub const ALL: [Self; 6] = [
         Self::Single,
         Self::Zero,
@@ -39,7 +40,7 @@ impl Stratum {
         Self::Card,
     ];
 
-    /// As it is written.
+    /// Returns the name of the stratum as serialised.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Single => "single",
@@ -51,7 +52,7 @@ impl Stratum {
         }
     }
 
-    /// Sizes are drawn log-uniform between these, in units of an effect's typical size.
+    /// Returns the bounds of the log-uniform distribution of sizes, as multiples of an effect's typical size.
     const fn sizes(self) -> [f64; 2] {
         match self {
             Self::Single | Self::Double | Self::Outside | Self::Zero | Self::Card => [0.5, 5.0],
@@ -60,30 +61,31 @@ impl Stratum {
     }
 }
 
-/// What decides a set of records beside its case.
+/// Specification of a set of records to generate for a given case.
 #[derive(Clone, Debug)]
 pub struct Order {
-    /// What everything is drawn from.
+    /// Seed of all random draws.
     pub seed: u64,
-    /// What it is to test.
+    /// Stratum of the set.
     pub stratum: Stratum,
-    /// Effects that are not to be drawn.
+    /// Effects to hide instead of drawn ones.
     pub asked: Vec<Kind>,
-    /// Its size in units of its typical size, if that is not to be drawn.
+    /// Size of each effect as a multiple of its typical size; drawn if `None`. In the `card` stratum the
+    /// number of harmonics kept.
     pub times: Option<f64>,
-    /// Factor on all noise.
+    /// Factor on the noise of all sensors.
     pub noise: f64,
-    /// Cycles of each record.
+    /// Number of cycles of each record.
     pub cycles: usize,
-    /// How finely the machine is computed.
+    /// Resolution of the truth simulation.
     pub fineness: Fineness,
-    /// How good the instruments are.
+    /// Standard deviations of instrument, bearing and balance errors.
     pub tolerance: Tolerance,
-    /// What is recorded.
+    /// Recorded channels.
     pub channels: Channels,
 }
 
-/// Pairs whose records look alike: no sensible test would ask for both at once.
+/// Pairs of effects with similar records, which are never hidden together in a drawn set.
 const ALIKE: [[&str; 2]; 8] = [
     ["pivot_friction", "stuffing_box_friction"],
     ["card_time_shift", "load_cell_lag"],
@@ -96,10 +98,10 @@ const ALIKE: [[&str; 2]; 8] = [
 ];
 
 impl Order {
-    /// Draws the effects.
+    /// Draws the hidden effects.
     ///
     /// # Errors
-    /// An effect that is asked for and does not exist.
+    /// None at present; unknown identifiers are refused by [`asked_kind`].
     pub fn effects(&self) -> anyhow::Result<Vec<Hidden>> {
         let mut draw = Draw::new(self.seed, "effects");
         if self.stratum == Stratum::Card {
@@ -135,47 +137,47 @@ impl Order {
     }
 }
 
-/// What is sealed of a set of records.
+/// Sealed answer to one set of records.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
-    /// What everything was drawn from.
+    /// Seed of all random draws.
     pub seed: u64,
-    /// What it tests.
+    /// Stratum of the set.
     pub stratum: Stratum,
     /// Name of the case.
     pub case: String,
-    /// Factor on all noise.
+    /// Factor on the noise of all sensors.
     pub noise: f64,
-    /// Cycles of each record.
+    /// Number of cycles of each record.
     pub cycles: usize,
-    /// Coefficients in the case's units.
+    /// Drawn rope coefficients by name, in the case's units.
     pub genes: std::collections::BTreeMap<String, f64>,
-    /// What is hidden.
+    /// Hidden effects.
     pub effects: Vec<AnswerEffect>,
-    /// By how much instruments, bearing and balance are off.
+    /// Values of the nuisance parameters: errors of instruments, bearing and balance.
     #[serde(default)]
     pub nuisances: Nuisances,
-    /// What is recorded.
+    /// Recorded channels.
     #[serde(default)]
     pub channels: Channels,
 }
 
-/// An effect that is sealed.
+/// Hidden effect in a sealed answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AnswerEffect {
-    /// What it is.
+    /// Identifier of the effect.
     pub id: String,
-    /// Whether the library names it.
+    /// Whether the library of the program under test contains the effect.
     pub listed: bool,
-    /// Name of its size.
+    /// Name of the parameter that is the effect's size.
     pub parameter: String,
-    /// Its size.
+    /// Size of the effect.
     pub value: f64,
-    /// The unit.
+    /// Unit of the size.
     pub unit: String,
-    /// Its size in units of the typical one.
+    /// Size of the effect as a multiple of its typical size.
     pub times_scale: f64,
-    /// Further numbers of its law, units in the names.
+    /// Further parameters of the effect's law; the names end in the units.
     pub shape: std::collections::BTreeMap<String, f64>,
 }
 
@@ -193,11 +195,11 @@ impl AnswerEffect {
     }
 }
 
-/// Makes a set of records into an empty folder; what is in it comes back. A machine whose drawn
-/// coefficients do not let it come round is drawn anew, up to five times.
+/// Generates a set of records in an empty folder and returns its answer. Draws new coefficients, up to five
+/// times in all, if the simulation of a machine does not complete.
 ///
 /// # Errors
-/// A machine that never comes round; what the file system refuses.
+/// Five machines whose simulations do not complete; file system errors.
 pub fn make(
     unit: &PumpingUnit,
     order: &Order,
@@ -221,7 +223,7 @@ pub fn make(
         match all {
             Ok(all) => break (values, all),
             Err(error) if attempt == 4 => {
-                return Err(error).context("five machines, and none comes round");
+                return Err(error).context("none of five drawn machines completed a revolution; choose another seed or check the case");
             }
             Err(_) => attempt += 1,
         }
@@ -262,7 +264,7 @@ pub fn make(
     })
 }
 
-/// The turn of a condition, and how it changes with load and speed.
+/// Simulates a crank revolution in one condition, as given, with more load and with more speed.
 fn turns(
     unit: &PumpingUnit,
     condition: usize,
@@ -285,16 +287,21 @@ fn turns(
     })
 }
 
-/// The kind of an identifier that was asked for.
+/// Returns the effect kind with the identifier `id`.
 ///
 /// # Errors
-/// If there is none.
+/// An identifier of no effect; the message lists all known identifiers.
 pub fn asked_kind(id: &str) -> anyhow::Result<Kind> {
     let known = || {
         let all = CATALOGUE.iter().chain(&OUTSIDE).map(|kind| kind.id);
         all.collect::<Vec<_>>().join(", ")
     };
-    by_id(id).with_context(|| format!("there is no effect `{id}`; there are {}", known()))
+    by_id(id).with_context(|| {
+        format!(
+            "there is no effect `{id}`; the known effects are {}",
+            known()
+        )
+    })
 }
 
 #[cfg(test)]

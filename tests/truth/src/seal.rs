@@ -1,7 +1,7 @@
-//! Answers in a file of their own, and the commitment to them.
+//! File of sealed answers, and the cryptographic commitment to it.
 //!
-//! The commitment is the BLAKE3 hash of the file's bytes, in which a random salt keeps anybody from
-//! trying answers until one fits. Names of sets depend on the salt, not on what they hide.
+//! The commitment is the BLAKE3 hash of the file's bytes, which contain a random salt, so that answers cannot
+//! be guessed and checked against the hash. Names of sets depend on the salt, not on the hidden effects.
 use crate::plan::Answer;
 use anyhow::{Context as _, bail};
 use serde::{Deserialize, Serialize};
@@ -10,29 +10,29 @@ use std::fs;
 use std::io::Read as _;
 use std::path::Path;
 
-/// Answers by the names of their sets.
+/// Answers by the names of their sets, with a salt.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sealed {
-    /// Form of the file.
+    /// Version of the file format.
     format: u32,
-    /// Random, hexadecimal.
+    /// Random salt, hexadecimal.
     salt: String,
-    /// Answers.
+    /// Answers by set name.
     pub sets: BTreeMap<String, Answer>,
 }
 
 const FORMAT: u32 = 1;
 
 impl Sealed {
-    /// No answers, and a new salt from the system's random numbers.
+    /// Creates an empty collection with a new salt from `/dev/urandom`.
     ///
     /// # Errors
-    /// A system without any.
+    /// A system without a readable `/dev/urandom`.
     pub fn new() -> anyhow::Result<Self> {
         let mut salt = [0_u8; 32];
         fs::File::open("/dev/urandom")
             .and_then(|mut source| source.read_exact(&mut salt))
-            .context("drawing a salt from /dev/urandom")?;
+            .context("reading a salt from /dev/urandom")?;
         Ok(Self {
             format: FORMAT,
             salt: blake3::Hash::from_bytes(salt).to_hex().to_string(),
@@ -40,10 +40,10 @@ impl Sealed {
         })
     }
 
-    /// Answers of a file, or none yet.
+    /// Loads the answers of a file; creates an empty collection if there is no file.
     ///
     /// # Errors
-    /// A file that cannot be read or is of another form.
+    /// A file that cannot be read or is of another format version.
     pub fn load_or_new(path: &Path) -> anyhow::Result<Self> {
         if path.exists() {
             Self::load(path).map(|(sealed, _)| sealed)
@@ -52,21 +52,25 @@ impl Sealed {
         }
     }
 
-    /// Answers of a file, and its commitment.
+    /// Loads the answers of a file and computes its commitment.
     ///
     /// # Errors
-    /// A file that cannot be read or is of another form.
+    /// A file that cannot be read or is of another format version.
     pub fn load(path: &Path) -> anyhow::Result<(Self, String)> {
         let bytes = fs::read(path).with_context(|| format!("reading {}", path.display()))?;
         let sealed: Self = serde_json::from_slice(&bytes)
             .with_context(|| format!("{} holds no answers", path.display()))?;
         if sealed.format != FORMAT {
-            bail!("{} is of form {}", path.display(), sealed.format);
+            bail!(
+                "{} has the unsupported format version {}",
+                path.display(),
+                sealed.format
+            );
         }
         Ok((sealed, commitment(&bytes)))
     }
 
-    /// A name for another set: as random as the salt.
+    /// Returns the name of the next set: a hash of the salt and the number of sets.
     pub fn name(&self) -> String {
         let mut hasher = blake3::Hasher::new();
         hasher.update(self.salt.as_bytes());
@@ -75,10 +79,10 @@ impl Sealed {
         hex.chars().take(10).collect()
     }
 
-    /// Writes the file; its commitment comes back.
+    /// Writes the file and returns its commitment.
     ///
     /// # Errors
-    /// What the file system refuses.
+    /// File system errors.
     pub fn save(&self, path: &Path) -> anyhow::Result<String> {
         let mut text = serde_json::to_string_pretty(self)?;
         text.push('\n');
@@ -91,7 +95,7 @@ impl Sealed {
     }
 }
 
-/// Hash of a file of answers, hexadecimal.
+/// Returns the hexadecimal BLAKE3 hash of the bytes of an answer file.
 pub fn commitment(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }

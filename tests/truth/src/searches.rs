@@ -1,5 +1,5 @@
-//! Searches side by side: calibrations of the judged program from several seeds, on records whose stiffness is
-//! known, as a table. A calibration whose result is there is not run again.
+//! Comparison of searches: calibrations by the program under test with several presets and seeds, on records
+//! with known stiffness, as a table. Calibrations with an existing result are not run again.
 use crate::suite::json_into;
 use anyhow::{Context as _, ensure};
 use serde::Deserialize;
@@ -9,43 +9,43 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What is compared, on what.
+/// Presets, seeds and records to compare.
 #[derive(Debug)]
 pub struct Searches<'a> {
     /// The case folder.
     pub case: &'a Path,
-    /// Folders of records, each named as its answer; the case's own record goes before them.
+    /// Folders of further records, each named as its answer; the case's own record is calibrated first.
     pub records: &'a [PathBuf],
     /// Files of answers: those of `truth make`, or of the practice sets.
     pub answers: &'a [PathBuf],
-    /// The program that is judged.
+    /// Path of the program under test.
     pub horsehead: &'a Path,
-    /// Presets of its searches.
+    /// Names of the search presets.
     pub presets: &'a [String],
-    /// Seeds of each.
+    /// Seeds used with each preset.
     pub seeds: &'a [u64],
-    /// The unknown whose value is compared.
+    /// Name of the unknown whose calibrated value is compared with the hidden value.
     pub unknown: &'a str,
-    /// Where runs and results go.
+    /// Folder for runs and results.
     pub out: &'a Path,
 }
 
-/// One calibration.
+/// Result and cost of one calibration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// Decadic logarithm of the compared unknown.
+    /// Decadic logarithm of the compared unknown's calibrated value.
     pub unknown: f64,
-    /// The objective that it ended at.
+    /// Objective value of the calibrated individual.
     pub objective: f64,
-    /// Simulations.
+    /// Number of simulations.
     pub jobs: f64,
-    /// The same in plain ones: a simulation with derivatives counts as five, and a tenth for each.
+    /// Cost in equivalent plain simulations: a simulation with derivatives counts as 5 + 0.1 per unknown.
     pub plain: f64,
     /// Wall time (s).
     pub seconds: f64,
 }
 
-/// What is read of `horsehead calibrate CASE --output json`.
+/// Parts of the output of `horsehead calibrate CASE --output json` that are used here.
 #[derive(Deserialize)]
 struct Result {
     wall_s: f64,
@@ -63,14 +63,14 @@ struct Objective {
     optimised: Option<f64>,
 }
 
-/// Outcomes by record and preset, one for each seed.
+/// Outcomes by record number and preset index, one for each seed.
 type Outcomes = BTreeMap<(usize, usize), Vec<Outcome>>;
 
 impl Searches<'_> {
-    /// Runs what is missing, and gives the table of all; `say` is told of each run.
+    /// Runs the missing calibrations and returns the table of all; reports each calibration through `say`.
     ///
     /// # Errors
-    /// What the file system refuses; a calibration that fails; answers that cannot be read.
+    /// File system errors; a calibration that fails; answers that cannot be read.
     pub fn run(&self, say: &mut dyn FnMut(&str) -> anyhow::Result<()>) -> anyhow::Result<String> {
         fs::create_dir_all(self.out).with_context(|| format!("making {}", self.out.display()))?;
         let mut outcomes = Outcomes::new();
@@ -91,7 +91,7 @@ impl Searches<'_> {
         self.table(&outcomes)
     }
 
-    /// The name of a record by its number: 0 is the case's own.
+    /// Returns the name of a record by its number; number 0 is the case's own record.
     fn name(&self, record: usize) -> String {
         let folder = record.checked_sub(1).and_then(|k| self.records.get(k));
         let name = folder.and_then(|folder| folder.file_name());
@@ -101,7 +101,7 @@ impl Searches<'_> {
         )
     }
 
-    /// Runs one calibration, or reads what it left.
+    /// Runs one calibration, or reads its stored result.
     fn calibrate(&self, record: usize, preset: &str, seed: u64) -> anyhow::Result<Outcome> {
         let name = format!("{}-{preset}-{seed}", self.name(record));
         let (run, result) = (self.out.join(&name), self.out.join(format!("{name}.json")));
@@ -130,10 +130,11 @@ impl Searches<'_> {
         let log =
             fs::read_to_string(&kept).with_context(|| format!("reading {}", kept.display()))?;
         outcome(&bytes, &log, self.unknown)
-            .with_context(|| format!("{} is no result of a calibration", result.display()))
+            .with_context(|| format!("{} is not a valid calibration result", result.display()))
     }
 
-    /// The hidden value of the compared unknown in a record, as a decadic logarithm; none of the case's own.
+    /// Returns the decadic logarithm of the hidden value of the compared unknown in a record; `None` if no
+    /// answer file has the record.
     fn hidden(&self, record: usize) -> anyhow::Result<Option<f64>> {
         let name = self.name(record);
         for path in self.answers {
@@ -150,7 +151,7 @@ impl Searches<'_> {
         Ok(None)
     }
 
-    /// One line for each record and preset; of several seeds the values are set apart by slashes.
+    /// Formats one line for each record and preset, with the values of several seeds separated by slashes.
     fn table(&self, outcomes: &Outcomes) -> anyhow::Result<String> {
         let mut text = format!(
             "| record | search | objective | over the least | log10({0}) less hidden | jobs | plain | s |\n\
@@ -185,15 +186,17 @@ impl Searches<'_> {
     }
 }
 
-/// What a calibration came to, from its result and its table of evaluations.
+/// Computes the outcome of a calibration from its JSON result and its table of evaluations.
 fn outcome(result: &[u8], log: &str, unknown: &str) -> anyhow::Result<Outcome> {
     let result: Result = serde_json::from_slice(result)?;
     let value = result.genes.get(unknown);
-    let value = value.with_context(|| format!("it has no {unknown}"))?.value;
+    let value = value
+        .with_context(|| format!("the result has no unknown {unknown}"))?
+        .value;
     let mut lines = log.lines();
-    let header = lines.next().context("an empty table of evaluations")?;
+    let header = lines.next().context("the table of evaluations is empty")?;
     let purpose = header.split(',').position(|name| name == "purpose");
-    let purpose = purpose.context("no column `purpose`")?;
+    let purpose = purpose.context("the table of evaluations has no column `purpose`")?;
     let (mut jobs, mut plain) = (0.0, 0.0);
     for line in lines {
         let derivatives = line.split(',').nth(purpose) == Some("derivatives");
@@ -256,7 +259,7 @@ mod tests {
         );
     }
 
-    /// What was run is not run again, whatever program is named.
+    /// Checks that an existing result is read instead of starting the program.
     #[test]
     fn a_result_that_is_there_is_read() {
         let scratch = tempfile::tempdir().expect("a folder");

@@ -1,7 +1,8 @@
-//! A whole suite: sets are made, diagnosed by the judged program, and kept; it goes on where it was stopped.
+//! Complete run of the suite: makes sets, diagnoses them with the program under test and keeps the verdicts;
+//! a stopped run continues.
 //!
-//! A set's name comes from the salt of the answers and its number, so what was half made is made again under
-//! the same name; records and verdicts get their names only when they are whole.
+//! A set's name follows from the salt of the answers and its number, so an incomplete set is made again under
+//! the same name; records and verdicts get their final names only when complete.
 use crate::files::Channels;
 use crate::law::Tolerance;
 use crate::machine::Fineness;
@@ -14,44 +15,44 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-/// What is run, and where.
+/// Settings of a suite run.
 #[derive(Debug)]
 pub struct Suite<'a> {
-    /// The machine.
+    /// The machine under test.
     pub unit: PumpingUnit,
-    /// Its case folder.
+    /// Case folder of the machine.
     pub case: &'a Path,
-    /// Where everything goes.
+    /// Folder for sets, runs, answers and verdicts.
     pub out: &'a Path,
-    /// The program that is judged.
+    /// Path of the program under test.
     pub horsehead: &'a Path,
-    /// What everything is drawn from.
+    /// Seed of all random draws.
     pub seed: u64,
-    /// After so long no further set is begun.
+    /// Time after which no further set is started.
     pub until: Option<Duration>,
 }
 
-/// Seeds of a stratum begin so far from those of the one before.
+/// Distance between the first seeds of consecutive strata.
 const APART: u64 = 1000;
-/// Of so many sets one has two gauges alone.
+/// Period of sets with two gauges only: one in this many.
 const TWO_GAUGES: u64 = 4;
 
 impl Suite<'_> {
-    /// File of the answers.
+    /// Returns the path of the answer file.
     pub fn answers(&self) -> PathBuf {
         self.out.join("answers.json")
     }
 
-    /// Folder of the verdicts.
+    /// Returns the path of the verdict folder.
     pub fn verdicts(&self) -> PathBuf {
         self.out.join("verdicts")
     }
 
-    /// Makes and diagnoses so many sets of each stratum, those first that come first in all of them; `say` is
-    /// told of each. A diagnosis that fails leaves its set without a verdict, and is said.
+    /// Makes and diagnoses the given number of sets of each stratum, with the strata interleaved; reports
+    /// each set through `say`. A failed diagnosis leaves its set without a verdict and is reported.
     ///
     /// # Errors
-    /// What the file system refuses; a machine that never comes round; a program that does not start.
+    /// File system errors; a machine whose simulation never completes; a program that cannot be started.
     pub fn run(
         &self,
         counts: &[(Stratum, u16)],
@@ -69,7 +70,9 @@ impl Suite<'_> {
         let (mut done, total) = (0_usize, orders.len());
         for (number, order) in orders.iter().enumerate() {
             if self.until.is_some_and(|until| begun.elapsed() > until) {
-                return say(&format!("{number} of {total} sets done; out of time"));
+                return say(&format!(
+                    "{number} of {total} sets done; the time limit (--hours) is reached"
+                ));
             }
             let name = self.set(order)?;
             let verdict = self.verdicts().join(format!("{name}.json"));
@@ -80,7 +83,7 @@ impl Suite<'_> {
             done += 1;
             let left = begun.elapsed() / u32::try_from(done)? * u32::try_from(total - number - 1)?;
             say(&format!(
-                "{} of {total}: {} {name} {what}; some {} min left",
+                "{} of {total}: {} {name} {what}; about {} min left",
                 number + 1,
                 order.stratum.name(),
                 left.as_secs() / 60
@@ -89,7 +92,8 @@ impl Suite<'_> {
         Ok(())
     }
 
-    /// Every set, strata mixed: what is stopped early has some of each.
+    /// Returns the specifications of all sets with the strata interleaved, so that a run stopped early has
+    /// some sets of each.
     fn orders(&self, counts: &[(Stratum, u16)]) -> Vec<Order> {
         let place = |stratum: Stratum| {
             let all = Stratum::ALL.iter().position(|other| *other == stratum);
@@ -118,7 +122,7 @@ impl Suite<'_> {
         all.into_iter().map(order).collect()
     }
 
-    /// The set of an order, made if it is not there yet; its name.
+    /// Makes the set of a specification unless it exists, and returns its name.
     fn set(&self, order: &Order) -> anyhow::Result<String> {
         let mut sealed = Sealed::load_or_new(&self.answers())?;
         let same = |answer: &crate::plan::Answer| {
@@ -140,7 +144,7 @@ impl Suite<'_> {
         Ok(name)
     }
 
-    /// Diagnoses a set into a verdict; in a few words how that went.
+    /// Diagnoses a set, writes its verdict, and returns a short description of the outcome.
     fn diagnose(&self, name: &str, verdict: &Path) -> anyhow::Result<String> {
         let begun = Instant::now();
         let run = self.out.join("runs").join(name);
@@ -154,7 +158,7 @@ impl Suite<'_> {
         let status = json_into(&mut command, &part)?;
         if !status.success() {
             if status.code().is_none() {
-                bail!("the diagnosis of {name} was stopped; `truth run` goes on with it");
+                bail!("the diagnosis of {name} was stopped; run `truth run` again to continue it");
             }
             return Ok(format!("failed ({status}): see {}", run.display()));
         }
@@ -165,10 +169,11 @@ impl Suite<'_> {
     }
 }
 
-/// Runs a command of the judged program with `--output json` into a file, silently.
+/// Runs a command of the program under test with `--output json`, writes its output into a file and discards
+/// its error output.
 ///
 /// # Errors
-/// A file that cannot be written; a program that does not start.
+/// A file that cannot be written; a program that cannot be started.
 pub(crate) fn json_into(command: &mut Command, path: &Path) -> anyhow::Result<ExitStatus> {
     let file = fs::File::create(path).with_context(|| format!("writing {}", path.display()))?;
     command
@@ -219,7 +224,8 @@ mod tests {
         assert_eq!(two.count(), 9);
     }
 
-    /// The judged program is one of a few lines here: it makes its run folder, and does well or not.
+    /// Checks, with a shell script as the program under test, that a verdict gets its final name only after
+    /// success.
     #[test]
     fn a_verdict_gets_its_name_when_it_is_whole() {
         let scratch = tempfile::tempdir().expect("a folder");

@@ -1,10 +1,10 @@
-//! The table of metrics, and every trial by itself, as Markdown.
+//! Markdown tables of the score metrics and of the individual trials.
 use crate::interval::clopper_pearson;
 use crate::judge::{Outcome, Trial};
 use crate::plan::Stratum;
 use std::fmt::{Result, Write as _};
 
-/// Shares in words, with their intervals.
+/// Formats a proportion with its Clopper-Pearson 95 % interval.
 fn share(hits: usize, trials: usize) -> String {
     if trials == 0 {
         return "-".to_owned();
@@ -19,10 +19,10 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     values.get(values.len() / 2).copied()
 }
 
-/// Metrics by stratum, then every trial by itself.
+/// Formats the metrics by stratum, followed by the list of all trials.
 ///
 /// # Errors
-/// Never: text grows in memory.
+/// Never in practice, since the text is written to memory.
 pub fn table(trials: &[Trial], unjudged: usize) -> std::result::Result<String, std::fmt::Error> {
     let mut table = Table {
         trials,
@@ -53,7 +53,7 @@ impl<'a> Table<'a> {
         writeln!(self.text, "| {metric} | {target} | {value} |")
     }
 
-    /// A share of trials that pass a test.
+    /// Writes a table line with the share of the trials in `among` that pass `test`.
     fn share(
         &mut self,
         metric: &str,
@@ -90,7 +90,7 @@ impl<'a> Table<'a> {
             Trial::first_is_right,
         )?;
         self.share(
-            "the same: set holds the truth",
+            "at least 3 x the limit: ambiguity set contains the hidden effect",
             ">= 95 %",
             &large,
             Trial::covered,
@@ -100,7 +100,7 @@ impl<'a> Table<'a> {
         let named = |trial: &&Trial| trial.verdict.has_names();
         let named: Vec<&Trial> = single.into_iter().filter(named).collect();
         self.share(
-            "single, named: set holds the truth",
+            "single, named: ambiguity set contains the hidden effect",
             ">= 95 %",
             &named,
             Trial::covered,
@@ -110,7 +110,7 @@ impl<'a> Table<'a> {
             Some(trial.verdict.set_of(first).len() as f64)
         };
         let sets: Vec<f64> = named.iter().filter_map(size).collect();
-        self.line("mean size of the set", "<= 2", &mean(&sets))
+        self.line("mean size of the ambiguity set", "<= 2", &mean(&sets))
     }
 
     fn names(&mut self) -> Result {
@@ -123,7 +123,12 @@ impl<'a> Table<'a> {
         let claims = |trial: &Trial| trial.verdict.claims();
         let zero = self.of(Stratum::Zero);
         self.share("zero: any claim", "<= 5 %", &zero, claims)?;
-        self.share("zero: nobody named", ">= 95 %", &zero, Trial::names_nobody)?;
+        self.share(
+            "zero: no effect named",
+            ">= 95 %",
+            &zero,
+            Trial::names_nobody,
+        )?;
         let double = self.of(Stratum::Double);
         let exact = |trial: &Trial| trial.right() == 2 && trial.verdict.added().count() == 2;
         self.share("double: exactly both", ">= 60 %", &double, exact)?;
@@ -138,15 +143,18 @@ impl<'a> Table<'a> {
         })?;
         let outside = self.of(Stratum::Outside);
         self.share(
-            "outside: nobody named",
+            "outside: no effect named",
             ">= 90 %",
             &outside,
             Trial::names_nobody,
         )?;
         let cards = self.of(Stratum::Card);
-        self.share("card cut: nobody else named", ">= 90 %", &cards, |trial| {
-            trial.false_names() == 0
-        })?;
+        self.share(
+            "card cut: no other effect named",
+            ">= 90 %",
+            &cards,
+            |trial| trial.false_names() == 0,
+        )?;
         let below = self.of(Stratum::Below);
         self.share("below the limit: any claim", "<= 5 %", &below, claims)
     }
@@ -158,7 +166,11 @@ impl<'a> Table<'a> {
         self.line("size of a right name: median error", "<= 10 %", &error)?;
         let covered = sizes.iter().filter(|(_, covered)| *covered).count();
         let covered = share(covered, sizes.len());
-        self.line("its 95 % interval holds it", "90 to 98 %", &covered)?;
+        self.line(
+            "size of a right name: inside its 95 % interval",
+            "90 to 98 %",
+            &covered,
+        )?;
         let each = self.trials.iter().map(Trial::nuisances_held);
         let [held, all] = each.fold([0, 0], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
         self.line(
@@ -180,7 +192,7 @@ impl<'a> Table<'a> {
         )
     }
 
-    /// Every trial: what was hidden, what was said.
+    /// Writes a table with the hidden effects and the verdict of each trial.
     fn list(&mut self) -> Result {
         self.text.push_str(
             "| set | stratum | channels | noise | hidden | times limit | verdict | named (set) | mark |\n\
@@ -213,7 +225,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// Names with their sets.
+/// Formats the named effects of a trial, each with its ambiguity set.
 fn names(trial: &Trial) -> String {
     let one = |id: &str| {
         let set = trial.verdict.set_of(id);

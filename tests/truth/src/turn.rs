@@ -1,4 +1,4 @@
-//! One turn of a machine as a recorder with perfect sensors would see it: samples at equal times.
+//! Curves of one crank revolution as ideal sensors would record them, sampled at equal time intervals.
 use simulation::math::spline::Splines;
 use simulation::model::description::RopeLaw;
 use simulation::model::{Individual, Machine};
@@ -7,11 +7,11 @@ use simulation::run::Observe;
 use simulation::system::State;
 use simulation::system::System;
 
-/// Curves over one turn, samples at equal times from turn 0 on; the sample after the last is the
-/// first again.
+/// Curves over one crank revolution, sampled at equal time intervals from turn 0; the sample after the last
+/// equals the first.
 #[derive(Clone, Debug, Default)]
 pub struct Turn {
-    /// Time of the turn \[s\].
+    /// Duration of the revolution \[s\].
     pub period: f64,
     /// Stress at gauges 1 to 4 \[MPa\].
     pub stress: [Vec<f64>; 4],
@@ -19,7 +19,7 @@ pub struct Turn {
     pub position: Vec<f64>,
     /// Net torque at the crank [N m].
     pub torque: Vec<f64>,
-    /// Force of the back rope on its head, along and across the beam \[N\].
+    /// Components of the back rope's force on its head, along and across the beam \[N\].
     pub push: [Vec<f64>; 2],
     /// Tension of the back rope at the crossbeam \[N\].
     pub tension: Vec<f64>,
@@ -33,12 +33,12 @@ impl Turn {
         self.tension.len()
     }
 
-    /// Whether there are none.
+    /// Whether the turn has no samples.
     pub fn is_empty(&self) -> bool {
         self.tension.is_empty()
     }
 
-    /// Channels that are recorded: stress, position, torque.
+    /// Returns the recorded channels: stress at gauges 1 to 4, position, torque.
     pub fn recorded(&self) -> Vec<Vec<f64>> {
         let mut channels = self.stress.to_vec();
         channels.push(self.position.clone());
@@ -46,7 +46,7 @@ impl Turn {
         channels
     }
 
-    /// Every curve at `ahead` of a turn later.
+    /// Replaces every curve by its values at a time later by the share `ahead` of the revolution.
     pub fn shift(&mut self, ahead: f64) {
         let all = self.stress.iter_mut().chain(&mut self.push);
         let others = [&mut self.position, &mut self.torque, &mut self.tension];
@@ -56,7 +56,8 @@ impl Turn {
     }
 }
 
-/// A periodic curve at `ahead` of its period later.
+/// Returns the values of a periodic curve at times later by the share `ahead` of its period, by spline
+/// interpolation.
 pub fn shifted(curve: &[f64], ahead: f64) -> Vec<f64> {
     let n = curve.len() as f64;
     let spline = Splines::periodic(0.0, 1.0, &[curve.to_vec()]);
@@ -65,7 +66,7 @@ pub fn shifted(curve: &[f64], ahead: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Records what a [`Turn`] holds.
+/// Observer that records the curves of a [`Turn`] during a simulation.
 #[derive(Debug, Default)]
 pub struct Watch {
     recorder: Recorder,
@@ -73,7 +74,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// The turn of a machine that was watched.
+    /// Returns the recorded turn of the observed machine.
     pub fn turn(self, machine: &Machine, law: &RopeLaw) -> Turn {
         let curves = self.recorder.curves;
         let [position, ..] = curves.suspension;

@@ -1,97 +1,98 @@
-//! A verdict of the program that is judged, as its JSON says it.
+//! Verdict of the program under test, read from its JSON output.
 use anyhow::Context as _;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// What is read of a verdict: the contract of `horsehead diagnose CASE --output json`.
+/// Parts of the output of `horsehead diagnose CASE --output json` that are used here; the field names are
+/// that output's contract.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub struct Verdict {
-    /// `nothing_detected`, `named`, `ambiguous`, `unlisted` or `unresolved`.
+    /// Verdict: `nothing_detected`, `named`, `ambiguous`, `unlisted` or `unresolved`.
     pub verdict: String,
-    /// Added effects, then those that these may be mistaken for.
+    /// Effects added to the model, followed by members of their ambiguity sets.
     #[serde(default)]
     pub effects: Vec<Named>,
-    /// Rounds, with what each added and could not tell apart.
+    /// Rounds of the diagnosis, each with its added effect and ambiguity set.
     #[serde(default)]
     pub rounds: Vec<Round>,
-    /// Sizes below which an effect could not have been seen.
+    /// Smallest detectable sizes of effects.
     #[serde(default)]
     pub detection_limits: Vec<Limit>,
-    /// Share of the gap that closed.
+    /// Share of the gap closed by the added effects.
     #[serde(default)]
     pub gap: Gap,
-    /// Effects that the unknowns take up, so that the record cannot show them.
+    /// Effects that changes of the unknowns imitate, so that the record cannot reveal them.
     #[serde(default)]
     pub absorbed: Vec<Absorbed>,
-    /// What the instruments are off by.
+    /// Estimated nuisance parameters of the instruments.
     #[serde(default)]
     pub nuisances: Vec<Nuisance>,
 }
 
-/// An effect that the record cannot show.
+/// Effect that the record cannot reveal because the unknowns absorb it.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Absorbed {
-    /// What it is.
+    /// Identifier of the effect.
     pub id: String,
 }
 
-/// What an instrument is off by.
+/// Estimated nuisance parameter of an instrument.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Nuisance {
-    /// The effect that it is, or the gain of a channel.
+    /// Identifier of the effect, or of a channel's gain.
     pub id: String,
-    /// Which of its numbers.
+    /// Name of the parameter.
     pub parameter: String,
-    /// The 95 % interval.
+    /// Its 95 % confidence interval.
     pub ci95: [f64; 2],
 }
 
-/// An effect of a verdict.
+/// Effect listed in a verdict.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub struct Named {
-    /// What it is.
+    /// Identifier of the effect.
     pub id: String,
-    /// Whether it was added to the model.
+    /// Whether the effect was added to the model.
     #[serde(default)]
     pub added: bool,
-    /// Its numbers.
+    /// Estimated parameters of the effect by name.
     #[serde(default)]
     pub parameters: BTreeMap<String, Size>,
 }
 
-/// A number of an effect.
+/// Estimated parameter of an effect.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Size {
-    /// Value.
+    /// Estimated value.
     pub value: f64,
-    /// The 95 % interval; null where there is none.
+    /// Its 95 % confidence interval; `None` where there is none.
     pub ci95: Option<[Option<f64>; 2]>,
 }
 
-/// A round of a verdict.
+/// Round of a diagnosis.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub struct Round {
-    /// What it added.
+    /// Identifier of the effect added in this round, if any.
     pub added: Option<String>,
-    /// What it could not tell apart.
+    /// Ambiguity set: identifiers of effects that this round could not distinguish.
     #[serde(default)]
     pub set: Vec<String>,
 }
 
-/// A detection limit.
+/// Detection limit of an effect.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Limit {
-    /// The effect.
+    /// Identifier of the effect.
     pub id: String,
-    /// Which of its numbers.
+    /// Name of the parameter.
     pub parameter: String,
-    /// Null where recalibration absorbs the effect.
+    /// Smallest detectable size; `None` where recalibration absorbs the effect.
     pub size: Option<f64>,
 }
 
-/// How far gaps closed.
+/// Shares of the gap that closed.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub struct Gap {
     other_condition: Option<Closed>,
@@ -103,39 +104,43 @@ struct Closed {
 }
 
 impl Verdict {
-    /// Reads one.
+    /// Reads a verdict from a JSON file.
     ///
     /// # Errors
     /// A file that cannot be read or is no verdict.
     pub fn load(path: &Path) -> anyhow::Result<Self> {
         let bytes = fs::read(path).with_context(|| format!("reading {}", path.display()))?;
-        serde_json::from_slice(&bytes)
-            .with_context(|| format!("{} is no verdict of a diagnosis", path.display()))
+        serde_json::from_slice(&bytes).with_context(|| {
+            format!(
+                "{} is not a valid verdict of `horsehead diagnose --output json`",
+                path.display()
+            )
+        })
     }
 
-    /// Whether it says that something of some kind is there.
+    /// Returns whether the verdict claims that an effect of any kind is present.
     pub fn claims(&self) -> bool {
         matches!(self.verdict.as_str(), "named" | "ambiguous" | "unlisted")
     }
 
-    /// Whether it names effects.
+    /// Returns whether the verdict names effects.
     pub fn has_names(&self) -> bool {
         matches!(self.verdict.as_str(), "named" | "ambiguous")
     }
 
-    /// Share of the gap that closed under the other condition.
+    /// Returns the share of the gap that closed under the other condition.
     pub fn closed_elsewhere(&self) -> Option<f64> {
         self.gap.other_condition.as_ref()?.closed
     }
 
-    /// Effects that it added to the model.
+    /// Returns the identifiers of the effects added to the model; none unless the verdict names effects.
     pub fn added(&self) -> impl Iterator<Item = &str> {
         let named = self.has_names();
         let added = self.effects.iter().filter(move |e| named && e.added);
         added.map(|e| e.id.as_str())
     }
 
-    /// What a name may stand for: the set of the round that added it.
+    /// Returns the ambiguity set of the round that added the effect `id`, including `id` itself.
     pub fn set_of<'a>(&'a self, id: &'a str) -> BTreeSet<&'a str> {
         let round = self.rounds.iter().find(|r| r.added.as_deref() == Some(id));
         let set = round.map(|r| r.set.iter().map(String::as_str));

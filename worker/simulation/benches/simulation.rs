@@ -1,5 +1,5 @@
-//! What the kernels and whole runs cost on the machine of the moment: advice, not a gate (the work
-//! snapshots of tests/numerics are the gate).
+//! Benchmarks of the kernels and of whole runs. The times are informative only; the regression gate is the
+//! work snapshots of tests/numerics.
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Vector3;
 use simulation::drive::Drive;
@@ -14,7 +14,7 @@ use simulation::sensitivity::{self, Coefficient, Column, Origin, Plan};
 use simulation::settle::{guess, minimize};
 use simulation::system::{Equations, Shift, StateRef, System};
 
-/// The reference machine with the real unit's 72 + 114 cylinders of 50 mm.
+/// Returns the reference machine with the real unit's 72 + 114 cylinders of 50 mm.
 fn machine() -> Machine {
     let mut description = reference::description();
     description.rope.pitch = 0.05;
@@ -23,7 +23,7 @@ fn machine() -> Machine {
     Machine::new(description, 2).expect("the description is complete")
 }
 
-/// Table 3's recommended and optimised coefficients.
+/// Returns the recommended and the optimised coefficients of Table 3.
 fn laws() -> [(&'static str, simulation::model::description::RopeLaw); 2] {
     let optimised = reference::law();
     let mut recommended = optimised;
@@ -37,7 +37,7 @@ fn laws() -> [(&'static str, simulation::model::description::RopeLaw); 2] {
     [("recommended", recommended), ("optimised", optimised)]
 }
 
-/// Force, tangent with factorisation, and solution at the start of a run under load.
+/// Measures force evaluation, tangent with factorisation, and solution at the start of a run under load.
 fn kernels(criterion: &mut Criterion) {
     let machine = machine();
     let drive = Drive {
@@ -79,7 +79,8 @@ fn kernels(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Settle, lead in and one revolution: what one evaluation of a search costs.
+/// Measures a whole run (settling, lead-in and one revolution), which is the cost of one evaluation of a
+/// search.
 fn runs(criterion: &mut Criterion) {
     let machine = machine();
     let mut group = criterion.benchmark_group("run, 186 cylinders");
@@ -99,7 +100,7 @@ fn runs(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Static equilibrium of a strongly bent rig.
+/// Measures the static equilibrium of a strongly bent cantilever.
 fn settles(criterion: &mut Criterion) {
     let law = reference::law().bushing;
     let setup = Setup {
@@ -129,8 +130,8 @@ fn settles(criterion: &mut Criterion) {
     });
 }
 
-/// Runs with columns beside the plain run: the ten coefficients and a friction, all sizes of the
-/// catalogue.
+/// Measures runs with sensitivity columns against the plain run: the ten coefficients and a friction, and all
+/// sizes of the catalogue.
 fn columns(criterion: &mut Criterion) {
     let mut description = reference::description();
     description.rope.pitch = 0.05;

@@ -1,40 +1,41 @@
 //! Prescribed motion of the crank and load at the suspension point.
 //!
-//! How a machine turns the one into the other: `Machine::drive_state`.
+//! `Machine::drive_state` computes the [`DriveState`] from the [`Drive`].
 use nalgebra::Vector2;
 
 type V2 = Vector2<f64>;
 
-/// How the crank is brought from rest to full speed and from where.
+/// Start-up of the crank from rest to full speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
-    /// Turn angle at rest \[rad\]; bottom dead centre is 0.
+    /// Crank turn angle at rest, from bottom dead centre \[rad\].
     pub start: f64,
-    /// Time to full speed \[s\].
+    /// Duration of the start-up to full speed \[s\].
     pub ramp: f64,
-    /// Full speed [rad/s].
+    /// Full angular speed [rad/s].
     pub speed: f64,
 }
 
-/// Crank and load at one instant.
+/// Crank motion and load at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DriveState {
-    /// Time since the machine stood still \[s\].
+    /// Time since the start from rest \[s\].
     pub time: f64,
     /// Turn angle from bottom dead centre \[rad\].
     pub turn: f64,
-    /// Crank pin in W \[m\], its velocity and acceleration.
+    /// Position \[m\], velocity and acceleration of the crank pin in the frame W.
     pub pin: [V2; 3],
-    /// Angle of the pin \[rad\].
+    /// Angle of the crank pin \[rad\].
     pub pin_angle: f64,
-    /// Rate of the pin angle, signed [rad/s].
+    /// Signed rate of the pin angle [rad/s].
     pub pin_rate: f64,
     /// Load at the suspension point, positive downwards \[N\].
     pub load: f64,
 }
 
 impl Drive {
-    /// Turn angle, rate and acceleration at time `t`; the ramp has no jump in acceleration.
+    /// Returns turn angle, rate and acceleration at time `t`; the acceleration is continuous over the
+    /// start-up.
     pub fn turn(&self, t: f64) -> [f64; 3] {
         if t >= self.ramp {
             return [
@@ -54,7 +55,7 @@ impl Drive {
         ]
     }
 
-    /// Time at which a turn angle beyond the ramp is reached \[s\].
+    /// Returns the time at which a turn angle after the start-up is reached \[s\].
     pub fn time_at(&self, turn: f64) -> f64 {
         (turn - self.start) / self.speed + 0.5 * self.ramp
     }

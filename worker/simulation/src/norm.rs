@@ -1,38 +1,40 @@
-//! What counts as small: Newton's accuracy, and the local error that a step may make.
+//! Error norms: tolerances of Newton's method and of the local error of a step.
 //!
-//! What is measured (beam, rod, suspension, modes) is held tightly, the cylinders of a rope loosely.
+//! Coordinates that determine measured quantities (beam, rod, suspension, modes) have tight tolerances, the
+//! cylinders of a rope loose ones.
 
-/// Newton's accuracy: cylinder place \[m\], cylinder angle \[rad\], beam and rod angle \[rad\], modal
-/// coordinate [kg^1/2 m].
+/// Tolerances of Newton's method: cylinder position \[m\] here; then cylinder angle \[rad\], beam and rod
+/// angle \[rad\], and modal coordinate [kg^1/2 m].
 pub(crate) const LENGTH: f64 = 2e-6;
 const TURN: f64 = 2e-5;
 pub(crate) const ANGLE: f64 = 1e-6;
 pub(crate) const MODAL: f64 = 2e-6;
 
-/// Square of `x`.
+/// Returns the square of `x`.
 pub(crate) fn square(x: f64) -> f64 {
     x * x
 }
 
-/// The larger of a norm and an absolute value; not a number wins, so that it cannot hide.
+/// Returns the larger of a norm and an absolute value; NaN propagates, so that it is not lost in the maximum.
 pub(crate) fn worst(norm: f64, x: f64) -> f64 {
     let x = x.abs();
     if norm < x || x.is_nan() { x } else { norm }
 }
 
-/// Largest change of cylinders' coordinates, in units of Newton's accuracy, or `norm` if that is
-/// larger.
+/// Returns the largest change of the cylinders' coordinates, in units of Newton's tolerance, or `norm` if
+/// that is larger.
 pub(crate) fn cylinders_newton(norm: f64, change: &[f64], width: usize) -> f64 {
     cylinders(norm, change, width, [LENGTH, TURN])
 }
 
-/// Largest local error of cylinders' coordinates, in units of what is tolerated, or `norm` if that
-/// is larger.
+/// Returns the largest local error of the cylinders' coordinates, in units of its tolerance, or `norm` if
+/// that is larger.
 pub(crate) fn cylinders_error(norm: f64, error: &[f64], width: usize) -> f64 {
     cylinders(norm, error, width, [2e-4, 5e-3])
 }
 
-/// Of `width` coordinates of a cylinder, lengths come first: two in the plane, three in space.
+/// Returns the scaled maximum norm of cylinder coordinates, or `norm` if that is larger. Of the `width`
+/// coordinates of a cylinder, lengths come first: two in the plane, three in space.
 fn cylinders(norm: f64, x: &[f64], width: usize, [length, turn]: [f64; 2]) -> f64 {
     let largest = if width == 3 {
         let [x, y, psi] = largest(x);
@@ -44,7 +46,7 @@ fn cylinders(norm: f64, x: &[f64], width: usize, [length, turn]: [f64; 2]) -> f6
     worst(worst(norm, largest[0] / length), largest[1] / turn)
 }
 
-/// Largest absolute value of each of a cylinder's coordinates.
+/// Returns the largest absolute value of each of the `W` coordinates over all cylinders.
 fn largest<const W: usize>(x: &[f64]) -> [f64; W] {
     // each comparison waits for the one before it: four of them side by side
     const ROWS: usize = 4;
@@ -70,7 +72,7 @@ fn largest<const W: usize>(x: &[f64]) -> [f64; W] {
 mod tests {
     use super::*;
 
-    /// Signs do not count, and a value that is none stays in the norm whatever comes after it.
+    /// Checks that signs are ignored and that NaN persists in the norm whatever values follow.
     #[test]
     fn the_worst_value_is_kept() {
         assert_eq!(worst(1.0, -2.0).to_bits(), 2.0_f64.to_bits());

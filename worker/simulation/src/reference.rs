@@ -1,8 +1,8 @@
-//! A small lopsided machine with a made-up head: what tests exercise, and whose simulated bits name
-//! the numerics of a build.
+//! Small asymmetric reference machine with a synthetic head, used in tests and to fingerprint the numerics of
+//! a build by the bits of its simulation.
 //!
-//! Two programs that agree on every bit of [`bits`] integrate the same equations with the same
-//! arithmetic; a changed law, tolerance or elementary function shows.
+//! Two programs that agree on every bit of [`bits`] integrate the same equations with the same arithmetic; a
+//! change of a law, a tolerance or an elementary function changes the bits.
 use crate::effect::{Asked, Effect, Parameter, Selection, catalogue};
 use crate::element::{bushing::Bushing, impact::Impact};
 use crate::model::Machine;
@@ -15,15 +15,15 @@ use crate::sensitivity::{self, Coefficient, Column, Derivative, Origin, Plan};
 use crate::statistics::Statistics;
 use std::sync::Arc;
 
-/// A made-up curve over the stations of the arc.
+/// Returns a synthetic curve over the stations of the arc.
 fn wave(k: u32, scale: f64) -> Vec<f64> {
     (0..27)
         .map(|i| scale * libm::sin(0.3 + 0.21 * f64::from(k + 1) * f64::from(i)))
         .collect()
 }
 
-/// The same machine with twin ropes whose lengths differ by so much on the back and on the front head
-/// \[m\], and a head that sways.
+/// Returns the reference machine with twin ropes, whose lengths differ by `longer` on the back and on the
+/// front head \[m\], and with an out-of-plane flexible head.
 pub fn twins(longer: [f64; 2]) -> Description {
     Description {
         twins: Some(Twins {
@@ -44,7 +44,7 @@ pub fn twins(longer: [f64; 2]) -> Description {
     }
 }
 
-/// A machine of the real unit's shape with 24 + 38 longer cylinders.
+/// Returns a machine of the real unit's shape with fewer, longer cylinders: 24 and 38.
 pub fn description() -> Description {
     Description {
         gravity: 9.81,
@@ -111,7 +111,7 @@ pub fn description() -> Description {
     }
 }
 
-/// Table 3's optimised coefficients (paper), SI.
+/// Returns the optimised coefficients of Table 3 of the paper, in SI units.
 pub fn law() -> RopeLaw {
     let deg = 180.0 / std::f64::consts::PI;
     RopeLaw {
@@ -131,17 +131,17 @@ pub fn law() -> RopeLaw {
     }
 }
 
-/// Gauge stress of a run of this machine, as bits, and the work it took.
+/// Returns the gauge stress of a run of the reference machine, as bits, and the statistics of the run.
 ///
-/// Empty if the description is refused, which a test rules out.
+/// The bits are empty if the description is invalid, which a test rules out.
 pub fn bits() -> (Vec<u64>, Statistics) {
     run(description(), &[], &RunSettings::default())
 }
 
-/// The same of three runs that cost little together, to name the numerics of a build. The machine, with
-/// fewer cylinders and faster, comes round as it is, and with every named effect at its typical size
-/// and every generic force at a tenth of it; with twin ropes it comes as far as 2000 Newton iterations
-/// lead.
+/// Returns bits and statistics of three inexpensive runs that together fingerprint the numerics of a build.
+/// The machine has fewer cylinders and a faster crank. Two runs are complete: the plain machine, and one with
+/// every named effect at its typical size and every generic force at a tenth of it. The run with twin ropes
+/// is limited to 2000 Newton iterations.
 pub fn name() -> [(Vec<u64>, Statistics); 3] {
     let settings = quick();
     let short = RunSettings {
@@ -167,11 +167,11 @@ pub fn name() -> [(Vec<u64>, Statistics); 3] {
     ]
 }
 
-/// Derivatives of the first of these runs, with friction in its bearing, as bits: by the coefficients that move most
-/// (`Kb1`, `Kc`), by a size and a shape of an effect that the machine has, by a size of one that it has not, and by a
-/// generic force.
+/// Returns the derivatives of the first of the runs of [`name`], with bearing friction added, as bits: with
+/// respect to the most influential coefficients (`Kb1`, `Kc`), a size and a shape parameter of an effect that
+/// the machine has, a size of an effect that it lacks, and a generic force.
 ///
-/// Empty if one of them does not exist, which a test rules out.
+/// The result is empty if one of them does not exist, which a test rules out.
 pub fn columns() -> Vec<u64> {
     let description = small(description());
     let friction = Asked {
@@ -224,7 +224,7 @@ pub fn columns() -> Vec<u64> {
     bits
 }
 
-/// Settings of the runs that name a build: a short way to full speed.
+/// Returns the settings of the fingerprint runs: a short run-up to full speed.
 fn quick() -> RunSettings {
     RunSettings {
         lead_in: 20_f64.to_radians(),
@@ -233,7 +233,7 @@ fn quick() -> RunSettings {
     }
 }
 
-/// A machine with a sixth of the cylinders that turns thrice as fast.
+/// Returns the machine with a sixth of the cylinders and three times the crank speed.
 fn small(mut description: Description) -> Description {
     description.crank.speed *= 3.0;
     description.rope.pitch *= 6.0;

@@ -1,8 +1,8 @@
-//! A single rope on a test rig: the machine's chain with other ends.
+//! Test rig for a single rope: the machine's chain with other end conditions.
 //!
-//! Every proof of the rope's physics (cantilever, catenary, vibration, a rope on a drum, a bounce)
-//! is this model with another pair of ends: the forces, the tangent, the solver and the integrator
-//! are the machine's own. There is no beam, so there is no border.
+//! Every verification of the rope's physics (cantilever, catenary, vibration, a rope on a drum, a bounce)
+//! uses this model with different ends; forces, tangent, solver and integrator are those of the machine.
+//! There is no beam and therefore no border.
 use crate::element::{
     bushing::{Bushing, Marker},
     impact::Impact,
@@ -18,66 +18,66 @@ use nalgebra::Vector3;
 
 type V3 = Vector3<f64>;
 
-/// What happens at one end of the chain.
+/// End condition of the chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End {
-    /// Nothing holds it; what acts on it has a potential.
+    /// Free end; loads on it have a potential.
     Free {
-        /// Force on the cylinder's outer end that keeps its direction in W \[N\].
+        /// Force on the outer end of the cylinder, of constant direction in W \[N\].
         force: V3,
         /// Torque about the cylinder's own axis [N m].
         twist: f64,
         /// Torque about the z axis of W [N m].
         turn: f64,
     },
-    /// A joint to the ground.
+    /// End joined to the ground.
     Held {
-        /// Place of the joint in W \[m\].
+        /// Position of the joint in W \[m\].
         place: V3,
-        /// Direction of the chain's axis there, in the plane, from +x \[rad\].
+        /// Direction of the chain's axis at the joint, in the plane, from +x \[rad\].
         angle: f64,
         /// Law of the joint: clamped, or revolute by [`Bushing::revolute`].
         law: Bushing,
     },
 }
 
-/// A drum that is fixed in W, about the z axis, and the law of one cylinder's contact with it.
+/// Drum about the z axis, fixed in W, and the law of a cylinder's contact with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drum {
     /// Centre \[m\].
     pub center: [f64; 2],
-    /// Radius of the rope's centre line on it \[m\].
+    /// Radius of the centre line of the rope lying on the drum \[m\].
     pub radius: f64,
-    /// Law of one cylinder's contact.
+    /// Law of a cylinder's contact with the drum.
     pub law: Impact,
 }
 
-/// What a rig is made of.
+/// Parameters of a test rig.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setup {
-    /// Cylinders, in blocks from 0 on.
+    /// Chain of cylinders, in blocks starting at 0.
     pub chain: Chain,
     /// Acceleration of gravity [m/s2].
     pub gravity: V3,
-    /// Law between two cylinders.
+    /// Law of the joint between two cylinders.
     pub joint: Bushing,
-    /// Ends before the first and behind the last cylinder.
+    /// End conditions before the first and after the last cylinder.
     pub ends: [End; 2],
-    /// What the chain may lie on.
+    /// Drum that the chain may touch, if any.
     pub drum: Option<Drum>,
 }
 
-/// A rig and the loads of its last evaluation: equations of motion.
+/// Equations of motion of a test rig, with the loads of its last evaluation.
 #[derive(Clone, Debug)]
 pub struct Rig {
-    /// What it is made of.
+    /// Parameters of the rig.
     pub setup: Setup,
     /// Poses and loads of the last evaluation.
     pub state: ChainState,
 }
 
 impl End {
-    /// Free of all forces.
+    /// Returns a free end without loads.
     pub fn free() -> Self {
         Self::Free {
             force: V3::zeros(),
@@ -118,7 +118,7 @@ impl Setup {
 }
 
 impl Rig {
-    /// Allocates the loads.
+    /// Creates a rig and allocates its loads.
     pub fn new(setup: Setup) -> Self {
         Self {
             setup,
@@ -126,7 +126,8 @@ impl Rig {
         }
     }
 
-    /// Coordinates of a straight, unstretched chain from `start` on, in the plane.
+    /// Returns the coordinates of a straight, unstretched chain from `start` in the direction `angle` in the
+    /// plane.
     pub fn straight(&self, start: V3, angle: f64) -> Vec<f64> {
         let Chain { count, pitch, .. } = self.setup.chain;
         let (s, c) = crate::math::elementary::sin_cos(angle);
@@ -145,13 +146,13 @@ impl Rig {
             .collect()
     }
 
-    /// Outer end of cylinder `j` on the head's side, in W \[m\].
+    /// Returns the position in W of the end of cylinder `j` on the head's side \[m\].
     pub fn outer_end(&self, j: usize) -> V3 {
         let pose = &self.state.poses[j];
         pose.p + pose.axis() * (0.5 * self.setup.chain.pitch)
     }
 
-    /// Kinetic plus potential energy, that of the dead loads included, at a state \[J\].
+    /// Returns kinetic plus potential energy at a state, including the potential of the dead loads \[J\].
     pub fn energy(&mut self, q: &[f64], v: &[f64]) -> f64 {
         self.setup.chain.pose(q, v, &mut self.state);
         if let Some((surface, law)) = self.surface() {
@@ -175,8 +176,8 @@ impl Rig {
         })
     }
 
-    /// Cylinder, place along its axis \[m\], force, and generalised torques on twist and plane angle
-    /// of each end without a joint.
+    /// Returns the loads of each free end: cylinder, position along its axis \[m\], force, and generalised
+    /// torques on twist and plane angle.
     fn dead_loads(&self) -> impl Iterator<Item = (usize, f64, V3, [f64; 2])> {
         let Chain { count, pitch, .. } = self.setup.chain;
         let place = [(0, -0.5 * pitch), (count - 1, 0.5 * pitch)];

@@ -1,4 +1,4 @@
-//! One simulation: settle, lead in, one recorded revolution.
+//! Simulation of one individual: static equilibrium, lead-in, one recorded revolution.
 use crate::drive::Drive;
 use crate::integrator::adaptive::{Adaptive, StepUnderflow};
 use crate::integrator::dense::interpolate;
@@ -13,38 +13,39 @@ use crate::system::{Powers, State, System};
 use crate::verdict::{Failure, Limits, Reached, Verdict};
 use std::f64::consts::TAU;
 
-/// How a run is started, integrated and sampled.
+/// Settings of a run: start, integration and sampling.
 #[derive(Clone, Copy, Debug)]
 pub struct RunSettings {
-    /// Method of integration.
+    /// Integration method.
     pub method: Method,
     /// Turn angle before bottom dead centre at which the crank starts \[rad\].
     pub lead_in: f64,
-    /// Time to full speed \[s\].
+    /// Duration of the run-up to full speed \[s\].
     pub ramp: f64,
     /// Number of samples over the recorded revolution.
     pub samples: usize,
-    /// Local error per step, in units of the built-in scales.
+    /// Tolerated local error per step, in units of the built-in scales.
     pub tolerance: f64,
-    /// Longest step \[s\], where the beam swings slowly on its ropes; it bounds how coarsely the
-    /// ropes' own modes are resolved.
+    /// Longest step \[s\] while the swing of the beam on its ropes is slow; it limits how coarsely the ropes'
+    /// own modes are resolved.
     pub longest_step: f64,
-    /// Rate of that swing ([`swing_rate`]) beyond which the longest step shrinks in proportion
-    /// [rad/s]; infinite: it never does.
+    /// Rate of that swing ([`swing_rate`]) above which the longest step shrinks in inverse proportion
+    /// [rad/s]; infinite for a constant longest step.
     pub slow_swing: f64,
-    /// Newton iterations that one run may take.
+    /// Maximum number of Newton iterations of a run.
     pub budget: u64,
-    /// Iterations of the budget that a run may take from the start; the rest it earns with the time
-    /// that it simulates. A run that chatters on the spot ends early.
+    /// Part of the iteration budget available from the start; the rest is released in proportion to the
+    /// simulated time. A run that stalls in chatter thus ends early.
     pub head_start: u64,
-    /// When a run is no longer one of this machine.
+    /// Limits beyond which a state is no longer physically meaningful for this machine.
     pub limits: Limits,
-    /// How the search for equilibrium damps its steps; no result depends on it.
+    /// Damping of the steps of the equilibrium solver; results do not depend on it.
     pub damping: Damping,
 }
 
-/// 2.65 Hz: steps of 0.06 s resolve such a swing by 6.3 steps. Then the worst gauge of the
-/// fourth-order method errs by 0.12 % of its range in the median, by 0.67 % at most (README).
+/// Default of `slow_swing` [rad/s]: 2.65 Hz, which steps of 0.06 s resolve by 6.3 steps per period. The worst
+/// gauge of the fourth-order method then has an error of 0.12 % of its range in the median and 0.67 % at most
+/// (README).
 const SLOW_SWING: f64 = 16.65;
 
 impl Default for RunSettings {
@@ -66,7 +67,7 @@ impl Default for RunSettings {
 }
 
 impl RunSettings {
-    /// How a machine's crank is brought to full speed.
+    /// Returns the drive that brings a machine's crank to full speed.
     pub(crate) fn drive(&self, machine: &Machine) -> Drive {
         Drive {
             start: -self.lead_in + machine.hooks.index_offset().min(0.0),
@@ -75,26 +76,27 @@ impl RunSettings {
         }
     }
 
-    /// Time of a sample of the recorded revolution \[s\].
+    /// Returns the time of a sample of the recorded revolution \[s\].
     pub(crate) fn sampled(&self, machine: &Machine, drive: &Drive, sample: usize) -> f64 {
         let turn = TAU * sample as f64 / self.samples as f64;
         drive.time_at(machine.hooks.index_offset() + turn)
     }
 
-    /// Newton iterations that a run may have taken when it has simulated a `fraction` of its time.
+    /// Returns the number of Newton iterations allowed until the given `fraction` of the run's time has been
+    /// simulated.
     fn allowed(&self, fraction: f64) -> f64 {
         let (all, first) = (self.budget as f64, self.head_start as f64);
         first.min(all) + fraction * (all - first).max(0.0)
     }
 }
 
-/// Receives what happens in a run: at each step, and at each sample of the recorded revolution.
+/// Observer of a run: receives every step, and every sample of the recorded revolution.
 pub trait Observe {
-    /// The machine stands in equilibrium, and nothing has moved yet.
+    /// Called once in static equilibrium, before any motion.
     fn begin(&mut self, _system: &mut System<Individual<'_>>, _state: &State) {}
 
-    /// A step was accepted; laws with a past do not know of it yet. Whose loads `system` keeps is not
-    /// said.
+    /// Called after an accepted step, before axial laws store their memory. The loads held by `system` may
+    /// belong to any state.
     fn step(
         &mut self,
         _system: &mut System<Individual<'_>>,
@@ -103,23 +105,24 @@ pub trait Observe {
     ) {
     }
 
-    /// `state` is the interpolated state at sample `index`; whose loads `system` keeps is not said.
+    /// Called at sample `index` with the interpolated `state`; the loads held by `system` may belong to any
+    /// other state.
     fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State);
 
-    /// The revolution is complete; its samples lie `spacing` \[s\] apart.
+    /// Called when the revolution is complete; its samples are `spacing` \[s\] apart.
     fn complete(&mut self, _machine: &Machine, _spacing: f64) {}
 }
 
-/// What a run gives besides its samples.
+/// Result of a run, apart from its samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunResult {
-    /// How it ended.
+    /// Verdict: complete, or the kind of failure.
     pub verdict: Verdict,
-    /// What it cost.
+    /// Computational cost of the run.
     pub statistics: Statistics,
     /// Work over the recorded revolution \[J\].
     pub work: Powers,
-    /// Gain of kinetic and potential energy over the recorded revolution \[J\].
+    /// Increase of kinetic and potential energy over the recorded revolution \[J\].
     pub stored: f64,
 }
 
@@ -133,9 +136,9 @@ pub fn simulate(
     run((machine, law), settings, None, observer)
 }
 
-/// Simulates one individual on the steps of another run, whose ends are given \[s\]: differences of
-/// such runs contain no step control, and no iteration that stopped early: stages are solved to
-/// rounding.
+/// Simulates one individual on the step grid of another run, given by the ends of its steps \[s\].
+/// Differences of such runs contain neither step control nor early termination of iterations, because stages
+/// are solved to rounding.
 pub fn simulate_on(
     machine: &Machine,
     law: &RopeLaw,
@@ -178,10 +181,10 @@ fn run(
     revolve(&mut system, settings, (swing, steps), start, observer)
 }
 
-/// Static equilibrium at time 0; `start` may hint at it and changes nothing but the work.
+/// Solves the static equilibrium at time 0; `start` is an initial guess that affects only the cost.
 ///
 /// # Errors
-/// The reason at full load, and the share of the load that the machine carries.
+/// The failure at full load, and the share of the load that the machine can carry.
 pub fn settle(
     system: &mut System<Individual<'_>>,
     settings: &RunSettings,
@@ -293,7 +296,7 @@ fn revolve(
     }
 }
 
-/// Work and stored energy over the recorded revolution.
+/// Energy balance: work and stored energy over the recorded revolution.
 #[derive(Clone, Copy, Debug, Default)]
 struct Ledger {
     work: Powers,

@@ -1,9 +1,9 @@
-//! Static equilibrium at a fixed crank: a geometric guess, then minimisation of the potential, and
-//! where that gets lost a continuation from a compliant machine.
+//! Static equilibrium at a fixed crank: a geometric guess, then minimisation of the potential, and, if that
+//! fails, a continuation from a compliant machine.
 //!
-//! Neither start nor damping may decide a verdict. What no equilibrium can carry is known before one
-//! is sought ([`overload`]); limits are checked at equilibria alone; and an equilibrium that the
-//! minimisation misses is found by the continuation, whose path is the individual's own.
+//! A verdict must depend neither on the start nor on the damping. Loads that no equilibrium can carry are
+//! detected before the search ([`overload`]); limits are checked at equilibria only; and an equilibrium that
+//! the minimisation misses is found by the continuation, whose path depends on the individual alone.
 mod continuation;
 mod guess;
 mod minimize;
@@ -20,19 +20,20 @@ pub use minimize::{Damping, minimize, minimize_within};
 pub use overload::overload;
 pub use swing::swing_rate;
 
-/// Iterations that a minimisation gets before the continuation takes over.
+/// Maximum number of iterations of a minimisation before the continuation is used.
 const DIRECT: u32 = 50;
-/// Iterations (factorisations) after which a search for one equilibrium begins no further step: from
-/// a given start, from the geometric guess, and along the continuation, whose last step is finished.
+/// Number of iterations (factorisations) after which a search for one equilibrium starts no further step. It
+/// covers the minimisation from a given start, the one from the geometric guess, and the continuation, whose
+/// last step is completed.
 pub const BUDGET: u64 = 2 * DIRECT as u64 + continuation::BUDGET + 100;
 
-/// Equilibrium of a machine at time 0, and whether it keeps inside the limits.
+/// Solves the equilibrium of a machine at time 0 and checks it against the limits.
 ///
-/// `q` is a start that may save iterations, or `None` for the geometric guess; where the start
-/// misleads, the guess and then the continuation decide.
+/// `start` is an initial guess that may save iterations, or `None` for the geometric guess; if it does not
+/// lead to an equilibrium, the geometric guess and then the continuation are used.
 ///
 /// # Errors
-/// The limit that the equilibrium breaks, or [`Failure::Budget`] where none was found.
+/// The limit that the equilibrium violates, or [`Failure::Budget`] if none was found.
 pub fn equilibrium(
     system: &mut System<Individual<'_>>,
     limits: &Limits,

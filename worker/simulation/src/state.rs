@@ -1,19 +1,19 @@
-//! A state of the equations of motion, and what is asked of it: plain data.
+//! State of the equations of motion, and data types for its evaluation.
 
 /// Coordinates, rates and accelerations at a time.
 #[derive(Debug, PartialEq)]
 pub struct State {
     /// Time \[s\].
     pub t: f64,
-    /// Coordinates.
+    /// Generalised coordinates.
     pub q: Vec<f64>,
-    /// Rates.
+    /// Rates of the coordinates.
     pub v: Vec<f64>,
-    /// Accelerations.
+    /// Accelerations of the coordinates.
     pub a: Vec<f64>,
 }
 
-/// Written out, since a derived one allocates where it overwrites.
+/// Implementation by hand, since a derived `clone_from` would allocate instead of reusing the vectors.
 impl Clone for State {
     fn clone(&self) -> Self {
         Self {
@@ -33,13 +33,13 @@ impl Clone for State {
 }
 
 impl State {
-    /// Coordinates and rates alone.
+    /// Returns the coordinates and rates without accelerations.
     pub fn motion(&self) -> StateRef<'_> {
         let Self { t, q, v, .. } = self;
         StateRef { t: *t, q, v }
     }
 
-    /// At rest.
+    /// Creates a state at rest: zero rates and accelerations.
     pub fn at_rest(t: f64, q: Vec<f64>) -> Self {
         let n = q.len();
         Self {
@@ -51,26 +51,26 @@ impl State {
     }
 }
 
-/// Coordinates and rates at a time: where forces are asked for.
+/// Coordinates and rates at a time, the point at which forces are evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct StateRef<'a> {
     /// Time \[s\].
     pub t: f64,
-    /// Coordinates.
+    /// Generalised coordinates.
     pub q: &'a [f64],
-    /// Rates.
+    /// Rates of the coordinates.
     pub v: &'a [f64],
 }
 
 impl<'a> StateRef<'a> {
-    /// Coordinates and rates at a time.
+    /// Creates a reference to coordinates and rates at a time.
     pub const fn new(t: f64, q: &'a [f64], v: &'a [f64]) -> Self {
         Self { t, q, v }
     }
 }
 
-/// What stands beside the stiffness in an iteration matrix `mass M - damping D - K`, where
-/// `K = dQ/dq` and `D = dQ/dv`.
+/// Factors of inertia and damping in an iteration matrix `mass M - damping D - K`, where `K = dQ/dq` and `D =
+/// dQ/dv`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shift {
     /// Factor of the inertia [1/s2].
@@ -80,26 +80,26 @@ pub struct Shift {
 }
 
 impl Shift {
-    /// The stiffness alone.
+    /// Shift with zero factors: the matrix is the stiffness alone.
     pub const NONE: Self = Self {
         mass: 0.0,
         damping: 0.0,
     };
 }
 
-/// Powers and energies at one instant.
+/// Powers at one instant, or their integrals over time (work).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Powers {
-    /// Of the crank pin on the rod \[W\].
+    /// Power of the crank pin on the rod \[W\].
     pub input: f64,
-    /// Of the suspension point on the load \[W\].
+    /// Power of the suspension point on the load \[W\].
     pub output: f64,
-    /// Lost in joints, contact and head \[W\].
+    /// Power dissipated in joints, contact and head \[W\].
     pub dissipated: f64,
 }
 
 impl Powers {
-    /// Adds `weight` times other powers: work, where the weight is a time.
+    /// Adds `weight` times other powers; a time step as weight gives work.
     pub const fn add(&mut self, weight: f64, powers: &Self) {
         self.input += weight * powers.input;
         self.output += weight * powers.output;

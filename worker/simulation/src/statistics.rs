@@ -1,20 +1,20 @@
-//! Work counters: what a simulation cost, in numbers that do not depend on the machine it ran on.
+//! Work counters: the cost of a simulation in counts that do not depend on the computer.
 
-/// Work of one simulation, settle included.
+/// Work of one simulation, including the search for equilibrium.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
-    /// Accepted steps.
+    /// Number of accepted steps.
     pub steps: u64,
-    /// Steps rejected by the error test.
+    /// Number of steps rejected by the error test.
     pub error_rejections: u64,
-    /// Steps rejected because Newton's method did not converge.
+    /// Number of steps rejected because Newton's method did not converge.
     pub newton_rejections: u64,
-    /// Newton iterations; a stage of a Rosenbrock method, one linear solution, counts as one.
+    /// Number of Newton iterations; a stage of a Rosenbrock method, one linear solution, counts as one.
     pub newton_iterations: u64,
-    /// Evaluations of the generalised forces.
+    /// Number of evaluations of the generalised forces.
     pub force_evaluations: u64,
-    /// Evaluations of the tangent.
+    /// Number of evaluations of the tangent.
     pub jacobians: u64,
-    /// Factorisations.
+    /// Number of factorisations.
     pub factorizations: u64,
 }

@@ -1,22 +1,23 @@
-//! The equations of motion as an integrator sees them.
+//! Interface between the equations of motion and the integrators.
 //!
-//! Forces leave loads behind (poses, joint loads, contact) that tangent, powers and potential are made
-//! of. [`System::forces`] gives [`Loads`], the only way to ask for these: it holds both the state and the
-//! equations, so that neither can change while it is there, and what it answers belongs to the state
-//! that it was made for.
+//! A force evaluation leaves loads behind (poses, joint loads, contact), from which the tangent, the powers
+//! and the potential are computed. [`System::forces`] returns [`Loads`], the only access to these quantities:
+//! it borrows both the state and the equations, so neither can change while it exists, and every answer
+//! belongs to the state for which the loads were computed.
 use crate::linear::{Bordered, Entry, SingularPivot};
 pub use crate::state::{Powers, Shift, State, StateRef};
 use crate::statistics::Statistics;
 
-/// Equations of motion `M(q) a = Q(q, v, t)` whose iteration matrix is chains with a border.
+/// Equations of motion `M(q) a = Q(q, v, t)` whose iteration matrix is a bordered matrix: one diagonal block
+/// per rope chain, and a border.
 pub trait Equations {
-    /// An empty matrix of the right shape: allocates.
+    /// Allocates a zero matrix of the shape of the iteration matrix.
     fn matrix(&self) -> Bordered;
 
-    /// Generalised forces `Q(q, v, t)`; their loads are kept.
+    /// Computes the generalised forces `Q(q, v, t)` and stores the loads from which they are made.
     fn forces(&mut self, at: StateRef<'_>, force: &mut [f64]);
 
-    /// `out -= M(q) a`, of one column or of several side by side.
+    /// Computes `out -= M(q) a`, for one column or for several columns side by side.
     fn subtract_inertia<T: Entry>(&self, q: &[f64], a: &[T], out: &mut [T]);
 
     /// Fills `matrix` with `mass M - damping D - K`.
@@ -32,31 +33,32 @@ pub trait Equations {
     /// terms and of `M(q) a` under accelerations `a`.
     fn add_spin_tangent(&self, at: StateRef<'_>, a: &[f64], damping: f64, matrix: &mut Bordered);
 
-    /// Largest change over all coordinates, in units of Newton's accuracy.
+    /// Returns the largest absolute change of any coordinate, in units of the accuracy of Newton's method.
     fn newton_norm(&self, change: &[f64]) -> f64;
 
-    /// Local error, in units of what is tolerated.
+    /// Returns the norm of the local error, in units of the error tolerance.
     fn error_norm(&self, error: &[f64]) -> f64;
 
-    /// Powers under accelerations `a`.
+    /// Computes the powers of the forces for the accelerations `a`.
     fn powers(&self, at: Loaded<'_>, a: &[f64]) -> Powers;
 }
 
-/// Equations that derive from a potential at rest: what a search for equilibrium needs.
+/// Equations whose forces derive from a potential at rest, as the search for static equilibrium requires.
 pub trait Static: Equations {
-    /// Potential of all forces, loads included, at a state of rest \[J\].
+    /// Returns the potential of all forces, including the loads, at a state of rest \[J\].
     fn potential(&self, at: Loaded<'_>) -> f64;
 
-    /// Adds `lambda W`: `W` measures a metre of every body alike.
+    /// Adds `lambda W` to the matrix, where the weight `W` counts a displacement of one metre equally for
+    /// every body.
     fn add_static_weight(&self, lambda: f64, matrix: &mut Bordered);
 }
 
-/// A state whose loads the equations hold; made by [`System::forces`] alone, and by what outlives it.
+/// State whose loads are stored in the equations. Created only by [`System::forces`] and [`KeptLoads`].
 #[derive(Clone, Copy, Debug)]
 pub struct Loaded<'a>(StateRef<'a>);
 
 impl<'a> Loaded<'a> {
-    /// The state.
+    /// Returns the state.
     pub const fn state(self) -> StateRef<'a> {
         self.0
     }
@@ -72,29 +74,30 @@ pub struct System<E> {
     matrix: Bordered,
 }
 
-/// A system with the loads of a state.
+/// Loads of a state, together with mutable access to the system that stores them.
 #[derive(Debug)]
 pub struct Loads<'s, 'q, E> {
     system: &'s mut System<E>,
     at: Loaded<'q>,
 }
 
-/// Loads that outlive their state while Newton's method corrects it.
+/// Loads kept after their state is released, while Newton's method corrects that state.
 #[derive(Debug)]
 pub struct KeptLoads<'s, E> {
     equations: &'s E,
 }
 
 impl<E: Equations> KeptLoads<'_, E> {
-    /// Powers at the corrected state under accelerations `a`: the loads lag by the last correction,
-    /// rates and accelerations do not, which is half of the error that lagging with both would make.
+    /// Computes the powers at the corrected state for the accelerations `a`. The loads lag by the last
+    /// correction, rates and accelerations do not; this halves the error that lagging all of them would
+    /// cause.
     pub fn powers(&self, corrected: StateRef<'_>, a: &[f64]) -> Powers {
         self.equations.powers(Loaded(corrected), a)
     }
 }
 
 impl<E: Equations> System<E> {
-    /// Allocates the matrix.
+    /// Creates a system and allocates its matrix.
     pub fn new(equations: E) -> Self {
         Self {
             matrix: equations.matrix(),
@@ -103,17 +106,17 @@ impl<E: Equations> System<E> {
         }
     }
 
-    /// Number of coordinates.
+    /// Returns the number of coordinates.
     pub fn len(&self) -> usize {
         self.matrix.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether the system has no coordinates.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// `Q(q, v, t)`, and what its loads answer.
+    /// Computes the forces `Q(q, v, t)` and returns access to their loads.
     pub fn forces<'q>(&mut self, at: StateRef<'q>, force: &mut [f64]) -> Loads<'_, 'q, E> {
         self.statistics.force_evaluations += 1;
         self.equations.forces(at, force);
@@ -123,7 +126,7 @@ impl<E: Equations> System<E> {
         }
     }
 
-    /// Residual `Q - M a`, and what its loads answer.
+    /// Computes the residual `Q - M a` and returns access to the loads.
     pub fn residual<'q>(
         &mut self,
         at: StateRef<'q>,
@@ -135,12 +138,12 @@ impl<E: Equations> System<E> {
         loads
     }
 
-    /// Accelerations at a motion that does not start from equilibrium: `M a = Q`.
+    /// Computes the accelerations from `M a = Q`, for a motion that does not start from equilibrium.
     ///
-    /// Solved as `(mass M - K) x = Q`, `a = mass x` with a `mass` beside which `K` is below rounding.
+    /// Solved as `(mass M - K) x = Q`, `a = mass x`, with `mass` so large that `K` is below rounding error.
     ///
     /// # Errors
-    /// The unknown whose inertia vanishes.
+    /// [`SingularPivot`] naming the unknown that has no inertia.
     pub fn accelerations(&mut self, at: StateRef<'_>, a: &mut [f64]) -> Result<(), SingularPivot> {
         const SHIFT: Shift = Shift {
             mass: 1e30,
@@ -161,17 +164,17 @@ impl<E: Equations> System<E> {
 }
 
 impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
-    /// The state that they belong to.
+    /// Returns the state for which the loads were computed.
     pub const fn state(&self) -> StateRef<'q> {
         self.at.state()
     }
 
-    /// The equations.
+    /// Returns the equations.
     pub const fn equations(&self) -> &E {
         &self.system.equations
     }
 
-    /// Work done so far.
+    /// Returns the work counters.
     pub const fn statistics(&mut self) -> &mut Statistics {
         &mut self.system.statistics
     }
@@ -182,8 +185,8 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
         self.system.equations.tangent(self.at, shift, matrix);
     }
 
-    /// Fills `matrix` with the complete `mass M - damping D - K`, `K` the derivative of `Q - M a` by the
-    /// coordinates.
+    /// Fills `matrix` with the complete `mass M - damping D - K`, where `K` is the derivative of `Q - M a`
+    /// with respect to the coordinates.
     pub fn exact_tangent(&mut self, a: &[f64], shift: Shift, matrix: &mut Bordered) {
         self.tangent(shift, matrix);
         let equations = &self.system.equations;
@@ -212,7 +215,7 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
     /// Factorises `mass M - damping D - K`.
     ///
     /// # Errors
-    /// The unknown whose pivot vanished.
+    /// [`SingularPivot`] naming the unknown whose pivot vanished.
     pub fn factorize(&mut self, shift: Shift) -> Result<(), SingularPivot> {
         let System {
             equations,
@@ -223,10 +226,10 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
         factorize(statistics, matrix)
     }
 
-    /// Factorises what [`Self::exact_tangent`] fills.
+    /// Factorises the matrix that [`Self::exact_tangent`] would fill.
     ///
     /// # Errors
-    /// The unknown whose pivot vanished.
+    /// [`SingularPivot`] naming the unknown whose pivot vanished.
     pub fn factorize_exact(&mut self, a: &[f64], shift: Shift) -> Result<(), SingularPivot> {
         let System {
             equations,
@@ -238,12 +241,12 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
         factorize(statistics, matrix)
     }
 
-    /// Powers under accelerations `a`.
+    /// Computes the powers of the forces for the accelerations `a`.
     pub fn powers(&self, a: &[f64]) -> Powers {
         self.system.equations.powers(self.at, a)
     }
 
-    /// Lets go of the state, which is about to be corrected, and keeps the loads.
+    /// Releases the state, so that Newton's method can correct it, and keeps the loads.
     pub const fn keep(self) -> KeptLoads<'s, E> {
         KeptLoads {
             equations: &self.system.equations,
@@ -257,7 +260,7 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
 }
 
 impl<E: Static> Loads<'_, '_, E> {
-    /// Potential of all forces, loads included \[J\].
+    /// Returns the potential of all forces, including the loads \[J\].
     pub fn potential(&self) -> f64 {
         self.system.equations.potential(self.at)
     }
@@ -265,7 +268,7 @@ impl<E: Static> Loads<'_, '_, E> {
     /// Factorises `-K + lambda W`.
     ///
     /// # Errors
-    /// The unknown whose pivot vanished.
+    /// [`SingularPivot`] naming the unknown whose pivot vanished.
     pub fn factorize_static(&mut self, lambda: f64) -> Result<(), SingularPivot> {
         let System {
             equations,

@@ -1,58 +1,58 @@
-//! How a simulation ended; every run ends in one of these, none hangs or panics.
+//! Outcome of a simulation. Every run ends with one of these verdicts; none hangs or panics.
 use crate::model::Individual;
 use crate::model::layout::Motion;
 
-/// What ended a simulation early.
+/// Reason why a simulation ended early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
     /// A rope joint stretched beyond [`Limits::extension`].
     OverstretchedRope,
     /// The rope sank into a head beyond [`Limits::penetration`].
     RopeThroughHead,
-    /// The beam rose beyond its swing by [`Limits::beam_margin`].
+    /// The beam rose above its range of swing by more than [`Limits::beam_margin`].
     BeamOvertravel,
-    /// The beam stayed below its swing by [`Limits::beam_margin`].
+    /// The beam stayed below its range of swing by more than [`Limits::beam_margin`].
     LoadNotLifted,
-    /// A cylinder turned out of the machine's plane, or cylinders give way sideways because their
-    /// shear stiffness cannot hold them under tension.
+    /// A cylinder rotated out of the machine's plane, or cylinders buckled sideways because their shear
+    /// stiffness cannot hold them under tension.
     TumbledCylinder,
     /// The step size fell below its limit.
     StepUnderflow,
-    /// The iteration budget was used up.
+    /// The budget of Newton iterations was used up.
     Budget,
 }
 
-/// How far a failed simulation got.
+/// Progress that a failed simulation had made when it ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reached {
-    /// Share of the static load that the machine still carried.
+    /// Share of the static load that the machine still carried (failure during the search for equilibrium).
     LoadFraction(f64),
-    /// Share of the simulated time.
+    /// Share of the simulated time that was completed (failure in motion).
     TimeFraction(f64),
 }
 
-/// How a simulation ended.
+/// Outcome of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// To the end of the revolution.
+    /// The simulation reached the end of the revolution.
     Complete,
-    /// Early.
+    /// The simulation ended early.
     Failed {
-        /// Why.
+        /// Reason of the failure.
         kind: Failure,
-        /// How far.
+        /// Progress made before the failure.
         reached: Reached,
     },
 }
 
-/// Where a simulation stops being one of this machine.
+/// Limits of plausible motion; a simulation that exceeds one ends as failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Largest extension of a joint, in pitches.
+    /// Largest extension of a rope joint, in cylinder pitches.
     pub extension: f64,
     /// Deepest penetration of the rope into a head \[m\].
     pub penetration: f64,
-    /// How far the beam may leave the swing of the inextensible mechanism \[rad\].
+    /// Margin by which the beam may leave the range of swing of the inextensible mechanism \[rad\].
     pub beam_margin: f64,
     /// Largest sine of a cylinder's angle out of the machine's plane.
     pub tilt: f64,
@@ -70,8 +70,8 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// The first limit that an individual breaks at coordinates `q`, up to Newton's accuracy those of
-    /// its last loads; `swing` is the beam's range on the inextensible mechanism \[rad\].
+    /// Returns the first limit that an individual exceeds at coordinates `q`, which must equal those of its
+    /// last loads up to Newton's accuracy; `swing` is the beam's range on the inextensible mechanism \[rad\].
     pub fn broken(
         &self,
         individual: &Individual<'_>,

@@ -1,4 +1,4 @@
-//! What a simulation takes of the heap: nothing in a step, little in all.
+//! Heap use of a simulation: the steps allocate nothing, the whole run little.
 #![expect(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -17,7 +17,7 @@ use simulation::system::System;
 #[global_allocator]
 static ALLOCATOR: dhat::Alloc = dhat::Alloc;
 
-/// Notes the number of blocks that were allocated up to the second and up to the last sample.
+/// Numbers of heap blocks allocated up to the second and up to the last sample.
 #[derive(Default)]
 struct Blocks {
     first: Option<u64>,
@@ -35,8 +35,8 @@ impl Observe for Blocks {
     }
 }
 
-/// The coefficients and all sizes of the catalogue on the same unit: with their machines beside they fit
-/// into a slot's 32 MiB, and their steps and samples allocate nothing either.
+/// Checks that derivatives by all rope coefficients and all effect sizes of the catalogue, including the
+/// machines built for them, fit into 32 MiB, and that their steps and samples allocate nothing.
 fn columns_take_little(description: &Description) {
     let profiler = dhat::Profiler::builder().testing().build();
     let machine = Machine::new(description.clone(), 2).unwrap();
@@ -78,9 +78,10 @@ fn columns_take_little(description: &Description) {
     assert!(stats.max_bytes < 32 << 20, "{} bytes", stats.max_bytes);
 }
 
-/// The real unit's 72 + 114 cylinders, one rope and two: between the second and the last sample of a
-/// revolution lie hundreds of steps with their Newton iterations and factorisations, and with no method
-/// a single allocation; a run fits into 64 MiB many times over.
+/// Checks the memory use with the real unit's 72 + 114 cylinders, with one rope and with twin ropes: between
+/// the second and the last sample of a revolution lie hundreds of steps with their Newton iterations and
+/// factorisations, during which no integration method allocates (one block in all is permitted); a whole run
+/// stays below 32 MiB.
 #[test]
 fn a_step_allocates_nothing_and_a_run_little() {
     let mut descriptions = [reference::description(), reference::twins([1e-3, 0.0])];

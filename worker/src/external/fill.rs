@@ -1,12 +1,12 @@
-//! From values to the files that the program reads.
+//! Fills the program's input files with the values of an individual.
 use exchange::{Problem, dakota, pest};
 use protocol::external::{Fill, FillForm};
 use std::collections::BTreeMap;
 
-/// A file that is filled in for every individual, read once.
+/// Template of an input file, parsed once and filled for every individual.
 #[derive(Debug)]
 pub(super) struct Template {
-    /// Where it is written.
+    /// Path of the filled file, relative to the program's folder.
     pub(super) file: String,
     form: Form,
 }
@@ -18,16 +18,16 @@ enum Form {
     Dakota(dakota::Form),
 }
 
-/// All of a case's templates.
+/// All templates of a case.
 #[derive(Debug)]
 pub(super) struct Templates {
     all: Vec<Template>,
-    /// The narrowest field of each parameter, where one limits its digits.
+    /// Width of each parameter's narrowest PEST field, which limits its digits.
     widths: BTreeMap<String, usize>,
 }
 
 impl Templates {
-    /// Reads them.
+    /// Parses the templates.
     pub(super) fn new(fills: &[Fill]) -> Result<Self, Problem> {
         let all: Vec<Template> = fills.iter().map(template).collect::<Result<_, _>>()?;
         let mut widths = BTreeMap::new();
@@ -42,8 +42,8 @@ impl Templates {
         Ok(Self { all, widths })
     }
 
-    /// The files with the text of each, for values by name in the case's order. Digits that do not fit into a
-    /// field of PEST are lost to every file.
+    /// Returns path and text of every file, for values by name in the case's order. A value is rounded to its
+    /// narrowest PEST field in all files, so that every file holds the same number.
     pub(super) fn filled(
         &self,
         values: &[(String, f64)],
@@ -60,7 +60,7 @@ impl Templates {
             let text = text.ok_or_else(|| Problem {
                 file: "the templates".to_owned(),
                 line: None,
-                found: format!("no digit of {name} = {value} fits into its narrowest field"),
+                found: format!("{name} = {value} does not fit into its narrowest field"),
                 allowed: "a field that holds the number".to_owned(),
                 remedy: "widen the field between its markers".to_owned(),
             })?;
@@ -90,7 +90,7 @@ fn template(fill: &Fill) -> Result<Template, Problem> {
                 line: None,
                 found: format!("form `{name}` of Dakota's parameters"),
                 allowed: "standard, aprepro or json".to_owned(),
-                remedy: "correct it".to_owned(),
+                remedy: "correct the form of this input in the case".to_owned(),
             })?)
         }
     };

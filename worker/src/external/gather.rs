@@ -1,4 +1,4 @@
-//! From the files that the program left to the curves of a condition.
+//! Converts the files that the program wrote into the curves of a condition.
 use exchange::{Problem, dakota, object, pest, table};
 use protocol::{
     case::Channel,
@@ -6,7 +6,7 @@ use protocol::{
 };
 use std::collections::BTreeMap;
 
-/// How the files are read, found out once.
+/// Parsed rules for reading the output files.
 #[derive(Debug)]
 pub(super) struct Readings {
     all: Vec<(String, Form)>,
@@ -19,19 +19,19 @@ enum Form {
     Whole,
 }
 
-/// What the files of one run hold.
+/// Contents of the output files of one run.
 #[derive(Debug, Default)]
 pub(super) struct Left {
-    /// Values that have a name of their own.
+    /// Values by name, from PEST instructions, Dakota results and equations.
     pub(super) named: BTreeMap<String, f64>,
-    /// Texts of all files, reading by reading.
+    /// Text of each output file, in the order of the readings.
     texts: Vec<String>,
-    /// Whether the program itself called the individual a failure.
+    /// Whether the program's results file itself reports a failure (Dakota's `fail`).
     pub(super) is_fail: bool,
 }
 
 impl Readings {
-    /// Reads what tells how to read.
+    /// Parses the instructions by which the output files are read.
     pub(super) fn new(readings: &[Reading]) -> Result<Self, Problem> {
         let form = |reading: &Reading| {
             let form = match &reading.form {
@@ -48,7 +48,7 @@ impl Readings {
         })
     }
 
-    /// Names of the functions that Dakota's files ask for.
+    /// Returns the names of the functions that Dakota's results files must contain.
     pub(super) fn functions(&self) -> Vec<String> {
         let lists = self.all.iter().filter_map(|(_, form)| match form {
             Form::Dakota(functions) => Some(functions.clone()),
@@ -57,15 +57,15 @@ impl Readings {
         lists.flatten().collect()
     }
 
-    /// The files that the program leaves.
+    /// Returns the names of the output files.
     pub(super) fn files(&self) -> impl Iterator<Item = &str> {
         self.all.iter().map(|(file, _)| file.as_str())
     }
 
-    /// Reads all files; `left` gives the text of one.
+    /// Reads all output files; `left` returns the text of one.
     ///
     /// # Errors
-    /// What is missing or cannot be read, in words.
+    /// A message saying which file or value is missing or cannot be read.
     pub(super) fn read(
         &self,
         left: impl Fn(&str) -> Result<String, String>,
@@ -94,10 +94,11 @@ impl Readings {
         Ok(all)
     }
 
-    /// The curve of a channel.
+    /// Returns the curve of a channel, interpolated at the channel's points if the source states its own.
     ///
     /// # Errors
-    /// Values that are not there, or not as many as the channel has places, in words.
+    /// A message saying which values are missing, or that their number differs from the channel's number of
+    /// points.
     pub(super) fn curve(
         &self,
         source: &Source,
@@ -113,7 +114,7 @@ impl Readings {
             Source::Named(names) => {
                 let value = |name: &String| {
                     let found = left.named.get(name).copied();
-                    found.ok_or_else(|| format!("nothing read is named `{name}`"))
+                    found.ok_or_else(|| format!("the output files contain no value named `{name}`"))
                 };
                 let values = names.iter().map(value).collect::<Result<Vec<f64>, _>>()?;
                 ("", values, None)
@@ -147,7 +148,7 @@ impl Readings {
             Some(at) => brought(file, &at, &values, places),
             None if values.len() == places.len() => Ok(values),
             None => Err(format!(
-                "{file} holds {} values of channel `{}`, which has {} places",
+                "{file} holds {} values of channel `{}`, which has {} points",
                 values.len(),
                 channel.name,
                 places.len()
@@ -156,7 +157,8 @@ impl Readings {
     }
 }
 
-/// Values of equations at parameters, by name.
+/// Evaluates the equations (weighted sums of parameters or of their decimal logarithms); returns values by
+/// equation name.
 pub(super) fn equated(
     equations: &[Equation],
     values: &BTreeMap<String, f64>,
@@ -171,17 +173,19 @@ pub(super) fn equated(
     equations.iter().map(sum).collect()
 }
 
-/// A curve at other places, along straight lines between its own.
+/// Interpolates a curve linearly at the given places.
 fn brought(file: &str, at: &[f64], values: &[f64], places: &[f64]) -> Result<Vec<f64>, String> {
     if at.len() != values.len() || at.is_empty() {
         return Err(format!(
-            "{file} holds {} values at {} places",
+            "{file} holds {} values but {} abscissa points",
             values.len(),
             at.len()
         ));
     }
     if at.windows(2).any(|pair| pair[1] <= pair[0]) {
-        return Err(format!("the places in {file} do not ascend"));
+        return Err(format!(
+            "the abscissa values in {file} are not strictly ascending"
+        ));
     }
     let (first, last) = (at[0], at[at.len() - 1]);
     // the last digit of a place that was written as text is not held against it
@@ -189,7 +193,7 @@ fn brought(file: &str, at: &[f64], values: &[f64], places: &[f64]) -> Result<Vec
     let value = |place: &f64| {
         if *place < first - slack || *place > last + slack {
             return Err(format!(
-                "{file} goes from {first} to {last}, but a value is wanted at {place}"
+                "the abscissa in {file} runs from {first} to {last}, but the channel needs a value at {place}"
             ));
         }
         let above = at

@@ -1,7 +1,7 @@
-//! What a failed run leaves in its folder, made small enough to travel with its failure.
+//! Collects the files of a failed run in a form small enough to send with the failure.
 //!
-//! The case's own files are left out where the program did not change them: whoever has the case has those. Small
-//! files go first, as they are; of longer ones the end.
+//! Files of the case that the program did not change are omitted, because every holder of the case has them.
+//! Small files come first and whole; of longer ones only the end is kept.
 use protocol::{
     file::File,
     job::{Left, Shortened},
@@ -13,22 +13,23 @@ use std::{
     path::Path,
 };
 
-/// Most bytes of whole files, and of the ends of longer ones, together.
+/// Limit on the total size of whole files (bytes); `MOST_ENDS` is the limit on the total size of the ends of
+/// longer ones.
 const MOST_WHOLE: u64 = 256 << 10;
 const MOST_ENDS: u64 = 64 << 10;
-/// How much of the end of a longer file is kept (bytes).
+/// Number of bytes kept from the end of a longer file.
 const END: u64 = 16 << 10;
-/// Most files that are spoken of.
+/// Largest number of files that are listed.
 const MOST_FILES: usize = 1000;
 
-/// Something in the folder.
+/// File or other entry found in the run's folder.
 struct Found {
     path: String,
     bytes: u64,
     is_file: bool,
 }
 
-/// What lies in a run's folder; `own` are the case's files, below `work/`.
+/// Collects the contents of a run's folder, except unchanged files of the case (`own`, below `work/`).
 pub(super) fn left(root: &Path, own: &[File]) -> Left {
     let mut found = Vec::new();
     // what cannot be listed is not there for anybody
@@ -76,11 +77,11 @@ pub(super) fn left(root: &Path, own: &[File]) -> Left {
     left
 }
 
-/// Everything below a folder that is none itself; links are not followed.
+/// Lists everything below a folder except the folders themselves; links are not followed.
 fn list(root: &Path, below: &str, found: &mut Vec<Found>) -> io::Result<()> {
     for entry in fs::read_dir(root.join(below))? {
         let entry = entry?;
-        // a name that is no text cannot travel
+        // a file whose name is not valid UTF-8 cannot be sent
         let Ok(name) = entry.file_name().into_string() else {
             continue;
         };
@@ -105,7 +106,7 @@ fn list(root: &Path, below: &str, found: &mut Vec<Found>) -> io::Result<()> {
     Ok(())
 }
 
-/// Whether a file is the case's, as it was.
+/// Returns whether a file is unchanged from the case, or is the folder's lock.
 fn is_unchanged(root: &Path, one: &Found, own: &[File]) -> bool {
     let name = one.path.strip_prefix(super::scratch::WORK);
     let name = name.and_then(|rest| rest.strip_prefix('/'));
@@ -120,7 +121,7 @@ fn is_unchanged(root: &Path, one: &Found, own: &[File]) -> bool {
     })
 }
 
-/// The last bytes of a file, and whether it may be executed.
+/// Returns the last `bytes` bytes of a file, and whether the file is executable.
 fn end(path: &Path, bytes: u64) -> Option<(Vec<u8>, bool)> {
     let read = || -> io::Result<(Vec<u8>, bool)> {
         let mut file = fs::File::open(path)?;

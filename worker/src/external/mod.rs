@@ -1,12 +1,12 @@
-//! Models that are programs of somebody's own: files in, a process, files out.
+//! Models that are external programs: input files, a process, output files.
 //!
 //! ```text
 //! values -> templates (fill) -> folder (scratch) -> process (run) -> readings -> curves (gather)
-//!                                                              \-> what a failure leaves (left)
+//!                                                              \-> files of a failed run (left)
 //! ```
 //!
-//! What may be started is this machine's own decision: a list that a case can only choose an entry of
-//! (`exchange::allow`). Nothing here knows what the numbers mean.
+//! This machine alone decides which programs may be started: a case can only choose an entry of its list
+//! (`exchange::allow`). This module does not know the meaning of the numbers.
 mod fill;
 mod gather;
 mod left;
@@ -18,7 +18,7 @@ pub mod start;
 
 pub use simulator::Externals;
 
-/// Removes what a slot left that was ended in the middle of a run.
+/// Removes the folders left behind by a slot that was ended during a run.
 pub(crate) fn tidy() {
     // without a list nothing was ever started here
     let allowed = exchange::allow::read(&exchange::allow::path()).unwrap_or_default();

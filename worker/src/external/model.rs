@@ -1,4 +1,4 @@
-//! A program with a case, ready for any number of individuals.
+//! External program prepared for a case, ready to evaluate any number of individuals.
 use super::{
     fill::Templates,
     gather::{Readings, equated},
@@ -20,29 +20,30 @@ use std::{
     time::Duration,
 };
 
-/// What a program is said to have ended with that called an individual a failure itself.
+/// Failure kind reported when the program's results file itself reports a failure.
 const FAIL: Word = Word::new("fail");
 
-/// How many failures of one slot take their folders along: a program that always fails says all in these.
+/// Number of failures per slot whose folder contents are sent along; a program that always fails needs no
+/// more for its diagnosis.
 const MOST_SENT: u64 = 16;
 
-/// A program with a case.
+/// External program prepared for a case.
 #[derive(Debug)]
 pub(super) struct Prepared {
     case: Case,
     external: External,
     entry: Entry,
-    /// The entry's name.
+    /// Name of the entry in this machine's list.
     name: String,
     templates: Templates,
     readings: Readings,
-    /// Where folders are made.
+    /// Directory in which the folders of evaluations are created.
     place: PathBuf,
-    /// Words of exit statuses that are verdicts.
+    /// Exit statuses that mean a failed run rather than a crash, with the failure kind of each.
     verdicts: Vec<(i32, Word)>,
-    /// Counts evaluations.
+    /// Number of evaluations so far.
     evaluations: AtomicU64,
-    /// Counts folders that went with failures.
+    /// Number of failures whose folder contents were sent.
     sent: AtomicU64,
 }
 
@@ -67,13 +68,15 @@ impl Prepared {
         ];
         for (field, stated, needed) in lists {
             if stated != needed {
-                let problem = format!("{stated} are described, the case has {needed}");
+                let problem =
+                    format!("the model section describes {stated}, but the case has {needed}");
                 return Err(Failure::misconfigured(field, problem));
             }
         }
         let verdict = |(status, word): &(i32, String)| {
             let word = Word::of(word).ok_or_else(|| {
-                let problem = format!("`{word}` is no word of small letters, digits and `_`");
+                let problem =
+                    format!("`{word}` must consist of lower-case letters, digits and `_`");
                 Failure::misconfigured("model.verdicts", problem)
             });
             Ok((*status, word?))
@@ -98,7 +101,8 @@ impl Prepared {
         })
     }
 
-    /// What templates are filled in with.
+    /// Returns the values for the templates: those of the condition, and the unknowns after scaling (factor
+    /// and offset).
     fn values(&self, spec: &SimulateSpec) -> Result<Vec<(String, f64)>, Failure> {
         let individual = &spec.individual;
         let condition = individual.condition;
@@ -113,7 +117,8 @@ impl Prepared {
         Ok(own.iter().cloned().chain(unknowns).collect())
     }
 
-    /// What equations are about: the unknowns themselves, by their own names.
+    /// Returns the parameters of the equations: the condition's values and the unscaled unknowns, by the
+    /// case's names.
     fn plain(&self, spec: &SimulateSpec) -> BTreeMap<String, f64> {
         let individual = &spec.individual;
         let own = self.external.conditions.get(individual.condition);
@@ -122,7 +127,7 @@ impl Prepared {
         own.into_iter().flatten().cloned().chain(unknowns).collect()
     }
 
-    /// How long one run may take: what the case says, and no more than the entry allows.
+    /// Returns the time limit of one run: the case's deadline, at most the entry's.
     fn deadline(&self) -> Duration {
         let own = self.case.model.deadline_s.unwrap_or(f64::INFINITY);
         let seconds = own.min(self.entry.wall_s);
@@ -140,8 +145,12 @@ impl Prepared {
             .map_err(|problem| Failure::misconfigured("model.inputs", problem.to_string()))?;
         let turn = Turn::wait(&self.place, &self.name, &self.entry)
             .map_err(|error| crashed(format!("{}: {error}", self.place.display())))?;
-        let mut scratch = Scratch::new(&self.place)
-            .map_err(|error| crashed(format!("no folder in {}: {error}", self.place.display())))?;
+        let mut scratch = Scratch::new(&self.place).map_err(|error| {
+            crashed(format!(
+                "cannot create a working folder in {}: {error}",
+                self.place.display()
+            ))
+        })?;
         let prepared = scratch.unpack(&self.external.files).and_then(|()| {
             let mut files = files.iter();
             files.try_for_each(|(path, text)| scratch.write(path, text.as_bytes(), 0o600))
@@ -153,13 +162,15 @@ impl Prepared {
                 Ok(())
             })
         });
-        prepared.map_err(|error| crashed(format!("the program's folder: {error}")))?;
+        prepared.map_err(|error| {
+            crashed(format!("cannot fill the program's working folder: {error}"))
+        })?;
         let outcome = self.ran(spec, &scratch);
         drop(turn);
         outcome.map_err(|failure| self.noted(failure, &mut scratch))
     }
 
-    /// Starts the program in a folder that is ready, and reads what it leaves.
+    /// Runs the program in a prepared folder and reads its output files.
     fn ran(&self, spec: &SimulateSpec, scratch: &Scratch) -> Result<Observation, Failure> {
         let status = run::run(&self.entry, scratch, self.deadline())?;
         let shown = self.entry.program.display();
@@ -176,7 +187,7 @@ impl Prepared {
         }
         let unusable = |what: String| {
             Failure::crashed(format!(
-                "{shown} ended in good order, but {what}{}",
+                "{shown} exited with status 0, but {what}{}",
                 run::last_words(scratch)
             ))
         };
@@ -191,7 +202,8 @@ impl Prepared {
         let channels = self.case.channels_of(condition);
         let curve = |(at, channel): (usize, &protocol::case::Channel)| {
             let source = self.external.curves.get(at);
-            let source = source.ok_or_else(|| format!("channel {at} comes from nowhere"))?;
+            let source = source
+                .ok_or_else(|| format!("channel {at} has no source in the model's outputs"))?;
             self.readings.curve(source, channel, &left)
         };
         let curves: Vec<Vec<f64>> = channels
@@ -206,7 +218,7 @@ impl Prepared {
         })
     }
 
-    /// A failure with what the program left, and with its folder where the entry keeps that.
+    /// Adds the folder's files to a failure, and keeps the folder if the entry asks for it.
     fn noted(&self, mut failure: Failure, scratch: &mut Scratch) -> Failure {
         if let Failure::Crashed { left, .. } | Failure::Deadline { left, .. } = &mut failure
             && self.sent.fetch_add(1, Ordering::Relaxed) < MOST_SENT
@@ -225,7 +237,7 @@ impl Prepared {
     }
 }
 
-/// A run that the program itself calls a failure.
+/// Returns the observation of a run that the program itself reports as failed.
 fn failed(kind: Word) -> Observation {
     Observation {
         verdict: Verdict::Failed {

@@ -1,4 +1,5 @@
-//! One run of somebody's program: started within its limits, watched, ended with all that it started.
+//! Runs an external program once: starts it within its limits, monitors it, and ends it with all processes it
+//! started.
 use super::scratch::Scratch;
 use crate::process_tree;
 use exchange::allow::Entry;
@@ -16,18 +17,19 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How often it is looked at what the program has written.
+/// Interval at which the amount of output is checked.
 const LOOK: Duration = Duration::from_millis(500);
-/// How much of a program's last words is shown (bytes), and how many lines.
+/// Number of bytes shown from the end of a program's output; `LINES` is the limit in lines.
 const LAST: u64 = 2000;
 const LINES: usize = 8;
-/// Variables of this process that every program gets.
+/// Environment variables of this process that are passed to every program.
 const PASSED: [&str; 6] = ["PATH", "HOME", "LANG", "LC_ALL", "TZ", "TMPDIR"];
 
-/// Starts the program of an entry in a folder and waits for its end, at most until the deadline.
+/// Starts an entry's program in a folder and waits for it to end, at most until the deadline.
 ///
 /// # Errors
-/// [`Failure::Crashed`] if it cannot be started or writes too much, [`Failure::Deadline`] if it does not end.
+/// [`Failure::Crashed`] if the program cannot be started or writes too much, [`Failure::Deadline`] if it does
+/// not end in time.
 pub(super) fn run(
     entry: &Entry,
     scratch: &Scratch,
@@ -57,11 +59,11 @@ pub(super) fn run(
             entry.output_mib,
             last_words(scratch)
         ))),
-        Err(Stopped::Unknown(error)) => Err(failed("its end is unknown", &error)),
+        Err(Stopped::Unknown(error)) => Err(failed("its exit status cannot be determined", &error)),
     }
 }
 
-/// Why a program was not waited for any longer.
+/// Reason why a program is ended before it finishes.
 enum Stopped {
     Late,
     TooMuch,
@@ -96,7 +98,7 @@ fn begin(entry: &Entry, scratch: &Scratch) -> io::Result<Child> {
     command.envs(&entry.environment).spawn()
 }
 
-/// Waits for the end, from a thread of its own so that nobody has to look again and again.
+/// Waits for the process to end, in a separate thread so that the end need not be polled for.
 fn watch(
     child: &mut Child,
     entry: &Entry,
@@ -131,19 +133,21 @@ fn watch(
             (Some(stopped), _) => Err(stopped),
             (None, Ok(Ok(status))) => Ok(status),
             (None, Ok(Err(error))) => Err(Stopped::Unknown(error)),
-            (None, Err(_)) => Err(Stopped::Unknown(io::Error::other("the thread that waited"))),
+            (None, Err(_)) => Err(Stopped::Unknown(io::Error::other(
+                "the thread waiting for the program stopped unexpectedly",
+            ))),
         }
     })
 }
 
-/// What a status says, with the last lines of what the program said.
+/// Describes an exit status, with the last lines of the program's output.
 pub(super) fn words(status: ExitStatus, scratch: &Scratch) -> String {
     // a shell says the signal that ended what it had started
     let of_child = status.code().filter(|code| (129..160).contains(code));
     let signal = status.signal().or(of_child.map(|code| code - 128));
     let how = match (signal, status.code()) {
         (Some(25), _) => {
-            "was ended: it wrote a longer file than its entry allows (output_mib)".to_owned()
+            "was ended: it wrote a file longer than its entry allows (output_mib)".to_owned()
         }
         (Some(signal), _) => format!("was ended by signal {signal}"),
         (None, Some(127)) => "could not be started, or ended with status 127".to_owned(),
@@ -153,7 +157,7 @@ pub(super) fn words(status: ExitStatus, scratch: &Scratch) -> String {
     how + &last_words(scratch)
 }
 
-/// The last lines of what a program said, as the end of a message.
+/// Formats the last lines of a program's output as the end of a message.
 pub(super) fn last_words(scratch: &Scratch) -> String {
     let text = tail(&scratch.said()).unwrap_or_default();
     let text: String = text
@@ -168,9 +172,9 @@ pub(super) fn last_words(scratch: &Scratch) -> String {
         .get(lines.len().saturating_sub(LINES)..)
         .unwrap_or_default();
     if last.is_empty() {
-        "; it said nothing".to_owned()
+        "; it printed nothing".to_owned()
     } else {
-        format!("; its last words:\n  {}", last.join("\n  "))
+        format!("; its last output:\n  {}", last.join("\n  "))
     }
 }
 
@@ -183,15 +187,15 @@ fn tail(path: &Path) -> io::Result<String> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// A file that the program left, as text.
+/// Reads an output file of the program as text.
 ///
 /// # Errors
-/// What is missing, is no plain file, or is longer than the entry allows.
+/// A message if the file is missing, is not a regular file, or is longer than the entry allows.
 pub(super) fn left(scratch: &Scratch, file: &str, entry: &Entry) -> Result<String, String> {
     let path = scratch.inside(file).map_err(|error| error.to_string())?;
-    let found = fs::symlink_metadata(&path).map_err(|_| format!("it left no file `{file}`"))?;
+    let found = fs::symlink_metadata(&path).map_err(|_| format!("it wrote no file `{file}`"))?;
     if !found.is_file() {
-        return Err(format!("`{file}` is no plain file"));
+        return Err(format!("`{file}` is not a regular file"));
     }
     let most = entry.output_mib.saturating_mul(1 << 20);
     if most > 0 && found.len() > most {
@@ -204,15 +208,16 @@ pub(super) fn left(scratch: &Scratch, file: &str, entry: &Entry) -> Result<Strin
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// Takes one of the places that an entry has on this machine, and keeps it until it is dropped.
+/// Permission to run one of an entry's simultaneous processes on this machine, held as a file lock until
+/// dropped.
 pub(super) struct Turn {
     _lock: File,
 }
 
 impl Turn {
-    /// Waits for a place.
+    /// Waits for a free place; `None` if the entry sets no limit.
     pub(super) fn wait(place: &Path, name: &str, entry: &Entry) -> io::Result<Option<Self>> {
-        /// Pause between looks for a place.
+        /// Interval at which a free place is looked for.
         const PAUSE: Duration = Duration::from_millis(10);
         let Some(places) = entry.places() else {
             return Ok(None);

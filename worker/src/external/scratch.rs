@@ -1,7 +1,7 @@
-//! The folder of one evaluation: made, filled with the case's files, removed.
+//! Working folder of one evaluation: created, filled with the case's files, removed.
 //!
-//! A file in it is locked as long as its process lives, so that what a killed one leaves is known as such, in
-//! whatever namespace it ran, and removed by the next.
+//! A file in the folder stays locked while its process lives. The folder of a killed process is thereby
+//! recognised in any PID namespace, and removed by the next process.
 use exchange::allow::Entry;
 use protocol::file::{File, is_below};
 use std::{
@@ -14,37 +14,37 @@ use std::{
     time::Duration,
 };
 
-/// Begin of the names of all such folders.
+/// Prefix of the names of all evaluation folders.
 const PREFIX: &str = "horsehead-";
 
-/// The file that is locked, and the one that says that the folder is to stay.
+/// Name of the file that is locked; `KEPT` names the file that marks a folder as kept.
 pub(super) const LOCK: &str = "lock";
 const KEPT: &str = "kept";
-/// Where in it the program works.
+/// Subfolder in which the program works.
 pub(super) const WORK: &str = "work";
-/// A folder without a lock is one that is being made, unless it is older than this.
+/// Age up to which a folder without a lock file counts as still being created.
 const NEW: Duration = Duration::from_mins(1);
 
-/// Numbers the folders of this process.
+/// Counter for the names of this process's folders.
 static NUMBER: AtomicU64 = AtomicU64::new(0);
 
-/// A folder for one evaluation.
+/// Working folder of one evaluation.
 #[derive(Debug)]
 pub(super) struct Scratch {
     root: PathBuf,
-    /// Says that somebody is at work here.
+    /// Lock that marks the folder as in use.
     _lock: fs::File,
-    /// Whether it stays where it is.
+    /// Whether the folder is kept when dropped.
     kept: bool,
 }
 
-/// Where an entry's folders are made.
+/// Returns the directory in which an entry's folders are created.
 pub(super) fn place(entry: &Entry) -> PathBuf {
     entry.folder.clone().unwrap_or_else(std::env::temp_dir)
 }
 
 impl Scratch {
-    /// Makes one.
+    /// Creates and locks a new folder.
     pub(super) fn new(place: &Path) -> io::Result<Self> {
         let make = |path: &Path| fs::DirBuilder::new().mode(0o700).create(path);
         let root = loop {
@@ -67,12 +67,12 @@ impl Scratch {
         Ok(scratch)
     }
 
-    /// Where the program works.
+    /// Returns the program's working directory.
     pub(super) fn work(&self) -> PathBuf {
         self.root.join(WORK)
     }
 
-    /// What it says on its outputs.
+    /// Returns the path of the file that receives the program's standard output and error.
     pub(super) fn said(&self) -> PathBuf {
         self.root.join("output")
     }
@@ -86,7 +86,7 @@ impl Scratch {
         Ok(())
     }
 
-    /// Writes a file below the folder and nowhere else.
+    /// Writes a file below the working directory; other paths are refused.
     pub(super) fn write(&self, path: &str, content: &[u8], mode: u32) -> io::Result<()> {
         let target = self.inside(path)?;
         if let Some(folder) = target.parent() {
@@ -103,7 +103,7 @@ impl Scratch {
         io::Write::write_all(&mut file, content)
     }
 
-    /// A path below the folder.
+    /// Returns a path below the working directory; other paths are refused.
     pub(super) fn inside(&self, path: &str) -> io::Result<PathBuf> {
         if !is_below(Path::new(path)) {
             return Err(io::Error::other(format!(
@@ -113,17 +113,17 @@ impl Scratch {
         Ok(self.work().join(path))
     }
 
-    /// Where everything of it lies.
+    /// Returns the root of the folder, which contains lock, output and working directory.
     pub(super) fn root(&self) -> &Path {
         &self.root
     }
 
-    /// How much is in it (bytes).
+    /// Returns the size of the folder's contents (bytes).
     pub(super) fn bytes(&self) -> u64 {
         bytes(&self.root)
     }
 
-    /// Leaves it where it is, for somebody to look into.
+    /// Marks the folder as kept for inspection, and returns its path.
     pub(super) fn keep(&mut self) -> &Path {
         self.kept = true;
         // a sign for whoever cleans up
@@ -153,7 +153,7 @@ fn bytes(folder: &Path) -> u64 {
     each.sum()
 }
 
-/// Removes what processes left that are no more.
+/// Removes the folders of processes that no longer exist.
 pub(super) fn clean(place: &Path) {
     let entries = fs::read_dir(place).into_iter().flatten().flatten();
     for entry in entries {
@@ -176,7 +176,8 @@ pub(super) fn clean(place: &Path) {
     }
 }
 
-/// Removes a folder, its lock last: of a process killed meanwhile the next one still sees that it is over.
+/// Removes a folder, its lock file last: if this process is killed meanwhile, the next one still recognises
+/// the folder as abandoned.
 fn remove(root: &Path) -> io::Result<()> {
     for entry in fs::read_dir(root)? {
         let entry = entry?;
@@ -189,7 +190,7 @@ fn remove(root: &Path) -> io::Result<()> {
     fs::remove_dir_all(root)
 }
 
-/// Whether nobody is at work in a folder.
+/// Returns whether no process uses a folder any more.
 fn is_over(folder: &Path) -> bool {
     if let Ok(lock) = fs::File::open(folder.join(LOCK)) {
         return lock.try_lock().is_ok();

@@ -1,4 +1,4 @@
-//! Programs of somebody's own, as a kind of model: one kind for each entry of this machine's list.
+//! Simulator for external programs: one kind of model for each entry of this machine's list.
 use super::model::Prepared;
 use crate::simulator::{Model, Simulator};
 use exchange::allow::{self, Allowed, Entry};
@@ -14,7 +14,7 @@ use std::{
     sync::OnceLock,
 };
 
-/// All that this machine allows to be started.
+/// External programs that this machine allows to be started.
 #[derive(Clone, Copy, Debug)]
 pub struct Externals;
 
@@ -71,15 +71,16 @@ impl Simulator for Externals {
 
     fn own(&self, name: &str, _: &[u8]) -> Result<Vec<u8>, Failure> {
         Err(Failure::Refused {
-            reason: format!("a program of somebody's own knows no job `{name}`"),
+            reason: format!("an external program does not support the job `{name}`"),
         })
     }
 }
 
-/// The entries of this machine's list, as they are announced; their version commands may take their time.
+/// Returns descriptions of the list's entries, for the announcement; runs their version commands, which may
+/// take time.
 fn described() -> Vec<ModelDescriptor> {
     let allowed = allow::read(&allow::path()).unwrap_or_else(|problem| {
-        tracing::warn!("no program of the list is started here: {problem}");
+        tracing::warn!("the list of allowed programs cannot be read, so no external program will be started: {problem}");
         Allowed::default()
     });
     let entries = allowed.entry.iter();
@@ -91,8 +92,8 @@ fn described() -> Vec<ModelDescriptor> {
     described.collect()
 }
 
-/// Names what the entry's version command says, where it has one: machines that say other things have other
-/// programs.
+/// Computes a digest of the output of an entry's version command, if it has one, to distinguish machines with
+/// different programs.
 fn digest(entry: &Entry) -> String {
     let said = entry.version.split_first().map(|(program, arguments)| {
         let output = Command::new(program)

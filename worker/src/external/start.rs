@@ -1,20 +1,21 @@
-//! The last step before somebody's program: this process takes its limits and becomes it.
+//! Last step before an external program: this process sets its limits and then executes the program in its
+//! place.
 //!
-//! Limits and the signal that ends it with its slot must be set between the fork and the program, which
-//! without unsafe code is a process of its own: `horsehead-worker start`.
+//! Limits and the parent-death signal must be set between fork and exec. Without unsafe code this requires a
+//! process of its own: `horsehead-worker start`.
 use clap::Args;
 use rustix::process::{
     Resource, Rlimit, Signal, getrlimit, set_parent_process_death_signal, setrlimit,
 };
 use std::{ffi::OsString, io, os::unix::process::CommandExt, process::Command};
 
-/// What is started, and within what.
+/// Program to execute, and its limits.
 #[derive(Clone, Debug, Args)]
 pub struct Start {
-    /// Address space that it may have \[MiB\]; 0 for no limit
+    /// Address space of the program \[MiB\]; 0 for no limit
     #[arg(long, default_value_t = 0)]
     pub memory: u64,
-    /// Longest file that it may write \[MiB\]; 0 for no limit
+    /// Longest file that the program may write \[MiB\]; 0 for no limit
     #[arg(long, default_value_t = 0)]
     pub file: u64,
     /// The program and its arguments
@@ -22,7 +23,7 @@ pub struct Start {
     pub command: Vec<OsString>,
 }
 
-/// Becomes the program.
+/// Replaces this process by the program (exec).
 ///
 /// # Errors
 /// If a limit cannot be set or the program cannot be started.
@@ -36,12 +37,12 @@ pub fn start(start: &Start) -> io::Result<()> {
     };
     setrlimit(Resource::Core, none)?;
     let Some((program, arguments)) = start.command.split_first() else {
-        return Err(io::Error::other("no program was named"));
+        return Err(io::Error::other("no program to start was given"));
     };
     Err(Command::new(program).args(arguments).exec())
 }
 
-/// Both limits of a resource (MiB; 0 for none), as far as they may be raised.
+/// Sets the soft and hard limit of a resource (MiB; 0 for none), at most to the present hard limit.
 fn limit(resource: Resource, mib: u64) -> io::Result<()> {
     let most = getrlimit(resource).maximum;
     let wanted = mib.saturating_mul(1 << 20);

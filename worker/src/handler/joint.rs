@@ -1,12 +1,12 @@
-//! Scores of one individual under several conditions, joined into one.
+//! Joins the scores of one individual under several conditions.
 use protocol::{
     case::Objective,
     job::{Derivative, Evaluation, Failure, SimulateSpec, Verdict},
 };
 
-/// Scores an individual under every condition that is calibrated, in their order, and joins the scores: fitness is
-/// added up, residuals and their derivatives stand one after the other. What fails under one condition fails as a
-/// whole, is graded by that, and is not simulated under those behind it.
+/// Scores an individual under every calibrated condition in order, and joins the scores: fitness is summed,
+/// residuals and their derivatives are concatenated. A failure under one condition fails the whole
+/// individual, is graded by that failure, and skips the remaining conditions.
 ///
 /// # Errors
 /// The first failure to simulate at all.
@@ -27,7 +27,7 @@ pub(super) fn scored(
     Ok(whole)
 }
 
-/// A complete one, and the next.
+/// Joins a complete evaluation with that of the next condition.
 fn joined(mut sum: Evaluation, next: Evaluation) -> Evaluation {
     sum.counters.add(&next.counters);
     if next.verdict != Verdict::Complete {
@@ -43,8 +43,8 @@ fn joined(mut sum: Evaluation, next: Evaluation) -> Evaluation {
     sum
 }
 
-/// The derivative of a residual that stands behind another one; of a parameter that does nothing under one of the
-/// conditions that part is zero.
+/// Concatenates the derivatives of two residuals of the given lengths; where a parameter has no effect under
+/// one of the conditions, that part is zero.
 fn after((first, second): (usize, usize), a: Derivative, b: Derivative) -> Derivative {
     let nothing = |length: usize| vec![0.0_f32; length];
     let (per, ahead, behind) = match (a, b) {
@@ -66,7 +66,7 @@ fn after((first, second): (usize, usize), a: Derivative, b: Derivative) -> Deriv
     Derivative::Curves { per, curves }
 }
 
-/// The residual's is one curve.
+/// Flattens the curves of a residual's derivative into one.
 fn one(curves: Vec<Vec<f32>>) -> Vec<f32> {
     curves.into_iter().flatten().collect()
 }

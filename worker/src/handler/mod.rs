@@ -1,6 +1,6 @@
-//! From a job to its outcome, the same for every kind of model: replies and scores.
+//! Evaluates a job to its outcome, for every kind of model: replies and scores.
 //!
-//! A pure function of the case and the job, which knows nothing of slots or links.
+//! The outcome is a pure function of case and job; this module does not know slots or links.
 mod joint;
 mod nothing;
 mod score;
@@ -13,7 +13,7 @@ use protocol::{
     job::{Answer, Failure, Job, Outcome, Reply, SimulateSpec},
 };
 
-/// A case that jobs are done on.
+/// Case with its model built, ready to evaluate jobs.
 #[derive(Debug)]
 pub struct Prepared {
     case: Case,
@@ -25,7 +25,8 @@ impl Prepared {
     /// Builds the model of a case.
     ///
     /// # Errors
-    /// [`Failure::Misconfigured`] if the case cannot be built, or is of none of these kinds.
+    /// [`Failure::Misconfigured`] if the case cannot be built, or if its kind of model is not in
+    /// `simulators`.
     pub fn new(simulators: Simulators, case: &Case) -> Result<Self, Failure> {
         let simulator = simulator_of(simulators, case)?;
         Ok(Self {
@@ -35,7 +36,7 @@ impl Prepared {
         })
     }
 
-    /// Does one job.
+    /// Evaluates one job.
     pub fn evaluate(&self, job: &Job) -> Outcome {
         match job {
             Job::Simulate(spec) => self.simulate(spec).into(),

@@ -1,8 +1,8 @@
-//! The job that does nothing: it measures the bus, and needs no case.
+//! Job that does nothing: it measures the bus and needs no case.
 use protocol::job::{Answer, Failure, Job, Outcome};
 use std::{thread, time::Duration};
 
-/// Does a job that needs no case; `Refused` for any other.
+/// Evaluates a job that needs no case; returns `Refused` for any other job.
 pub fn nothing(job: &Job) -> Outcome {
     let Job::Nothing {
         reply_bytes,

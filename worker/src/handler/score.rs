@@ -1,23 +1,22 @@
-//! A simulation compared with what was measured under its condition.
+//! Compares a simulation with the recording of its condition.
 //!
-//! A run that fails is graded: every complete run beats a failure in motion (the later the
-//! better), which beats a failure under static load (the more load carried the better).
+//! A run that fails is graded: every complete run is better than a failure in motion (the later the better),
+//! which is better than a failure under static load (the more load carried the better).
 use protocol::case::{Case, Channel, ChannelRecord, Objective, Offset, Term};
 use protocol::job::{
     ChannelScore, Derivative, Evaluation, Failure, Observation, Reached, Verdict, single,
 };
 
-/// Fitness of a failure in motion just before the end, and under load just before full load; far
-/// above the error of any run that completes.
+/// Fitness of a failure in motion just before the end, far above the error of any complete run;
+/// `FAILED_UNDER_LOAD` is that of a failure just below full static load.
 const FAILED_IN_MOTION: f64 = 1e6;
 const FAILED_UNDER_LOAD: f64 = 1e7;
 
-/// Compares the curves of a run, one per channel of its condition, in the channel's unit; those of
-/// channels without a record are not looked at.
+/// Compares the curves of a run, one per channel of its condition in the channel's unit, with the recording;
+/// channels without a record are ignored.
 ///
 /// # Errors
-/// [`Failure::Misconfigured`] if nothing was measured under the condition, or nothing that the objective
-/// asks for.
+/// [`Failure::Misconfigured`] if the condition has no record, or none for the channels of the objective.
 pub(super) fn evaluation(
     (case, condition): (&Case, usize),
     seen: &Observation,
@@ -81,15 +80,16 @@ fn graded(reached: Reached) -> f64 {
     }
 }
 
-/// One channel compared with its record.
+/// Comparison of one channel with its record.
 struct Compared<'a> {
     name: &'a str,
     score: ChannelScore,
-    /// Measured minus simulated after offset removal, times the weights of the values.
+    /// Residual (measured minus simulated after offset removal), times the weights of the values.
     residual: Vec<f64>,
 }
 
-/// The score of a channel, and measured minus simulated after offset removal, times the weights.
+/// Returns the score of a channel and its residual (measured minus simulated after offset removal), times the
+/// weights.
 fn compared(
     at: usize,
     channel: &Channel,
@@ -134,7 +134,7 @@ fn compared(
     (score, residual)
 }
 
-/// Mean of differences, each as often as its weight's square says.
+/// Computes the mean of differences, weighted by the squares of the channel's weights.
 fn weighted_mean(channel: &Channel, differences: &[f64]) -> f64 {
     if channel.weights.is_empty() {
         return differences.iter().sum::<f64>() / differences.len() as f64;
@@ -166,8 +166,8 @@ fn weighted(objective: &Objective, compared: &[Compared<'_>]) -> Result<f64, Fai
     Ok(terms.iter().sum())
 }
 
-/// Residuals of the objective's channels, one after the other, scaled such that the squared length of
-/// the whole is the objective.
+/// Concatenates the residuals of the objective's channels, scaled such that the squared norm of the whole is
+/// the objective.
 fn residual(objective: &Objective, compared: &[Compared<'_>]) -> Vec<f64> {
     let scaled = |term: &Term| {
         let found = compared.iter().find(|c| c.name == term.channel)?;
@@ -178,7 +178,8 @@ fn residual(objective: &Objective, compared: &[Compared<'_>]) -> Vec<f64> {
     terms.filter_map(scaled).flatten().collect()
 }
 
-/// The derivative of that residual; `channels` are those that the derivative's curves belong to.
+/// Computes the derivative of the residual of the objective; `channels` are the channels of the derivative's
+/// curves.
 fn residual_by(objective: &Objective, channels: &[&Channel], by: &Derivative) -> Derivative {
     let Derivative::Curves { per, curves } = by else {
         return by.clone();
@@ -194,7 +195,10 @@ fn residual_by(objective: &Objective, channels: &[&Channel], by: &Derivative) ->
         };
         if curve.is_empty() {
             return Derivative::Missing {
-                reason: format!("`{}` is not differentiated", term.channel),
+                reason: format!(
+                    "the model computes no derivative of channel `{}`",
+                    term.channel
+                ),
             };
         }
         let n = curve.len() as f64;
@@ -272,7 +276,8 @@ mod tests {
         assert!((fixed.mse - 2.5).abs() < 1e-15);
     }
 
-    /// The derivative of a residual is what a change of the curves changes, whichever offset is removed.
+    /// Checks that derivatives of a residual equal the change of the residual when the curves change, with
+    /// and without offset removal.
     #[test]
     fn derivatives_are_those_of_the_residual() {
         let record = |mean: [f64; 4]| ChannelRecord {

@@ -1,4 +1,4 @@
-//! The process of one slot, seen from its worker.
+//! Process of one slot, as controlled by its worker.
 use super::task::{CaseBytes, SlotOptions};
 use crate::{external, process_tree, slot, stream};
 use protocol::{
@@ -18,36 +18,36 @@ use std::{
     time::Duration,
 };
 
-/// Environment variable that names the slot process to everything it starts.
+/// Environment variable that identifies the slot process to every process it starts.
 const MARK: &str = "HORSEHEAD_SLOT_PROCESS";
 
-/// Numbers the slot processes of this worker.
+/// Counter of the slot processes started by this worker.
 static NUMBER: AtomicU64 = AtomicU64::new(0);
 
-/// Processor time of a process since it was started; all zero where the system does not say.
+/// Processor time of a slot process since its start; all zero where the system does not report it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Look {
-    /// How long it had a processor.
+    /// Time for which the process had a processor.
     pub(super) computed: Duration,
-    /// How long it was ready and had none, but for a wait that goes on now.
+    /// Time for which the process was ready without a processor, excluding a wait that is still going on.
     pub(super) waited: Duration,
-    /// Whether it computes or waits for a processor now.
+    /// Whether the process is computing or waiting for a processor now.
     pub(super) is_ready: bool,
 }
 
-/// A running slot process; ended with everything it started when dropped.
+/// Running slot process; on drop it is ended with all processes it started.
 #[derive(Debug)]
 pub(super) struct Child {
     process: process::Child,
     input: ChildStdin,
     case: Option<ContentHash>,
-    /// What everything it starts has in its environment.
+    /// Value of the environment variable that marks all processes started by this slot.
     mark: String,
     memory_mib: u64,
 }
 
 impl Child {
-    /// Starts a process; `said` is called from a thread for each message and with `None` when its
+    /// Starts a process; `said` is called from a thread for each message, and with `None` when the process's
     /// output ends.
     pub(super) fn start(
         options: &SlotOptions,
@@ -86,7 +86,7 @@ impl Child {
         Ok(child)
     }
 
-    /// Hands over a job, and the case before it if it is another one.
+    /// Sends a job to the process, preceded by the case if that is not the one sent last.
     pub(super) fn run(&mut self, job: Box<Job>, case: Option<&CaseBytes>) -> io::Result<()> {
         if let Some(case) = case.filter(|case| self.case != Some(case.hash)) {
             let message = ToSlot::Case(case.bytes.to_vec());
@@ -96,9 +96,9 @@ impl Child {
         stream::write(&mut self.input, Kind::ToSlot, &ToSlot::Run(job))
     }
 
-    /// What the system says of the processor time of its two threads that take turns: the one that
-    /// takes jobs in and the one that computes them. Others, which a job might start, do not count:
-    /// many that wait at once would make time stand still.
+    /// Reads the processor time of the process's two threads that take turns: the one that reads jobs and the
+    /// one that computes them. Other threads, which a job might start, do not count: many of them waiting at
+    /// once would stop the deadline's clock.
     pub(super) fn look(&self) -> Look {
         let process = self.process.id().to_string();
         let threads = fs::read_dir(format!("/proc/{process}/task"));
@@ -124,18 +124,18 @@ impl Child {
         look
     }
 
-    /// Ends it and says how it ended.
+    /// Ends the process and describes its end.
     pub(super) fn end(mut self) -> String {
         self.kill();
         let ended = self.process.wait();
         external::tidy();
         match ended {
             Ok(status) => words(status, self.memory_mib),
-            Err(error) => format!("its end is unknown: {error}"),
+            Err(error) => format!("its exit status cannot be determined: {error}"),
         }
     }
 
-    /// Waits a moment for an end that is under way, then says how it was.
+    /// Waits up to a second for a process that is already ending, and describes its end.
     pub(super) fn ended(mut self) -> String {
         for _ in 0..100 {
             match self.process.try_wait() {
@@ -168,7 +168,7 @@ impl Drop for Child {
     }
 }
 
-/// How a process ended, with what is likely behind it.
+/// Describes how a process ended, with the likely cause.
 fn words(status: ExitStatus, memory_mib: u64) -> String {
     match (status.signal(), status.code()) {
         (Some(6), _) if memory_mib > 0 => format!(
@@ -181,7 +181,7 @@ fn words(status: ExitStatus, memory_mib: u64) -> String {
     }
 }
 
-/// Ends whatever left the process group of a slot, or outlived the process that started it.
+/// Ends every marked process that left the slot's process group or outlived the process that started it.
 fn end_marked(mark: &str) {
     let entry = format!("{MARK}={mark}");
     let processes = fs::read_dir("/proc").into_iter().flatten().flatten();

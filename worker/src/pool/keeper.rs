@@ -1,8 +1,8 @@
-//! The thread that keeps one slot busy and within its deadlines.
+//! Thread that supplies one slot with jobs and enforces their deadlines.
 //!
-//! Time for which the slot's process was ready to run and got no processor does not count: a job
-//! that is overdue on a busy machine would be given up, and the result of a run would depend on what
-//! else the machine does.
+//! Time for which the slot's process was ready but got no processor does not count towards the deadline:
+//! otherwise jobs would be given up on a busy machine, and the result of a run would depend on the load of
+//! the machine.
 use super::child::Child;
 use super::task::{Freed, SlotOptions, Task};
 use protocol::{
@@ -15,16 +15,16 @@ use std::{
 };
 use tokio::sync::mpsc::UnboundedSender;
 
-/// How often a keeper shows that it lives.
+/// Interval of a keeper's pulse, which shows that the thread is responsive.
 const PULSE: Duration = Duration::from_millis(500);
-/// Shortest pause before a job that got no processor is looked at again.
+/// Shortest pause before an overdue job that got no processor is checked again.
 const LOOK: Duration = Duration::from_millis(20);
 
 #[derive(Debug)]
 pub(super) enum ToKeeper {
     Run(Task),
     Cancel(Attempt),
-    /// From the process of this number.
+    /// Message of the slot process with this number, or `None` when its output ended.
     Said(u64, Option<FromSlot>),
     End,
 }
@@ -36,7 +36,8 @@ pub(super) struct Keeper {
     to_self: Sender<ToKeeper>,
     freed: UnboundedSender<Freed>,
     child: Option<Child>,
-    /// Counts the processes, so that the last words of an ended one are not taken for another's.
+    /// Number of the current process, so that a late message of an ended process is not attributed to its
+    /// successor.
     number: u64,
     current: Option<Current>,
 }
@@ -46,9 +47,9 @@ struct Current {
     attempt: Attempt,
     begun: Instant,
     deadline: Duration,
-    /// How long the slot's process had waited for a processor before.
+    /// Time for which the slot's process had waited for a processor before this job.
     waited: Duration,
-    /// Its processor time when it was last looked at, which begins at the deadline.
+    /// Processor time at the last check; checks begin at the deadline.
     seen: Option<Duration>,
 }
 
@@ -94,8 +95,8 @@ impl Keeper {
         })
     }
 
-    /// Whether the current job has had its time. A wait that goes on is not counted by the system
-    /// yet, so whoever is ready and got nothing since the last look is left alone.
+    /// Returns whether the current job has used up its time. The system does not count a wait that is still
+    /// going on, so a process that is ready and got no processor time since the last check is not overdue.
     fn is_overdue(&mut self) -> bool {
         let Some(current) = &mut self.current else {
             return false;
@@ -135,7 +136,7 @@ impl Keeper {
         });
         if let Err(error) = given {
             let end = self.child.take().map_or_else(String::new, Child::ended);
-            let how = format!("the slot's process takes no job: {error} {end}");
+            let how = format!("the slot's process does not accept the job: {error} {end}");
             self.finish(Some(Outcome::Failed(Failure::crashed(how))), 0);
         }
     }

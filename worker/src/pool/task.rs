@@ -1,4 +1,4 @@
-//! What a pool is given, and what it gives back.
+//! Tasks that a pool receives, and results that it returns.
 use protocol::{
     id::ContentHash,
     job::{Job, Outcome},
@@ -6,46 +6,46 @@ use protocol::{
 };
 use std::{path::PathBuf, sync::Arc, time::Duration};
 
-/// The encoded case, as slots are given it.
+/// Encoded case, in the form in which it is sent to slots.
 #[derive(Clone, Debug)]
 pub struct CaseBytes {
-    /// Its name.
+    /// Content hash of the case.
     pub hash: ContentHash,
-    /// Its content.
+    /// Encoded case.
     pub bytes: Arc<[u8]>,
 }
 
-/// How the processes of slots are started.
+/// Options for starting the slot processes.
 #[derive(Clone, Debug)]
 pub struct SlotOptions {
-    /// Program whose `slot` subcommand computes.
+    /// Program whose `slot` subcommand runs as the slot process.
     pub program: PathBuf,
-    /// Address space that a process may have (MiB); 0 for as much as there is.
+    /// Address space of a slot process (MiB); 0 for no limit.
     pub memory_mib: u64,
 }
 
-/// A job for a slot.
+/// Job to be run in a slot.
 #[derive(Clone, Debug)]
 pub struct Task {
-    /// Which try at which job.
+    /// Attempt to which the job belongs.
     pub attempt: Attempt,
-    /// From start to forced end.
+    /// Time limit of the job, after which its process is ended.
     pub deadline: Duration,
-    /// What to do.
+    /// Job to be evaluated.
     pub job: Box<Job>,
-    /// On what.
+    /// Case of the job; `None` for a job without a case.
     pub case: Option<CaseBytes>,
 }
 
-/// A slot is free again.
+/// Notification that a slot is free again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Freed {
-    /// Which slot.
+    /// Index of the slot.
     pub slot: usize,
-    /// What it did.
+    /// Attempt that the slot worked on.
     pub attempt: Attempt,
-    /// What that took.
+    /// Cost of the attempt.
     pub cost: Cost,
-    /// What came out; none if it was cancelled.
+    /// Outcome of the job; `None` if it was cancelled.
     pub outcome: Option<Outcome>,
 }

@@ -1,4 +1,4 @@
-//! Derivatives of the channels by what a job names.
+//! Derivatives of the channels by the columns that a job requests.
 use super::{
     effect,
     machine::{description, no_condition},
@@ -15,8 +15,8 @@ use simulation::{
     sensitivity::{self, Coefficient, Column, Origin, Plan, Refused},
 };
 
-/// One column of each kind for the reference individual of a case: a coefficient, a size and a shape of an effect, and
-/// a generic force. An effect that the case has stays at its values there.
+/// Returns one column of each kind for the reference individual of a case: a coefficient, a size and a shape
+/// parameter of an effect, and a generic force. Effects of the case keep their values.
 pub(super) fn reference(case: &Case) -> Vec<job::Column> {
     let present = |effect: &str| case.effects.iter().any(|own| own.id == effect);
     let mut shape = job::Column::of("pivot_friction.creep");
@@ -44,18 +44,18 @@ pub(super) fn reference(case: &Case) -> Vec<job::Column> {
     .collect()
 }
 
-/// The columns of a job, planned on the machine that it simulates.
+/// Columns (derivatives) of a job, planned on the machine that it simulates.
 pub(super) struct Columns {
-    /// As the dynamics take them.
+    /// Plan of the columns for the simulation.
     pub(super) plan: Plan,
     per: Vec<Per>,
 }
 
 impl Columns {
-    /// Nothing where the job has no columns.
+    /// Plans the columns of a job; `None` for a job without columns.
     ///
     /// # Errors
-    /// [`Failure::Misconfigured`] naming the first column that cannot be asked for.
+    /// [`Failure::Misconfigured`] naming the first column that cannot be requested.
     pub(super) fn new(
         unit: &PumpingUnit,
         machine: &Machine,
@@ -66,7 +66,9 @@ impl Columns {
             return Ok(None);
         }
         if count > MOST_COLUMNS {
-            let problem = format!("are {count}; one answer holds {MOST_COLUMNS}");
+            let problem = format!(
+                "{count} columns were requested; at most {MOST_COLUMNS} are allowed per job"
+            );
             return Err(Failure::misconfigured("columns", problem));
         }
         let individual = &spec.individual;
@@ -88,7 +90,7 @@ impl Columns {
         Ok(Some(Self { plan, per }))
     }
 
-    /// What came of them, as it travels: a curve for each channel of a condition.
+    /// Converts the computed columns to protocol derivatives, with a curve for each channel of a condition.
     pub(super) fn said(
         self,
         case: &Case,
@@ -103,7 +105,7 @@ impl Columns {
     }
 }
 
-/// A column in the words of the dynamics, with what its derivative is taken per.
+/// Converts a protocol column to that of the simulation, with the unit that its derivative is taken per.
 fn named((at, column): (usize, &job::Column)) -> Result<(Column, Per), Failure> {
     let job::Column { name, values } = column;
     if let Some(own) = pumping_unit::Coefficient::named(name) {
@@ -143,7 +145,7 @@ fn named((at, column): (usize, &job::Column)) -> Result<(Column, Per), Failure> 
     Ok((column, Per::Unit(parameter.unit.symbol().to_owned())))
 }
 
-/// The coefficient of the dynamics that a case names.
+/// Converts a coefficient of the protocol to that of the simulation.
 const fn coefficient(named: pumping_unit::Coefficient) -> Coefficient {
     use pumping_unit::Coefficient as Named;
     match named {
@@ -169,7 +171,7 @@ fn refused(refused: &Refused) -> Failure {
     Failure::misconfigured(field, refused.to_string())
 }
 
-/// As it travels: a curve for each channel.
+/// Converts a computed derivative to that of the protocol, with a curve for each channel.
 fn derivative(channels: &[&Channel], column: sensitivity::Derivative, per: Per) -> Derivative {
     match column {
         sensitivity::Derivative::Curves(changes) => {

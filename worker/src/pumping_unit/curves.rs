@@ -1,4 +1,4 @@
-//! Every curve of a simulation that can be drawn.
+//! All curves of a simulation that can be plotted.
 use super::machines::Machines;
 use super::ran::Ran;
 use protocol::{
@@ -8,7 +8,7 @@ use protocol::{
 use simulation::observe::{Recorder, Shape};
 use simulation::run::RunResult;
 
-/// Simulates.
+/// Simulates an individual and returns all curves.
 ///
 /// # Errors
 /// As [`Ran::new`].
@@ -63,7 +63,7 @@ pub(super) fn run(
     })
 }
 
-/// How many samples lie between two shapes; 0 where none are wanted.
+/// Returns the number of samples between two recorded shapes; 0 where no pictures are wanted.
 fn samples_apart(pictures: u32, step_deg: f64) -> usize {
     if pictures > 0 {
         #[expect(

@@ -1,11 +1,11 @@
-//! The name of this build's numerics.
+//! Digest of this build's numerics.
 use super::effect;
 use protocol::id::ContentHash;
 use std::sync::OnceLock;
 
-/// Names the numerics of this build by the bits of short reference runs, as the machine is, with twin
-/// ropes and with all effects, by those of derivatives of every kind, and by the catalogue's units and bounds:
-/// equal digests promise equal results. Takes as long as those runs the first time in a process.
+/// Returns the digest of this build's numerics: from the bits of short reference runs (plain, with twin
+/// ropes, and with all effects), of derivatives of every kind, and from the catalogue's units and bounds.
+/// Equal digests promise equal results. The first call in a process takes as long as those runs.
 pub(super) fn of_numerics() -> &'static str {
     static DIGEST: OnceLock<String> = OnceLock::new();
     DIGEST.get_or_init(computed)

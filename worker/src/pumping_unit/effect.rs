@@ -1,11 +1,11 @@
-//! Effects: their descriptions as they travel, and settings as the dynamics take them.
+//! Effects: conversion of descriptions to the protocol, and of settings to the simulation.
 use super::genes::individual;
 use protocol::announce::{self, EffectDescriptor, ParameterDescriptor};
 use protocol::case::{Case, EffectSetting};
 use protocol::job::Failure;
 use simulation::effect::{self, Asked, Refused, Selection, catalogue};
 
-/// Every effect of the catalogue, as a worker announces it.
+/// Returns descriptions of all effects of the catalogue, as announced by a worker.
 pub(super) fn descriptors() -> Vec<EffectDescriptor> {
     let described = catalogue().iter().map(|d| EffectDescriptor {
         id: d.id.to_string(),
@@ -44,7 +44,7 @@ fn parameter(p: &effect::Parameter) -> ParameterDescriptor {
     }
 }
 
-/// A setting in the words of the dynamics.
+/// Converts an effect setting of the protocol to that of the simulation.
 pub(super) fn asked(setting: &EffectSetting) -> Asked<'_> {
     let parameters = setting.parameters.iter();
     Asked {
@@ -53,11 +53,11 @@ pub(super) fn asked(setting: &EffectSetting) -> Asked<'_> {
     }
 }
 
-/// Settings checked against the catalogue.
+/// Checks settings against the catalogue and returns them as a selection.
 ///
 /// # Errors
-/// [`Failure::Misconfigured`] naming the effect or its parameter by its place in the list, and the
-/// nearest known name.
+/// [`Failure::Misconfigured`] naming the effect or its parameter by its place in the list, and the nearest
+/// known name.
 pub(super) fn selection(settings: &[EffectSetting]) -> Result<Selection, Failure> {
     let asked: Vec<Asked<'_>> = settings.iter().map(asked).collect();
     Selection::new(&asked).map_err(|refused| {
@@ -70,11 +70,11 @@ pub(super) fn selection(settings: &[EffectSetting]) -> Result<Selection, Failure
     })
 }
 
-/// The units that a case states are those of the catalogue. What the catalogue does not have is left
-/// to [`selection`].
+/// Checks that the units stated by a case are those of the catalogue. Effects and parameters unknown to the
+/// catalogue are left to [`selection`].
 ///
 /// # Errors
-/// [`Failure::Misconfigured`] naming the first that differs.
+/// [`Failure::Misconfigured`] naming the first unit that differs.
 pub(super) fn check_units(
     settings: &[EffectSetting],
     units: &[Vec<String>],
@@ -96,11 +96,11 @@ pub(super) fn check_units(
     Ok(())
 }
 
-/// The case's effects with the values that an individual's genes give their parameters.
+/// Returns the case's effects with the parameter values given by an individual's genes.
 ///
 /// # Errors
-/// [`Failure::Misconfigured`] when the values do not fit the genes, or a gene is a parameter of an
-/// effect that the case does not have.
+/// [`Failure::Misconfigured`] when the number of values differs from the number of genes, or a gene is a
+/// parameter of an effect that the case does not have.
 pub(super) fn of_individual(case: &Case, genes: &[f64]) -> Result<Vec<EffectSetting>, Failure> {
     let mut effects = case.effects.clone();
     for (unknown, value) in individual(case, genes)? {
@@ -125,11 +125,11 @@ pub(super) fn of_individual(case: &Case, genes: &[f64]) -> Result<Vec<EffectSett
     Ok(effects)
 }
 
-/// The genes that are parameters of effects: the model has them, in that unit, and takes every value
-/// that a search may give them.
+/// Checks the genes that are parameters of effects: the model must have the parameter, in the stated unit,
+/// and accept every value of the search interval.
 ///
 /// # Errors
-/// [`Failure::Misconfigured`] naming the first that does not fit.
+/// [`Failure::Misconfigured`] naming the first gene that does not fit.
 pub(super) fn check_genes(case: &Case) -> Result<(), Failure> {
     for (at, unknown) in case.unknowns.iter().enumerate() {
         let Some((id, parameter)) = unknown.of_effect() else {
@@ -155,7 +155,7 @@ pub(super) fn check_genes(case: &Case) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The same failure, said of the interval that a search may use.
+/// Rewords a failure so that it refers to the search interval of a gene.
 fn of_search(failure: Failure, label: &str) -> Failure {
     if let Failure::Misconfigured { field, problem } = failure {
         return Failure::misconfigured(
@@ -166,7 +166,7 @@ fn of_search(failure: Failure, label: &str) -> Failure {
     failure
 }
 
-/// What is wrong, with what was probably meant.
+/// Describes why a setting was refused, with the name that was probably meant.
 fn problem(refused: &Refused) -> String {
     match refused {
         Refused::UnknownEffect { id, .. } => {
@@ -182,7 +182,8 @@ fn problem(refused: &Refused) -> String {
     }
 }
 
-/// The nearest known name if one is near, otherwise all of them that have no `.` in them.
+/// Suggests the most similar known name if one is similar enough; otherwise lists all known names without a
+/// `.`.
 pub(super) fn meant<'a, I: Iterator<Item = &'a str> + Clone>(name: &str, known: I) -> String {
     let alike = known
         .clone()

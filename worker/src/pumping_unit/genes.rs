@@ -1,4 +1,4 @@
-//! What the values of an individual are values of.
+//! Assignment of an individual's values to the unknowns of the case.
 use protocol::{
     case::{Case, Unknown},
     job::Failure,
@@ -8,7 +8,7 @@ use protocol::{
 use simulation::element::{bushing::Bushing, impact::Impact};
 use simulation::model::description::RopeLaw;
 
-/// The unknowns of a case with the values of an individual.
+/// Pairs the unknowns of a case with the values of an individual.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] when there are fewer or more values than unknowns.
@@ -26,11 +26,11 @@ pub(super) fn individual<'a>(
     Ok(case.unknowns.iter().zip(genes.iter().copied()))
 }
 
-/// The rope law of an individual's values in declared units.
+/// Builds the rope law from an individual's values in their declared units.
 ///
 /// # Errors
-/// [`Failure::Misconfigured`] when a coefficient is missing, surplus, not a positive number, or not in one
-/// of its units.
+/// [`Failure::Misconfigured`] when a coefficient is missing, surplus, not a positive number, or not in one of
+/// its units.
 pub fn rope_law(unit: &PumpingUnit, genes: &[f64]) -> Result<RopeLaw, Failure> {
     let genes = individual(&unit.case, genes)?;
     let value = |name: Coefficient| -> Result<f64, Failure> {

@@ -1,4 +1,5 @@
-//! The back head's tables as the dynamics take them: equally spaced stations in radians, stress in pascals.
+//! Conversion of the back head's tables for the simulation: equally spaced stations in radians, stress in
+//! pascals.
 use protocol::{
     job::Failure,
     pumping_unit::{Machine, StressRecovery},
@@ -7,7 +8,7 @@ use simulation::model::description::{self, Head};
 
 pub(super) const PASCAL_PER_MEGAPASCAL: f64 = 1e6;
 
-/// The reduced head of a case.
+/// Converts the reduced head of a case for the simulation.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] naming the table whose stations are not equally spaced.
@@ -48,7 +49,7 @@ pub(super) fn head(machine: &Machine) -> Result<Head, Failure> {
     })
 }
 
-/// Influence lines gauge by gauge [Pa/N].
+/// Converts influence lines to one curve per gauge \[Pa/N\].
 pub(super) fn curves(rows: &[[f64; 4]]) -> Vec<Vec<f64>> {
     let line = |gauge: usize| {
         rows.iter()
@@ -57,7 +58,7 @@ pub(super) fn curves(rows: &[[f64; 4]]) -> Vec<Vec<f64>> {
     (0..4).map(|gauge| line(gauge).collect()).collect()
 }
 
-/// Start and spacing \[rad\] of a table that must be equally spaced.
+/// Returns start and spacing \[rad\] of a table, which must be equally spaced.
 fn grid(field: &str, degrees: &[f64]) -> Result<(f64, f64), Failure> {
     let [first, second, ..] = degrees else {
         return Err(Failure::misconfigured(field, "needs at least two stations"));

@@ -1,4 +1,4 @@
-//! The machine of a case under one of its conditions.
+//! Construction of the simulated machine of a case under one of its conditions.
 use super::{effect, head::head, twins};
 use protocol::{
     case::{EffectSetting, merged},
@@ -8,7 +8,7 @@ use protocol::{
 use simulation::model::Machine;
 use simulation::model::description::{Arc, Crank, Description, Rod, Rope};
 
-/// The machine of a case under one of its conditions, with the case's effects as they are stated.
+/// Builds the machine of a case under one of its conditions, with the case's effects at their stated values.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] naming the field that cannot be built.
@@ -16,8 +16,8 @@ pub fn machine(unit: &PumpingUnit, condition: usize) -> Result<Machine, Failure>
     build(unit, condition, &unit.case.effects)
 }
 
-/// The machine of an individual: the case's effects have the values that its genes give them, and a
-/// job's own replace those of the case that have their names.
+/// Builds the machine of an individual: the case's effects take the values of the genes, and effects of the
+/// job replace effects of the case with the same id.
 ///
 /// # Errors
 /// As [`machine`]; an effect that is refused is named by its place in the merged list.
@@ -51,7 +51,7 @@ fn build(
     .map_err(|error| Failure::misconfigured("machine", error.to_string()))
 }
 
-/// A condition that the case does not have.
+/// Returns the failure for a condition that the case does not have.
 pub(crate) fn no_condition(condition: usize) -> Failure {
     Failure::misconfigured("conditions", format!("has no entry {condition}"))
 }
@@ -114,7 +114,7 @@ pub(super) fn description(
     })
 }
 
-/// The load card after smoothing \[N\].
+/// Returns the load card after smoothing \[N\].
 fn card(condition: &WorkingCondition) -> Vec<f64> {
     let load = &condition.card.load_n;
     let n = load.len();

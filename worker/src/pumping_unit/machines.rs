@@ -1,4 +1,4 @@
-//! The machines of a case, built once for all jobs on it.
+//! Machines of a case, built once for all its jobs.
 use super::{
     effect,
     machine::{machine, machine_with, no_condition},
@@ -12,16 +12,17 @@ use protocol::{
 use simulation::model::Machine;
 use std::borrow::Cow;
 
-/// A case with one machine per condition.
+/// Case with one prebuilt machine per condition.
 #[derive(Debug)]
 pub(super) struct Machines {
     pub(super) unit: PumpingUnit,
-    /// With the case's effects as they are stated, discretised as the case says.
+    /// Machines with the case's effects at their stated values and the case's discretisation, one per
+    /// condition.
     plain: Vec<Machine>,
 }
 
 impl Machines {
-    /// Builds them.
+    /// Builds the machines of all conditions.
     ///
     /// # Errors
     /// [`Failure::Misconfigured`] if the case cannot be built.
@@ -35,10 +36,10 @@ impl Machines {
         Ok(Self { unit, plain })
     }
 
-    /// The case, discretised as a job says.
+    /// Returns the case with the discretisation of a job.
     ///
     /// # Errors
-    /// [`Failure::Misconfigured`] if it cannot be divided so.
+    /// [`Failure::Misconfigured`] if the ropes cannot be divided that way.
     pub(super) fn discretised(
         &self,
         discretisation: &Discretisation,
@@ -54,12 +55,12 @@ impl Machines {
         })
     }
 
-    /// The machine of an individual. Where genes are parameters of effects, every individual is a
-    /// machine of its own; so is one that a job's own effects ask for, and any of another case than
-    /// this one, as another discretisation makes it.
+    /// Returns the machine of an individual. It is built anew if genes are parameters of effects, if the job
+    /// has effects of its own, or if `unit` is not the stored case (for example with another discretisation);
+    /// otherwise the prebuilt machine is borrowed.
     ///
     /// # Errors
-    /// [`Failure::Misconfigured`] if it cannot be built.
+    /// [`Failure::Misconfigured`] if the machine cannot be built.
     pub(super) fn machine(
         &self,
         unit: &PumpingUnit,

@@ -1,6 +1,6 @@
-//! The pumping unit with double horse heads: from what travels to what the dynamics take, and back.
+//! Pumping unit with double horse heads: conversion between the types of the protocol and of the simulation.
 //!
-//! The only folder that names both vocabularies: degrees become radians and megapascals pascals here.
+//! This is the only folder that uses both sets of types; degrees become radians and megapascals pascals here.
 mod columns;
 mod curves;
 mod digest;

@@ -1,4 +1,4 @@
-//! A simulation that was run, before anything is said of it.
+//! Completed simulation, before it is turned into a reply.
 use super::{columns::Columns, machines::Machines};
 use super::{
     genes::rope_law,
@@ -15,7 +15,7 @@ use simulation::{
 };
 use std::time::Instant;
 
-/// What a run left behind.
+/// Results of a completed simulation.
 pub(super) struct Ran {
     pub(super) verdict: Verdict,
     pub(super) counters: Counters,
@@ -24,16 +24,15 @@ pub(super) struct Ran {
     /// Lowest design position of the suspension \[m\].
     pub(super) lowest_suspension_m: f64,
     pub(super) wall_s: f64,
-    /// Derivatives by the columns of the job; none of a run that failed.
+    /// Derivatives by the columns of the job; empty if the run failed.
     pub(super) columns: Vec<Derivative>,
 }
 
 impl Ran {
-    /// Simulates, with the columns of the job behind the run, and records what the recorder takes.
+    /// Simulates an individual with the columns of the job, recording the curves that `recorder` selects.
     ///
     /// # Errors
-    /// [`Failure::Misconfigured`] when condition, genes, effects or discretisation do not fit the
-    /// case.
+    /// [`Failure::Misconfigured`] when condition, genes, effects or discretisation do not fit the case.
     pub(super) fn new(
         machines: &Machines,
         spec: &SimulateSpec,
@@ -70,14 +69,14 @@ impl Ran {
         })
     }
 
-    /// The curves of a condition's channels, each in its channel's unit, in the case's order.
+    /// Returns the curves of a condition's channels, each in its channel's unit, in the case's order.
     ///
     /// # Errors
-    /// [`Failure::Misconfigured`] for a channel that a pumping unit has not.
+    /// [`Failure::Misconfigured`] for a channel that a pumping unit does not have.
     pub(super) fn channels(&self, case: &Case, condition: usize) -> Result<Vec<Vec<f64>>, Failure> {
         let curve = |(_, channel): (usize, &Channel)| {
             let sensor = Sensor::named(&channel.name).ok_or_else(|| {
-                let problem = format!("a pumping unit has no channel `{}`", channel.name);
+                let problem = format!("the pumping unit model has no channel `{}`", channel.name);
                 Failure::misconfigured("channels", problem)
             })?;
             Ok(match sensor {
@@ -89,12 +88,12 @@ impl Ran {
         case.channels_of(condition).map(curve).collect()
     }
 
-    /// Stress at gauges 1 to 4 \[MPa\].
+    /// Returns the stress at gauges 1 to 4 \[MPa\].
     pub(super) fn gauges_mpa(&self) -> [Vec<f64>; 4] {
         self.curves.gauge.each_ref().map(|gauge| megapascals(gauge))
     }
 
-    /// Suspension height above its lowest design position \[m\].
+    /// Returns the height of the suspension above its lowest design position \[m\].
     pub(super) fn suspension_m(&self) -> Vec<f64> {
         let [position, ..] = &self.curves.suspension;
         let above = |y: &f64| y - self.lowest_suspension_m;
@@ -102,10 +101,10 @@ impl Ran {
     }
 }
 
-/// How finely a job wants it.
+/// Decodes the discretisation that a job requests.
 ///
 /// # Errors
-/// [`Failure::Misconfigured`] for bytes that say nothing of a pumping unit.
+/// [`Failure::Misconfigured`] for bytes that do not encode a discretisation of a pumping unit.
 pub(super) fn numerics(spec: &SimulateSpec) -> Result<Discretisation, Failure> {
     Discretisation::of(&spec.numerics)
         .map_err(|error| Failure::misconfigured("numerics", error.to_string()))

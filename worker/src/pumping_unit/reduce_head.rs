@@ -1,4 +1,4 @@
-//! Reduces the back head of a job: plain data in, plain data out; the case plays no part.
+//! Modal reduction of the back head, requested by a job: plain data in, plain data out, without a case.
 use protocol::pumping_unit::{Influence, TwinHead};
 use protocol::{
     job::Failure,
@@ -14,7 +14,7 @@ use std::time::Instant;
 
 const MEGAPASCAL_PER_PASCAL: f64 = 1e-6;
 
-/// Runs a reduction.
+/// Runs a modal reduction.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] saying why the mesh cannot be reduced.
@@ -59,7 +59,7 @@ pub(super) fn run(spec: &ReduceHeadSpec) -> Result<ReducedHead, Failure> {
     Ok(assemble(spec, &reduction, wall_s))
 }
 
-/// Numbers that no reduction can be made with.
+/// Checks the numbers of a request and refuses those with which no reduction is possible.
 fn check(spec: &ReduceHeadSpec) -> Result<(), Failure> {
     let positive = [
         ("young_pa", spec.young_pa),
@@ -132,7 +132,7 @@ fn mesh(spec: &ReduceHeadSpec) -> Mesh {
     }
 }
 
-/// The readings of four gauges \[MPa\].
+/// Converts the readings of four gauges from pascals to megapascals.
 fn four(pascal: &[f64]) -> [f64; 4] {
     let mut four = [0.0; 4];
     for (to, from) in four.iter_mut().zip(pascal) {
@@ -141,7 +141,7 @@ fn four(pascal: &[f64]) -> [f64; 4] {
     four
 }
 
-/// Readings of four gauges, row by row \[MPa\].
+/// Converts a table of readings of four gauges, row by row, from pascals to megapascals.
 fn table(rows: &[Vec<f64>]) -> Vec<[f64; 4]> {
     rows.iter().map(|row| four(row)).collect()
 }

@@ -1,13 +1,13 @@
-//! The same machine, discretised otherwise.
+//! Case with another discretisation of the same machine.
 use protocol::{
     job::Failure,
     pumping_unit::{Discretisation, PumpingUnit},
 };
 
-/// A case with another discretisation.
+/// Returns a case with another discretisation.
 ///
 /// # Errors
-/// [`Failure::Misconfigured`] when cylinders do not fill the ropes.
+/// [`Failure::Misconfigured`] when cylinders of that length do not fill the ropes exactly.
 pub fn refined(
     unit: &PumpingUnit,
     discretisation: &Discretisation,
@@ -81,5 +81,5 @@ pub fn refined(
     Ok(unit)
 }
 
-/// Most cylinders that a rope may have.
+/// Largest number of cylinders that a rope may have.
 const MOST_CYLINDERS: f64 = 5000.0;

@@ -1,10 +1,10 @@
-//! How a run ended and what it cost, as it travels.
+//! Conversion of verdict, counters and stress to the types and units of the protocol.
 use protocol::job::{self, Counters};
 use protocol::pumping_unit::failure;
 use simulation::statistics::Statistics;
 use simulation::verdict;
 
-/// A verdict as it travels.
+/// Converts a verdict to that of the protocol.
 pub(super) const fn verdict(verdict: &verdict::Verdict) -> job::Verdict {
     match verdict {
         verdict::Verdict::Complete => job::Verdict::Complete,
@@ -26,7 +26,7 @@ pub(super) const fn verdict(verdict: &verdict::Verdict) -> job::Verdict {
     }
 }
 
-/// Counters as they travel.
+/// Converts work counters to those of the protocol.
 pub(super) const fn counters(statistics: &Statistics) -> Counters {
     Counters {
         steps: statistics.steps,
@@ -37,7 +37,7 @@ pub(super) const fn counters(statistics: &Statistics) -> Counters {
     }
 }
 
-/// Stress in the unit in which it travels.
+/// Converts stress from pascals to megapascals.
 pub(super) fn megapascals(stress_pa: &[f64]) -> Vec<f64> {
     stress_pa.iter().map(|s| s * 1e-6).collect()
 }

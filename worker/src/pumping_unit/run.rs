@@ -1,10 +1,10 @@
-//! How a run is started, sampled and integrated.
+//! Settings of a run: start, sampling and integration.
 use protocol::pumping_unit::{Discretisation, Integrator, Machine};
 use simulation::integrator::method::Method;
 use simulation::integrator::tableau::{ESDIRK4, TR_BDF2};
 use simulation::run::RunSettings;
 
-/// How a case wants its runs.
+/// Returns the run settings of a case.
 pub fn run_settings(machine: &Machine) -> RunSettings {
     #[expect(
         clippy::cast_possible_truncation,
@@ -24,7 +24,8 @@ pub fn run_settings(machine: &Machine) -> RunSettings {
     }
 }
 
-/// How a case wants its runs where a job discretises it otherwise; the machine is the [`super::refined`] one.
+/// Returns the run settings of a case whose discretisation a job replaces; `machine` must be the
+/// [`super::refined`] one.
 pub(super) fn discretised_settings(
     machine: &Machine,
     discretisation: &Discretisation,

@@ -1,4 +1,4 @@
-//! The pumping unit as a worker's programs see it: one kind of model among others.
+//! Pumping unit as a [`Simulator`], one kind of model among others.
 use super::{columns, curves, digest, effect, machines::Machines, ran::Ran, reduce_head};
 use crate::simulator::{Model, Simulator};
 use protocol::{
@@ -10,7 +10,7 @@ use protocol::{
 };
 use simulation::observe::Recorder;
 
-/// All pumping units with double horse heads.
+/// Simulator of pumping units with double horse heads.
 #[derive(Clone, Copy, Debug)]
 pub struct PumpingUnits;
 
@@ -38,7 +38,9 @@ impl Simulator for PumpingUnits {
     fn own(&self, name: &str, body: &[u8]) -> Result<Vec<u8>, Failure> {
         if name != REDUCE_HEAD {
             return Err(Failure::Refused {
-                reason: format!("a pumping unit knows no job `{name}`, only `{REDUCE_HEAD}`"),
+                reason: format!(
+                    "the pumping unit model does not support the job `{name}`, only `{REDUCE_HEAD}`"
+                ),
             });
         }
         let unreadable =

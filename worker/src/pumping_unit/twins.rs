@@ -1,4 +1,4 @@
-//! Twin ropes of a case as the dynamics take them.
+//! Conversion of a case's twin ropes for the simulation.
 use super::head::{PASCAL_PER_MEGAPASCAL, curves};
 use protocol::{
     job::Failure,
@@ -6,11 +6,11 @@ use protocol::{
 };
 use simulation::model::description::{Sway, Twins};
 
-/// The pair of ropes, if the case has one.
+/// Returns the twin ropes, if the case has them.
 ///
 /// # Errors
-/// [`Failure::Misconfigured`] if the head's tables for it do not lie over those of the modes, or hold
-/// too few modes.
+/// [`Failure::Misconfigured`] if the head's tables for twin ropes have other stations than the influence
+/// lines, or hold too few modes.
 pub(super) fn twins(machine: &Machine) -> Result<Option<Twins>, Failure> {
     let Some(twins) = &machine.twin_ropes else {
         return Ok(None);

@@ -1,8 +1,8 @@
-//! The case of a run: fetched once, piece by piece, checked against its name.
+//! Case of a run: fetched once, in pieces, and checked against its content hash.
 use crate::pool::CaseBytes;
 use protocol::id::ContentHash;
 
-/// A case on its way.
+/// Case that is being fetched.
 #[derive(Debug)]
 pub(super) struct Incoming {
     hash: ContentHash,
@@ -25,12 +25,13 @@ impl Incoming {
         self.hash
     }
 
-    /// The piece that is needed next.
+    /// Returns the number of the piece that is needed next.
     pub(super) const fn next(&self) -> u32 {
         self.next
     }
 
-    /// Takes the next piece; the case once it is whole. What is whole but wrong is begun again.
+    /// Adds the next piece; returns the case once it is complete. A complete case with a wrong hash is
+    /// fetched again from the start.
     pub(super) fn take(&mut self, piece: &[u8]) -> Option<CaseBytes> {
         self.bytes.extend_from_slice(piece);
         self.next += 1;
@@ -41,7 +42,7 @@ impl Incoming {
         self.next = 0;
         let found = ContentHash::of(&bytes);
         if found != self.hash {
-            tracing::warn!(expected = %self.hash, %found, "the case arrived damaged: again");
+            tracing::warn!(expected = %self.hash, %found, "the case arrived damaged and is fetched again");
             return None;
         }
         Some(CaseBytes {

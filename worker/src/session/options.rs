@@ -1,37 +1,37 @@
-//! How a session is set up, and how it may end.
+//! Options of a session, and the ways in which it may end.
 use crate::simulator::Simulators;
 use protocol::id::WorkerId;
 use std::{path::PathBuf, time::Duration};
 
-/// How a session is set up.
+/// Options of a session.
 #[derive(Clone, Debug)]
 pub struct SessionOptions {
-    /// The models that it simulates.
+    /// Kinds of model that the worker simulates.
     pub simulators: Simulators,
-    /// The worker's name.
+    /// Id of the worker.
     pub id: WorkerId,
-    /// Jobs computed at a time.
+    /// Number of jobs computed at a time.
     pub slots: usize,
-    /// Program whose `slot` subcommand computes; usually this one.
+    /// Program whose `slot` subcommand runs as the slot process; usually the worker's own executable.
     pub program: PathBuf,
-    /// Address space that a slot's process may have (MiB); 0 for as much as there is.
+    /// Address space of a slot's process (MiB); 0 for no limit.
     pub slot_memory_mib: u64,
-    /// Without work for so long the worker ends; never by default.
+    /// Time without work after which the worker ends; `None` for never.
     pub idle_timeout: Option<Duration>,
-    /// Whether it belongs to one coordinator and ends with its run.
+    /// Whether the worker belongs to one coordinator and ends with its run.
     pub embedded: bool,
 }
 
-/// Why a session ended.
+/// Reason why a session ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// It was asked to.
+    /// The worker was asked to end, for example by a signal.
     Asked,
-    /// The run is over and the worker belongs to it.
+    /// The run to which an embedded worker belongs is over.
     RunOver,
-    /// There was no work for the given time.
+    /// There was no work during the idle timeout.
     Idle,
-    /// The coordinator does not take it.
+    /// The coordinator refused the worker, for this reason.
     Refused(String),
     /// The link is closed.
     Unlinked,

@@ -1,9 +1,9 @@
-//! Proof that this worker computes what the others compute: the case's reference individual.
+//! Proof that this worker computes the same results as the others, from the case's reference individual.
 //!
-//! It is an ordinary job in an ordinary slot: the recommended parameters under the condition of
-//! the objective, with a derivative of each kind that the model gives. The name of its outcome's bits is what the coordinator compares, or some of its values
-//! where bits do not repeat. A case that cannot be built gives a proof too: that of what is wrong with it,
-//! which must be the same everywhere.
+//! The proof is an ordinary job in an ordinary slot: the recommended parameters under the condition of the
+//! objective, with a derivative of each kind that the model gives. The coordinator compares the content hash
+//! of the outcome, or some of its values where results do not repeat bit for bit. A case that cannot be built
+//! gives a proof, too: its error message, which must be the same on every worker.
 use crate::{
     pool::{CaseBytes, Task},
     simulator::{Simulators, simulator_of},
@@ -18,31 +18,32 @@ use protocol::{
 };
 use std::time::Duration;
 
-/// What the reference individual is called; no coordinator gives this name to a job.
+/// Attempt id of the reference individual; no coordinator gives it to a job.
 pub(super) const ATTEMPT: Attempt = Attempt {
     job: JobId(u64::MAX),
     attempt: AttemptId(u32::MAX),
 };
 
-/// From start to forced end.
+/// Time limit of the reference individual.
 const DEADLINE: Duration = Duration::from_mins(10);
 
-/// How far the proof has come.
+/// Progress of the proof.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Progress {
-    /// It is still to be computed.
+    /// The proof is still to be computed.
     Missing,
-    /// A slot computes it.
+    /// A slot is computing the proof.
     Running,
-    /// What came out.
+    /// The proof is known.
     Known(Proof),
 }
 
 impl Progress {
-    /// What came out; why this worker cannot work if nothing did.
+    /// Derives the proof from the outcome of the reference individual; returns an error if it shows that this
+    /// worker cannot work.
     ///
-    /// Where nobody says how equal results are there is nothing to compare; that its program fails at the reference
-    /// individual is for the coordinator to judge, and for the run's own jobs.
+    /// A model whose repeatability is unknown has nothing to compare; if its program fails at the reference
+    /// individual, that is left to the coordinator and to the run's own jobs.
     pub(super) fn of(outcome: Option<Outcome>, repeats: Repeats) -> Result<Self, String> {
         let Some(outcome) = outcome else {
             return Ok(Self::Missing);
@@ -75,13 +76,17 @@ impl Progress {
             }
             (_, outcome) => match wire::encode(&outcome) {
                 Ok(bytes) => Proof::Bits(ContentHash::of(&bytes)),
-                Err(error) => return Err(format!("the reference individual has no name: {error}")),
+                Err(error) => {
+                    return Err(format!(
+                        "the result of the reference individual cannot be encoded: {error}"
+                    ));
+                }
             },
         };
         Ok(Self::Known(proof))
     }
 
-    /// What came out, if that is known.
+    /// Returns the proof if it is known.
     pub(super) fn known(&self) -> Option<Proof> {
         match self {
             Self::Known(proof) => Some(proof.clone()),
@@ -90,7 +95,7 @@ impl Progress {
     }
 }
 
-/// Values that stand for the curves of a run, as many of each curve as there is room for, evenly over it.
+/// Selects sample values that represent the curves of a run: an equal number from each curve, evenly spaced.
 fn samples(seen: &Observation) -> Vec<Sample> {
     let curves = seen.curves.iter().filter(|curve| !curve.is_empty());
     let share = (MOST_SAMPLES / curves.clone().count().max(1)).max(1);
@@ -108,8 +113,10 @@ fn samples(seen: &Observation) -> Vec<Sample> {
     curves.flat_map(of).take(MOST_SAMPLES).collect()
 }
 
-/// The reference individual of a case, as a task, and how equal its results are everywhere; why there is none
-/// if there is none.
+/// Builds the task of a case's reference individual, and returns the repeatability of the case's model.
+///
+/// # Errors
+/// A message saying why the case cannot be simulated by this worker.
 pub(super) fn task(simulators: Simulators, case: &CaseBytes) -> Result<(Task, Repeats), String> {
     let decoded: Case = wire::decode(&case.bytes)
         .map_err(|error| format!("case {} cannot be read here: {error}", case.hash))?;

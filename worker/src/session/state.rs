@@ -1,4 +1,4 @@
-//! What a worker holds, and what it does with each message.
+//! State of a worker, and its reaction to each message.
 use super::{
     case::Incoming,
     options::{Ending, SessionOptions},
@@ -23,10 +23,10 @@ use std::{
 };
 use tokio::task::{JoinError, JoinSet};
 
-/// How often a worker speaks.
+/// Interval of the heartbeats.
 const BEAT: Duration = Duration::from_secs(1);
 
-/// What follows from a message.
+/// Consequence of a message: continue or end.
 #[derive(Debug)]
 pub(super) enum Step {
     Go,
@@ -38,17 +38,17 @@ pub(super) struct State {
     options: SessionOptions,
     announcement: Announcement,
     pool: Pool,
-    /// 0 until a coordinator has said it.
+    /// Id of the current run; 0 until a coordinator has admitted the worker.
     run: RunId,
     admitted: bool,
     case: Option<CaseBytes>,
     proof: Progress,
-    /// Whether the case's model computes the same bits everywhere.
+    /// Repeatability of the results of the case's model (same bits, within a tolerance, or unknown).
     repeats: Repeats,
     incoming: Option<Incoming>,
     pub(super) fetching: JoinSet<Result<Vec<u8>, LinkError>>,
     waiting: VecDeque<Order>,
-    /// By slot; with the hash of the work.
+    /// Attempt that each slot is running, with the hash of its work, by slot index.
     running: BTreeMap<usize, (Attempt, ContentHash)>,
     outbox: Outbox,
     beats: u64,
@@ -137,7 +137,7 @@ impl State {
             tracing::info!(%run, "admitted");
             if let Err(error) = link.appear(run).await {
                 // the heartbeat alone will do
-                tracing::warn!(%error, "presence is not shown");
+                tracing::warn!(%error, "cannot declare the worker's presence on the bus");
             }
         }
         self.admitted = true;
@@ -151,7 +151,7 @@ impl State {
         self.fetch(link);
     }
 
-    /// Asks for the next piece of the case, unless one is on its way.
+    /// Requests the next piece of the case, unless a request is pending.
     fn fetch<L: WorkerEnd>(&mut self, link: &L) {
         if let (Some(incoming), true) = (&self.incoming, self.fetching.is_empty()) {
             self.fetching
@@ -184,8 +184,7 @@ impl State {
         Step::Go
     }
 
-    /// Begins to compute the reference individual of the case, if that is still to be done and a
-    /// slot is free.
+    /// Starts the reference individual of the case in a slot, if its proof is missing and a slot is free.
     fn prove(&mut self) -> Option<Step> {
         let missing = self.proof == Progress::Missing;
         let case = self.case.as_ref().filter(|_| missing)?;
@@ -327,10 +326,10 @@ impl State {
         }
     }
 
-    /// Proof of life, if there is life in the slots.
+    /// Sends a heartbeat, unless a slot is stuck.
     fn send_beat<L: WorkerEnd>(&mut self, link: &mut L) {
         if !self.pool.is_alive() {
-            tracing::error!("a slot is stuck: no sign of life is sent");
+            tracing::error!("a slot is stuck: no heartbeat is sent");
             return;
         }
         let here = self.incoming.is_none();
@@ -357,7 +356,8 @@ impl State {
         self.send(link, Lane::Control, &message);
     }
 
-    /// Says goodbye where that makes a difference; `true` if an answer is to be expected.
+    /// Announces that the worker leaves, where the coordinator needs to know; returns whether an
+    /// acknowledgement is to be expected.
     pub(super) fn leave<L: WorkerEnd>(&self, link: &mut L, ending: &Ending) -> bool {
         let reason = match ending {
             Ending::Asked => "it was asked to end",
@@ -371,7 +371,7 @@ impl State {
         self.admitted
     }
 
-    /// Waits until the coordinator has heard that the worker leaves.
+    /// Waits until the coordinator acknowledges that the worker leaves.
     pub(super) async fn dismissed<L: WorkerEnd>(&self, link: &mut L) {
         while let Some(frame) = link.receive().await {
             if matches!(
@@ -390,7 +390,7 @@ impl State {
         }
     }
 
-    /// Drops everything of a run that is over.
+    /// Discards queue, results and running jobs of a run that is over.
     fn forget(&mut self) {
         self.admitted = false;
         self.waiting.clear();

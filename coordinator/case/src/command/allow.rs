@@ -1,4 +1,5 @@
-//! What a machine would have to allow for a case: an entry of its list, made of what the case proposes.
+//! Entry that a machine's allow list needs before its workers may run a case's program, built from the case's
+//! proposal.
 use super::file::OwnFile;
 use crate::{CaseError, Overrides, document::Step, load_with_notes, source::document};
 use exchange::allow::Entry;
@@ -8,21 +9,21 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-/// An entry as a case proposes it.
+/// Allow-list entry as a case proposes it.
 #[derive(Debug)]
 pub struct Proposal {
-    /// The name that the case uses.
+    /// Name of the allow-list entry that the case refers to.
     pub name: String,
-    /// What would be written.
+    /// Entry that would be written to the allow list.
     pub entry: Entry,
-    /// Paths of the files that the program reads or is made of.
+    /// Paths of the files that travel with the case or are filled in for the program.
     pub files: Vec<String>,
 }
 
-/// What a case proposes.
+/// Returns the allow-list entry that a case proposes.
 ///
 /// # Errors
-/// A case that cannot be read, is of another kind, or proposes nothing.
+/// Returns an error if the case cannot be read, is not of the kind `command`, or proposes no command.
 pub fn proposed(folder: &Path) -> Result<Proposal, CaseError> {
     let overrides = Overrides::default();
     let case = load_with_notes(folder, &overrides)?.case;
@@ -32,8 +33,8 @@ pub fn proposed(folder: &Path) -> Result<Proposal, CaseError> {
         return Err(document.field(
             &[Step::Key("model"), Step::Key("kind")],
             format!("\"{}\"", case.model.kind),
-            "\"command\": only programs of somebody's own are to be allowed",
-            "a case of another kind needs no permission",
+            "\"command\": only cases with a program of the user's own need an entry in the allow list",
+            "do nothing: a case of another kind needs no entry in the allow list",
         ));
     };
     let own: OwnFile = document.parse()?;
@@ -50,7 +51,7 @@ pub fn proposed(folder: &Path) -> Result<Proposal, CaseError> {
         return Err(document.field(
             &[Step::Key("model"), Step::Key("command")],
             format!("\"{program}\""),
-            "a program of this machine, by its name or its whole path, or a file of the case, as \"./model.sh\"",
+            "a program on this machine, by name or absolute path, or a file of the case, such as \"./model.sh\"",
             "there is no such program: install it, or correct the name",
         ));
     }
@@ -72,7 +73,8 @@ pub fn proposed(folder: &Path) -> Result<Proposal, CaseError> {
     })
 }
 
-/// Whether there is a program at a place: on this machine, or where the case's files will lie.
+/// Returns whether a program exists at a path: on this machine, or among the files that the case brings or
+/// fills in.
 fn is_there(place: &Path, folder: &Path, external: &External) -> bool {
     let plain = |path: &Path| {
         path.components()
@@ -85,7 +87,8 @@ fn is_there(place: &Path, folder: &Path, external: &External) -> bool {
     folder.join(place).is_file() || fills.any(|fill| plain(Path::new(&fill.file)) == inside)
 }
 
-/// Where a program lies: as the shell finds it; as it is named where it travels with the case.
+/// Returns the path of a program: looked up in `PATH` for a bare name; unchanged if it contains `/`, since
+/// such a path may refer to a file of the case.
 fn found(program: &str) -> PathBuf {
     let plain = Path::new(program);
     if program.contains('/') {

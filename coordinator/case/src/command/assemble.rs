@@ -1,5 +1,5 @@
-//! From what a case says of a program to what travels: every name is held against every other, so that what is
-//! wrong is said here and not by a worker.
+//! Assembly of the description of a program that is sent to the workers from the case file's entries. All
+//! names are cross-checked here, so that errors are reported when the case is read and not by a worker.
 use super::{
     file::{ChannelEntry, InputEntry, ModelEntry, OutputEntry, OwnFile, SourceEntry},
     files,
@@ -20,10 +20,11 @@ use protocol::{
 };
 use std::{collections::BTreeSet, path::Path};
 
-/// Everything that a case says of its program.
+/// Assembles the complete description of a case's program.
 ///
 /// # Errors
-/// A file that cannot be read, a name that nothing has, a channel that comes from nowhere.
+/// Returns an error for a file that cannot be read, a name that is not defined, or a channel without a valid
+/// source.
 pub(super) fn assemble(
     source: &Source<'_>,
     own: &OwnFile,
@@ -86,7 +87,7 @@ impl Assembly<'_> {
         self.document.field(way, value, allowed, help)
     }
 
-    /// A name that is none of those that there are.
+    /// Builds the error for an undefined name, with the most similar defined name as a suggestion.
     fn unknown(&self, way: &[Step<'_>], name: &str, allowed: &str, names: &[&str]) -> CaseError {
         let near = nearest(name, names.iter().copied());
         let help = near.map_or("correct the name".to_owned(), |near| {
@@ -95,7 +96,8 @@ impl Assembly<'_> {
         self.refused(way, format!("\"{name}\""), allowed, &help)
     }
 
-    /// How the case's unknowns are written.
+    /// Returns the name, factor and offset with which each unknown of the case is written to the program's
+    /// input files.
     fn parameters(&self, case: &Case) -> Result<Vec<Parameter>, CaseError> {
         let names = || case.unknowns.iter().map(|unknown| unknown.name.as_str());
         let stated = self.model.parameters.keys();
@@ -123,7 +125,8 @@ impl Assembly<'_> {
         Ok(written.collect())
     }
 
-    /// Every condition sets the same values, for templates are the same for all.
+    /// Checks that a condition sets the same value names as the first one, because all conditions share the
+    /// same templates.
     fn alike(
         &self,
         index: usize,
@@ -152,7 +155,7 @@ impl Assembly<'_> {
         ))
     }
 
-    /// A file beside the case, as text.
+    /// Reads a file in the case's folder as text.
     fn text(&self, path: &Path, role: &str) -> Result<String, CaseError> {
         let path = self.folder.join(path);
         file::text(&path, file::read(&path, role)?)
@@ -177,7 +180,7 @@ impl Assembly<'_> {
                     )
                 }
                 (None, Some(path), None) => {
-                    let text = self.text(path, "a text that `inputs` names")?;
+                    let text = self.text(path, "a text file that `inputs` names")?;
                     let template = dakota::Template::parse(&path.to_string_lossy(), &text);
                     let template =
                         template.map_err(|problem| self.problem(&way("braces"), &problem))?;
@@ -195,7 +198,8 @@ impl Assembly<'_> {
                 }
                 _ => {
                     let allowed = "exactly one of template, braces and dakota";
-                    let help = "say how the file is filled in";
+                    let help =
+                        "state exactly one of `template`, `braces` and `dakota` for the file";
                     return Err(self.refused(&way("file"), &input.file, allowed, help));
                 }
             };
@@ -216,7 +220,7 @@ impl Assembly<'_> {
         inputs.map(fill).collect()
     }
 
-    /// The outputs, and the names of single values in them.
+    /// Reads the output entries; returns them with the names of all single values that they define.
     fn readings(&self) -> Result<(Vec<Reading>, BTreeSet<String>), CaseError> {
         let mut named = BTreeSet::new();
         let outputs = self.model.outputs.iter().enumerate();
@@ -248,7 +252,7 @@ impl Assembly<'_> {
                 (None, None) => ReadingForm::Table,
                 (Some(_), Some(_)) => {
                     let allowed = "no more than one of instructions and dakota";
-                    let help = "say once how the file is read";
+                    let help = "remove `instructions` or `dakota`";
                     return Err(self.refused(&way("file"), &output.file, allowed, help));
                 }
             };
@@ -289,11 +293,11 @@ impl Assembly<'_> {
         equations.map(equation).collect()
     }
 
-    /// Compares the channel's places with those of the curve that the program left in the case's folder, where it has
-    /// been run there: a place beyond the curve would fail every run.
+    /// Checks that the channel's abscissa points lie within the curve that a previous run of the program left
+    /// in the case's folder, if there is one: a point outside the curve would fail every run.
     ///
     /// # Errors
-    /// A channel that reaches beyond that curve.
+    /// Returns an error for a channel that extends beyond that curve.
     fn reach(
         &self,
         index: usize,
@@ -336,14 +340,14 @@ impl Assembly<'_> {
         Err(self.refused(
             &way,
             format!("channel `{}` from {from} to {to} {unit}", channel.name),
-            &format!("places from {first} to {last} {unit}, as the program's curve in {left} goes"),
+            &format!("abscissa values from {first} to {last} {unit}, the range of the program's curve in {left}"),
             &format!(
-                "cut the record, or let the program run further; remove {left} from the case's folder if it is an old one"
+                "shorten the record, or let the program compute a longer curve; delete {left} from the case's folder if it is out of date"
             ),
         ))
     }
 
-    /// Where a channel comes from.
+    /// Returns the source of a channel's values: named values, a table column or a JSON pointer.
     fn curve(
         &self,
         index: usize,
@@ -358,7 +362,7 @@ impl Assembly<'_> {
         ];
         let allowed =
             "{ named = [..] }, { file, column } of a table or { file, values } of an object";
-        let help = "say which values of which output the channel is";
+        let help = "state the output file and the values of it that form the channel";
         let Some(entry) = &channel.source else {
             let value = format!("absent of channel `{}`", channel.name);
             return Err(self.refused(&way, value, allowed, help));
@@ -379,7 +383,7 @@ impl Assembly<'_> {
             return Ok(From::Named(names.clone()));
         }
         let (Some(file), None) = (file, names) else {
-            return Err(self.refused(&way, "something else", allowed, help));
+            return Err(self.refused(&way, "an invalid combination of keys", allowed, help));
         };
         let Some(reading) = readings.iter().position(|reading| reading.file == *file) else {
             let files: Vec<&str> = readings
@@ -416,14 +420,14 @@ impl Assembly<'_> {
                 .ok_or_else(|| {
                     let way = ["model", "verdicts", status].map(Step::Key);
                     let allowed =
-                        "a status from 1 to 255 with a word of small letters, digits and `_`";
+                        "an exit status from 1 to 255 with a word of lower-case letters, digits and `_`";
                     self.refused(&way, word, allowed, "as in verdicts = { 3 = \"diverged\" }")
                 })
         };
         self.model.verdicts.iter().map(verdict).collect()
     }
 
-    /// What a template or a list of instructions has wrong.
+    /// Converts a problem in a template or an instruction file to a case error.
     fn problem(&self, way: &[Step<'_>], problem: &Problem) -> CaseError {
         let place = problem
             .line

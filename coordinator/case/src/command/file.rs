@@ -1,8 +1,8 @@
-//! What a case says of a program, as it is written: keys and types.
+//! Serde types of the case-file entries that describe a program.
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::PathBuf};
 
-/// As much of a case file as only this kind reads.
+/// Part of a case file that only the kind `command` reads.
 #[derive(Debug, Deserialize)]
 pub(super) struct OwnFile {
     pub(super) model: ModelEntry,
@@ -10,7 +10,7 @@ pub(super) struct OwnFile {
     pub(super) channels: Vec<ChannelEntry>,
 }
 
-/// `[model]`.
+/// Table `[model]` of the case file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ModelEntry {
@@ -38,7 +38,8 @@ pub(super) struct ModelEntry {
     pub(super) parameters: BTreeMap<String, ParameterEntry>,
 }
 
-/// A file that is written for every individual; exactly one of the three says how.
+/// Input file that is written for every individual; exactly one of `template`, `braces` and `dakota` states
+/// its form.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct InputEntry {
@@ -48,7 +49,7 @@ pub(super) struct InputEntry {
     pub(super) dakota: Option<String>,
 }
 
-/// A file that the program leaves.
+/// Output file that the program writes.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct OutputEntry {
@@ -57,7 +58,7 @@ pub(super) struct OutputEntry {
     pub(super) dakota: Option<Vec<String>>,
 }
 
-/// A value that follows from the parameters alone.
+/// Value that is computed from the parameters alone, without running the program.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct EquationEntry {
@@ -75,7 +76,7 @@ pub(super) struct TermEntry {
     pub(super) log: bool,
 }
 
-/// How an unknown is written.
+/// Name, factor and offset with which an unknown is written.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ParameterEntry {
@@ -90,32 +91,32 @@ const fn one() -> f64 {
     1.0
 }
 
-/// A condition, as far as it is the program's.
+/// Fields of a condition that only the kind `command` reads.
 #[derive(Debug, Deserialize)]
 pub(super) struct ConditionEntry {
     #[serde(default)]
     pub(super) values: BTreeMap<String, f64>,
 }
 
-/// A channel, as far as it is the program's.
+/// Fields of a channel that only the kind `command` reads.
 #[derive(Debug, Deserialize)]
 pub(super) struct ChannelEntry {
     pub(super) name: String,
     pub(super) source: Option<SourceEntry>,
 }
 
-/// Where a channel's values come from.
+/// Source of a channel's values.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SourceEntry {
-    /// Named values.
+    /// Names of single values, one for each abscissa point.
     pub(super) named: Option<Vec<String>>,
-    /// One of the outputs.
+    /// Output file with the values.
     pub(super) file: Option<String>,
-    /// A column of it.
+    /// Column of the output table.
     pub(super) column: Option<String>,
-    /// A JSON pointer into it.
+    /// JSON pointer to the values in the output file.
     pub(super) values: Option<String>,
-    /// Column or pointer of the places.
+    /// Column or JSON pointer of the abscissa.
     pub(super) at: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! The files that travel with a case.
+//! Reading of the files that travel with a case to the workers.
 use crate::{
     document::{Document, Step},
     error::CaseError,
@@ -13,14 +13,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Most files of a case.
+/// Maximum number of files of a case.
 const MOST_FILES: usize = 10_000;
 
-/// Reads the files and folders that a case names, in the order of their paths.
+/// Reads the files and folders that a case names, sorted by path and without duplicates.
 ///
 /// # Errors
-/// One that does not lie below the case's folder, is not there, is neither file nor folder, or more than what
-/// may travel.
+/// Returns an error for a path that is outside the case's folder, does not exist, or is neither file nor
+/// folder, and if the limits on number or total size are exceeded.
 pub(super) fn read(
     document: &Document,
     folder: &Path,
@@ -37,7 +37,7 @@ pub(super) fn read(
         if !is_below(path) {
             return Err(refused(
                 "a file or folder below the case's own",
-                "copy it there, or leave it on the workers and name it in their entry",
+                "copy the file into the case's folder, or install it on the workers and refer to it in their allow-list entry",
             ));
         }
         if let Err(error) = add(folder, path, &mut all, &mut bytes) {
@@ -46,7 +46,7 @@ pub(super) fn read(
                     "files that can be read, of at most {} MiB together ({error})",
                     MOST_BYTES >> 20
                 ),
-                "correct the name; what is large stays on the workers, and their entry's arguments name it",
+                "correct the name; install large files on the workers and refer to them in the arguments of the workers' allow-list entry",
             ));
         }
     }
@@ -68,7 +68,7 @@ fn add(folder: &Path, path: &Path, all: &mut Vec<File>, bytes: &mut usize) -> io
     }
     if !found.is_file() {
         let problem = format!(
-            "{} is neither file nor folder: links do not travel",
+            "{} is neither a file nor a folder; symbolic links cannot be sent to workers",
             path.display()
         );
         return Err(io::Error::other(problem));
@@ -76,10 +76,13 @@ fn add(folder: &Path, path: &Path, all: &mut Vec<File>, bytes: &mut usize) -> io
     let length = usize::try_from(found.len()).unwrap_or(usize::MAX);
     *bytes = bytes.saturating_add(length);
     if *bytes > MOST_BYTES || all.len() >= MOST_FILES {
-        return Err(io::Error::other(format!("more with {}", path.display())));
+        return Err(io::Error::other(format!(
+            "the limit on number or total size of the files is exceeded at {}",
+            path.display()
+        )));
     }
     let Some(name) = path.to_str() else {
-        return Err(io::Error::other("a name that is no text"));
+        return Err(io::Error::other("a file name is not valid UTF-8"));
     };
     all.push(File {
         path: name.to_owned(),

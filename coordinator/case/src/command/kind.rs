@@ -1,4 +1,4 @@
-//! Programs of somebody's own as their cases are read.
+//! Kind of model `command`: cases whose model is a program of the user's own.
 use super::{
     assemble::assemble,
     file::{ModelEntry, OwnFile},
@@ -18,13 +18,13 @@ use protocol::{
     wire,
 };
 
-/// Longest deadline of one run (s): a week.
+/// Maximum deadline of one run (s): a week.
 const LONGEST_S: f64 = 604_800.0;
 
-/// Largest difference between machines that is one at all: a share of a channel's size.
+/// Maximum of the tolerance between machines, as a share of a channel's root mean square.
 const MOST_TOLERANCE: f64 = 1.0;
 
-/// Models that are programs of somebody's own.
+/// Kind of model for programs of the user's own.
 pub(crate) struct Commands;
 
 impl CaseKind for Commands {
@@ -60,8 +60,8 @@ impl CaseKind for Commands {
             document.field(
                 &way("files"),
                 error.to_string(),
-                "what fits into one message",
-                "leave large files on the workers",
+                "files that fit into one message to the workers",
+                "remove large files from `files` and install them on the workers",
             )
         })?;
         loaded.case.model = ModelSettings {
@@ -84,7 +84,7 @@ impl CaseKind for Commands {
     fn unready(&self, case: &Case) -> Option<(String, String)> {
         let name = entry_of(&case.model.kind)?;
         let path = exchange::allow::path();
-        let remedy = "look at what it starts, and allow it on this machine: horsehead allow CASE";
+        let remedy = "review the command, then allow it on this machine: horsehead allow CASE";
         let allowed = match exchange::allow::read(&path) {
             Ok(allowed) => allowed,
             Err(problem) => return Some((problem.to_string(), "correct the file".to_owned())),
@@ -111,7 +111,8 @@ impl CaseKind for Commands {
     }
 }
 
-/// How equal results are, as the case says.
+/// Returns how reproducible the results are between machines, as the case states: bit-identical, within a
+/// tolerance, or unknown.
 fn repeats(document: &Document, model: &ModelEntry) -> Result<Repeats, CaseError> {
     let Some(tolerance) = model.reference_tolerance else {
         return Ok(if model.repeatable {
@@ -126,7 +127,7 @@ fn repeats(document: &Document, model: &ModelEntry) -> Result<Repeats, CaseError
             &way,
             tolerance,
             "absent beside `repeatable = true`",
-            "equal bits leave no tolerance: keep the one that is true",
+            "bit-identical results need no tolerance: remove `repeatable` or `reference_tolerance`",
         ));
     }
     document.within(

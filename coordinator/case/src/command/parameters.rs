@@ -1,11 +1,11 @@
-//! The unknowns of a case as PEST writes them.
+//! Export of a case's unknowns as a PEST parameter file.
 use exchange::pest::{self, ParRow};
 use protocol::{
     case::{Case, Unknown},
     external::External,
 };
 
-/// The unknowns of a case at values, as PEST leaves them.
+/// Returns the text of a PEST parameter file with the given values of the unknowns.
 pub(super) fn parameters(case: &Case, genes: &[f64]) -> String {
     let external = External::of(&case.model).ok();
     let written = external.map(|own| own.parameters).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Channels and what was measured of them.
+//! Reading of the channels and their measured records.
 use super::{
     super::{
         document::{Document, Step, nearest},
@@ -12,42 +12,43 @@ use super::{
 use protocol::case::{Abscissa, Channel, ChannelRecord, Offset};
 use std::path::{Path, PathBuf};
 
-/// Most places of a curve.
+/// Maximum number of abscissa points of a channel.
 const MOST_POINTS: u32 = 1_000_000;
-/// How far places may lie off an even spacing, as a share of it.
+/// Tolerance of equally spaced abscissa points, as a share of the spacing.
 const EVEN: f64 = 1e-6;
-/// Steps of a curve beside its noise, as a power of two: a thousandth.
+/// Ratio of a channel's noise to the rounding step of its transmitted curve, as an exponent of two: 2^10,
+/// about a thousand.
 const BELOW_NOISE: f64 = 10.0;
 
-/// A channel with what was measured of it.
+/// Channel with its measured record.
 pub(super) struct Read {
     pub(super) channel: Channel,
-    /// Each cycle by itself; none where nothing was measured.
+    /// Values of each measured cycle; empty for a channel without a record.
     pub(super) cycles: Vec<Vec<f64>>,
-    /// What of it takes no part in a diagnosis' fits.
+    /// Part of the channel that is held out from the fits of a diagnosis.
     pub(super) held_out: HeldOut,
-    /// Correlation of its noise from one value to the next, where it is stated.
+    /// Correlation of the noise between successive values, if stated.
     pub(super) correlation: Option<f64>,
-    /// What no law of the model is better than, where it is stated.
+    /// Standard deviation of the model error, below which no model is expected to fit, if stated.
     pub(super) model_error: Option<f64>,
-    /// Record and condition that the replacing folder does not have.
+    /// Name of the record's file and its condition, if the folder of replacing records lacks it.
     pub(super) missing: Option<(String, String)>,
 }
 
-/// Where records are looked for.
+/// Folders and defaults with which records are read.
 pub(super) struct Place<'a> {
     /// Folder of the case.
     pub(super) folder: &'a Path,
-    /// Folder that replaces the records' own.
+    /// Folder whose records replace those of the case, if given.
     pub(super) measured: Option<&'a Path>,
-    /// The conditions whose records must be there.
+    /// Names of the conditions whose records must exist.
     pub(super) calibrated: &'a [String],
-    /// Whether values have a zero where their channel does not say.
+    /// Default treatment of the zero (offset) for channels that do not state one.
     pub(super) offset: Offset,
 }
 
 impl Place<'_> {
-    /// A record's file: `--measured DIR` replaces the folder, not the name.
+    /// Returns the path of a record's file: `--measured DIR` replaces the folder, not the name.
     fn of(&self, named: &Path) -> PathBuf {
         match (self.measured, named.file_name()) {
             (Some(measured), Some(name)) => measured.join(name),
@@ -55,7 +56,8 @@ impl Place<'_> {
         }
     }
 
-    /// Whether the replacing folder may do without this record, and does.
+    /// Returns whether the replacing folder lacks a record that it may omit, because its condition is not
+    /// calibrated.
     fn lacks(&self, named: &Path, condition: &str) -> bool {
         let needed = self.calibrated.iter().any(|name| name == condition);
         self.measured.is_some() && !needed && !self.of(named).exists()
@@ -65,8 +67,7 @@ impl Place<'_> {
 /// Reads every channel.
 ///
 /// # Errors
-/// A condition that there is not, a noise or spacing that cannot be, and all that a record may have
-/// wrong.
+/// Returns an error for an unknown condition, an invalid noise or spacing, and any fault of a record.
 pub(super) fn read(
     document: &Document,
     entries: &[ChannelEntry],
@@ -90,7 +91,7 @@ pub(super) fn read(
     entries.iter().enumerate().map(read).collect()
 }
 
-/// One entry of the file.
+/// Channel entry of the case file with its index.
 struct Source<'a> {
     document: &'a Document,
     index: usize,
@@ -98,7 +99,7 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// An error about one of its fields.
+    /// Builds an error about a field of the channel entry.
     fn refused(&self, keys: &[&str], value: String, allowed: &str, help: &str) -> CaseError {
         let way = [Step::Key("channels"), Step::Index(self.index)].into_iter();
         let way: Vec<Step<'_>> = way.chain(keys.iter().map(|key| Step::Key(key))).collect();
@@ -177,7 +178,7 @@ impl Source<'_> {
         })
     }
 
-    /// Checks a part that is held out: some values lie in it, and some do not.
+    /// Checks that a held-out segment contains some of the abscissa points, but not all.
     fn check_segment(&self, points: &[f64]) -> Result<(), CaseError> {
         let HeldOut::Segment(part) = self.entry.held_out else {
             return Ok(());
@@ -199,7 +200,7 @@ impl Source<'_> {
         ))
     }
 
-    /// Checks what is stated of errors that are none of the noise's size.
+    /// Checks the stated noise correlation and model error.
     fn check_errors(&self) -> Result<(), CaseError> {
         let entry = self.entry;
         let correlation = entry.correlation.filter(|rho| !(0.0..1.0).contains(rho));
@@ -219,13 +220,13 @@ impl Source<'_> {
                 &["model_error"],
                 error.to_string(),
                 &format!("above 0 {}", entry.unit),
-                "give the standard deviation that no law of the model is better than, or leave it out",
+                "give the standard deviation of the model error, or remove `model_error`",
             ));
         }
         Ok(())
     }
 
-    /// Where the values stand, and what was measured there.
+    /// Returns the abscissa points and the measured values at them.
     fn places_and_cycles(&self, place: &Place<'_>) -> Result<record::Read, CaseError> {
         let read = match (&self.entry.record, &self.entry.abscissa.points) {
             (Some(entry), None) => {
@@ -274,14 +275,14 @@ impl Source<'_> {
             return Err(self.refused(
                 &["abscissa"],
                 format!("{} value", read.places.len()),
-                "two or more: without a zero only what changes is compared",
-                "say offset = \"fixed\" if its values have a zero",
+                "two or more values: with offset = \"free\" the mean difference is removed before the comparison",
+                "state offset = \"fixed\" if the values have an absolute zero",
             ));
         }
         Ok(read)
     }
 
-    /// Equally spaced places.
+    /// Returns equally spaced abscissa points.
     fn spaced(&self, points: PointsEntry) -> Result<Vec<f64>, CaseError> {
         let PointsEntry { first, step, count } = points;
         let ascends = step > 0.0 && step.is_finite() && first.is_finite();
@@ -296,7 +297,7 @@ impl Source<'_> {
         Ok((0..count).map(|at| first + step * f64::from(at)).collect())
     }
 
-    /// Places of one period are equally spaced and fill it.
+    /// Checks that the abscissa points of a periodic channel are equally spaced and fill one period.
     fn check_period(&self, points: &[f64]) -> Result<(), CaseError> {
         let Some(period) = self.entry.abscissa.period else {
             return Ok(());
@@ -322,7 +323,8 @@ impl Source<'_> {
     }
 }
 
-/// The greatest power of two that is no more than a thousandth of the noise of the value that counts most.
+/// Returns the rounding step of a transmitted curve, as an exponent of two: the greatest power of two that
+/// does not exceed 1/1024 of the noise of the value with the largest weight.
 fn step(noise: f64, weights: &[f64]) -> i32 {
     let noise = noise / weights.iter().copied().fold(1.0, f64::max);
     #[expect(
@@ -333,7 +335,7 @@ fn step(noise: f64, weights: &[f64]) -> i32 {
     power
 }
 
-/// Mean and spread of cycles at the same places.
+/// Returns mean and spread at each abscissa point over the cycles.
 fn averaged(cycles: &[Vec<f64>]) -> ChannelRecord {
     let places = 0..cycles.first().map_or(0, Vec::len);
     let statistics = places.map(|at| mean_and_spread(cycles.iter().map(move |cycle| cycle[at])));

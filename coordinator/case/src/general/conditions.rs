@@ -1,4 +1,4 @@
-//! Conditions: their names, and what travels of them as it is.
+//! Reading of the conditions: their names, and the settings passed on to the model unchanged.
 use super::{
     super::{document::Document, error::CaseError, names},
     file::{ConditionEntry, ModelEntry},
@@ -7,19 +7,20 @@ use protocol::case::{Condition, ModelSettings};
 use serde::Serialize;
 use toml::Table;
 
-/// What a model alone understands of a case, as text in TOML.
+/// Model-specific part of a case, which is passed on to the model as TOML text.
 #[derive(Serialize)]
 struct Own<'a> {
-    /// `[model]` without its kind.
+    /// Table `[model]` without `kind`.
     model: &'a Table,
-    /// `[[conditions]]` without their names.
+    /// Tables `[[conditions]]` without `name`.
     conditions: Vec<&'a Table>,
 }
 
-/// Names of the conditions.
+/// Reads the names of the conditions.
 ///
 /// # Errors
-/// None, two of one name, one that cannot be typed.
+/// Returns an error if there is no condition, a name occurs twice or a name has characters that are not
+/// allowed.
 pub(super) fn read(
     document: &Document,
     entries: &[ConditionEntry],
@@ -32,7 +33,7 @@ pub(super) fn read(
     Ok(all.iter().map(named).collect())
 }
 
-/// The model's own part, as it travels.
+/// Returns the model-specific part of the case in the form that is sent to workers.
 pub(super) fn settings(model: &ModelEntry, conditions: &[ConditionEntry]) -> ModelSettings {
     let own = Own {
         model: &model.own,

@@ -1,11 +1,11 @@
-//! `case.toml` in the general form as it is written: keys and types.
+//! Serde types of `case.toml` in its general form.
 use super::super::{effect::CaseEffect, loaded::Records, prior::PriorEntry};
 use protocol::case::{Offset, Scale, Tie, Valley};
 use serde::Deserialize;
 use std::path::PathBuf;
 use toml::Table;
 
-/// A whole file.
+/// Whole case file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CaseFile {
@@ -21,7 +21,7 @@ pub(super) struct CaseFile {
     pub(super) effects: Vec<CaseEffect>,
 }
 
-/// Which model, and what it alone understands.
+/// Kind of the model, and the settings that only the model interprets.
 #[derive(Debug, Deserialize)]
 pub(super) struct ModelEntry {
     pub(super) kind: String,
@@ -29,7 +29,7 @@ pub(super) struct ModelEntry {
     pub(super) own: Table,
 }
 
-/// One unknown number.
+/// Unknown of the case: a number to be searched.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct UnknownEntry {
@@ -48,23 +48,23 @@ pub(super) struct UnknownEntry {
     pub(super) tie: Option<Tie>,
     pub(super) prior: Option<PriorEntry>,
     pub(super) valley: Option<Valley>,
-    /// What differences move it by: a share of its value on a logarithmic scale, else in its unit.
+    /// Finite-difference step: a share of the value on a logarithmic scale, otherwise in the unknown's unit.
     pub(super) difference: Option<f64>,
     pub(super) suspect: Option<String>,
 }
 
-/// One condition, with what the model alone understands of it.
+/// Condition, with settings that only the model interprets.
 #[derive(Debug, Deserialize)]
 pub(super) struct ConditionEntry {
     pub(super) name: String,
-    /// Whether its records take no part in any fit.
+    /// Whether all records of the condition are held out from the fits.
     #[serde(default)]
     pub(super) held_out: bool,
     #[serde(flatten)]
     pub(super) own: Table,
 }
 
-/// One quantity under one condition.
+/// Channel: a quantity under one condition.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ChannelEntry {
@@ -74,32 +74,33 @@ pub(super) struct ChannelEntry {
     pub(super) condition: String,
     pub(super) abscissa: AbscissaEntry,
     pub(super) noise: Option<f64>,
-    /// Correlation of its noise from one value to the next.
+    /// Correlation of the noise between successive values.
     pub(super) correlation: Option<f64>,
-    /// What no law of the model is better than, one standard deviation.
+    /// Standard deviation of the model error, below which no model is expected to fit.
     pub(super) model_error: Option<f64>,
-    /// Whether its values have a zero; as the objective says unless stated.
+    /// Treatment of the zero: absolute values, or deviations after removal of the mean difference; the
+    /// objective's unless stated.
     pub(super) offset: Option<Offset>,
-    /// What of its record takes no part in a diagnosis' fits.
+    /// Part of the record that is held out from the fits of a diagnosis.
     #[serde(default)]
     pub(super) held_out: HeldOut,
     pub(super) record: Option<RecordEntry>,
-    /// Where the model's program leaves it, if it is one of somebody's own: its kind reads that.
+    /// Source of the values in the output of a user's program; read by the kind `command` only.
     #[serde(rename = "source")]
     _source: Option<Table>,
 }
 
-/// What of a record takes no part in the fits of a diagnosis.
+/// Part of a record that is held out from the fits of a diagnosis.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(untagged)]
 pub(super) enum HeldOut {
-    /// All of it, or nothing.
+    /// Whole record if true, nothing if false.
     Whole(bool),
-    /// From one place to another, the ends among them.
+    /// Segment of the abscissa, including its ends.
     Segment(SegmentEntry),
 }
 
-/// A part of an abscissa.
+/// Segment of an abscissa.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SegmentEntry {
@@ -113,18 +114,18 @@ impl Default for HeldOut {
     }
 }
 
-/// The axis of a curve.
+/// Abscissa of a channel.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AbscissaEntry {
     pub(super) name: String,
     pub(super) unit: String,
     pub(super) period: Option<f64>,
-    /// Where the curve is computed; a record states its own places.
+    /// Abscissa points of a channel without a record; a record states its own points.
     pub(super) points: Option<PointsEntry>,
 }
 
-/// Equally spaced places.
+/// Equally spaced abscissa points.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PointsEntry {
@@ -133,24 +134,24 @@ pub(super) struct PointsEntry {
     pub(super) count: u32,
 }
 
-/// Where the record of a channel stands.
+/// File and columns of a channel's record.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RecordEntry {
     pub(super) file: PathBuf,
-    /// Column of the places.
+    /// Name of the column with the abscissa points.
     pub(super) at: String,
-    /// Column of the values.
+    /// Name of the column with the values.
     pub(super) column: String,
-    /// Column of the cycles' numbers.
+    /// Name of the column with the cycle numbers.
     pub(super) cycle: Option<String>,
-    /// Column of the values' weights.
+    /// Name of the column with the weights of the values.
     pub(super) weight: Option<String>,
-    /// Which rows are this channel's: a column of words, and its word.
+    /// Filter for the rows that belong to this channel.
     pub(super) rows: Option<RowsEntry>,
 }
 
-/// Which rows of a table are meant.
+/// Filter for table rows: those with the text `is` in a column.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RowsEntry {
@@ -158,7 +159,7 @@ pub(super) struct RowsEntry {
     pub(super) is: String,
 }
 
-/// What a calibration minimises.
+/// Objective that a calibration minimises.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ObjectiveEntry {
@@ -167,7 +168,7 @@ pub(super) struct ObjectiveEntry {
     pub(super) offset: Offset,
 }
 
-/// One name, or several.
+/// List of names, which may be written as a single name.
 #[derive(Debug, Deserialize)]
 #[serde(untagged, expecting = "a name, or a list of names")]
 pub(super) enum Names {
@@ -184,7 +185,7 @@ impl Names {
     }
 }
 
-/// A channel of the objective.
+/// Term of the objective: a channel and its weight.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TermEntry {

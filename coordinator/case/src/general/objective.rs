@@ -1,4 +1,4 @@
-//! What a calibration minimises: channels of one condition or of several, with weights.
+//! Reading of the objective that a calibration minimises: weighted channels of one or several conditions.
 use super::{
     super::{
         document::{Document, Step, nearest},
@@ -9,10 +9,11 @@ use super::{
 };
 use protocol::case::{Objective, Term};
 
-/// The objective; a case that measures nothing needs none.
+/// Reads the objective; a case without measured records needs none.
 ///
 /// # Errors
-/// A condition or channel that there is not or that is not measured, a weight that cannot be.
+/// Returns an error for a condition or channel that does not exist or has no record, and for an invalid
+/// weight.
 pub(super) fn read(
     document: &Document,
     entry: Option<&ObjectiveEntry>,
@@ -75,7 +76,7 @@ pub(super) fn read(
     })
 }
 
-/// The conditions of these names, each once, none held out.
+/// Returns the indices of the named conditions; refuses duplicates and held-out conditions.
 fn conditions_of(
     document: &Document,
     wanted: &[String],
@@ -89,7 +90,7 @@ fn conditions_of(
         let at = at.ok_or_else(|| unknown(document, &way, name, "condition", names))?;
         if found.contains(&at) {
             let once = "each condition once";
-            let help = "weights of channels say how much each counts";
+            let help = "remove the repeated name; use the weights of the terms to weight channels";
             return Err(document.field(&way, format!("\"{name}\""), once, help));
         }
         if conditions[at].held_out {
@@ -105,7 +106,7 @@ fn conditions_of(
     Ok(found)
 }
 
-/// Every condition measures one of the terms.
+/// Checks that each condition of the objective has a record of at least one term.
 fn check_measured(
     document: &Document,
     terms: &[TermEntry],
@@ -137,7 +138,7 @@ fn check_measured(
     Ok(())
 }
 
-/// A term names a measured channel of the conditions, once, with a weight.
+/// Checks that a term names a measured channel of the conditions, only once and with a positive weight.
 fn check_term(
     document: &Document,
     terms: &[TermEntry],
@@ -188,13 +189,13 @@ fn check_term(
             &way("weight"),
             term.weight,
             "above 0",
-            "leave a channel out that is not to count",
+            "remove the term of a channel that is not part of the objective",
         ));
     }
     Ok(())
 }
 
-/// A name that nothing has.
+/// Builds the error for an unknown name, with the most similar known name as a suggestion.
 fn unknown(
     document: &Document,
     way: &[Step<'_>],

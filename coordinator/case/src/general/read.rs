@@ -1,4 +1,4 @@
-//! From a folder to a case: the file, then every record that it names.
+//! Reading of a case folder in the general form: the case file and every record that it names.
 use super::{
     super::{
         document::{Document, Step},
@@ -17,10 +17,10 @@ use discrepancy::record::{Curves, Record, Recorded, Stated};
 use protocol::case::{Case, Offset};
 use std::path::Path;
 
-/// Reads a case of a model that nobody here knows.
+/// Reads a case in the general form, for a model that the coordinator does not know.
 ///
 /// # Errors
-/// The first thing that is wrong; see [`CaseError`].
+/// Returns the first fault found; see [`CaseError`].
 pub fn read(source: &Source<'_>) -> Result<Loaded, CaseError> {
     let Source {
         folder,
@@ -66,10 +66,10 @@ pub fn read(source: &Source<'_>) -> Result<Loaded, CaseError> {
     })
 }
 
-/// The cycles of a condition, each by itself; none where nothing was measured.
+/// Returns the record of a condition with each cycle separately; `None` if nothing was measured.
 ///
 /// # Errors
-/// Channels of one condition that have another number of cycles.
+/// Returns an error if the channels of the condition have different numbers of cycles.
 fn cycles(
     document: &Document,
     entries: &[ConditionEntry],
@@ -127,7 +127,8 @@ fn cycles(
     }))
 }
 
-/// A channel as it is fitted and as it is held out.
+/// Splits a channel into its fitted and its held-out part; a channel held out as a whole, or not at all,
+/// stays one part.
 fn parts(own: Recorded, held_out: HeldOut) -> Vec<Recorded> {
     match held_out {
         HeldOut::Whole(held_out) => vec![Recorded { held_out, ..own }],
@@ -144,7 +145,7 @@ fn parts(own: Recorded, held_out: HeldOut) -> Vec<Recorded> {
     }
 }
 
-/// Remarks on records that `--measured DIR` does not repeat.
+/// Returns notes on the records that the folder of `--measured DIR` lacks.
 fn not_repeated(measured: Option<&Path>, all: &[channels::Read]) -> Vec<Note> {
     let Some(folder) = measured else {
         return Vec::new();
@@ -153,8 +154,7 @@ fn not_repeated(measured: Option<&Path>, all: &[channels::Read]) -> Vec<Note> {
     let note = |(file, condition): &(String, String)| Note {
         path: folder.to_owned(),
         text: format!(
-            "{file} is not there: condition `{condition}` was not measured, and nothing is compared \
-             with it"
+            "{file} does not exist: condition `{condition}` has no record and is not compared"
         ),
     };
     let mut notes: Vec<Note> = missing.map(note).collect();

@@ -1,4 +1,4 @@
-//! The record of one channel: a table of places and values, cycle by cycle.
+//! Reading of a channel's record: a table of abscissa points and values, cycle by cycle.
 use super::{
     super::{
         error::{CaseError, contradiction},
@@ -10,23 +10,23 @@ use super::{
 };
 use std::path::Path;
 
-/// What was measured of one channel.
+/// Measured record of a channel.
 #[derive(Debug)]
 pub(super) struct Read {
-    /// Where the values stand; ascending.
+    /// Abscissa points of the values, ascending.
     pub(super) places: Vec<f64>,
-    /// Values, cycle by cycle.
+    /// Measured values of each cycle.
     pub(super) cycles: Vec<Vec<f64>>,
-    /// Weights of the values; empty where all count alike.
+    /// Weights of the values; empty if all are equal.
     pub(super) weights: Vec<f64>,
 }
 
 /// Reads a record.
 ///
 /// # Errors
-/// A file or column that is not there, cells that are no numbers, places that do not ascend or differ
-/// between cycles, numbers of cycles that are not whole or fall, weights that are not positive, a sensor that
-/// never moves.
+/// Returns an error for a missing file or column, cells that are not numbers, abscissa points that do not
+/// ascend or differ between cycles, cycle numbers that are not whole or decrease, weights that are not
+/// positive, and unweighted values that are all equal.
 pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<Read, CaseError> {
     let packed = path.extension().is_some_and(|end| end == "gz");
     let bytes = if packed {
@@ -81,7 +81,7 @@ pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<Read,
             path,
             format!("column `{}`", entry.column),
             format!("{first} in every row"),
-            "a measured quantity moves",
+            "a measured quantity must vary",
             "name the column that holds the measurement, or leave the record out",
         ));
     }
@@ -97,7 +97,7 @@ pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<Read,
     })
 }
 
-/// Weights are positive, and in every cycle those of the first.
+/// Checks that the weights are positive and the same in every cycle.
 fn check_weights(
     path: &Path,
     table: &Table,
@@ -114,14 +114,13 @@ fn check_weights(
             (row, table.names.len() - 1),
             weight.to_string(),
             "above 0, and in every cycle the same",
-            "leave the row out where a value is not to count; a channel with `points` and without a record \
-             predicts it",
+            "remove the row of a value that is not to be compared; a channel with `points` and no record predicts its value",
         ));
     }
     Ok(())
 }
 
-/// The rows in which cycles begin.
+/// Returns the index of the first row of each cycle.
 fn begins(path: &Path, table: &Table, numbers: Option<&Vec<f64>>) -> Result<Vec<usize>, CaseError> {
     let mut begins = vec![0];
     let Some(numbers) = numbers else {
@@ -145,7 +144,7 @@ fn begins(path: &Path, table: &Table, numbers: Option<&Vec<f64>>) -> Result<Vec<
     Ok(begins)
 }
 
-/// The places of a cycle ascend, and are those of the first one.
+/// Checks that the abscissa points of a cycle ascend and equal those of the first cycle.
 fn check_places(
     path: &Path,
     table: &Table,

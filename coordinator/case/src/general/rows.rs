@@ -1,12 +1,12 @@
-//! Some of the rows of a table: those with a word in a column of words.
+//! Selection of table rows by the text in a column.
 use super::super::error::{CaseError, damaged};
 use std::path::Path;
 
-/// The table with its header and the rows whose `column` is `word`; the others become empty lines, so that
-/// messages name the lines of the file.
+/// Returns the CSV table with its header and only the rows whose `column` contains `word`; other rows become
+/// empty lines, so that line numbers in messages match the file.
 ///
 /// # Errors
-/// A column that is not there, no row with the word, text that is no CSV.
+/// Returns an error if the column is missing, no row contains the word, or the text is not valid CSV.
 pub(super) fn of(
     path: &Path,
     bytes: &[u8],
@@ -46,7 +46,7 @@ pub(super) fn of(
     ))
 }
 
-/// The cells of a line.
+/// Splits a CSV line into its cells.
 fn cells(path: &Path, line: &[u8]) -> Result<Vec<String>, CaseError> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)

@@ -1,4 +1,4 @@
-//! The unknown numbers, and where in the file one stands that cannot be right.
+//! Reading of the unknowns, with the location of errors in the case file.
 use super::{
     super::{
         document::{Document, Step},
@@ -12,7 +12,8 @@ use protocol::case::{Scale, Unknown, check_unknowns};
 /// Reads the unknowns.
 ///
 /// # Errors
-/// A name that cannot be typed or is there twice, and all that [`check_unknowns`] refuses.
+/// Returns an error for a name with characters that are not allowed, a duplicate name, and everything that
+/// [`check_unknowns`] refuses.
 pub(super) fn read(
     document: &Document,
     entries: &[UnknownEntry],
@@ -68,7 +69,8 @@ fn unknown(entry: &UnknownEntry, start: f64) -> Unknown {
     }
 }
 
-/// Where it starts: as stated, else where its tie puts it, over at most so many others.
+/// Returns the start value: as stated, or derived from the tied unknown. `ties` limits the depth of the
+/// recursion, in case ties form a loop.
 fn start(entry: &UnknownEntry, all: &[UnknownEntry], ties: usize) -> f64 {
     let tie = entry.tie.as_ref().filter(|_| ties > 0);
     let tied = || {
@@ -79,7 +81,7 @@ fn start(entry: &UnknownEntry, all: &[UnknownEntry], ties: usize) -> f64 {
     entry.start.or_else(tied).unwrap_or(f64::NAN)
 }
 
-/// What differences move an unknown by, in coordinates.
+/// Converts a finite-difference step to the search coordinate of an unknown.
 fn difference_step(entry: &UnknownEntry, difference: f64) -> f64 {
     match entry.scale {
         Scale::Logarithmic => libm::log10(1.0 + difference),

@@ -1,4 +1,4 @@
-//! Load cards: load at the suspension over one turn of the crank, equally spaced and periodic.
+//! Reading of load cards: load at the suspension over one crank turn, equally spaced and periodic.
 use crate::{
     error::{CaseError, contradiction},
     file,
@@ -7,11 +7,12 @@ use crate::{
 use protocol::pumping_unit::{LoadCard, Smoothing};
 use std::path::Path;
 
-/// Reads `turn_deg, polished_rod_load_n` \[deg, N\] and checks it; `role` says in words what the file is.
+/// Reads and checks the columns `turn_deg, polished_rod_load_n` \[deg, N\]; `role` describes the file in
+/// messages.
 ///
 /// # Errors
-/// Not starting at 0, uneven steps, a last row at 360, loads of another unit (by magnitude),
-/// a jump between the last row and the first.
+/// Returns an error if the angles do not start at 0, are unevenly spaced or include 360, if the loads are not
+/// in newtons judging by their magnitude, or if the last and first rows differ by a jump.
 pub fn read(path: &Path, smoothing: Smoothing, role: &str) -> Result<LoadCard, CaseError> {
     let bytes = file::read(path, role)?;
     let mut table = Table::read(path, &bytes, &["turn_deg", "polished_rod_load_n"])?;
@@ -26,7 +27,7 @@ pub fn read(path: &Path, smoothing: Smoothing, role: &str) -> Result<LoadCard, C
     })
 }
 
-/// Angles: from 0 in equal steps to one step before 360.
+/// Checks that the angles run from 0 in equal steps to one step before 360.
 fn check_turn(path: &Path, table: &Table) -> Result<(), CaseError> {
     const HELP: &str = "give the load on equally spaced crank angles 0, step, .. 360 - step, \
                         counted from bottom dead centre";
@@ -74,7 +75,7 @@ fn check_turn(path: &Path, table: &Table) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// Loads: newtons by their magnitude, never pushing, and closing on themselves.
+/// Checks that the loads have the magnitude of newtons, are not negative and are periodic.
 fn check_load(path: &Path, table: &Table) -> Result<(), CaseError> {
     let Some([_, load]) = table.columns.first_chunk::<2>() else {
         return Ok(());

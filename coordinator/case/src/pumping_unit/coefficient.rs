@@ -1,5 +1,5 @@
-//! Recommended coefficients by formula: the elasticity of a rope (paper, Eq. 3) and the contact of two
-//! elastic bodies (paper, Eq. 5). Knows material and size, no bounds, and damping has no formula.
+//! Recommended coefficients by formula: stiffness of a rope (paper, Eq. 3) and of the contact of two elastic
+//! bodies (paper, Eq. 5). Only material and dimensions are used; there is no formula for damping.
 use super::{recommended::Formula, schema::CaseFile};
 use protocol::pumping_unit::Coefficient;
 use std::f64::consts::PI;
@@ -14,29 +14,29 @@ struct Elastic {
 }
 
 impl Elastic {
-    /// Shear modulus \[Pa\].
+    /// Returns the shear modulus \[Pa\].
     fn shear(&self) -> f64 {
         self.young / (2.0 * (1.0 + self.poisson))
     }
 
-    /// `h` of Eq. 5 [1/Pa].
+    /// Returns the compliance `h` of Eq. 5 [1/Pa].
     fn yielding(&self) -> f64 {
         (1.0 - self.poisson * self.poisson) / (PI * self.young)
     }
 }
 
-/// A rope and the head that it lies on.
+/// Dimensions and materials of a rope and of the horse head on which it lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bodies {
     /// Diameter of the rope \[m\].
     diameter: f64,
-    /// Length that one joint stands for \[m\].
+    /// Length of rope represented by one joint \[m\].
     length: f64,
     rope: Elastic,
-    /// Radius of the back head's surface, where the gauges are \[m\].
+    /// Radius of the back head's surface at the gauges \[m\].
     head_radius: f64,
     head: Elastic,
-    /// Exponent of the contact's force.
+    /// Exponent of the contact force law.
     exponent: f64,
 }
 
@@ -58,7 +58,7 @@ impl Bodies {
         }
     }
 
-    /// What a formula makes of a coefficient, in SI units; none where it says nothing of it.
+    /// Returns a coefficient by a formula, in SI units; `None` if the formula does not cover it.
     pub(super) fn give(&self, formula: Formula, name: Coefficient) -> Option<f64> {
         match formula {
             Formula::Eq3 => self.eq3(name),
@@ -66,7 +66,7 @@ impl Bodies {
         }
     }
 
-    /// Stiffness of a joint as of a solid round bar [N/m, N.m/rad] (paper, Eq. 3).
+    /// Returns the stiffness of a joint, treated as a solid round bar [N/m, N.m/rad] (paper, Eq. 3).
     fn eq3(&self, name: Coefficient) -> Option<f64> {
         let Self {
             diameter: d,
@@ -90,8 +90,8 @@ impl Bodies {
         }
     }
 
-    /// Stiffness of the contact of two elastic spheres of these radii [N/m^1.5] (paper, Eq. 5);
-    /// none where the contact is of another exponent.
+    /// Returns the contact stiffness of two elastic spheres with the radii of rope and head [N/m^1.5] (paper,
+    /// Eq. 5); `None` if the contact exponent is not 1.5.
     fn hertz(&self) -> Option<f64> {
         let own = 0.5 * self.diameter;
         let radius = own * self.head_radius / (own + self.head_radius);
@@ -120,8 +120,8 @@ mod tests {
         exponent: 1.5,
     };
 
-    /// Table 3's recommended values: Eq. 3 for what moves along, four times Eq. 3 in N.m/deg for
-    /// what turns.
+    /// Checks against the recommended values of Table 3: Eq. 3 for translational stiffnesses, and four times
+    /// Eq. 3 in N.m/deg for rotational ones.
     #[test]
     fn eq_3_gives_the_papers_recommended_values() {
         let per_degree = Unit::NewtonMetrePerDegree.si_factor();
@@ -139,7 +139,7 @@ mod tests {
         }
     }
 
-    /// In the usual form, K = 4/3 E* sqrt(R) with 1/E* = 2 (1 - nu^2) / E.
+    /// Checks Eq. 5 against the usual form of Hertz contact, K = 4/3 E* sqrt(R) with 1/E* = 2 (1 - nu^2) / E.
     #[test]
     fn eq_5_is_the_hertz_contact() {
         let effective = 200e9 / (2.0 * (1.0 - 0.0625));

@@ -1,4 +1,4 @@
-//! The working conditions of a case: their numbers, load cards and gauge records.
+//! Reading of a case's working conditions: their numbers, load cards and gauge records.
 use super::{
     card,
     record::{self, Expected, RecordFacts},
@@ -18,15 +18,16 @@ use protocol::{
 };
 use std::path::{Path, PathBuf};
 
-/// Where the conditions of a case come from.
+/// Sources of a case's conditions.
 #[derive(Debug, Clone, Copy)]
 struct Conditions<'a> {
-    /// Its folder, and that whose cards and records, of the same names, replace those of the case.
+    /// Folder of the case, and the folder whose cards and records of the same names replace those of the
+    /// case.
     source: Source<'a>,
     file: &'a CaseFile,
 }
 
-/// A condition with what its record gave.
+/// Condition with its working data, record and notes.
 #[derive(Debug)]
 pub(super) struct ReadCondition {
     pub(super) condition: Condition,
@@ -40,7 +41,7 @@ pub(super) struct ReadCondition {
 /// Reads every condition, in the order of the file.
 ///
 /// # Errors
-/// Names that cannot tell conditions apart, and everything that is wrong with one.
+/// Returns an error for duplicate or invalid names, and all faults of the conditions.
 pub(super) fn read_all(
     source: &Source<'_>,
     file: &CaseFile,
@@ -61,7 +62,7 @@ pub(super) fn read_all(
 }
 
 impl Conditions<'_> {
-    /// Reads one condition with its card and record.
+    /// Reads a condition with its load card and record.
     fn condition(&self, index: usize) -> Result<ReadCondition, CaseError> {
         let Some(entry) = self.file.conditions.get(index) else {
             return Err(damaged(
@@ -139,7 +140,7 @@ impl Conditions<'_> {
         })
     }
 
-    /// What the record of a condition is asked to agree with.
+    /// Returns the values with which the record of a condition must agree.
     fn expected<'b>(&'b self, index: usize, entry: &'b ConditionEntry) -> Expected<'b> {
         Expected {
             index,
@@ -151,8 +152,8 @@ impl Conditions<'_> {
         }
     }
 
-    /// A remark if the test in `--measured DIR` did not repeat a condition: it has no record then, and
-    /// the case's card. That of the objective must be there.
+    /// Returns a note if the folder of `--measured DIR` lacks the record of a condition; the condition then
+    /// has no record and keeps the case's card. The record of the objective's condition is required.
     fn not_repeated(&self, entry: &ConditionEntry) -> Option<Note> {
         let measured = self.source.measured?;
         let record = self.place(entry.record_file.as_ref()?);
@@ -161,14 +162,14 @@ impl Conditions<'_> {
         (!needed && !record.exists()).then(|| Note {
             path: measured.to_owned(),
             text: format!(
-                "{} is not there: condition `{}` was not measured, and nothing is compared with it",
+                "{} does not exist: condition `{}` has no record and is not compared",
                 record.file_name().unwrap_or_default().display(),
                 entry.name
             ),
         })
     }
 
-    /// Where a card or record is read from: `--measured DIR` replaces the folder, not the name.
+    /// Returns the path of a card or record: `--measured DIR` replaces the folder, not the name.
     fn place(&self, named: &Path) -> PathBuf {
         match (self.source.measured, named.file_name()) {
             (Some(measured), Some(name)) => measured.join(name),
@@ -177,7 +178,7 @@ impl Conditions<'_> {
     }
 }
 
-/// Ranges of a condition's own numbers.
+/// Checks the ranges of a condition's speed and counterweight moment.
 fn check_condition<'a>(
     document: &Document,
     entry: &ConditionEntry,

@@ -1,4 +1,4 @@
-//! A pumping unit's case in figures: what `horsehead case check` tells of it.
+//! Key figures of a pumping-unit case, as printed by `horsehead case check`.
 use super::{
     geometry::Envelope,
     read::{Resolved, read},
@@ -17,62 +17,62 @@ use protocol::{
 };
 use std::{fmt, path::Path};
 
-/// A case in figures.
+/// Key figures of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figures {
-    /// Name of the machine.
+    /// Name of the machine in the case.
     pub name: String,
-    /// Where beam and ropes move, by rigid kinematics.
+    /// Range of motion of beam and ropes, by rigid kinematics.
     pub envelope: Envelope,
     /// Length of the back rope \[m\] and its number of cylinders.
     pub back_rope: (f64, usize),
     /// Length of the front rope \[m\] and its number of cylinders.
     pub front_rope: (f64, usize),
-    /// Frequencies of the head modes that are simulated \[Hz\].
+    /// Frequencies of the simulated head modes \[Hz\].
     pub modes_hz: Vec<f64>,
-    /// Two ropes on each head, where there are: distance from the plane \[m\], by how much the back and
-    /// the front rope at -z are longer \[m\], frequencies of the modes out of the plane \[Hz\].
+    /// Figures of a machine with two ropes on each head: distance of the ropes from the plane \[m\], excess
+    /// length of the back and front rope at -z \[m\], and frequencies of the out-of-plane modes \[Hz\].
     pub twin_ropes: Option<(f64, [f64; 2], Vec<f64>)>,
     /// Mass of the meshed head \[kg\].
     pub head_mass_kg: f64,
-    /// The unknown numbers.
+    /// Unknowns of the case.
     pub genes: Vec<Unknown>,
-    /// Effects beside the machine that is drawn.
+    /// Effects beyond the baseline model.
     pub effects: Vec<CaseEffect>,
-    /// One entry per condition.
+    /// Key figures of each condition.
     pub conditions: Vec<ConditionFigures>,
-    /// Name of the calibrated condition, and what is summed under it.
+    /// Name of the calibrated condition, and the terms of its objective.
     pub objective: (String, Vec<Term>),
-    /// Remarks.
+    /// Remarks on the case that are not errors.
     pub notes: Vec<Note>,
 }
 
-/// A working condition in figures.
+/// Key figures of a working condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionFigures {
-    /// Name.
+    /// Name of the condition.
     pub name: String,
     /// Crank speed [1/min].
     pub speed_rpm: f64,
     /// Smallest and largest load of the card \[N\].
     pub load_n: [f64; 2],
-    /// The record, where there is one.
+    /// Key figures of the record, if there is one.
     pub record: Option<RecordFigures>,
 }
 
-/// A record in figures.
+/// Key figures of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordFigures {
-    /// File, samples, losses, speed.
+    /// File name, samples, losses and speed of the record.
     pub facts: RecordFacts,
-    /// Whole cycles that were averaged.
+    /// Number of whole cycles that were averaged.
     pub cycles: usize,
-    /// Per channel: its title and unit, half of the measured range, noise of the mean curve (root
-    /// mean square of spread / sqrt(cycles)).
+    /// Title, unit, half of the measured range, and noise of the mean curve (root mean square of spread /
+    /// sqrt(cycles)) of each channel.
     pub channels: Vec<(String, String, f64, f64)>,
 }
 
-/// Loads a case and tells what is in it.
+/// Loads a case and returns its key figures.
 ///
 /// # Errors
 /// As [`crate::load()`].
@@ -85,7 +85,7 @@ pub fn figures(folder: &Path) -> Result<Figures, CaseError> {
     ))
 }
 
-/// The same in short.
+/// Returns the key figures as a summary, with their text.
 ///
 /// # Errors
 /// As [`crate::load()`].
@@ -102,7 +102,7 @@ pub(super) fn summary(source: &Source<'_>) -> Result<Summary, CaseError> {
     })
 }
 
-/// What is in a case of which the file was read.
+/// Resolves a case and collects its key figures.
 fn of(source: &Source<'_>) -> Result<Figures, CaseError> {
     let Resolved {
         loaded,
@@ -148,7 +148,7 @@ fn of(source: &Source<'_>) -> Result<Figures, CaseError> {
     })
 }
 
-/// One summary per condition.
+/// Returns the key figures of each condition.
 fn conditions(
     case: &Case,
     machine: &Machine,
@@ -184,7 +184,7 @@ fn conditions(
     summaries.collect()
 }
 
-/// Smallest and largest value.
+/// Returns the smallest and the largest value.
 fn range(values: &[f64]) -> [f64; 2] {
     [
         values.iter().copied().fold(f64::INFINITY, f64::min),
@@ -211,7 +211,7 @@ impl fmt::Display for Figures {
 }
 
 impl Figures {
-    /// Machine, ropes, head and genes.
+    /// Writes the lines on machine, ropes, head, unknowns and effects.
     fn write_machine(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Envelope {
             beam_deg: [low, high],
@@ -272,7 +272,7 @@ impl Figures {
         if self.twin_ropes.is_none() {
             writeln!(
                 to,
-                "  kb4 and cb4 change nothing: one rope in the middle is not twisted, see twin_ropes"
+                "  kb4 and cb4 have no effect: a single rope in the middle plane is not twisted; see twin_ropes"
             )?;
         }
         for effect in &self.effects {

@@ -1,4 +1,4 @@
-//! The flexible head of a case: its tables, its mesh, and whether they belong together.
+//! Reading of the flexible head of a case: its tables and its mesh, with a check that they belong together.
 use super::{head, mesh, schema::CaseFile, twin};
 use crate::{
     document::{Document, Step},
@@ -8,21 +8,21 @@ use crate::{
 use protocol::pumping_unit::{ModalHead, TwinRopes};
 use std::path::Path;
 
-/// The flexible head as its files have it.
+/// Flexible head as read from its files.
 pub(super) struct ReadHead {
     pub(super) head: ModalHead,
     pub(super) provenance: head::Provenance,
-    /// With the content hash of its file.
+    /// Mesh and the content hash of its file, if the case names one.
     pub(super) mesh: Option<(mesh::Mesh, String)>,
-    /// Content hash of all that a reduction depends on; none without a mesh.
+    /// Content hash of all inputs of the reduction; `None` without a mesh.
     pub(super) source_blake3: Option<String>,
-    /// Two ropes in place of one, with what the head answers to a pair.
+    /// Data of two ropes on each head, with the head's response to a pair of ropes, if the case has them.
     pub(super) twins: Option<TwinRopes>,
-    /// The tables were computed from something else, or do not fit together.
+    /// Error that explains why the tables are out of date or do not fit together; `None` if they are valid.
     pub(super) stale: Option<CaseError>,
 }
 
-/// Modes, influence lines and, where there is one, the mesh they belong to.
+/// Reads modes, influence lines and, if the case names one, the mesh that they belong to.
 pub(super) fn read(
     folder: &Path,
     document: &Document,
@@ -92,7 +92,7 @@ pub(super) fn read(
     Ok(read)
 }
 
-/// Content hash of all that a reduction depends on: mesh, material, arc, stations, gauges.
+/// Returns the content hash of all inputs of a reduction: mesh, material, arc, stations and gauges.
 fn source_hash(mesh: &str, file: &CaseFile, read: &ReadHead) -> String {
     let flexible = &file.flexible_head;
     let mut hasher = blake3::Hasher::new();

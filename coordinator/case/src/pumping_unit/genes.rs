@@ -1,5 +1,4 @@
-//! The coefficients of rope and contact that a case declares as genes, and what is known of each as an
-//! unknown of a search.
+//! Conversion of the rope and contact coefficients that a case declares to unknowns of a search.
 use super::{coefficient::Bodies, recommended::Recommended, schema::GeneEntry};
 use crate::{
     document::{Document, Step, units},
@@ -15,11 +14,11 @@ use std::collections::BTreeMap;
 /// Largest value of any coefficient, in SI units.
 const LARGEST: f64 = 1.0e30;
 
-/// The coefficients of a case, checked.
+/// Returns the checked coefficients of a case as unknowns.
 ///
 /// # Errors
-/// A unit that does not fit, values that are not positive, bounds that exclude the recommended
-/// value, a formula that does not give this coefficient.
+/// Returns an error for a unit of another dimension, a value that is not positive, bounds that exclude the
+/// recommended value, or a formula that does not cover the coefficient.
 pub(super) fn declared(
     document: &Document,
     table: &BTreeMap<Coefficient, GeneEntry>,
@@ -33,7 +32,7 @@ pub(super) fn declared(
     Ok(genes)
 }
 
-/// One coefficient of a case, checked.
+/// Returns one checked coefficient of a case as an unknown.
 fn gene(
     document: &Document,
     table: &BTreeMap<Coefficient, GeneEntry>,
@@ -100,7 +99,7 @@ fn gene(
     Ok(gene)
 }
 
-/// A coefficient as an unknown of a search.
+/// Returns a coefficient as an unknown of a search.
 pub fn unknown(name: Coefficient, unit: Unit, start: f64, bounds: [f64; 2]) -> Unknown {
     let (letter, index) = name.as_str().split_at(1);
     Unknown {
@@ -118,9 +117,10 @@ pub fn unknown(name: Coefficient, unit: Unit, start: f64, bounds: [f64; 2]) -> U
     }
 }
 
-/// Stiffness of a rope is known to a decade or so, its damping to several: a bushing's dashpot
-/// stands for every loss of the machine. Contact numbers are conventions of a simulation program
-/// rather than properties of the machine, and recommendations for them are mostly too soft.
+/// Returns the range, in decades about the start, in which simulations usually succeed. The stiffness of a
+/// rope is known to about a decade, its damping to several, because a bushing's dashpot represents all losses
+/// of the machine. Contact coefficients are conventions of a simulation program rather than properties of the
+/// machine, and recommended values are mostly too soft.
 const fn trust(unit: Unit) -> [f64; 2] {
     match unit {
         Unit::NewtonPerMetre | Unit::NewtonMetrePerRadian | Unit::NewtonMetrePerDegree => {
@@ -133,11 +133,11 @@ const fn trust(unit: Unit) -> [f64; 2] {
     }
 }
 
-/// The valley of the axial stiffness. The load excites two modes of the rope, some sixty and eighty
-/// times a turn, and a stiffness a few hundredths of a decade off gives their waves the wrong phase.
-/// Much damping hides the modes; a soft contact can stand in for a soft rope, and of a very hard one no
-/// small change shows. Damping over stiffness is 1 and 4 % of critical at the modes' 6 Hz, between
-/// which wire ropes lie.
+/// Returns the description of the narrow valley of the objective along the axial stiffness. The load excites
+/// two modes of the rope, at about sixty and eighty cycles per turn, and a stiffness a few hundredths of a
+/// decade off shifts their phase. High damping hides the modes; a soft contact can compensate a soft rope;
+/// with a very hard contact no small change is visible. The damping-to-stiffness ratios correspond to 1 and 4
+/// % of critical damping at the modes' 6 Hz, the range of wire ropes.
 fn valley() -> Valley {
     let shift = |name: Coefficient, by| Shift {
         unknown: name.as_str().to_owned(),
@@ -156,7 +156,7 @@ fn valley() -> Valley {
     }
 }
 
-/// A coefficient's unit measures that kind of coefficient.
+/// Checks that a unit has the dimension of a coefficient.
 pub(super) fn check_unit(
     document: &Document,
     way: &[Step<'_>],
@@ -179,7 +179,7 @@ pub(super) fn check_unit(
     ))
 }
 
-/// Coefficients are searched on a logarithmic scale: positive and finite.
+/// Checks that a coefficient is positive and finite, as its logarithmic scale requires.
 pub(super) fn check_value(
     document: &Document,
     way: &[Step<'_>],

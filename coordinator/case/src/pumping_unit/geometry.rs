@@ -1,20 +1,20 @@
-//! Rigid kinematics of the machine, only as far as a case is checked: does the rope reach, and
-//! does it stay on the arcs?
+//! Rigid kinematics of the machine for checking a case: whether the ropes are long enough and stay on their
+//! arcs.
 //!
-//! For a crank angle, beam angle `theta` and contact normal `Psi` (ground frame) follow from
-//! tangency `P.n = h(psi)` and length `P.t - h'(psi) + R (psi - psi_a) = L`, with `psi = Psi - theta`,
-//! the support function `h = R + C.n(psi)` and the crank pin P; Newton on both. The dynamics in
-//! the worker know nothing of this file.
+//! For a crank angle, beam angle `theta` and contact normal `Psi` (ground frame) follow from tangency `P.n =
+//! h(psi)` and length `P.t - h'(psi) + R (psi - psi_a) = L`, with `psi = Psi - theta`, the support function
+//! `h = R + C.n(psi)` and the crank pin P, solved by Newton's method. The worker's dynamics do not use this
+//! module.
 use super::schema::CaseFile;
 use protocol::pumping_unit::{BackHead, Crank, Machine, TurnSense, WorkingCondition};
 use support::interpolation::periodic;
 
-/// Extremes over one turn.
+/// Extreme values of the rigid kinematics over one crank turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Envelope {
     /// Lowest and highest beam angle \[deg\].
     pub beam_deg: [f64; 2],
-    /// Least and greatest angle of the contact normal on the back head, beam frame \[deg\].
+    /// Smallest and largest angle of the contact normal on the back head, beam frame \[deg\].
     pub contact_deg: [f64; 2],
     /// Shortest and longest free back rope, from crossbeam to head \[m\].
     pub free_rope_m: [f64; 2],
@@ -24,10 +24,11 @@ pub struct Envelope {
     pub stroke_m: f64,
 }
 
-/// Crank angles that are tried: every two degrees.
+/// Number of crank angles evaluated over one turn: every two degrees.
 const STEPS: u32 = 180;
 
-/// Extremes over one turn; or the crank-pin angle \[deg\] at which the loop cannot be closed.
+/// Returns the extreme values over one turn; on failure the crank-pin angle \[deg\] at which the loop cannot
+/// be closed.
 pub(super) fn envelope(case: &CaseFile) -> Result<Envelope, f64> {
     let back_rope = case.ropes.back_cylinders as f64 * case.ropes.cylinder_length_m;
     let front_rope = case.ropes.front_cylinders as f64 * case.ropes.cylinder_length_m;
@@ -73,7 +74,8 @@ fn widen([low, high]: &mut [f64; 2], value: f64) {
     *high = high.max(value);
 }
 
-/// Beam angle and contact normal for a crank-pin angle \[rad\]; none where Newton does not converge.
+/// Returns beam angle and contact normal for a crank-pin angle \[rad\]; `None` if Newton's method does not
+/// converge.
 fn close(
     (crank, head): (&Crank, &BackHead),
     phi: f64,
@@ -114,23 +116,24 @@ fn close(
     None
 }
 
-/// The back rope over one turn, equally spaced from bottom dead centre: rigid kinematics, the
-/// rope's own weight and vibration left out.
+/// Quasi-static back rope over one turn, equally spaced from bottom dead centre; computed by rigid
+/// kinematics, without the rope's own weight and vibration.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct QuasiStatic {
     /// Crank angle from bottom dead centre \[deg\].
     pub turn_deg: Vec<f64>,
-    /// Where the rope leaves the back head, beam frame \[deg\].
+    /// Angle at which the rope leaves the back head, beam frame \[deg\].
     pub contact_deg: Vec<f64>,
     /// Rope tension \[N\].
     pub tension_n: Vec<f64>,
 }
 
-/// Samples of the quasi-static turn.
+/// Number of samples of the quasi-static turn.
 const SAMPLES: u32 = 720;
 
-/// The back rope's tension and place over one turn: it holds the load on the front arm, the
-/// beam's unbalance and its inertia, at the arm `h(psi)`. None where the crank cannot turn through.
+/// Computes the back rope's tension and contact angle over one turn. The rope balances the load on the front
+/// arm, the beam's unbalance and its inertia, with the moment arm `h(psi)`. Returns `None` if the crank
+/// cannot complete a turn.
 pub fn quasi_static(machine: &Machine, condition: &WorkingCondition) -> Option<QuasiStatic> {
     let bodies = (&machine.crank, &machine.back_head);
     let length = machine.ropes.back_cylinders as f64 * machine.ropes.cylinder_length_m

@@ -1,6 +1,7 @@
-//! The reduced back head of a case: modes (JSON) and influence lines (CSV), checked for shape.
+//! Reading of the reduced back head of a case: modes (JSON) and influence lines (CSV), with a check of their
+//! shapes.
 //!
-//! It does not judge the numbers against the mesh: see [`super::mesh`].
+//! The check of the numbers against the mesh is in [`super::mesh`].
 use crate::{
     document,
     error::{CaseError, damaged},
@@ -12,7 +13,7 @@ use protocol::pumping_unit::{Influence, ModalHead, StressRecovery};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, path::Path};
 
-/// The modes file: the keys that are used; centre and inertia are for the reader.
+/// Keys of the modes file that are used; its other keys, such as centre and inertia, are for human readers.
 #[derive(Debug, Deserialize)]
 struct ModesFile {
     frequencies_hz: Vec<f64>,
@@ -24,35 +25,35 @@ struct ModesFile {
     participation: Vec<[f64; 3]>,
     inertia_stress_mpa: [[f64; 4]; 3],
     mass_kg: f64,
-    /// Where stress is read; needed only to reduce the head again.
+    /// Locations of the gauges by name; needed only for a new reduction of the head.
     gauges: Option<BTreeMap<String, GaugePlace>>,
-    /// Content of the mesh file that the tables were computed from; absent where they were not.
+    /// Content hash of the mesh file that the tables were computed from, if they were.
     mesh_blake3: Option<String>,
-    /// Content of all that the reduction depends on; absent where the tables were not reduced here.
+    /// Content hash of all inputs of the reduction; absent if the tables were not reduced by this program.
     source_blake3: Option<String>,
 }
 
-/// Place of a gauge in the modes file.
+/// Location of a gauge in the modes file.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct GaugePlace {
-    /// Along the machine, from the beam pivot towards the well \[m\].
+    /// Coordinate along the machine, from the beam pivot towards the well \[m\].
     pub x_m: f64,
-    /// Upwards \[m\].
+    /// Upward coordinate \[m\].
     pub y_m: f64,
-    /// Out of the plane \[m\].
+    /// Out-of-plane coordinate \[m\].
     pub z_m: f64,
-    /// Length of its grid \[m\].
+    /// Length of the gauge's grid \[m\].
     pub length_m: f64,
 }
 
-/// What the tables say of themselves.
+/// Provenance of the head's tables, as stated in the modes file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Provenance {
-    /// The four gauges, where the file places them.
+    /// Locations of the four gauges, if the file states them.
     pub(super) gauges: Option<[HeadGauge; 4]>,
-    /// Content hash of the mesh they were computed from.
+    /// Content hash of the mesh that the tables were computed from.
     pub(super) mesh_blake3: Option<String>,
-    /// Content hash of all that they were computed from.
+    /// Content hash of all inputs of the reduction.
     pub(super) source_blake3: Option<String>,
 }
 
@@ -77,8 +78,8 @@ impl Provenance {
 /// Reads modes and influence lines.
 ///
 /// # Errors
-/// Ragged tables, frequencies or stations that do not ascend, values out of range, an influence
-/// table that does not cover the modes' arc.
+/// Returns an error for ragged tables, frequencies or stations that do not ascend, values out of range, and
+/// an influence table that does not cover the modes' arc.
 pub(super) fn read(modes: &Path, influence: &Path) -> Result<(ModalHead, Provenance), CaseError> {
     let bytes = file::read(
         modes,
@@ -104,7 +105,7 @@ pub(super) fn read(modes: &Path, influence: &Path) -> Result<(ModalHead, Provena
     Ok((head, provenance))
 }
 
-/// Order and ranges of the modes.
+/// Checks the order and ranges of the modes.
 fn check_modes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
     ascending(&modes.frequencies_hz).map_err(|at| {
         field(
@@ -158,7 +159,7 @@ fn check_modes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
     check_shapes(path, modes)
 }
 
-/// Every mode has its rows, every station its values.
+/// Checks that every mode has its rows and every station its values.
 fn check_shapes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
     let count = modes.frequencies_hz.len();
     let stations = modes.arc_deg.len();
@@ -202,7 +203,7 @@ fn check_shapes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// An error about a field of the modes file.
+/// Builds an error about a field of the modes file.
 fn field(path: &Path, field: &str, value: String, allowed: &str, help: &str) -> CaseError {
     CaseError::Field {
         path: path.into(),
@@ -284,7 +285,7 @@ fn read_influence(path: &Path, arc_deg: &[f64]) -> Result<Influence, CaseError> 
     })
 }
 
-/// Whether numbers ascend strictly; else the index of the first that does not.
+/// Checks that numbers ascend strictly; on failure returns the index of the first that does not.
 fn ascending(values: &[f64]) -> Result<(), usize> {
     let broken = values
         .iter()
@@ -293,7 +294,7 @@ fn ascending(values: &[f64]) -> Result<(), usize> {
     broken.map_or(Ok(()), |at| Err(at + 1))
 }
 
-/// An entry for a message.
+/// Formats an entry of a list for a message; `absent` if there is none.
 fn number(values: &[f64], at: usize) -> String {
     values
         .get(at)

@@ -1,52 +1,55 @@
-//! The back head reduced anew: against the case's tables, and what its modes alone would show.
+//! Comparison of a newly reduced back head with the case's tables, and with the stress by mode displacement
+//! alone.
 //!
-//! Quasi-static stress needs no dynamics: a rope of tension T wrapped from its fixed end to where it
-//! leaves presses with T per radian and pulls its end with T. Exact statics are influence lines
-//! integrated over the wrap; mode displacement is `sum_k s_k f_k / w_k^2` of the same forces.
+//! Quasi-static stress needs no dynamics: a rope of tension T, wrapped from its fixed end to the point where
+//! it leaves the head, presses with T per radian and pulls its end with T. Exact statics are the influence
+//! lines integrated over the wrap; mode displacement is `sum_k s_k f_k / w_k^2` for the same forces.
 use super::geometry::QuasiStatic;
 use protocol::pumping_unit::{Influence, ModalHead, ReducedHead};
 use support::interpolation::held;
 
-/// Shapes smaller than this share of the table's largest move nothing.
+/// Threshold, as a share of the table's largest value, below which a mode shape does not move the rope
+/// surface.
 const INERT: f64 = 1e-6;
 
-/// A new head beside the case's tables.
+/// Comparison of a newly reduced head with the case's tables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeadComparison {
-    /// One entry per new mode.
+    /// Match of each new mode with the table.
     pub modes: Vec<ModeMatch>,
-    /// Modes of the table that do not move the rope surface \[Hz\]: no rope drives them.
+    /// Frequencies of the table's modes that do not move the rope surface and so are not excited by a rope
+    /// \[Hz\].
     pub inert_hz: Vec<f64>,
-    /// Largest difference of the influence lines, over the table's largest value, per gauge.
+    /// Largest difference of the influence lines for each gauge, relative to the table's largest value.
     pub influence_difference: [f64; 4],
-    /// Half of the range of stress over the quasi-static turn \[MPa\].
+    /// Half-ranges of stress over the quasi-static turn \[MPa\].
     pub half_ranges: HalfRanges,
 }
 
-/// A mode and the table's most similar one.
+/// Mode of the new head with the most similar mode of the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModeMatch {
-    /// Its frequency \[Hz\].
+    /// Frequency of the new mode \[Hz\].
     pub frequency_hz: f64,
-    /// The table's frequency \[Hz\] and the modal assurance criterion of the two shapes along the
-    /// rope arc; none for a mode that does not move it or that the table lacks.
+    /// Frequency of the table's mode \[Hz\] and modal assurance criterion of both shapes along the rope arc;
+    /// `None` if the mode does not move the arc or has no counterpart in the table.
     pub table: Option<(f64, f64)>,
 }
 
 /// Half-ranges of the four gauges over a quasi-static turn \[MPa\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HalfRanges {
-    /// Exact, by the new influence lines.
+    /// Half-ranges from exact statics with the new influence lines.
     pub exact: [f64; 4],
-    /// Exact, by the case's.
+    /// Half-ranges from exact statics with the case's influence lines.
     pub table: [f64; 4],
-    /// By mode displacement with the modes that the case simulates.
+    /// Half-ranges from mode displacement with the modes that the case simulates.
     pub displacement: [f64; 4],
-    /// Mean level by mode displacement less the exact one.
+    /// Difference of the mean stress by mode displacement from the exact mean.
     pub displacement_offset: [f64; 4],
 }
 
-/// Compares a new head with the tables of a case; `modes` is the number that is simulated.
+/// Compares a newly reduced head with the tables of a case; `modes` is the number of simulated modes.
 pub fn compare_head(
     new: &ReducedHead,
     table: &ModalHead,
@@ -115,7 +118,8 @@ pub fn compare_head(
     }
 }
 
-/// Modal assurance criterion: squared cosine of the angle between two shapes; 0 for no shape.
+/// Returns the modal assurance criterion, the squared cosine of the angle between two shapes; 0 if a shape is
+/// zero.
 fn mac(a: &[f64], b: &[f64]) -> f64 {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let sizes = dot(a, a) * dot(b, b);
@@ -132,7 +136,8 @@ fn half_range(curve: &[f64]) -> f64 {
     0.5 * (high - low)
 }
 
-/// Largest difference at the new stations over the old table's largest value, per gauge.
+/// Returns for each gauge the largest difference at the new stations, relative to the old table's largest
+/// value.
 fn difference(new: &Influence, old: &Influence) -> [f64; 4] {
     [0, 1, 2, 3].map(|gauge| {
         let (mut most, mut size) = (0.0_f64, 0.0_f64);
@@ -155,7 +160,7 @@ fn column(rows: &[[f64; 4]], gauge: usize) -> Vec<f64> {
     rows.iter().map(|row| row[gauge]).collect()
 }
 
-/// A mode along the rope arc.
+/// Mode shape along the rope arc, with its frequency and gauge stress.
 struct Shape<'a> {
     frequency_hz: f64,
     radial: &'a [f64],
@@ -163,26 +168,26 @@ struct Shape<'a> {
     gauge_stress_mpa: [f64; 4],
 }
 
-/// The wrapped rope over one turn.
+/// Back rope wrapped on the head over one quasi-static turn.
 #[derive(Clone, Copy, Debug)]
 pub struct WrappedTurn<'a> {
     turn: &'a QuasiStatic,
     anchor_deg: f64,
 }
 
-/// The wrapped rope over one turn, fixed at `anchor_deg` on the arc.
+/// Returns the wrapped rope over one turn, with its end fixed at `anchor_deg` on the arc.
 pub const fn wrapped_turn(turn: &QuasiStatic, anchor_deg: f64) -> WrappedTurn<'_> {
     WrappedTurn { turn, anchor_deg }
 }
 
 impl WrappedTurn<'_> {
-    /// Place and tension of the rope at every crank angle.
+    /// Returns the contact angle and the tension of the rope at every crank angle.
     fn each(&self) -> impl Iterator<Item = (f64, f64)> {
         let places = self.turn.contact_deg.iter().copied();
         places.zip(self.turn.tension_n.iter().copied())
     }
 
-    /// Exact stress at the gauges over the turn \[MPa\].
+    /// Computes the exact quasi-static stress at the gauges over the turn \[MPa\].
     pub fn exact(&self, influence: &Influence) -> [Vec<f64>; 4] {
         [0, 1, 2, 3].map(|gauge| {
             let normal = column(&influence.normal_mpa_per_n, gauge);
@@ -196,7 +201,7 @@ impl WrappedTurn<'_> {
         })
     }
 
-    /// Stress at the gauges over the turn that the modes alone show \[MPa\].
+    /// Computes the stress at the gauges over the turn by mode displacement \[MPa\].
     fn displacement(&self, arc_deg: &[f64], modes: &[Shape<'_>]) -> [Vec<f64>; 4] {
         let mut stress = [0, 1, 2, 3].map(|_| vec![0.0; self.turn.turn_deg.len()]);
         for mode in modes {
@@ -217,7 +222,7 @@ impl WrappedTurn<'_> {
     }
 }
 
-/// A table, linear between its points and constant beyond.
+/// Piecewise linear function, constant beyond its end points.
 #[derive(Clone, Copy, Debug)]
 struct Line<'a> {
     x: &'a [f64],
@@ -233,7 +238,7 @@ impl<'a> Line<'a> {
         held(self.x, self.y, x)
     }
 
-    /// Exact integral of the line between two places, in the unit of x times that of y.
+    /// Returns the exact integral between two abscissas, in the unit of x times that of y.
     fn integral(&self, from: f64, to: f64) -> f64 {
         let inside = self.x.iter().copied().filter(|x| *x > from && *x < to);
         let knots: Vec<f64> = std::iter::once(from).chain(inside).chain([to]).collect();

@@ -1,5 +1,4 @@
-//! What a reduction of a case's back head starts from: mesh, material, gauges, and where the tables are
-//! kept that it makes.
+//! Inputs of a reduction of a case's back head (mesh, material, gauges) and the files for its results.
 use super::{
     mesh,
     read::{Resolved, resolve},
@@ -11,14 +10,14 @@ use crate::{
 use protocol::pumping_unit::{HeadGauge, PumpingUnit};
 use std::path::{Path, PathBuf};
 
-/// What a reduction of the back head starts from, and where its tables are kept.
+/// Inputs of a reduction of the back head, and the files for its tables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeadSource {
-    /// The mesh.
+    /// Mesh of the back head.
     pub mesh: mesh::Mesh,
-    /// Content hash of its file, in hexadecimal digits.
+    /// Content hash of the mesh file, in hexadecimal digits.
     pub mesh_blake3: String,
-    /// Content hash of all that the reduction depends on.
+    /// Content hash of all inputs of the reduction.
     pub source_blake3: String,
     /// Young's modulus \[Pa\].
     pub young_pa: f64,
@@ -26,22 +25,23 @@ pub struct HeadSource {
     pub poisson: f64,
     /// Density [kg/m3].
     pub density_kg_m3: f64,
-    /// Where stress is read.
+    /// Locations of the four gauges at which stress is evaluated.
     pub gauges: [HeadGauge; 4],
-    /// Whether the case's tables are missing or were computed from something else.
+    /// Whether the case's tables are missing or were computed from other inputs.
     pub stale: bool,
-    /// The file of the modes.
+    /// File of the modes.
     pub modes_file: PathBuf,
-    /// The file of the influence lines.
+    /// File of the influence lines.
     pub influence_file: PathBuf,
-    /// The file of the tables for a pair of ropes, where the case has one.
+    /// File of the tables for a pair of ropes, if the case has one.
     pub twin_file: Option<PathBuf>,
 }
 
-/// Reads a case and what its back head is reduced from. Tables of another mesh are no error here.
+/// Loads a case with the inputs of its back head's reduction. Tables computed from another mesh are accepted
+/// here.
 ///
 /// # Errors
-/// As [`crate::load()`]; a case without mesh or gauge places.
+/// As [`crate::load()`]; also for a case without mesh or gauge locations.
 pub fn load_head(folder: &Path) -> Result<(PumpingUnit, HeadSource), CaseError> {
     let overrides = Overrides::default();
     let document = document(folder, &overrides)?;

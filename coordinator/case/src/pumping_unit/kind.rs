@@ -1,4 +1,4 @@
-//! The pumping unit as its cases are read.
+//! Kind of model for pumping units.
 use super::{figures, numerics::numerics, read};
 use crate::{
     case_kind::CaseKind, error::CaseError, loaded::Loaded, source::Source, summary::Summary,
@@ -6,7 +6,7 @@ use crate::{
 use discrepancy::thresholds::Thresholds;
 use protocol::{case::Case, job::Numerics, pumping_unit::Machine, wire::WireError};
 
-/// Pumping units with double horse heads.
+/// Kind of model for pumping units with double horse heads.
 pub(crate) struct PumpingUnits;
 
 impl CaseKind for PumpingUnits {

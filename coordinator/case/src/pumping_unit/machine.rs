@@ -1,5 +1,5 @@
-//! Whether the numbers of a `case.toml` fit each other: the step divides a turn, the ropes reach over the
-//! whole turn and stay on their arcs. Each by itself has been checked.
+//! Consistency checks on the numbers of a `case.toml`: the output step divides a turn, and the ropes are long
+//! enough over the whole turn and stay on their arcs. The range of each number was checked before.
 use super::{
     geometry::{self, Envelope},
     schema::{CaseFile, ConditionEntry},
@@ -10,10 +10,10 @@ use crate::{
 };
 use protocol::pumping_unit::Smoothing;
 
-/// Checks a case file alone.
+/// Checks the consistency of a case file without its other files; returns the extremes of the kinematics.
 ///
 /// # Errors
-/// The first number that contradicts others.
+/// Returns an error for the first number that contradicts others.
 pub(super) fn check(document: &Document, case: &CaseFile) -> Result<Envelope, CaseError> {
     if case.name.trim().is_empty() {
         return Err(document.field(
@@ -28,7 +28,7 @@ pub(super) fn check(document: &Document, case: &CaseFile) -> Result<Envelope, Ca
     check_ropes(document, case)
 }
 
-/// The grid of the output has whole steps.
+/// Checks that the output step divides a turn into whole steps.
 fn check_output_step(document: &Document, step: f64) -> Result<(), CaseError> {
     let count = 360.0 / step;
     if (count - count.round()).abs() > 1e-9 * count {
@@ -42,7 +42,7 @@ fn check_output_step(document: &Document, step: f64) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// What is done to the load cards can be done.
+/// Checks that the smoothing of the load cards is valid.
 fn check_smoothing(document: &Document, conditions: &[ConditionEntry]) -> Result<(), CaseError> {
     for (index, condition) in conditions.iter().enumerate() {
         let way = |key| [Step::Key("conditions"), Step::Index(index), Step::Key(key)];
@@ -65,7 +65,7 @@ fn check_smoothing(document: &Document, conditions: &[ConditionEntry]) -> Result
     Ok(())
 }
 
-/// The divisor of 360 with few decimals that is nearest to a step \[deg\].
+/// Returns the divisor of 360 with few decimals that is nearest to a step \[deg\].
 fn plain_step(step: f64) -> f64 {
     let plain = [
         0.1, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.75, 0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0,
@@ -78,7 +78,7 @@ fn plain_step(step: f64) -> f64 {
         .unwrap_or(0.5)
 }
 
-/// The ropes reach over the whole turn and stay on their arcs.
+/// Checks that the ropes are long enough over the whole turn and stay on their arcs.
 fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseError> {
     let ropes = &case.ropes;
     let back = ropes.back_cylinders as f64 * ropes.cylinder_length_m;
@@ -150,7 +150,8 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
     Ok(envelope)
 }
 
-/// The crank cannot turn through: no beam angle closes the loop at a pin angle \[deg\].
+/// Builds the error for a crank that cannot complete a turn, because no beam angle closes the loop at a pin
+/// angle \[deg\].
 fn open_loop(document: &Document, case: &CaseFile, pin: f64) -> CaseError {
     let back = case.ropes.back_cylinders as f64 * case.ropes.cylinder_length_m;
     contradiction(
@@ -175,7 +176,7 @@ fn open_loop(document: &Document, case: &CaseFile, pin: f64) -> CaseError {
     )
 }
 
-/// The anchor and the contact's whole travel lie on the arc of the reduced head.
+/// Checks that the anchor and the whole travel of the contact lie on the arc of the reduced head.
 pub(super) fn check_arc(
     document: &Document,
     case: &CaseFile,

@@ -1,7 +1,7 @@
-//! Reads the case folder of a pumping unit: its file, load cards, gauge records with their data sheets,
+//! Reading of the case folder of a pumping unit: its file, load cards, gauge records with their data sheets,
 //! and the reduced back head with its mesh.
 //!
-//! Knows files and geometry, no dynamics.
+//! The module covers files and geometry, not dynamics.
 mod card;
 mod coefficient;
 mod condition;
@@ -36,7 +36,7 @@ pub use head_source::{HeadSource, load_head};
 pub use record::{RecordFacts, count_samples};
 pub use twin::TwinFile;
 
-/// A commented `case.toml` to start from; it loads as soon as the files it names exist.
+/// Returns a commented `case.toml` as a starting point; it loads as soon as the files it names exist.
 pub const fn template() -> &'static str {
     include_str!("template.toml")
 }

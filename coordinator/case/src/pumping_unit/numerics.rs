@@ -1,4 +1,4 @@
-//! How a diagnosis divides space and time.
+//! Numerical settings of a diagnosis: discretisation in space and time.
 use discrepancy::thresholds::Thresholds;
 use protocol::{
     case::Case,
@@ -7,11 +7,11 @@ use protocol::{
     wire::WireError,
 };
 
-/// As experiments are computed, and as they are for the numerical check: everything finer, the cylinders
-/// alone, everything else alone.
+/// Returns the numerical settings of the experiments, and those of the numerical check: everything refined,
+/// only the cylinders refined, everything else refined.
 ///
 /// # Errors
-/// For a case of another kind.
+/// Returns an error for a case of another kind.
 pub(super) fn numerics(
     case: &Case,
     thresholds: &Thresholds,

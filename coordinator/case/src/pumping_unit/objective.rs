@@ -1,4 +1,4 @@
-//! What a case asks a calibration to minimise: which condition, and which gauges.
+//! Reading of the objective that a calibration minimises: a condition and weighted gauges.
 use super::record::RecordFacts;
 use super::schema::{ConditionEntry, GaugeWeight, ObjectiveEntry};
 use crate::{
@@ -10,11 +10,12 @@ use crate::{
 use protocol::case::{Channel, Objective, Term};
 use protocol::pumping_unit::Sensor;
 
-/// The objective, with its condition by index. A case without gauge records needs none: it has nothing
-/// to compare with, and is simulated.
+/// Reads the objective, with its condition by index. A case without gauge records needs none, because it is
+/// only simulated.
 ///
 /// # Errors
-/// A condition or a gauge that there is not, or a condition without a record where others have one.
+/// Returns an error for an unknown condition or gauge, and for a condition without a record if other
+/// conditions have one.
 pub(super) fn read(
     document: &Document,
     entry: Option<&ObjectiveEntry>,
@@ -74,7 +75,7 @@ pub(super) fn read(
     })
 }
 
-/// Channels with the zero that the objective says they have.
+/// Returns the channels with the treatment of the zero (offset) that the objective states.
 pub(super) fn with_offset(
     entry: Option<&ObjectiveEntry>,
     channels: Vec<Channel>,
@@ -85,11 +86,11 @@ pub(super) fn with_offset(
         .map(move |own| Channel { offset, ..own })
 }
 
-/// Takes the objective over those of its gauges that its condition's record has, where the others are optional. The
-/// remark that says so; none where the record has all of them.
+/// Restricts the objective to the gauges that its condition's record contains, provided the others are
+/// optional. Returns a note on the restriction; `None` if the record contains all of them.
 ///
 /// # Errors
-/// A record without a gauge that is not optional, or without any of them.
+/// Returns an error for a record that lacks a required gauge, or all gauges of the objective.
 pub(super) fn over_recorded(
     document: &Document,
     entry: Option<&ObjectiveEntry>,
@@ -166,7 +167,7 @@ fn term(gauge: u8, weight: f64) -> Term {
     }
 }
 
-/// Gauges that there are, each once, with weights above 0.
+/// Checks that the gauges are 1 to 4, each once, with positive weights.
 fn check_gauges(document: &Document, gauges: &[GaugeWeight]) -> Result<(), CaseError> {
     if gauges.is_empty() {
         return Err(document.field(
@@ -202,7 +203,7 @@ fn check_gauges(document: &Document, gauges: &[GaugeWeight]) -> Result<(), CaseE
                 &way("weight"),
                 part.weight,
                 "above 0, at most 1e6",
-                "leave a gauge out that is not to count",
+                "remove a gauge that is not part of the objective",
             ));
         }
     }

@@ -1,12 +1,12 @@
-//! Which values each number of a `case.toml` may have: one line per number. Whether the numbers fit each
-//! other is not asked here.
+//! Allowed range of each number in a `case.toml`. The consistency of the numbers with each other is checked
+//! elsewhere.
 use super::schema::CaseFile;
 use crate::{
     document::Document,
     error::{CaseError, Faults},
 };
 
-/// Least and greatest value, and the unit for messages.
+/// Minimum and maximum value, and the unit for messages.
 struct Range(f64, f64, &'static str);
 
 const LENGTH: Range = Range(1.0e-3, 100.0, "m");
@@ -22,13 +22,13 @@ const MODULUS: Range = Range(1.0, 1.0e3, "GPa");
 const POISSON: Range = Range(0.0, 0.49, "(no unit)");
 const DIFFERENCE: Range = Range(-0.05, 0.05, "m");
 
-/// Most head modes that a simulation takes, in the plane and out of it together.
+/// Maximum number of head modes in a simulation, in-plane and out-of-plane together.
 const MOST_MODES: usize = 24;
 
-/// Checks every number by itself.
+/// Checks the range of every number.
 ///
 /// # Errors
-/// Names every number outside its range, with the range and its unit.
+/// Returns all numbers outside their ranges, with range and unit.
 pub(super) fn check(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
     let all = bodies(case).into_iter().chain(ropes(case)).chain(run(case));
     let mut faults = Faults::default();
@@ -46,7 +46,7 @@ pub(super) fn check(document: &Document, case: &CaseFile) -> Result<(), CaseErro
     faults.end()
 }
 
-/// A number of the file: where it stands, its value, and what it may be.
+/// Number of the case file: its dotted path, value and range.
 type Number = (&'static str, f64, Range);
 
 fn bodies(case: &CaseFile) -> Vec<Number> {

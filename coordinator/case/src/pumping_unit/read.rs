@@ -1,4 +1,4 @@
-//! From a case file of a pumping unit to a [`Case`]: the file, then every file that it names.
+//! Reading of a pumping unit's case: the case file, then every file that it names, as a [`Case`].
 use super::{
     coefficient::Bodies,
     condition,
@@ -24,7 +24,7 @@ use protocol::{
 /// Reads a case with its machine.
 ///
 /// # Errors
-/// Everything that is wrong; see [`CaseError`].
+/// Returns all faults found; see [`CaseError`].
 pub(super) fn read(source: &Source<'_>) -> Result<Resolved, CaseError> {
     let mut resolved = resolve(source)?;
     match resolved.head.stale.take() {
@@ -33,16 +33,16 @@ pub(super) fn read(source: &Source<'_>) -> Result<Resolved, CaseError> {
     }
 }
 
-/// A case with what its file and the head's files say of the flexible head.
+/// Case with its machine and the data of its flexible head.
 pub(super) struct Resolved {
     pub loaded: Loaded,
     /// Facts about each condition's record, in the order of the conditions.
     pub(super) facts: Vec<Option<RecordFacts>>,
-    /// Where beam and ropes move.
+    /// Range of motion of beam and ropes.
     pub(super) envelope: Envelope,
-    /// That of the case.
+    /// Machine of the case.
     pub(super) machine: Machine,
-    /// Tables of another mesh are no error yet.
+    /// Flexible head; tables computed from another mesh are accepted at this stage.
     pub(super) head: ReadHead,
     pub(super) flexible: FlexibleHead,
     pub(super) twins: Option<TwinRopesEntry>,
@@ -51,7 +51,7 @@ pub(super) struct Resolved {
 /// Reads a case and all its files.
 ///
 /// # Errors
-/// As [`read`], but for tables of another mesh.
+/// As [`read`], except that tables computed from another mesh are accepted.
 pub(super) fn resolve(source: &Source<'_>) -> Result<Resolved, CaseError> {
     let Source {
         measured, document, ..
@@ -133,7 +133,7 @@ pub(super) fn resolve(source: &Source<'_>) -> Result<Resolved, CaseError> {
     })
 }
 
-/// What a case file and the files that it names say, part by part.
+/// Parts of a case, read independently of each other.
 struct Parts {
     envelope: Envelope,
     head: ReadHead,
@@ -145,7 +145,7 @@ struct Parts {
 /// Reads every part of a case.
 ///
 /// # Errors
-/// What is wrong with any of them.
+/// Returns the faults of all parts.
 fn parts(source: &Source<'_>, file: &CaseFile) -> Result<Parts, CaseError> {
     let Source {
         folder, document, ..

@@ -1,26 +1,26 @@
-//! A gene's recommended value as a case file states it: a number, or the formula that gives it. What the
-//! formulas give is not known here.
+//! Recommended value of an unknown as a case file states it: a number, or the name of a formula. The formulas
+//! are evaluated elsewhere.
 use serde::{
     Deserialize,
     de::{self, Visitor},
 };
 use std::fmt;
 
-/// What a case states as a gene's recommended value.
+/// Recommended value of an unknown as stated in the case file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Recommended {
-    /// A number, in the gene's unit.
+    /// Number in the unit of the unknown.
     Value(f64),
-    /// What a formula gives.
+    /// Result of a formula.
     By(Formula),
 }
 
-/// Formulas by their equations.
+/// Formula for a recommended value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Formula {
-    /// Stiffness of a solid round bar of the joint's length.
+    /// Stiffness of a solid round bar of the joint's length (paper, Eq. 3).
     Eq3,
-    /// Contact stiffness of rope and head.
+    /// Hertz contact stiffness of rope and head.
     Hertz,
 }
 
@@ -28,7 +28,7 @@ impl Formula {
     const ALL: [Self; 2] = [Self::Eq3, Self::Hertz];
     const WORDS: &'static [&'static str] = &[Self::Eq3.word(), Self::Hertz.word()];
 
-    /// As case files write it.
+    /// Returns the formula's name as in case files.
     pub(super) const fn word(self) -> &'static str {
         match self {
             Self::Eq3 => "eq3",

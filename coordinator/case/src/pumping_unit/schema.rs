@@ -1,5 +1,5 @@
-//! `case.toml` as it is written: the keys there are, and their types. What the values may be is
-//! checked beside the data they name.
+//! Schema of `case.toml`: keys and their types. Allowed values are checked where the data that they concern
+//! are read.
 use super::recommended::Recommended;
 use crate::{effect::CaseEffect, loaded::Records, prior::PriorEntry};
 use protocol::{
@@ -13,18 +13,18 @@ use protocol::{
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::PathBuf};
 
-/// A whole `case.toml`.
+/// Content of a `case.toml`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CaseFile {
     pub(super) name: String,
-    /// Which kind of model it is of.
+    /// Kind of the model.
     #[expect(
         dead_code,
         reason = "a key of the form; it was looked at before the rest was read"
     )]
     pub(super) model: ModelEntry,
-    /// Where the gauge records come from; a test of the machine unless stated.
+    /// Origin of the gauge records; a test of the real machine unless stated.
     #[serde(default)]
     pub(super) records: Records,
     pub(super) gravity_m_s2: f64,
@@ -33,27 +33,27 @@ pub(super) struct CaseFile {
     pub(super) rod: Rod,
     pub(super) suspension: Suspension,
     pub(super) ropes: Ropes,
-    /// What formulas for the genes' recommended values take the rope for; steel unless stated.
+    /// Elastic constants that the formulas for recommended gene values use for the rope; steel unless stated.
     #[serde(default)]
     pub(super) rope_material: RopeMaterial,
     pub(super) contact: Contact,
     pub(super) front_head: FrontHead,
     pub(super) back_head: BackHead,
     pub(super) flexible_head: FlexibleHead,
-    /// Two ropes on each head; one unless stated.
+    /// Settings of two parallel ropes on each head; one rope per head if absent.
     pub(super) twin_ropes: Option<TwinRopesEntry>,
-    /// What the machine has beside the above; nothing unless stated.
+    /// Effects that the machine has in addition to the plain model; none unless stated.
     #[serde(default)]
     pub(super) effects: Vec<CaseEffect>,
-    /// One entry per coefficient; all are required.
+    /// Unknowns by coefficient; every coefficient is required.
     pub(super) genes: BTreeMap<Coefficient, GeneEntry>,
     pub(super) conditions: Vec<ConditionEntry>,
-    /// What a calibration minimises; needed where there is a gauge record.
+    /// Objective of a calibration; required where there is a gauge record.
     pub(super) objective: Option<ObjectiveEntry>,
     pub(super) run: RunSettings,
 }
 
-/// The kind of model.
+/// `[model]` table.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ModelEntry {
@@ -64,7 +64,7 @@ pub(super) struct ModelEntry {
     pub(super) kind: String,
 }
 
-/// Where the reduced back head comes from.
+/// Files and material of the reduced flexible back head.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FlexibleHead {
@@ -72,22 +72,22 @@ pub(super) struct FlexibleHead {
     pub(super) modes_file: PathBuf,
     /// Influence lines as CSV.
     pub(super) influence_file: PathBuf,
-    /// Mesh as MSH 4.1; absent where only the reduction is at hand.
+    /// Mesh (MSH 4.1); absent where only the reduced model is available.
     pub(super) mesh_file: Option<PathBuf>,
-    /// How gauge stress follows from the modes; by mode acceleration unless stated.
+    /// Method that recovers gauge stress from the modes; mode acceleration unless stated.
     #[serde(default)]
     pub(super) stress: StressRecovery,
-    /// Density of the mesh [kg/m3].
+    /// Density of the meshed head's material [kg/m3].
     pub(super) density_kg_m3: f64,
-    /// Young's modulus of the mesh \[GPa\]; steel unless stated.
+    /// Young's modulus of the meshed head's material \[GPa\]; steel unless stated.
     #[serde(default = "steel_gpa")]
     pub(super) young_gpa: f64,
-    /// Poisson's ratio of the mesh \[1\]; steel unless stated.
+    /// Poisson's ratio of the meshed head's material \[1\]; steel unless stated.
     #[serde(default = "steel_poisson")]
     pub(super) poisson: f64,
 }
 
-/// Elasticity of the cylinders that stand for the rope.
+/// Elastic constants of the cylinders that represent the rope.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RopeMaterial {
@@ -98,7 +98,7 @@ pub(super) struct RopeMaterial {
 }
 
 impl Default for RopeMaterial {
-    /// The paper's: 200 GPa, and 80 GPa in shear.
+    /// Returns the paper's constants: a Young's modulus of 200 GPa and a shear modulus of 80 GPa.
     fn default() -> Self {
         Self {
             young_gpa: 200.0,
@@ -107,19 +107,19 @@ impl Default for RopeMaterial {
     }
 }
 
-/// Two ropes side by side on each head.
+/// Settings of two ropes side by side on each head.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TwinRopesEntry {
-    /// Distance of either rope from the machine's plane \[m\].
+    /// Distance of each rope from the machine's plane of motion \[m\].
     pub(super) offset_m: f64,
-    /// By how much the back rope at -z is longer than the one at +z \[m\].
+    /// Length of the back rope at -z minus that of the back rope at +z \[m\].
     #[serde(default)]
     pub(super) back_length_difference_m: f64,
-    /// The same of the front ropes \[m\].
+    /// Length of the front rope at -z minus that of the front rope at +z \[m\].
     #[serde(default)]
     pub(super) front_length_difference_m: f64,
-    /// Head modes out of the plane that are simulated.
+    /// Number of out-of-plane modes of the head that are simulated.
     #[serde(default = "six")]
     pub(super) modes: usize,
     /// The head's tables for the pair, as JSON.
@@ -138,23 +138,22 @@ const fn steel_poisson() -> f64 {
     0.3
 }
 
-/// One coefficient of the case.
+/// Recommended value, bounds and prior of one coefficient.
 #[derive(Debug, Deserialize)]
 #[serde(
     deny_unknown_fields,
     expecting = "a table with bounds and unit; write `{ recommended = 1e8, lower = 1e6, upper = 1e10, unit = \"N/m\" }`"
 )]
 pub(super) struct GeneEntry {
-    /// In `unit`, or the formula that gives it.
+    /// Recommended value in `unit`, or the formula that computes it.
     pub(super) recommended: Recommended,
     pub(super) lower: f64,
     pub(super) upper: f64,
     pub(super) unit: Unit,
-    /// What is known beside the bounds.
+    /// Prior knowledge in addition to the bounds.
     pub(super) prior: Option<PriorEntry>,
 }
 
-/// One working condition.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ConditionEntry {
@@ -164,7 +163,7 @@ pub(super) struct ConditionEntry {
     pub(super) card_file: PathBuf,
     #[serde(default = "no_smoothing")]
     pub(super) smoothing: Smoothing,
-    /// Gauge record; absent where the condition is only simulated.
+    /// Gauge record; absent where the condition is simulated without measurements.
     pub(super) record_file: Option<PathBuf>,
 }
 
@@ -172,7 +171,7 @@ const fn no_smoothing() -> Smoothing {
     Smoothing::None
 }
 
-/// What a calibration minimises.
+/// Objective of a calibration.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ObjectiveEntry {
@@ -181,13 +180,13 @@ pub(super) struct ObjectiveEntry {
     pub(super) offset: Offset,
 }
 
-/// A gauge of the objective.
+/// Gauge of the objective, with its weight.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GaugeWeight {
     pub(super) gauge: u8,
     pub(super) weight: f64,
-    /// Whether the objective does without it where the record lacks it.
+    /// Whether the gauge is dropped from the objective if the record lacks its column.
     #[serde(default)]
     pub(super) optional: bool,
 }

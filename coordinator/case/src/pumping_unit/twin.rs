@@ -1,8 +1,8 @@
-//! Twin ropes of a case: the head's tables for a pair (JSON).
+//! Tables of the head for twin ropes (JSON).
 //!
-//! The tables hold for one distance from the plane and for the stations of the other tables of the
-//! head; where they do not fit, `horsehead head CASE --write` makes them again, so that reading them
-//! for that command is no error ([`Read::unfit`]).
+//! The tables are valid for one distance of the ropes from the plane and for the stations of the head's other
+//! tables. `horsehead head CASE --write` recomputes tables that do not fit; so that this command can read the
+//! case, unfit tables are returned in [`Read::unfit`] instead of as an error.
 use super::{mesh, schema::TwinRopesEntry};
 use crate::{
     document,
@@ -13,19 +13,19 @@ use protocol::pumping_unit::{Influence, ModalHead, TwinHead, TwinRopes};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// What makes the tables.
+/// Remedy stated in errors about the tables.
 const REMEDY: &str = "`horsehead head CASE --write` computes the tables";
 
-/// The head's tables for a pair of ropes, as they are written.
+/// Tables of the head for twin ropes, as stored in the file.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct TwinFile {
-    /// Content of the mesh file that they were computed from.
+    /// Hash of the mesh file from which the tables were computed.
     pub mesh_blake3: Option<String>,
-    /// Content of all that the reduction depended on.
+    /// Hash of all inputs of the modal reduction.
     pub source_blake3: Option<String>,
-    /// The program that did.
+    /// Name of the program that computed the tables.
     pub made_by: Option<String>,
-    /// Distance of either rope from the plane \[m\].
+    /// Distance of each rope from the machine's plane of motion \[m\].
     pub offset_m: f64,
     /// Frequencies of the modes out of the plane \[Hz\].
     pub frequencies_hz: Vec<f64>,
@@ -39,33 +39,34 @@ pub struct TwinFile {
     pub lateral: Vec<Vec<f64>>,
     /// Stress of the four gauges per unit of each mode \[MPa\].
     pub gauge_stress_mpa: Vec<[f64; 4]>,
-    /// Stress per normal force at each station \[MPa/N\].
+    /// Gauge stress per unit normal force at each station \[MPa/N\].
     pub normal_mpa_per_n: Vec<[f64; 4]>,
-    /// Stress per tangential force at each station \[MPa/N\].
+    /// Gauge stress per unit tangential force at each station \[MPa/N\].
     pub tangential_mpa_per_n: Vec<[f64; 4]>,
-    /// Stress per lateral force at each station \[MPa/N\].
+    /// Gauge stress per unit lateral force at each station \[MPa/N\].
     pub lateral_mpa_per_n: Vec<[f64; 4]>,
 }
 
-/// Twin ropes, and why their tables cannot be used, if they cannot.
+/// Twin ropes, and the reason why their tables cannot be used, if there is one.
 pub(super) struct Read {
     pub(super) twins: TwinRopes,
     pub(super) unfit: Option<CaseError>,
 }
 
-/// What the head's tables must have been computed from; none without a mesh.
+/// Hashes of the inputs from which the head's tables must have been computed; `None` without a mesh.
 #[derive(Clone, Copy)]
 pub(super) struct Hashes<'a> {
-    /// Content of the mesh file.
+    /// Hash of the mesh file.
     pub(super) mesh: Option<&'a str>,
-    /// Content of all that the reduction depends on.
+    /// Hash of all inputs of the modal reduction.
     pub(super) source: Option<&'a str>,
 }
 
-/// Reads the tables of a pair.
+/// Reads the settings and tables of twin ropes.
 ///
 /// # Errors
-/// A file that is no such table. Tables that are missing or belong to something else are no error yet.
+/// An unreadable or malformed file. Tables that are missing or belong to another head are returned in
+/// [`Read::unfit`].
 pub(super) fn read(
     folder: &Path,
     entry: &TwinRopesEntry,
@@ -127,7 +128,7 @@ impl TwinFile {
     }
 }
 
-/// Every mode has its rows, every station its values.
+/// Checks that the tables have one row per mode and one value per station.
 fn check_shapes(path: &Path, tables: &TwinFile) -> Result<(), CaseError> {
     let (modes, stations) = (tables.frequencies_hz.len(), tables.arc_deg.len());
     let lengths = [
@@ -177,7 +178,7 @@ fn check_shapes(path: &Path, tables: &TwinFile) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// The tables are those of this pair, over the stations of the head's other tables.
+/// Checks that the tables belong to the given twin ropes and to the stations of the head's other tables.
 fn check_fit(
     path: &Path,
     tables: &TwinFile,
@@ -198,7 +199,7 @@ fn check_fit(
             path,
             "arc_deg",
             format!("{} stations", tables.arc_deg.len()),
-            "modes_file and influence_file have others".to_owned(),
+            "the stations in modes_file and influence_file differ".to_owned(),
             &format!("the head's tables belong together: {REMEDY} again"),
         ));
     }
@@ -209,7 +210,7 @@ fn check_fit(
             "the number of modes",
             available.to_string(),
             format!("case.toml: twin_ropes.modes = {}", entry.modes),
-            &format!("take fewer modes, or: {REMEDY} with as many"),
+            &format!("reduce `twin_ropes.modes`, or recompute: {REMEDY} with that many modes"),
         ));
     }
     Ok(())

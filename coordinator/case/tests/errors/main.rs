@@ -1,4 +1,4 @@
-//! Whatever is wrong with a case ends in one error that names the file, the field, and a remedy.
+//! Checks that every fault of a case produces one error that names the file, the field and a remedy.
 #![expect(
     clippy::unwrap_used,
     reason = "a test that cannot prepare its case has failed"
@@ -41,7 +41,8 @@ fn every_fault_of_twin_ropes_is_named() {
     assert_each_is_named(twins::FAULTS);
 }
 
-/// A test that was run at one speed alone is one: the other condition keeps its card and has no record.
+/// Checks that a measured folder may hold records for some of the conditions: the others keep their load card
+/// and have no record.
 #[test]
 fn another_test_need_not_repeat_every_condition() {
     let copy = Copy::new();
@@ -116,8 +117,8 @@ fn another_test_of_the_same_machine_replaces_the_records() {
     assert_eq!(replaced.conditions[1], plain.conditions[1]);
 }
 
-/// A machine that nobody has measured is simulated all the same: load cards are enough, and what needs a
-/// record says which field is missing.
+/// Checks that a case with load cards alone can be simulated, and that operations that need a record name the
+/// missing field.
 #[test]
 fn a_case_may_have_load_cards_alone() {
     let copy = Copy::new();
@@ -201,7 +202,8 @@ fn what_is_doubtful_is_a_note() {
     assert!(message.contains("on every cycle"), "{message}");
 }
 
-/// A misspelt gauge must not change what is minimised.
+/// Checks that a misspelt gauge column is an error unless the case marks the gauge as optional, so that the
+/// objective does not change unnoticed.
 #[test]
 fn an_objective_loses_a_gauge_only_where_the_case_says_so() {
     let copy = Copy::new();
@@ -245,7 +247,7 @@ fn an_objective_loses_a_gauge_only_where_the_case_says_so() {
     );
 }
 
-/// Tables of spreadsheets: semicolons, decimal commas, UTF-16.
+/// Checks that tables from spreadsheets are read: semicolons, decimal commas, UTF-16.
 #[test]
 fn files_of_other_programs_are_read() {
     let copy = Copy::new();
@@ -285,9 +287,9 @@ fn one_cycle_has_no_spread() {
     assert!(text.contains("one whole cycle only"), "{text}");
 }
 
-/// A parameter with an interval to search is a gene, after the coefficients; without, it is fixed, and
-/// the case is what it was before there was such a thing. What a diagnosis of this case has added
-/// leaves it with its genes.
+/// Checks that an effect parameter with a `search` interval becomes a gene after the coefficients, and that a
+/// fixed parameter leaves the genes unchanged. An effect that a diagnosis has added leaves the case together
+/// with its genes.
 #[test]
 fn a_parameter_with_an_interval_to_search_is_a_gene() {
     let copy = Copy::new();
@@ -322,7 +324,7 @@ fn a_parameter_with_an_interval_to_search_is_a_gene() {
     assert!(without.effects.is_empty());
 }
 
-/// Eq. 3 and Eq. 5 in place of numbers, in the units of the genes.
+/// Checks that Eq. 3 and Eq. 5 may replace recommended values and are evaluated in the units of the genes.
 #[test]
 fn recommended_values_by_formula() {
     let copy = Copy::new();
@@ -350,8 +352,8 @@ fn recommended_values_by_formula() {
     assert!((1.0e10..1.1e10).contains(&recommended(8)));
 }
 
-/// Tables that say what they were computed from serve as long as all of it stands: another steel,
-/// another arc or another place of a gauge makes them stale, and reducing the head anew is offered.
+/// Checks that reduced tables of the head become stale when one of their inputs changes (material, arc,
+/// position of a gauge), and that the error offers to reduce the head again.
 #[test]
 fn tables_of_the_head_know_what_they_were_computed_from() {
     type Change = fn(&Copy);

@@ -1,4 +1,4 @@
-//! A copy of the shipped case, and the ways to spoil it.
+//! Copy of the shipped case, and functions that introduce faults into it.
 use case::{self, CaseError, Overrides};
 use flate2::{Compression, read::GzDecoder, write::GzEncoder};
 use std::{
@@ -12,7 +12,7 @@ pub(super) fn shipped() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/cyjs10-5-37hb")
 }
 
-/// A copy of the shipped case that may be spoilt.
+/// Temporary copy of the shipped case, to be modified by a test.
 pub(super) struct Copy {
     pub(super) folder: TempDir,
 }
@@ -45,14 +45,14 @@ impl Copy {
         self.folder.path().join(file)
     }
 
-    /// Replaces a text that must be there.
+    /// Replaces the first occurrence of a text; fails if the file does not contain it.
     pub(super) fn replace(&self, file: &str, from: &str, to: &str) {
         let text = fs::read_to_string(self.path(file)).unwrap();
         assert!(text.contains(from), "{file} has no `{from}`");
         fs::write(self.path(file), text.replacen(from, to, 1)).unwrap();
     }
 
-    /// Takes out what stands from one text up to another.
+    /// Removes the text from `from` up to, but without, `until`.
     pub(super) fn cut(&self, file: &str, from: &str, until: &str) {
         let text = fs::read_to_string(self.path(file)).unwrap();
         let (before, rest) = text.split_once(from).unwrap();
@@ -60,7 +60,7 @@ impl Copy {
         fs::write(self.path(file), format!("{before}{until}{after}")).unwrap();
     }
 
-    /// Adds an effect with further lines.
+    /// Adds the effect `pivot_friction` with further lines to the case file.
     pub(super) fn effect(&self, lines: &str) {
         let added = format!("[[effects]]\nid = \"pivot_friction\"\n{lines}\n\n[objective]");
         self.replace(TOML, "[objective]", &added);
@@ -106,7 +106,7 @@ pub(super) fn cell(line: &str, column: usize, value: &str) -> String {
     cells.join(",")
 }
 
-/// Scales a column of all rows but the header.
+/// Multiplies the given columns of a line by a factor; line 1, the header, is unchanged.
 #[expect(
     clippy::unnecessary_wraps,
     reason = "the shape that rewriting lines asks for: none removes the line"
@@ -131,7 +131,7 @@ pub(super) const MODES: &str = "back_head/back_head_modes.json";
 pub(super) const INFLUENCE: &str = "back_head/back_head_influence.csv";
 pub(super) const MESH: &str = "back_head/back_head.msh";
 
-/// A way to spoil a case: name, what is done, and what the message must contain.
+/// Fault of a case: name, function that introduces it, and texts that the error message must contain.
 pub(super) type Spoilt = (&'static str, fn(&Copy), &'static [&'static str]);
 
 pub(super) fn assert_each_is_named(table: &[Spoilt]) {

@@ -2,7 +2,7 @@
 use super::spoilt::{Copy, MESH, Spoilt, TOML, TWINS};
 use std::fs;
 
-/// Gives the case twin ropes, with further lines.
+/// Adds a `[twin_ropes]` table with further lines to the case file.
 fn twins(c: &Copy, lines: &str) {
     let added = format!("[twin_ropes]\n{lines}\nhead_file = \"{TWINS}\"\n\n[genes]");
     c.replace(TOML, "[genes]", &added);

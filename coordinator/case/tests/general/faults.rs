@@ -1,6 +1,7 @@
-//! Faults of a case in the general form.
+//! Faults of a case with a model kind that the program does not know.
 
-/// Name, file, what is replaced by what, and what the message must contain beside the file's name.
+/// Fault of a case: name, file, text to replace, its replacement, and texts that the error message must
+/// contain in addition to the file's name.
 pub(super) type Fault = (
     &'static str,
     &'static str,

@@ -1,4 +1,5 @@
-//! Cases of a model that this program does not know: what is read of them, and what is said of faults.
+//! Tests of cases with a model kind that the program does not know: content that is read, and errors for
+//! faults.
 #![expect(
     clippy::unwrap_used,
     reason = "a test that cannot prepare its case has failed"
@@ -11,12 +12,12 @@ use std::{fs, path::PathBuf};
 use tempfile::TempDir;
 
 const TOML: &str = include_str!("case.toml");
-/// Two cycles of four places, with mean 1, 3, 5, 3 and a spread where they differ.
+/// Record of two cycles with four points each: means 1, 3, 5, 3, and a spread at the third point only.
 const SLOW: &str =
     "cycle,phase_deg,force_n\n1,0,1\n1,90,3\n1,180,6\n1,270,3\n2,0,1\n2,90,3\n2,180,4\n2,270,3\n";
 const FAST: &str = "time_s,force_n\n0,1\n0.1,2.5\n0.3,2\n";
 
-/// A case in a folder of its own.
+/// Case in a temporary folder.
 struct Case(TempDir);
 
 impl Case {
@@ -32,7 +33,7 @@ impl Case {
         self.0.path().join(file)
     }
 
-    /// Replaces a text that must be there.
+    /// Replaces the first occurrence of a text; fails if the file does not contain it.
     fn replace(&self, file: &str, from: &str, to: &str) {
         let text = fs::read_to_string(self.path(file)).unwrap();
         assert!(text.contains(from), "{file} has no `{from}`");
@@ -44,7 +45,8 @@ impl Case {
     }
 }
 
-/// Everything general arrives as it is stated, and the rest as text that nobody here understands.
+/// Checks that the general parts of a case with an unknown model kind are parsed and that its model settings
+/// are passed on unread as text.
 #[test]
 fn a_case_of_an_unknown_model_is_read_without_knowing_it() {
     let loaded = Case::new().load().unwrap();
@@ -89,7 +91,8 @@ fn a_case_of_an_unknown_model_is_read_without_knowing_it() {
     );
 }
 
-/// Several conditions in one objective, and a zero for some channels only.
+/// Checks that an objective may include several conditions and that the offset may be fixed for some channels
+/// only.
 #[test]
 fn an_objective_is_over_the_conditions_that_it_names() {
     let case = Case::new();
@@ -164,7 +167,8 @@ fn records_are_averaged_and_channels_say_where_they_stand() {
     assert_eq!(first.cycles[1], [[1.0, 3.0, 4.0, 3.0]]);
 }
 
-/// A part of a channel that is held out stands behind the part that is fitted; what is stated of its errors belongs to both.
+/// Checks that the held-out part of a channel follows its fitted part, and that the stated errors apply to
+/// both.
 #[test]
 fn a_part_of_a_channel_may_be_held_out() {
     let case = Case::new();
@@ -199,8 +203,8 @@ fn a_part_of_a_channel_may_be_held_out() {
     assert_eq!(loaded.case.channels[0].abscissa.points.len(), 4);
 }
 
-/// Records of another folder replace those of the case by their names; what was not repeated there is
-/// simulated only, but for the calibrated condition.
+/// Checks that records in another folder replace those of the same names, and that conditions without a
+/// record there are only simulated, except the calibrated condition.
 #[test]
 fn another_folder_replaces_the_records() {
     let case = Case::new();
@@ -238,7 +242,7 @@ fn another_folder_replaces_the_records() {
     );
 }
 
-/// Each fault is named with its file, its field and a remedy.
+/// Checks that the error for each fault names file, field and remedy.
 #[test]
 fn every_fault_is_named() {
     let mut wrong = Vec::new();

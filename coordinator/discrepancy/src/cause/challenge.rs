@@ -1,10 +1,10 @@
-//! Forces without a cause against the best name.
+//! Test of generic forces against the best named effect of a round.
 //!
-//! The library cannot hold everything. A force of simple form across a joint (a constant, a sign, a
-//! power, a harmonic) knows no cause; where such a force, refitted with every unknown free, explains much
-//! more than the best name does, or leaves nothing but noise where the name does not, the name is not
-//! believed. A form that a library effect *is* (its projected signature is nearly the same) is no
-//! challenger: then the name is the better word for it.
+//! The library of effects cannot be complete. A generic force is a force of simple form across a joint (a
+//! constant, a sign, a power, a harmonic) without a physical cause. If such a force, refitted with every
+//! unknown free, explains much more than the best named effect, or leaves only noise where the named effect
+//! does not, the named effect is rejected. A form whose projected signature is nearly that of a library
+//! effect does not count as a challenger, because the named effect is then the better description.
 use crate::cause::round::Round;
 use crate::cause::suspect::{Suspect, joined};
 use crate::ground::session::Session;
@@ -18,33 +18,33 @@ use crate::model::unknowns::Point;
 use nalgebra::{DMatrix, DVector};
 use search::least_squares::Settings;
 
-/// A force without a cause: one form, or both phases of a harmonic.
+/// Generic force: one form, or both phases of a harmonic.
 #[derive(Clone, Debug)]
 struct Form<'a> {
-    /// Its parts, the stronger first.
+    /// Components of the force, in descending order of their statistic.
     parts: Vec<&'a Suspect>,
     signature: DMatrix<f64>,
     statistic: f64,
     p_value: f64,
 }
 
-/// A force that beats every name.
+/// Generic force that explains the residual better than every named effect.
 #[derive(Clone, Debug)]
 pub(crate) struct Challenger {
-    /// Identifier of the form; of a harmonic, its stronger phase.
+    /// Identifier of the form; for a harmonic that of its stronger phase.
     pub(crate) id: String,
-    /// By how much it lowers `chi^2`, refitted.
+    /// Reduction of `chi^2` by the refit.
     pub(crate) removed: f64,
     /// Log evidence of the refit (nats).
     pub(crate) log_evidence: f64,
-    /// The refit.
+    /// Refit with the force.
     pub(crate) fit: Fit,
 }
 
 /// Forms that are refitted at most.
 const TRIED: usize = 3;
 
-/// The force that beats the best name of a round, if there is one.
+/// Returns the generic force that beats the best named effect of a round, if there is one.
 pub(crate) async fn challenge<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
@@ -103,7 +103,7 @@ pub(crate) async fn challenge<L: Laboratory>(
     }))
 }
 
-/// Every form, and every harmonic with both its phases.
+/// Returns all generic forces, with the two phases of a harmonic combined into one form.
 fn forms<'a>(generics: &'a [Suspect], residual: &DVector<f64>, tangent: &Tangent) -> Vec<Form<'a>> {
     let form = |mut parts: Vec<&'a Suspect>| {
         parts.sort_by(|a, b| b.statistic().total_cmp(&a.statistic()));
@@ -135,7 +135,7 @@ fn forms<'a>(generics: &'a [Suspect], residual: &DVector<f64>, tangent: &Tangent
     all
 }
 
-/// Whether a library effect that the record speaks for is this form.
+/// Returns whether a library effect with a positive statistic has nearly the signature of this form.
 fn is_listed(form: &Form<'_>, named: &[Suspect], alike: f64, tangent: &Tangent) -> bool {
     let mut spoken = named
         .iter()
@@ -143,7 +143,7 @@ fn is_listed(form: &Form<'_>, named: &[Suspect], alike: f64, tangent: &Tangent) 
     spoken.any(|one| likeness(&form.signature, &one.signature, tangent) > alike)
 }
 
-/// A fit with a form at its linear estimate.
+/// Returns the point of a fit with a form added at its linear estimate.
 fn started(fit: &Fit, form: &Form<'_>) -> Point {
     let parts = form.parts.iter();
     parts.fold(fit.point(), |point, part| {

@@ -1,14 +1,14 @@
-//! Whether the likeliest suspect of a round is believed.
+//! Decision whether the likeliest candidate effect of a round is accepted.
 //!
-//! It knows the round's tests and refits, not who made them; what a finer model says of the answer is
-//! another matter.
+//! It uses the tests and refits of the round only; the check against a finer model is made elsewhere.
 use crate::cause::round::Round;
 use crate::cause::together::Together;
 use crate::ground::base::Base;
 use crate::model::fit::Fit;
 use crate::thresholds::Thresholds;
 
-/// Whether the best refit is believed; then it is the next model. Who may stand in its place is asked when all is found.
+/// Returns the best refit as the next model if it is accepted, else records the reason in the round. The
+/// ambiguity set is determined after all rounds.
 pub(crate) fn decide(
     round: &mut Round,
     current: &Fit,
@@ -26,8 +26,8 @@ pub(crate) fn decide(
     let removed = removed(lengths, base.noise());
     if adequate && removed < thresholds.practical {
         round.reason = Some(format!(
-            "{} is there, but a trace: it removes {:.1} % of what was above the noise, and without it no more than noise \
-             is left",
+            "{} is significant but negligible: it removes {:.1} % of the misfit above the noise, and the model without it \
+             already fits to within the noise",
             best.id,
             100.0 * removed
         ));
@@ -39,8 +39,8 @@ pub(crate) fn decide(
     Some(fit)
 }
 
-/// Whether several effects at once are believed instead of the best one alone: the round becomes that of the
-/// first, and once more itself for each of the others.
+/// Decides whether several effects together are accepted instead of the best single one. If so, `round`
+/// becomes the round of the first effect, and one copy of the round is returned for each of the others.
 pub(crate) fn decide_together(
     round: &mut Round,
     both: &Together,
@@ -67,21 +67,23 @@ pub(crate) fn decide_together(
     Some(beside)
 }
 
-/// The share that an effect removes of the gap that there was before anything was added, from the squared lengths of the
-/// residual at first, now and with the effect, and what noise alone would leave.
+/// Returns the share of the initial gap that an effect removes, from the squared lengths of the residual of
+/// the baseline, of the current model and of the model with the effect, and the squared length expected of
+/// noise alone.
 fn removed([first, now, then]: [f64; 3], noise: f64) -> f64 {
     (now - then) / (first - noise).max(1.0)
 }
 
-/// Why a family's p-value and a gain of evidence (nats) are not enough, if they are not.
+/// Returns the reason why a family-wise p-value and a gain of evidence (nats) are insufficient, or `None` if
+/// they suffice.
 fn doubt(p_value: f64, gain: f64, thresholds: &Thresholds) -> Option<String> {
     let (alpha, needed) = (thresholds.alpha, thresholds.gain);
-    let chance = format!("over the family p = {p_value:.1e}, above {alpha}");
-    let poor = format!("it gains {gain:.1} nats and {needed:.0} are needed");
+    let chance = format!("the family-wise p-value is {p_value:.1e}, above the level {alpha}");
+    let poor = format!("it gains {gain:.1} nats where {needed:.0} are required");
     match (p_value > alpha, gain < needed) {
         (false, false) => None,
         (true, false) => Some(chance),
-        (false, true) => Some(format!("{poor}, at p = {p_value:.1e} over the family")),
+        (false, true) => Some(format!("{poor}, at a family-wise p-value of {p_value:.1e}")),
         (true, true) => Some(format!("{chance}, and {poor}")),
     }
 }

@@ -1,9 +1,10 @@
-//! The likeliest effects by the low orders of the period alone.
+//! Search for the likeliest effects in the low orders of the period alone.
 //!
-//! Where modes ring, tens of times a period, a wrong phase leaves more than any effect, and the fit that
-//! leaves least may be one that has thrown the modes out: tests there say nothing. Far below them the
-//! simulated thing follows its load without ringing. So where no refit has found a valley, a fit of
-//! the low orders is tested instead, and the likeliest effects go from there with the size that they have.
+//! Where modes ring, at tens of times the frequency of the period, a phase error leaves a larger residual
+//! than any effect, and the best fit may be one that has suppressed the modes, so tests there are
+//! meaningless. Far below the mode frequencies the simulated system follows its load quasi-statically. If no
+//! refit has found the narrow minimum, a fit of the low orders is therefore tested instead, and the likeliest
+//! effects start from that fit with their estimated sizes.
 use crate::cause::{refit, signature, suspect};
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::experiments::Experiments;
@@ -13,16 +14,16 @@ use crate::record::whitened::WhitenedRecord;
 use protocol::announce::EffectDescriptor;
 use search::least_squares::Settings;
 
-/// Highest order: half of what the lowest mode of a machine that rings usually has.
+/// Highest order that is compared: half the order of the lowest mode of a typical machine with ringing modes.
 const HIGHEST: usize = 30;
-/// Suspects that are refitted.
+/// Number of candidate effects that are refitted.
 const REFITS: usize = 6;
-/// Refits that are handed on.
+/// Number of refits that are returned.
 const LIKELIEST: usize = 2;
 
-/// Models with one more effect, the likeliest first, fitted to the low orders of the record; none where
-/// they cannot be fitted, or some channel has no period. `current` is the model so far; its unknowns start
-/// from the case's values, too. No order above `highest` is compared.
+/// Returns the models with one more effect, fitted to the low orders of the record, likeliest first; empty
+/// where no fit completes or some channel is not periodic. `current` is the model so far; fits start both
+/// from its unknowns and from the recommended values of the case. No order above `highest` is compared.
 ///
 /// # Errors
 /// Those of the laboratory.

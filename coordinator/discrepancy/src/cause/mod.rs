@@ -1,6 +1,6 @@
-//! What may explain a disagreement: every effect of the library is tested, the likeliest are refitted,
-//! forces without a cause challenge them, and the best is believed or not. Where in the machine it lies
-//! it does not know.
+//! Identification of the effects that explain the residual: every effect of the library is tested, the
+//! likeliest are refitted and compared with generic forces, and the best is accepted or rejected.
+//! Localisation in the machine is not part of this module.
 pub(crate) mod challenge;
 pub(crate) mod decide;
 pub mod low_orders;

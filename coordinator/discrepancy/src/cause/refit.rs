@@ -1,4 +1,4 @@
-//! The suspects switched on for real: every unknown and every parameter of the effect free.
+//! Refits with a candidate effect switched on: every unknown and every parameter of the effect is free.
 use crate::cause::suspect::Suspect;
 use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
@@ -6,19 +6,19 @@ use crate::model::fit::Fit;
 use crate::model::unknowns::Point;
 use search::least_squares::Settings;
 
-/// A suspect after its refit.
+/// Candidate effect after its refit.
 #[derive(Clone, Debug)]
 pub struct Refitted {
     /// Identifier of the effect.
     pub id: String,
-    /// The fit.
+    /// Best fit with the effect.
     pub fit: Fit,
     /// Log evidence (nats).
     pub log_evidence: f64,
 }
 
 impl Refitted {
-    /// A fit whose last effect is the suspect.
+    /// Creates a refit from a fit whose last added effect is the candidate.
     pub(crate) fn new(id: String, fit: Fit) -> Self {
         Self {
             id,
@@ -28,7 +28,8 @@ impl Refitted {
     }
 }
 
-/// Refits of suspects, side by side, each from its linear estimate and its rungs; those that cannot be simulated are left out.
+/// Refits candidate effects in parallel, each from its linear estimate and from its rungs, and returns the
+/// best refit of each; effects of which no refit can be simulated are omitted.
 ///
 /// # Errors
 /// Those of the laboratory.

@@ -1,38 +1,41 @@
-//! One round of suspicion, and what its tests and refits say together.
+//! Round of hypothesis tests: tests and refits of all candidate effects on one model, and the decision drawn
+//! from them.
 use crate::cause::refit::Refitted;
 use crate::cause::suspect::Suspect;
 use crate::linear::score::{chi_squared_tail, family_wise};
 use crate::model::fit::Fit;
 
-/// One round of suspicion.
+/// Tests, refits and decision of one round.
 #[derive(Clone, Debug)]
 pub struct Round {
-    /// Every named effect with its test, in the library's order.
+    /// Tests of all named effects, in the library's order.
     pub suspects: Vec<Suspect>,
-    /// Forces without a cause, likewise.
+    /// Tests of all generic forces (without a physical cause), in the library's order.
     pub generics: Vec<Suspect>,
     /// Refits, the best first.
     pub refits: Vec<Refitted>,
-    /// Log evidence without a further effect.
+    /// Log evidence of the current model, without a further effect.
     pub null_evidence: f64,
     /// Dispersion of the best model, by which statistics and differences of log evidences are divided.
     pub dispersion: f64,
     /// Family-wise p-value of the named effects.
     pub p_value: f64,
-    /// Identifiers that the record does not tell apart, the best first; empty if nothing was found.
+    /// Ambiguity set: identifiers that the record does not distinguish, best first; empty if nothing was
+    /// found.
     pub set: Vec<String>,
-    /// Which effect was added, if any.
+    /// Identifier of the added effect, if any.
     pub added: Option<String>,
-    /// How many names were ranked by what they predict where that gave the place of the added one to another; else 1.
+    /// Number of effects ranked by evidence and prediction if the ranking replaced the added effect by
+    /// another; otherwise 1.
     pub ranked: usize,
     /// Whether the added effect is one of several that were found together.
     pub together: bool,
-    /// Why none was.
+    /// Reason why no effect was added.
     pub reason: Option<String>,
 }
 
 impl Round {
-    /// What all was tested and refitted, judged beside the model that it is added to.
+    /// Creates a round from its tests and refits, and ranks the refits relative to the current model.
     pub(crate) fn new(
         current: &Fit,
         suspects: Vec<Suspect>,
@@ -56,19 +59,20 @@ impl Round {
         round
     }
 
-    /// A log evidence against the model without a further effect, over the dispersion (nats).
+    /// Returns a log evidence relative to the current model, divided by the dispersion (nats).
     pub fn nats(&self, log_evidence: f64) -> f64 {
         (log_evidence - self.null_evidence) / self.dispersion
     }
 
-    /// Takes back what was added, for a reason.
+    /// Withdraws the added effect and records the reason.
     pub(crate) fn withdraw(&mut self, reason: String) {
         self.added = None;
         self.set.clear();
         self.reason = Some(reason);
     }
 
-    /// Ranks the refits, and derives the dispersion of the best and the family's p-value under it.
+    /// Sorts the refits by evidence, and derives the dispersion of the best model and the family-wise p-value
+    /// under it.
     pub(crate) fn judge(&mut self, current: &Fit) {
         self.refits
             .sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));

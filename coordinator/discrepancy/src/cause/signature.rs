@@ -1,12 +1,13 @@
-//! The library under suspicion: a signature of every effect at the fitted point, and its score test.
+//! Signatures and score tests of the effects of the library at a fitted point.
 //!
-//! Where the laboratory differentiates, signatures are derivatives at the fitted point, of every shape in one
-//! go, unless the effect is not linear up to the size that the record asks for: one difference per size
-//! says so. All others are differences at the effect's typical size, taken again where that changes the
-//! curves too much to be linear or too little to be seen. Effects whose law has a shape (an angle, a
-//! width, a ratio) are tried at several values of it, and the best of k tries is judged as such. What acts from a
-//! level on (a clearance, an overflow) does nothing at one size and much at another: an effect that is not linear is tried
-//! along a ladder of sizes over its whole range, each a try of its own and a place from which it may be refitted.
+//! If the laboratory computes derivatives, signatures are derivatives at the fitted point, for all shapes in
+//! one batch. One finite difference per size checks whether the effect is linear up to the size that the
+//! record suggests. All other signatures are finite differences at the effect's typical size, repeated with
+//! another size where the change of the curves is too large to be linear or too small to be detected. Effects
+//! whose law has a shape parameter (an angle, a width, a ratio) are tested at several of its values, and the
+//! p-value accounts for the number of tries. An effect with a threshold (a clearance, an overflow) does
+//! nothing at one size and much at another; a non-linear effect is therefore tested on a ladder of sizes over
+//! its whole range. Each rung counts as a try and is a possible start of a refit.
 use crate::cause::suspect::Suspect;
 use crate::laboratory::Laboratory;
 use crate::linear::score::{Score, score};
@@ -20,31 +21,31 @@ use nalgebra::{DMatrix, DVector};
 use protocol::announce::EffectDescriptor;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A signature to be taken: an effect at some shape, one of its sizes at some value.
+/// Signature to be computed: an effect with a given shape, and one of its sizes at a given value.
 #[derive(Clone, Debug)]
 struct Probe {
-    /// Which effect.
+    /// Index of the effect.
     effect: usize,
-    /// Its scaled parameters without any size.
+    /// Scaled parameters of the effect, with all sizes absent.
     shape: Vec<f64>,
-    /// Whether that is the typical shape.
+    /// Whether `shape` is the typical shape.
     typical: bool,
-    /// Which of its parameters is the size.
+    /// Index of the size among the effect's parameters.
     size: usize,
-    /// How much of the size.
+    /// Scaled value of the size at which the signature is computed.
     amount: f64,
-    /// Whitened change per unit of the size, once it was taken.
+    /// Whitened change of the curves per unit of the size, once computed.
     column: Option<DVector<f64>>,
-    /// The same to first order, if that is known.
+    /// Whitened derivative of the curves by the size, if the laboratory provides it.
     exact: Option<DVector<f64>>,
-    /// Whether the first order is all that is asked for.
+    /// Whether the derivative serves as the signature, so that no finite difference is needed.
     settled: bool,
-    /// Whether it is a rung of a ladder of sizes, which stays where it is.
+    /// Whether the probe is a rung of a ladder of sizes, whose amount is fixed.
     rung: bool,
 }
 
 impl Probe {
-    /// The effect's scaled parameters.
+    /// Returns the effect's scaled parameters with the size set.
     fn parameters(&self) -> Vec<f64> {
         let mut own = self.shape.clone();
         own[self.size] = self.amount;
@@ -52,19 +53,20 @@ impl Probe {
     }
 }
 
-/// Projected change of the curves, in standard deviations, that a signature should make.
+/// Target magnitude of the projected change of the curves, in standard deviations.
 const WANTED: f64 = 4.0;
-/// Changes outside this range are taken again.
+/// Acceptable range of the projected change, in standard deviations; probes outside are repeated.
 const USABLE: [f64; 2] = [1.0, 20.0];
 /// Cosine of derivative and difference from which an effect counts as linear.
 const LINEAR: f64 = 0.98;
-/// Values of each shape that are tried.
+/// Number of values at which each shape parameter is tested.
 const SHAPES: usize = 6;
 /// Rungs of a ladder of sizes, as shares of the range on the effect's side of its absent value.
 const RUNGS: [f64; 7] = [1.0, 0.75, 0.5, 0.25, 0.12, 0.06, 0.03];
-/// Rungs from which an effect is refitted, beside its linear estimate.
+/// Number of rungs from which an effect is refitted, in addition to its linear estimate.
 const STARTS: usize = 3;
-/// By how much a change per unit may differ between two sizes of an effect that counts as linear.
+/// Relative tolerance on the change per unit between full and half the size, within which an effect counts as
+/// linear.
 const PROPORTIONAL: f64 = 0.3;
 
 /// Tests effects on a fit's residual.
@@ -99,7 +101,7 @@ pub async fn examine<L: Laboratory>(
         .collect())
 }
 
-/// One probe per size and shape; shapes are varied one at a time.
+/// Creates one probe per size and shape; shape parameters are varied one at a time.
 fn plan(effects: &[EffectDescriptor]) -> Vec<Probe> {
     let mut probes = Vec::new();
     for (k, effect) in effects.iter().enumerate() {
@@ -122,7 +124,8 @@ fn plan(effects: &[EffectDescriptor]) -> Vec<Probe> {
     probes
 }
 
-/// Parameter vectors without size: typical shapes, then each shape over its range.
+/// Returns parameter vectors with all sizes absent: the typical shape, then each shape parameter over its
+/// range.
 fn shape_choices(effect: &EffectDescriptor) -> Vec<Vec<f64>> {
     let usual = absent(effect);
     let mut choices = vec![usual.clone()];
@@ -137,8 +140,8 @@ fn shape_choices(effect: &EffectDescriptor) -> Vec<Vec<f64>> {
     choices
 }
 
-/// Learns the first order of all probes, as far as the laboratory knows it. Forces without a cause are
-/// linear in their size, so nothing else is asked of them.
+/// Requests the derivatives of all probes, as far as the laboratory provides them. Generic forces are linear
+/// in their size, so that their derivative is the final signature.
 async fn differentiate<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
@@ -165,7 +168,8 @@ async fn differentiate<L: Laboratory>(
     Ok(())
 }
 
-/// How much of a size changes the curves as much as a signature should, to first order.
+/// Sets the amount of each probe at which the projected change of the curves has the target magnitude to
+/// first order.
 fn suggest(effects: &[EffectDescriptor], probes: &mut [Probe], tangent: &Tangent) {
     for probe in probes {
         let Some(exact) = &probe.exact else { continue };
@@ -178,7 +182,8 @@ fn suggest(effects: &[EffectDescriptor], probes: &mut [Probe], tangent: &Tangent
     }
 }
 
-/// Where a difference points where the derivative does, derivatives serve for all shapes of that size.
+/// Adopts the derivatives as signatures for all shapes of a size whose finite difference at the typical shape
+/// is parallel to its derivative.
 fn settle(probes: &mut [Probe], tangent: &Tangent) {
     let linear = |probe: &Probe| {
         let (Some(exact), Some(column)) = (&probe.exact, &probe.column) else {
@@ -198,7 +203,7 @@ fn settle(probes: &mut [Probe], tangent: &Tangent) {
     }
 }
 
-/// Gives every other shape the amount that suits the typical one.
+/// Copies the amount chosen for the typical shape to all other shapes.
 fn spread(probes: &mut [Probe]) {
     let typical = probes.iter().filter(|probe| probe.typical);
     let amounts: BTreeMap<(usize, usize), f64> = typical
@@ -214,7 +219,7 @@ fn spread(probes: &mut [Probe]) {
     }
 }
 
-/// Simulates what is asked for and has no column yet.
+/// Simulates the selected probes that have no signature yet.
 async fn take<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
@@ -237,7 +242,7 @@ async fn take<L: Laboratory>(
     Ok(())
 }
 
-/// Tries effects that are not linear along ladders of their sizes, all sizes of an effect at the same rung.
+/// Tests non-linear effects on ladders of sizes; all sizes of an effect are at the same rung.
 async fn climb<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
@@ -289,7 +294,7 @@ async fn climb<L: Laboratory>(
     Ok(())
 }
 
-/// Chooses another amount for signatures that were too large, too small or failed.
+/// Chooses another amount for probes whose change was too large or too small, or whose simulation failed.
 fn adjust(effects: &[EffectDescriptor], probes: &mut [Probe], tangent: &Tangent) {
     for probe in probes.iter_mut().filter(|probe| !probe.settled) {
         let parameter = &effects[probe.effect].parameters[probe.size];
@@ -312,7 +317,7 @@ fn adjust(effects: &[EffectDescriptor], probes: &mut [Probe], tangent: &Tangent)
     }
 }
 
-/// The test of one effect: the best of its shapes and of the rungs of its ladder.
+/// Computes the test of one effect: the best over its shapes and the rungs of its ladder.
 fn judge(
     k: usize,
     effect: &EffectDescriptor,

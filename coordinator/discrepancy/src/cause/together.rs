@@ -1,8 +1,8 @@
-//! Several effects at once.
+//! Joint tests of several effects.
 //!
-//! Where two or three effects act, each alone may explain less than another that resembles their sum. All
-//! pairs and triples are tried on the projected linear system; what it proposes, refits with every unknown
-//! free judge.
+//! Where two or three effects act, each alone may explain less than a different effect that resembles their
+//! sum. All pairs and triples are evaluated on the projected linear system; the best are refitted with every
+//! unknown free, and the refits decide.
 use crate::cause::suspect::Suspect;
 use crate::laboratory::{Laboratory, Stage};
 use crate::linear::subset::{Subset, Subsets};
@@ -12,22 +12,23 @@ use crate::model::parameter::{positive, sized};
 use crate::model::unknowns::Point;
 use search::least_squares::Settings;
 
-/// How many effects at once, and how many such proposals are refitted, as far as the budget for refits allows.
+/// Passes of the subset search: number of effects per subset, number of subsets that are refitted, as far as
+/// the budget for refits allows.
 const TRIED: [(usize, usize); 3] = [(2, 3), (3, 1), (2, 9)];
-/// How many are refitted side by side.
+/// Number of subsets that are refitted in parallel.
 const AT_ONCE: usize = 4;
 
-/// Several effects, refitted together.
+/// Effects that were refitted jointly.
 #[derive(Clone, Debug)]
 pub(crate) struct Together {
-    /// Their identifiers, the one that explains most by itself first.
+    /// Identifiers of the effects, in descending order of their individual statistic.
     pub(crate) members: Vec<String>,
-    /// The fit; the last effects of its model are these.
+    /// Joint fit; the effects are the last ones of its model.
     pub(crate) fit: Fit,
 }
 
-/// Refits of the best pairs and triples of suspects, at most so many at once; those that cannot be simulated
-/// are left out.
+/// Refits the best pairs and triples of candidate effects, with at most `most` effects each; subsets that
+/// cannot be simulated are omitted.
 pub(crate) async fn together<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
@@ -79,7 +80,8 @@ pub(crate) async fn together<L: Laboratory>(
         .collect())
 }
 
-/// A fit with all of them at their estimates, in the shapes that suit each alone.
+/// Returns the point of a fit with all effects of a subset at their estimated sizes and their individually
+/// best shapes.
 fn started(fit: &Fit, able: &[&Suspect], subset: &Subset) -> Point {
     let mut estimates = subset.sizes.iter();
     let members = subset.members.iter().map(|&k| able[k]);

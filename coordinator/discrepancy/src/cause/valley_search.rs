@@ -1,10 +1,11 @@
-//! A second look at the suspects from the valley that the likeliest of them leads to.
+//! Search for the narrow minimum with the likeliest effects switched on.
 //!
-//! Refits begin where the model without effects was fitted. If that is not the valley of the true
-//! stiffness, even the right effect leaves much there, and wrong ones stand beside it. So the likeliest
-//! try where their rivals arrived, then look for valleys of their own, and at last the likeliest goes the
-//! whole way from the start; all others are refitted from the deepest, and all are judged again. If even
-//! that is no valley, the low orders of the period say which effects to begin with.
+//! Refits start where the model without effects was fitted. If that is not the narrow minimum at the true
+//! stiffness, even the correct effect leaves a large residual there and wrong effects look as good. The
+//! likeliest effects are therefore started from the unknowns of their rivals, then scanned for valleys of
+//! their own; if that is not enough, the likeliest is searched globally from the start. All other effects are
+//! refitted from the deepest valley, and all are compared again. If the residual is still large, the low
+//! orders of the period propose the effects to start with.
 use crate::cause::low_orders;
 use crate::cause::refit::Refitted;
 use crate::cause::round::Round;
@@ -16,27 +17,27 @@ use crate::model::unknowns::Point;
 use protocol::announce::EffectDescriptor;
 use search::least_squares::Settings;
 
-/// Suspects whose own valley is looked for.
+/// Number of candidate effects whose own valley is searched.
 const LEADERS: usize = 2;
-/// Share of the best refit's gain of evidence from which a suspect is one of them.
+/// Share of the best refit's gain of evidence above which a candidate effect is searched for its own valley.
 const SHARE: f64 = 0.3;
-/// Share of the best refit's gain of evidence from which a suspect is refitted from the deepest valley.
+/// Share of the best refit's gain of evidence above which a candidate effect is refitted from the deepest
+/// valley.
 const HOPEFUL: f64 = 0.1;
-/// Share of the dispersion of a lost valley from which the unknowns of rivals are tried, and other stiffness and
-/// contact: a contact that is too soft leaves as much.
+/// Share of the threshold dispersion of a missed valley above which the rivals' unknowns and other stiffness
+/// and contact values are tried: a too soft contact leaves a residual of this size as well.
 const LOOSE: f64 = 0.5;
-/// Looks for valleys in one round: each begins where the one before ended.
+/// Maximum number of successive valley searches in a round; each starts where the previous one ended.
 const DEEPER: usize = 3;
 
-/// A fit that was found for a suspect, by its place among the round's refits.
+/// Better fit of a candidate effect, with the effect's index among the round's refits.
 struct Found {
     place: usize,
     fit: Fit,
 }
 
-/// Looks again while the best refit of a round leaves much and another valley is found; changes the
-/// round's refits, their order and what is derived from them. Says whether the best of them lies in the
-/// valley now.
+/// Searches for other valleys while the best refit of a round leaves a large residual; updates the round's
+/// refits, their order and the derived values. Returns whether the best refit lies in the valley afterwards.
 pub(crate) async fn search<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
@@ -79,7 +80,7 @@ pub(crate) async fn search<L: Laboratory>(
     Ok(round.dispersion <= lost)
 }
 
-/// Valleys of the likeliest, each look from where the one before ended.
+/// Searches for valleys of the likeliest effects repeatedly, each time from the end of the previous search.
 async fn deeper<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
@@ -103,8 +104,8 @@ async fn deeper<L: Laboratory>(
     Ok(())
 }
 
-/// What the low orders hold for likeliest, in valleys of its own: those that leave clearly less than every
-/// refit so far.
+/// Returns the effects that are likeliest in the low orders, fitted in valleys of their own, as far as they
+/// leave clearly less than every refit so far.
 async fn from_low_orders<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
@@ -137,7 +138,7 @@ async fn from_low_orders<L: Laboratory>(
     Ok(found)
 }
 
-/// Places of the likeliest refits whose dispersion exceeds a bound.
+/// Returns the indices of the likeliest refits whose dispersion exceeds a bound.
 fn leaders(round: &Round, bound: f64) -> Vec<usize> {
     let gain = |refit: &Refitted| refit.log_evidence - round.null_evidence;
     let best = round.refits.first().map_or(0.0, gain);
@@ -148,7 +149,7 @@ fn leaders(round: &Round, bound: f64) -> Vec<usize> {
         .collect()
 }
 
-/// A suspect's own effect with the unknowns of each other.
+/// Combines the effect of one refit with the unknowns of each other refit.
 fn from_rivals(round: &Round, own: usize, genes: usize) -> Vec<Point> {
     let rivals = round.refits.iter().enumerate().filter(|(k, _)| *k != own);
     rivals
@@ -156,14 +157,14 @@ fn from_rivals(round: &Round, own: usize, genes: usize) -> Vec<Point> {
         .collect()
 }
 
-/// The unknowns of one fit with everything else of another.
+/// Combines the unknowns of one fit with the model, nuisance parameters and effect parameters of another.
 fn crossed(genes_of: &Fit, rest_of: &Fit, genes: usize) -> Point {
     let mut point = rest_of.point();
     point.x[..genes].copy_from_slice(&genes_of.x()[..genes]);
     point
 }
 
-/// Takes what was found, refits all hopeful others from the deepest of it, and judges again.
+/// Adopts the better fits, refits all promising other effects from the deepest of them, and ranks again.
 async fn settle<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
@@ -198,7 +199,7 @@ async fn settle<L: Laboratory>(
     Ok(())
 }
 
-/// Takes a fit if it leaves less.
+/// Replaces a refit by a fit with a smaller residual.
 fn replace(refit: &mut Refitted, fit: Fit) {
     if fit.chi_squared() < refit.fit.chi_squared() {
         *refit = Refitted::new(refit.id.clone(), fit);

@@ -1,5 +1,5 @@
-//! Whether a round's likeliest name is believed: beside the forces without a cause that challenge it, and
-//! beside a finer model.
+//! Decision whether the likeliest effect of a round is accepted: it is compared with generic forces and
+//! checked against a finer model.
 use crate::cause::challenge::{Challenger, challenge};
 use crate::cause::decide::{decide, decide_together};
 use crate::cause::round::Round;
@@ -13,15 +13,16 @@ use crate::record::metric::Metric;
 use crate::size::force::force;
 use crate::thresholds::Thresholds;
 
-/// What is believed after a round.
+/// Result of a round whose effects were accepted.
 pub(crate) struct Believed {
-    /// The next model.
+    /// Fit with the accepted effects, which becomes the next model.
     pub(crate) fit: Fit,
-    /// The round once more for each effect that was added beside its first.
+    /// Copies of the round, one for each effect that was added together with its first.
     pub(crate) beside: Vec<Round>,
 }
 
-/// The next model, if the best names of a round are believed; else the round and the diagnosis say why not.
+/// Returns the next model if the best effects of a round are accepted; otherwise records the reason in the
+/// round and the diagnosis.
 pub(crate) async fn believe<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
@@ -70,8 +71,8 @@ pub(crate) async fn believe<L: Laboratory>(
     }))
 }
 
-/// Several effects at once that explain a round best, where no single one leaves but noise or a force
-/// without a cause challenges it.
+/// Returns the best combination of several effects, if no single effect leaves only noise or a generic force
+/// challenges the best one.
 async fn likeliest_together<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
@@ -97,13 +98,14 @@ async fn likeliest_together<L: Laboratory>(
         .max_by(|a, b| evidence(a).total_cmp(&evidence(b))))
 }
 
-/// Whether a force explains more than any effects together.
+/// Returns whether a generic force explains more than the best combination of effects.
 fn beats(force: &Challenger, together: Option<&Together>, thresholds: &Thresholds) -> bool {
     let margin = thresholds.gain * force.fit.dispersion();
     together.is_none_or(|own| own.fit.log_evidence() <= force.log_evidence - margin)
 }
 
-/// Why what a finer model says of an answer is enough to doubt it, if it is; the check is kept.
+/// Checks an answer against a finer model, stores the check in the diagnosis, and returns the reason for a
+/// rejection if the gain does not exceed the numerical error.
 async fn drowned<L: Laboratory>(
     session: &mut Session<'_, L>,
     before: &Fit,
@@ -118,15 +120,15 @@ async fn drowned<L: Laboratory>(
     diagnosis.preflight_after = Some(preflight);
     Ok((gain < needed).then(|| {
         format!(
-            "{id} is the likeliest, but its gain drowns in the numerical error: with what a finer \
-             model changes there as noise, {gain:.1} nats are left and {needed:.0} are needed"
+            "{id} is the likeliest effect, but its gain does not exceed the numerical error: with the change by a \
+             finer model counted as noise, {gain:.1} nats remain where {needed:.0} are required"
         )
     }))
 }
 
-/// A force without a cause beats every name of this round. Beside names that explain more than it
-/// does it is a remark: what is left there may be the laws of those names, a little otherwise. `named`
-/// is by how much they lower `chi^2`.
+/// Records a generic force that beats every named effect of this round. If the effects found so far (`named`:
+/// their reduction of `chi^2`) explain more than the force, it is only noted, because the remaining residual
+/// may come from slightly different laws of those effects.
 fn unlisted(
     round: &mut Round,
     challenger: Challenger,
@@ -135,7 +137,7 @@ fn unlisted(
     diagnosis: &mut Diagnosis,
 ) {
     let said = format!(
-        "a force {} explains more of what is left than any name",
+        "a generic force {} explains more of the residual than any named effect",
         challenger.id
     );
     if challenger.removed > named {

@@ -1,29 +1,32 @@
-//! Whether a name carries: what an answer must show beside its test before anything is named.
+//! Plausibility of estimated effect sizes: conditions beyond the significance test that an effect must meet
+//! before it is named.
 //!
-//! A test says that something is there. But a name whose size may be nothing, that stands at a bound, or that
-//! instruments are never more exact than, is none. One rule, a total function of what is known.
+//! A test only shows that something is present. An effect is not named if its size is compatible with zero,
+//! lies at a bound, or is within the tolerance of an instrument.
 use crate::thresholds::{AT_BOUND, WITHIN};
 
-/// A size of an effect that is about to be named.
+/// Estimated size of an effect that is about to be named.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Size {
-    /// The effect.
+    /// Identifier of the effect.
     pub(crate) effect: String,
-    /// The parameter.
+    /// Name of the parameter.
     pub(crate) parameter: String,
     pub(crate) value: f64,
     /// 95 % interval.
     pub(crate) interval: [f64; 2],
-    /// Least and greatest value.
+    /// Lower and upper bound.
     pub(crate) bounds: [f64; 2],
-    /// The value at which it does nothing.
+    /// Value at which the effect vanishes.
     pub(crate) absent: f64,
-    /// One standard deviation of what it is without any effect, if it is never exact.
+    /// Standard deviation of the parameter in the absence of any effect, for parameters of instruments, which
+    /// are never exact.
     pub(crate) tolerance: Option<f64>,
 }
 
 impl Size {
-    /// Whether nothing is a likely value of it, or one that any instrument may have.
+    /// Returns whether the interval contains the absent value, or the size is within the tolerance of an
+    /// instrument.
     fn may_be_nothing(&self) -> bool {
         let [low, high] = self.interval;
         let holds = low <= self.absent && self.absent <= high;
@@ -31,7 +34,7 @@ impl Size {
         holds || self.tolerance.is_some_and(usual)
     }
 
-    /// Whether it stands at a bound that is not its absent value.
+    /// Returns whether the value lies at a bound other than its absent value.
     fn at_bound(&self) -> bool {
         let [lower, upper] = self.bounds;
         let near = |bound: f64| (self.value - bound).abs() <= AT_BOUND * (upper - lower);
@@ -41,14 +44,14 @@ impl Size {
             .any(|bound| near(bound) && free(bound))
     }
 
-    /// Whether its interval is as wide as its range.
+    /// Returns whether the interval is as wide as the allowed range.
     fn is_open(&self) -> bool {
         let [low, high] = self.interval;
         low <= self.bounds[0] && self.bounds[1] <= high
     }
 }
 
-/// What speaks against the sizes of effects.
+/// Returns the first reason against the sizes of the effects, if there is one.
 pub(crate) fn doubt(sizes: &[Size]) -> Option<String> {
     for size in sizes {
         let Size {
@@ -59,19 +62,19 @@ pub(crate) fn doubt(sizes: &[Size]) -> Option<String> {
             let [low, high] = size.interval;
             return Some(match size.tolerance {
                 Some(sd) if !(low..=high).contains(&size.absent) => format!(
-                    "{effect}: its {parameter} of {:.3e} lies within {WITHIN} of what such an instrument \
-                     is good to ({sd:.1e})",
+                    "{effect}: its {parameter} of {:.3e} lies within {WITHIN} standard deviations of the \
+                     instrument's tolerance ({sd:.1e})",
                     size.value
                 ),
                 _ => format!(
-                    "{effect}: the interval of its {parameter}, {low:.3e} to {high:.3e}, holds the value \
-                     at which it does nothing"
+                    "{effect}: the interval of its {parameter}, {low:.3e} to {high:.3e}, contains the value \
+                     at which the effect vanishes"
                 ),
             });
         }
         if size.at_bound() {
             return Some(format!(
-                "{effect}: its {parameter} stands at a bound, {:.3e}",
+                "{effect}: its {parameter} lies at its bound of {:.3e}",
                 size.value
             ));
         }

@@ -1,4 +1,4 @@
-//! What an answer claims, gathered from its fit and its estimates.
+//! Sizes and traits that an answer claims, collected from its fit and its estimates.
 use crate::cause::round::Round;
 use crate::cause::suspect::Suspect;
 use crate::diagnose::carry::Size;
@@ -9,7 +9,7 @@ use crate::thresholds::MOST_NAMES;
 use nalgebra::{Complex, DVector};
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Role};
 
-/// Sizes of all effects of an answer.
+/// Returns the sizes of all effects of an answer.
 pub(crate) fn claim(answer: &Fit, effects: &[Estimate]) -> Vec<Size> {
     let added = answer.model.added.iter();
     let sizes = added.filter_map(|effect| {
@@ -19,7 +19,7 @@ pub(crate) fn claim(answer: &Fit, effects: &[Estimate]) -> Vec<Size> {
     sizes.flatten().collect()
 }
 
-/// Sizes of an added effect.
+/// Returns the sizes of one added effect.
 fn sizes(answer: &Fit, effect: &EffectDescriptor, found: &Estimate) -> Vec<Size> {
     let both = effect.parameters.iter().zip(&found.parameters);
     let sizes = both.filter(|(p, _)| p.role == Role::Size);
@@ -40,7 +40,8 @@ fn sizes(answer: &Fit, effect: &EffectDescriptor, found: &Estimate) -> Vec<Size>
     sizes.map(size).collect()
 }
 
-/// Why the set of a round is no answer, if it is none: too many names, or names of which nothing is common.
+/// Returns the reason why the ambiguity set of a round is no answer, if there is one: too many effects, or
+/// effects without a common trait.
 pub(crate) fn no_answer(base: &Base, round: &Round) -> Option<String> {
     let of_set = |id: &String| round.suspects.iter().find(|own| own.effect.id == *id);
     let members: Vec<&Suspect> = round.set.iter().filter_map(of_set).collect();
@@ -48,7 +49,7 @@ pub(crate) fn no_answer(base: &Base, round: &Round) -> Option<String> {
     let common = Common::of(&traits);
     if round.set.len() > MOST_NAMES {
         return Some(format!(
-            "{} names explain it about equally well ({}); {}",
+            "{} effects explain the residual about equally well ({}); {}",
             round.set.len(),
             round.set.join(", "),
             common.words(base)
@@ -56,13 +57,13 @@ pub(crate) fn no_answer(base: &Base, round: &Round) -> Option<String> {
     }
     (members.len() > 1 && common.is_nothing()).then(|| {
         format!(
-            "{} explain it about equally well and have neither joint nor order nor channel in common",
+            "{} explain the residual about equally well and have neither joint nor order nor channel in common",
             round.set.join(", ")
         )
     })
 }
 
-/// Where an effect acts, and where it shows most.
+/// Joint at which an effect acts, and the channel and order in which it is strongest.
 struct Traits {
     joint: String,
     channel: Option<usize>,
@@ -96,13 +97,13 @@ impl Traits {
     }
 }
 
-/// The place of the largest.
+/// Returns the index of the largest value.
 fn strongest(powers: impl Iterator<Item = f64>) -> Option<usize> {
     let by_power = |(_, a): &(usize, f64), (_, b): &(usize, f64)| a.total_cmp(b);
     powers.enumerate().max_by(by_power).map(|(k, _)| k)
 }
 
-/// What several have in common.
+/// Traits that several effects share.
 struct Common {
     joint: Option<String>,
     channel: Option<usize>,
@@ -147,7 +148,7 @@ impl Common {
         ];
         let parts: Vec<String> = parts.into_iter().flatten().collect();
         if parts.is_empty() {
-            "nothing of where they act or show is common to all".to_owned()
+            "they have neither joint nor order nor channel in common".to_owned()
         } else {
             format!("all of them {}", parts.join(", "))
         }

@@ -1,8 +1,9 @@
-//! The end of a diagnosis: estimates, the proof, the verdict and its reason.
+//! Conclusion of a diagnosis: estimates, validation, verdict and its reason.
 //!
-//! Where the tests do not stand on firm ground (assumed noise, a model that was never held against a
-//! finer one), what was found is taken out of the answer again: it stays visible as a suspect, with its
-//! size and its nats, and the reason says what it would take to name it. So does what does not carry.
+//! Where the tests lack a reliable basis (assumed noise, a model never compared with a finer one), the
+//! effects found are withdrawn from the answer. They remain visible as suspects with size and evidence in
+//! nats, and the reason states what is needed to name them. Effects with implausible sizes are treated
+//! likewise.
 use crate::cause::round::Round;
 use crate::diagnose::carry;
 use crate::diagnose::claim::{claim, no_answer};
@@ -24,7 +25,7 @@ use crate::size::never_exact::never_exact;
 use crate::size::spread::{Spread, coloured};
 use crate::verdict::{Findings, Ground, verdict};
 
-/// Estimates, the proof and the verdict; `shown` is what it is proved on.
+/// Computes estimates, validation and verdict; `shown` are the records used for the validation.
 pub(crate) async fn conclude<L: Laboratory>(
     session: &mut Session<'_, L>,
     answer: Fit,
@@ -110,13 +111,13 @@ pub(crate) async fn conclude<L: Laboratory>(
     Ok(())
 }
 
-/// Sizes of every suspect that was refitted in a round, by its own refit, named or not.
+/// Returns the sizes of all effects that were refitted in a round, each from its own refit, named or not.
 fn sizes(round: &Round, metric: &Metric) -> Vec<Estimate> {
     let ids = round.refits.iter().map(|own| &own.id);
     ids.filter_map(|id| refitted(round, id, metric)).collect()
 }
 
-/// What the tests stand on.
+/// Returns the reliability of the basis of the tests.
 fn ground<L>(session: &Session<'_, L>, claims: bool, diagnosis: &Diagnosis) -> Ground {
     let (base, inputs) = (session.base, session.inputs);
     let checked = base.preflight.is_some() || diagnosis.preflight_after.is_some();
@@ -133,8 +134,9 @@ fn ground<L>(session: &Session<'_, L>, claims: bool, diagnosis: &Diagnosis) -> G
     }
 }
 
-/// Scores an answer on what took no part in the fit against the model without effects; why it is no name, if it does
-/// not predict. The score stays in the diagnosis. That each effect predicts beside the others was asked before.
+/// Scores an answer on data excluded from the fit against the model without effects, stores the scores in the
+/// diagnosis, and returns the reason why the answer is not named if it does not predict. The predictive value
+/// of each effect in addition to the others is tested earlier.
 async fn predict<L: Laboratory>(
     session: &mut Session<'_, L>,
     answer: &Fit,
@@ -150,7 +152,7 @@ async fn predict<L: Laboratory>(
     let ids = ids.join(" with ");
     if !session.lab.may(Stage::Show) {
         return Ok(Some(format!(
-            "{ids} explains what was fitted, and the budget for showing it elsewhere is used up"
+            "{ids} explains the fitted data, but the budget for validation on other data is used up"
         )));
     }
     let mut experiments = session.experiments(Stage::Show);
@@ -170,7 +172,7 @@ async fn predict<L: Laboratory>(
     ))
 }
 
-/// Why an answer is not named, if it is not.
+/// Returns the reason why an answer is not named, if there is one.
 fn doubt(base: &Base, answer: &Fit, diagnosis: &Diagnosis) -> Option<String> {
     let sets = || {
         let mut rounds = diagnosis.rounds.iter();
@@ -179,8 +181,8 @@ fn doubt(base: &Base, answer: &Fit, diagnosis: &Diagnosis) -> Option<String> {
     carry::doubt(&claim(answer, &diagnosis.effects)).or_else(sets)
 }
 
-/// Takes what was added, and the force that beats every name if that is doubted as well, out of the
-/// answer; says what it was.
+/// Withdraws the added effects from the answer, and with `force_too` the generic force as well; returns a
+/// description of what was withdrawn.
 fn withhold(diagnosis: &mut Diagnosis, force_too: bool) -> Option<String> {
     let nats = |id: &str, nats: f64| format!("{id}, at {nats:.0} nats");
     let mut suspects = Vec::new();
@@ -190,7 +192,7 @@ fn withhold(diagnosis: &mut Diagnosis, force_too: bool) -> Option<String> {
         };
         let own = diagnosis.effects.iter().find(|effect| effect.id == id);
         suspects.push(nats(&id, own.map_or(f64::NAN, |own| own.ln_evidence)));
-        round.withdraw(format!("{id} is the likeliest, but no name is given here"));
+        round.withdraw(format!("{id} is the likeliest effect, but it is not named"));
     }
     if force_too && diagnosis.generic.take().is_some() {
         let force = diagnosis.force.as_ref();
@@ -200,7 +202,7 @@ fn withhold(diagnosis: &mut Diagnosis, force_too: bool) -> Option<String> {
     (!suspects.is_empty()).then(|| suspects.join(" and "))
 }
 
-/// The gap before and after, of the answer, of its best rejected rival and of a force without a cause.
+/// Computes the gap before and after for the answer, its best rejected rival and the generic force.
 async fn prove<L: Laboratory>(
     session: &mut Session<'_, L>,
     after: &Fit,

@@ -1,5 +1,5 @@
-//! The correlation of noise that one cycle does not show and its channels do not state: taken once from what the likeliest
-//! model leaves.
+//! Correlation of the noise where there is one cycle and the channels do not state it: estimated once from
+//! the residual of the likeliest model.
 use crate::diagnose::rounds::suspicion;
 use crate::ground::session::Session;
 use crate::inputs::Inputs;
@@ -8,8 +8,8 @@ use crate::model::fit::Fit;
 use crate::record::measured::Record;
 use crate::record::noise::Known;
 
-/// The record with the correlations that it lacks, and what is to be said of them; nothing where it lacks none, or its
-/// noise is not stated.
+/// Returns the record with the missing correlations filled in and a note about them; `None` where no
+/// correlation is missing or the noise is not stated.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -40,20 +40,21 @@ pub(crate) async fn completed<L: Laboratory>(
         }
     }
     let words = if said.is_empty() {
-        "no correlation of the noise is stated, and what the likeliest model leaves has none"
+        "no correlation of the noise is stated, and the residual of the likeliest model has none"
             .to_owned()
     } else {
         format!(
-            "the correlation of the noise from one value to the next is not stated: it is taken from what the likeliest \
-             model leaves ({})",
+            "the correlation of the noise between neighbouring values is not stated: it is estimated from the residual of \
+             the likeliest model ({})",
             said.join(", ")
         )
     };
     Ok(Some((record, words)))
 }
 
-/// What is diagnosed from where a fit arrived, with the correlations of a record for channels of the same name under
-/// every condition, and its largest for those of another name: they are held out.
+/// Returns the inputs of a repeated diagnosis that starts from a fit. Missing correlations are taken from the
+/// channel of the same name in `record`, or are the largest of the record for channels of other names, which
+/// are held out.
 pub(crate) fn again(inputs: &Inputs, record: &Record, fit: &Fit) -> Inputs {
     let mut again = inputs.clone();
     let all = record.channels.iter().filter_map(|own| own.correlation);
@@ -68,10 +69,10 @@ pub(crate) fn again(inputs: &Inputs, record: &Record, fit: &Fit) -> Inputs {
     again
 }
 
-/// Correlation of neighbouring values of what a fit leaves, channel by channel; 0 where noise without any may have as
-/// much.
+/// Returns the lag-1 correlation of the residual of a fit, by channel; 0 where it is not significant.
 fn correlations(record: &Record, fit: &Fit) -> Vec<f64> {
-    /// Largest one: beyond, a model error is no noise of a channel any more.
+    /// Upper limit of the correlation; a model error that is correlated more strongly is not noise of a
+    /// channel.
     const MOST: f64 = 0.99;
     let mean = record.mean();
     let channels = mean.iter().zip(&fit.curves).zip(&record.channels);

@@ -1,4 +1,4 @@
-//! The answer of a diagnosis, and all that it rests on.
+//! Result of a diagnosis with all intermediate results.
 use crate::cause::refit::Refitted;
 use crate::cause::round::Round;
 use crate::ground::preflight::Preflight;
@@ -17,65 +17,69 @@ use crate::size::limit::Limit;
 use crate::size::never_exact::NeverExact;
 use crate::verdict::Verdict;
 
-/// A finished diagnosis.
+/// Result of a diagnosis.
 #[derive(Clone, Debug)]
 pub struct Diagnosis {
-    /// The answer.
+    /// Verdict.
     pub verdict: Verdict,
-    /// Why, in a sentence, where the answer needs one.
+    /// Reason of the verdict in one sentence, where it needs one.
     pub reason: Option<String>,
     /// Added effects, then the other members of their ambiguity sets.
     pub effects: Vec<Estimate>,
-    /// The rounds.
+    /// Rounds of hypothesis tests.
     pub rounds: Vec<Round>,
-    /// Sizes of the suspects that were refitted, each by its own refit, round by round.
+    /// Sizes of the candidate effects that were refitted, each from its own refit, by round.
     pub sizes: Vec<Vec<Estimate>>,
-    /// Where the recalibrated model and the record part.
+    /// Localisation of the residual of the recalibrated model.
     pub whereabouts: Option<Where>,
     /// The numerical check of the recalibrated model.
     pub preflight: Option<Preflight>,
-    /// That of the answer, or of the likeliest suspect that was dropped for it.
+    /// Numerical check of the answer, or of the likeliest candidate effect that was rejected because of that
+    /// check.
     pub preflight_after: Option<Preflight>,
     /// Detection limits of all effects.
     pub limits: Vec<Limit>,
-    /// What the instruments are off by, beside the answer.
+    /// Estimated errors of the instruments under the answer.
     pub nuisances: Vec<NeverExact>,
-    /// Effects that this record cannot show, and what would.
+    /// Effects that this record cannot reveal because the unknowns absorb them, and the data that would
+    /// reveal them.
     pub absorbed: Vec<Absorbed>,
-    /// Effects that this record cannot tell apart, and what would.
+    /// Effects that this record cannot distinguish, and the data that would distinguish them.
     pub look_alikes: Vec<LookAlikes>,
     /// The recalibrated model without effects.
     pub before: Option<Fit>,
     /// The model of the answer.
     pub after: Option<Fit>,
-    /// Tail probability that what is left is white: by the recalibrated model, and by the answer.
+    /// p-value of the whiteness test of the residual: of the recalibrated model, and of the answer.
     pub whiteness: Option<[f64; 2]>,
-    /// How the parameters of the recalibrated model would have to wander.
+    /// Shifts of single parameters of the recalibrated model when refitted on parts of the abscissa and under
+    /// other conditions.
     pub wander: Vec<Wander>,
-    /// The same of the answer; empty where nothing was added.
+    /// Shifts of single parameters of the answer when refitted on parts of the abscissa and under other
+    /// conditions; empty where no effect was added.
     pub wander_after: Vec<Wander>,
-    /// The gap of the answer by record.
+    /// Gap of the answer, by record.
     pub rows: Vec<Row>,
-    /// Predictive scores of the answer, or of what is withheld as a suspect, by record; empty where nothing was added or
-    /// nothing was held out.
+    /// Predictive scores of the answer, or of the effects withheld as suspects, by record; empty where no
+    /// effect was added or no data were held out.
     pub prediction: Vec<Prediction>,
     /// The best rejected rival and its gap by record.
     pub rival: Option<(String, Vec<Row>)>,
-    /// Form and joint of a force that beats every name, where nothing speaks against saying so.
+    /// Form and joint of a generic force that beats every named effect, unless its basis is in doubt.
     pub generic: Option<String>,
-    /// A force that beats every name, with its size, whatever the verdict says of it.
+    /// Generic force that beats every named effect, with its size, regardless of the verdict.
     pub force: Option<Force>,
-    /// How the noise is known.
+    /// Source of the noise level.
     pub noise: Known,
-    /// Stages that used up their part of the simulations.
+    /// Stages that used up their budget of simulations.
     pub ran_out: Vec<Stage>,
-    /// What else should be known.
+    /// Further remarks for the user.
     pub notes: Vec<String>,
 }
 
 impl Diagnosis {
-    /// The best refit that no answer holds, neither as added nor as a member of an ambiguity set, with
-    /// the first round in which something was added.
+    /// Returns the best refit whose effect is in no answer, neither as added nor as a member of an ambiguity
+    /// set, with the first round in which an effect was added.
     pub fn rejected(&self) -> Option<(&Round, &Refitted)> {
         let round = self.rounds.iter().find(|round| round.added.is_some())?;
         let held = |id: &String| self.rounds.iter().any(|round| round.set.contains(id));
@@ -83,13 +87,13 @@ impl Diagnosis {
         Some((round, rival))
     }
 
-    /// Detection limits of the effects that the answer does not name.
+    /// Returns the detection limits of the effects that the answer does not name.
     pub fn detection_limits(&self) -> impl Iterator<Item = &Limit> {
         let named = |limit: &&Limit| self.effects.iter().any(|own| own.id == limit.id);
         self.limits.iter().filter(move |limit| !named(limit))
     }
 
-    /// Nothing but a reason.
+    /// Creates an unresolved diagnosis that has only a reason.
     pub fn unresolved(reason: &str) -> Self {
         Self {
             verdict: Verdict::Unresolved,

@@ -1,4 +1,5 @@
-//! A diagnosis from the record to the verdict: the order of the four questions and what they hand on.
+//! Diagnosis from the record to the verdict: order of its steps (baseline, localisation, hypotheses,
+//! validation) and their results.
 mod belief;
 mod carry;
 mod claim;
@@ -31,10 +32,10 @@ use crate::thresholds::PROMISED;
 use conclude::conclude;
 use rounds::rounds;
 
-/// Diagnoses.
+/// Runs a diagnosis within the budget of simulations.
 ///
 /// # Errors
-/// Those of the laboratory: nobody simulates any more, or the user stopped.
+/// Those of the laboratory: no worker is left, or the user stopped the run.
 pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis, L::Error> {
     let mut counted = Budgeted::new(lab, &inputs.thresholds.budget);
     let mut diagnosis = within(&mut counted, inputs).await?;
@@ -42,7 +43,7 @@ pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Dia
         .notes
         .extend(counted.ran_out().iter().map(|stage| {
             format!(
-                "ran out of simulations in the stage \"{}\": it may cost {} and began nothing more",
+                "the stage \"{}\" used up its budget of {} simulations and began no further work",
                 stage.name(),
                 inputs.thresholds.budget[*stage as usize]
             )
@@ -51,7 +52,7 @@ pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Dia
     Ok(diagnosis)
 }
 
-/// Diagnoses in a laboratory that counts.
+/// Runs a diagnosis in a laboratory that enforces the budget.
 async fn within<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis, L::Error> {
     let Some(record) = inputs
         .records
@@ -114,8 +115,8 @@ async fn within<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis
     let promised = base.fit.search.promised_decrease();
     if promised > PROMISED {
         diagnosis.reason = Some(format!(
-            "the recalibration did not converge: one more step promises to lower the misfit by {:.0} %, \
-             so a test would report calibration error",
+            "the recalibration did not converge: one more step is predicted to lower the misfit by {:.0} %, \
+             so that tests of effects would respond to calibration error",
             100.0 * promised
         ));
         return Ok(diagnosis);

@@ -1,4 +1,4 @@
-//! Effects that are no longer needed beside the others, or that predict nothing beside them, are taken back.
+//! Removal of effects that became unnecessary beside later ones, or that do not improve prediction.
 use crate::diagnose::diagnosis::Diagnosis;
 use crate::ground::session::Session;
 use crate::laboratory::{Laboratory, Stage};
@@ -7,8 +7,8 @@ use crate::proof::compare::Shown;
 use crate::proof::predictive::{scores, unpredicted};
 use search::least_squares::Settings;
 
-/// Takes back, one by one, effects without which the evidence falls by less than it must rise for an
-/// effect to be added, and those that predict what took no part in the fit no better beside the others.
+/// Removes, one at a time, effects without which the evidence falls by less than the gain required to add an
+/// effect, and effects that do not improve the prediction of data excluded from the fit.
 pub(crate) async fn prune<L: Laboratory>(
     session: &mut Session<'_, L>,
     mut current: Fit,
@@ -35,7 +35,7 @@ pub(crate) async fn prune<L: Laboratory>(
         let lost = (current.log_evidence() - fit.log_evidence()) / current.dispersion();
         let found = if lost < gain {
             let id = &current.model.added[*position].id;
-            let reason = format!("{id} is not needed beside what was added later");
+            let reason = format!("{id} is no longer needed with the effects that were added later");
             Some((*position, fit.clone(), reason))
         } else {
             idle(session, shown, (&current, fits), diagnosis).await?
@@ -56,8 +56,8 @@ pub(crate) async fn prune<L: Laboratory>(
     Ok(current)
 }
 
-/// The first of several models, each without one effect of an answer, beside which the answer predicts no better; the
-/// effect's position, that model, and why.
+/// Returns the first of several models, each without one effect of the answer, that predicts as well as the
+/// answer: the effect's position, the model, and the reason.
 async fn idle<L: Laboratory>(
     session: &mut Session<'_, L>,
     shown: &[Shown<'_>],

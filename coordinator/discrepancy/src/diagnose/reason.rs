@@ -1,4 +1,4 @@
-//! What a diagnosis says in words: why it does not say more, and what else should be known.
+//! Verbal results of a diagnosis: reason of the verdict and further remarks.
 use crate::diagnose::diagnosis::Diagnosis;
 use crate::ground::base::Base;
 use crate::ground::preflight::Preflight;
@@ -6,36 +6,38 @@ use crate::inputs::Inputs;
 use crate::model::fit::Fit;
 use crate::verdict::{Ground, Verdict};
 
-/// A numerical error beyond this share of the record's standard error is said aloud.
+/// Ratio of numerical error to the record's standard error above which a remark is added.
 const FINE_ENOUGH: f64 = 1.0 / 3.0;
 
-/// What speaks against noise alone.
+/// Evidence against the hypothesis that the residual is noise alone.
 #[derive(Debug)]
 pub(crate) struct Rejection {
-    /// Whether the tests of the named effects do.
+    /// Whether the tests of the named effects reject.
     pub(crate) names: bool,
-    /// What was found and cannot be named.
+    /// Description of the effects found that cannot be named.
     pub(crate) suspect: Option<String>,
-    /// Why that is not named, where the tests themselves mean what they say.
+    /// Reason why the effects are not named, although the basis of the tests is reliable.
     pub(crate) doubt: Option<String>,
-    /// What is left and is no noise, in words.
+    /// Description of the remaining residual that is not noise.
     pub(crate) left: Option<String>,
 }
 
-/// What is left and is no noise, in words.
+/// Describes the remaining residual relative to the noise.
 pub(crate) fn left(base: &Base, after: &Fit) -> String {
     let ratio = after.chi_squared() / base.noise();
     let assumed = !base.known().is_seen();
     if assumed && ratio < 1.0 {
-        format!("what is left is only {ratio:.2} times the assumed noise, which is no such noise")
+        format!(
+            "the residual is only {ratio:.2} times the assumed noise: the assumption is too high"
+        )
     } else if assumed {
-        format!("what is left is {ratio:.2} times the assumed noise")
+        format!("the residual is {ratio:.2} times the assumed noise")
     } else {
-        format!("what is left is {ratio:.2} times the noise: more than noise, and not explained")
+        format!("the residual is {ratio:.2} times the noise and remains unexplained")
     }
 }
 
-/// Why, where the verdict needs it.
+/// Returns the reason of the verdict, where it needs one.
 pub(crate) fn reason(
     ground: Ground,
     diagnosis: &Diagnosis,
@@ -57,22 +59,22 @@ pub(crate) fn reason(
     } = rejection;
     let what = match (suspect, left) {
         (Some(suspect), _) if doubt.is_some() => format!(
-            "the likeliest suspect is {suspect}, but it is no name: {}",
+            "the likeliest effect is {suspect}, but it is not named: {}",
             doubt.as_deref().unwrap_or_default()
         ),
-        (Some(suspect), _) => format!("the likeliest suspect is {suspect}"),
+        (Some(suspect), _) => format!("the likeliest effect is {suspect}"),
         (None, Some(left)) if !*names => {
             round.map_or_else(|| left.clone(), |round| format!("{left}; {round}"))
         }
         (None, _) if *names => round.unwrap_or_default(),
-        (None, _) => "the maps of where simulation and record part show a place that noise alone \
-                      would hardly leave"
+        (None, _) => "the localisation of the residual shows a deviation that noise alone is \
+                      unlikely to cause"
             .to_owned(),
     };
     Some(match ground {
         Ground::Firm | Ground::NoiseStated => what,
         Ground::Unsound => format!(
-            "no finer model completes its simulation, so how far the discretisation moves the curves \
+            "no finer model completes its simulation, so that the discretisation error of the curves \
              is not known; {what}"
         ),
         Ground::NoiseUnknown => format!(
@@ -80,12 +82,12 @@ pub(crate) fn reason(
              record more cycles, or state `noise` of every channel"
         ),
         Ground::NothingConsidered => format!(
-            "something is left, and no effect of the library was considered that could name it; {what}"
+            "the residual is not explained, and no effect of the library was considered; {what}"
         ),
     })
 }
 
-/// What else should be known: numerical error, effects that were left out.
+/// Adds remarks on numerical error and on effects excluded from the tests.
 pub(crate) fn remarks(inputs: &Inputs, diagnosis: &mut Diagnosis) {
     let (of, check) = match (&diagnosis.preflight_after, &diagnosis.preflight) {
         (Some(after), _) => ("the answer", Some(after)),
@@ -94,9 +96,9 @@ pub(crate) fn remarks(inputs: &Inputs, diagnosis: &mut Diagnosis) {
     let ratio = check.map_or(0.0, Preflight::ratio);
     if ratio > FINE_ENOUGH {
         diagnosis.notes.push(format!(
-            "numerical error: a finer model moves {of}'s curves by {ratio:.2} standard errors of the \
-             record, where a third is the aim; it counts as noise in every test, but sizes may be off \
-             by as much, and a finer model in the case would lower it"
+            "numerical error: a finer model changes the curves of {of} by {ratio:.2} standard errors of the \
+             record (target: one third); this counts as noise in every test, but sizes may be wrong by as \
+             much; a finer discretisation in case.toml lowers it"
         ));
     }
     let added = diagnosis.rounds.iter().any(|round| round.added.is_some());

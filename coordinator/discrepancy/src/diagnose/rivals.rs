@@ -1,9 +1,9 @@
-//! Names that a record cannot tell apart: whatever was refitted in a round stands in the place of the effect that was
-//! added, beside everything else of the answer, and is ranked with it.
+//! Ambiguity sets: every effect that was refitted in a round is put in the place of the added effect, with
+//! the rest of the answer unchanged, and is ranked with it.
 //!
-//! The rank is the log evidence of the fit over its dispersion, plus the predictive score on what took no part in it;
-//! left-out blocks of the fitted record count in the evidence already. A rival takes the place only if it is believed
-//! there as the added one was: by its evidence, and beside a finer model.
+//! The rank is the log evidence of the fit divided by its dispersion, plus the predictive score on data
+//! excluded from the fit; left-out blocks of the fitted record are already contained in the evidence. A rival
+//! replaces the added effect only if it passes the same checks: evidence, and comparison with a finer model.
 use crate::cause::round::Round;
 use crate::cause::suspect::Suspect;
 use crate::diagnose::diagnosis::Diagnosis;
@@ -18,18 +18,18 @@ use crate::proof::predictive::scores;
 use crate::thresholds::{RANKED, SET};
 use search::least_squares::Settings;
 
-/// Rivals of an effect that was found together with others: those that resemble it most.
+/// Number of rivals of an effect that was found together with others: those with the most similar signatures.
 const ALIKE: usize = 3;
 
-/// A name in the place of an added effect: its merit against that one (nats), and its fit.
+/// Rival in the place of an added effect: its merit relative to that effect (nats), and its fit.
 struct Ranked {
     id: String,
     merit: f64,
     fit: Fit,
 }
 
-/// Ranks the rivals of each added effect: the best takes its place, and those within [`SET`] of the best are its set.
-/// Gives the answer.
+/// Ranks the rivals of each added effect: the best replaces it, and those within [`SET`] of the best form its
+/// ambiguity set. Returns the fit of the answer.
 pub(crate) async fn rank<L: Laboratory>(
     session: &mut Session<'_, L>,
     mut answer: Fit,
@@ -73,7 +73,8 @@ pub(crate) async fn rank<L: Laboratory>(
     Ok(answer)
 }
 
-/// The rivals of an added effect in its place with their merits, the best first; none that does not run everywhere.
+/// Returns the rivals in the place of an added effect with their merits, best first; rivals that cannot be
+/// simulated for every record are omitted.
 async fn merits<L: Laboratory>(
     session: &mut Session<'_, L>,
     at: (&Fit, usize),
@@ -102,8 +103,8 @@ async fn merits<L: Laboratory>(
     Ok(ranked)
 }
 
-/// Whether a fit with another effect in a place of an answer gains over the model without either what an effect must gain,
-/// also where what a finer model changes counts as noise.
+/// Returns whether a fit with another effect in a place of the answer gains enough evidence over the model
+/// without either effect, also when the change by a finer model counts as noise.
 async fn carries<L: Laboratory>(
     session: &mut Session<'_, L>,
     (answer, position): (&Fit, usize),
@@ -127,7 +128,7 @@ async fn carries<L: Laboratory>(
     Ok(checked.is_none_or(|checked| checked.gain >= needed))
 }
 
-/// The rivals of an added effect in its place, beside everything else of an answer.
+/// Fits each rival in the place of an added effect, with all other effects of the answer kept.
 async fn swapped<L: Laboratory>(
     session: &mut Session<'_, L>,
     (answer, position): (&Fit, usize),

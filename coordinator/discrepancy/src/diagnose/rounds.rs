@@ -1,5 +1,5 @@
-//! Rounds of suspicion: test everything, refit the likeliest, let forces without a cause challenge them,
-//! believe the best or stop; at the end, take back what is not needed any more.
+//! Rounds of hypothesis tests: each tests all effects, refits the likeliest, compares them with generic
+//! forces, and accepts the best or stops; afterwards unnecessary effects are removed.
 use crate::cause::refit::refit;
 use crate::cause::round::Round;
 use crate::cause::signature::examine;
@@ -19,16 +19,17 @@ use crate::size::data_value;
 use crate::size::limit::limits;
 use protocol::announce::EffectDescriptor;
 
-/// Rounds in which the valley is looked for.
+/// Number of rounds in which the narrow minimum is searched.
 const LOOKS: usize = 2;
-/// Suspects that are refitted in any case.
+/// Minimum number of candidate effects that are refitted.
 const RIVALS: usize = 3;
 
-/// How often rounds begin again after an effect was taken back or exchanged.
+/// Maximum number of repetitions of the rounds after an effect was removed or replaced.
 const AGAIN: usize = 2;
 
-/// Rounds of suspicion until nothing is gained; the model of the answer. What was dropped beside an effect that is taken
-/// back or exchanged later is suspected again: the order in which effects are found decides nothing.
+/// Runs rounds until nothing is gained, and returns the model of the answer. After an effect was removed or
+/// replaced, effects that were rejected beside it are tested again, so that the order in which effects are
+/// found does not matter.
 pub(crate) async fn rounds<L: Laboratory>(
     session: &mut Session<'_, L>,
     shown: &[Shown<'_>],
@@ -58,14 +59,14 @@ pub(crate) async fn rounds<L: Laboratory>(
     Ok(current)
 }
 
-/// The effects of a fit's model, in the order of their names.
+/// Returns the identifiers of the added effects, sorted.
 fn ids(fit: &Fit) -> Vec<String> {
     let mut ids: Vec<String> = fit.model.added.iter().map(|own| own.id.clone()).collect();
     ids.sort();
     ids
 }
 
-/// Rounds of suspicion from a model on until nothing more is believed; the model then.
+/// Runs rounds from a model until no further effect is accepted, and returns the final model.
 async fn forward<L: Laboratory>(
     session: &mut Session<'_, L>,
     mut current: Fit,
@@ -102,7 +103,7 @@ async fn forward<L: Laboratory>(
     Ok(current)
 }
 
-/// Tests everything that is not in the model yet, and refits the suspects.
+/// Tests all effects that are not yet in the model, and refits the likeliest.
 pub(crate) async fn suspicion<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,

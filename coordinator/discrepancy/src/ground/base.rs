@@ -1,4 +1,4 @@
-//! The recalibrated model without further effects, in the metric of all tests.
+//! Baseline: the recalibrated model without further effects, in the metric of all tests.
 use crate::ground::preflight::Preflight;
 use crate::linear::score::misfit_tail;
 use crate::model::fit::Fit;
@@ -6,49 +6,52 @@ use crate::record::noise::Known;
 use crate::record::whitened::WhitenedRecord;
 use crate::thresholds::{STATED, WITHIN};
 
-/// What every test stands on.
+/// Baseline of all tests.
 pub(crate) struct Base {
-    /// The cycles that are fitted, in the final metric.
+    /// Fitted record in the final metric.
     pub(crate) on: WhitenedRecord,
-    /// The recalibrated model.
+    /// Fit of the recalibrated model.
     pub(crate) fit: Fit,
-    /// Its numerical check; nothing where no finer model completes.
+    /// Numerical check of the model; `None` where no finer model completes.
     pub(crate) preflight: Option<Preflight>,
-    /// Instruments that the model without effects took far beyond what they are good to, in words; they are held since.
+    /// Descriptions of the instruments that the model without effects moved far beyond their tolerance, and
+    /// that are constrained since.
     pub(crate) instruments: Vec<String>,
-    /// What else should be known.
+    /// Remarks for the user.
     pub(crate) notes: Vec<String>,
 }
 
 impl Base {
-    /// The squared length of a residual that is noise alone.
+    /// Returns the expected squared length of a residual that is noise alone.
     pub(crate) fn noise(&self) -> f64 {
         self.on.metric.len() as f64
     }
 
-    /// What is said of instruments that the model without effects took far beyond what they are good to.
+    /// Describes the instruments that the model without effects moved far beyond their tolerance, if there
+    /// are any.
     pub(crate) fn strained(&self) -> Option<String> {
         (!self.instruments.is_empty()).then(|| {
             format!(
-                "without effects the fit takes {}, a sign that something else is missing: instruments are held within \
+                "without effects the fit needs {}, which indicates a missing effect: instruments are therefore limited to \
                  {WITHIN} tolerances",
                 self.instruments.join(", ")
             )
         })
     }
 
-    /// Whether what a fit leaves may be noise alone, at a level.
+    /// Returns whether the residual of a fit may be noise alone, at a significance level.
     pub(crate) fn explains(&self, fit: &Fit, level: f64) -> bool {
         self.is_noise(fit.chi_squared(), fit.tangent().parameters(), level)
     }
 
-    /// How the noise is known.
+    /// Returns the source of the noise level.
     pub(crate) const fn known(&self) -> Known {
         self.on.metric.known()
     }
 
-    /// Whether noise alone may leave so much after a fit of so many effective parameters, at a level; where the
-    /// noise is only assumed, whether the assumption bears with what is left.
+    /// Returns whether noise alone may leave this `chi^2` after a fit of `parameters` effective parameters,
+    /// at a significance level; where the noise is only assumed, whether the assumption is compatible with
+    /// the residual.
     pub(crate) fn is_noise(&self, chi_squared: f64, parameters: f64, level: f64) -> bool {
         let n = self.on.metric.len();
         if !self.known().is_seen() {

@@ -1,19 +1,20 @@
-//! A way into the valley in which resonances fit.
+//! Global search for the narrow minimum in which resonances fit.
 //!
-//! The residual of something that is a little too soft or too stiff is a wave of the wrong phase, and no
-//! local search leaves the plateau around the valley. So a search strategy goes first, on the same
-//! whitened residual.
+//! The residual of a system that is slightly too soft or too stiff is a wave of the wrong phase, and a local
+//! search cannot leave the plateau around the minimum. A global search strategy therefore runs first, on the
+//! same whitened residual.
 use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
 use crate::model::unknowns::{Model, Point};
 use search::space::Axis;
 use search::strategy::{Plan, Residual, Told, build, preset};
 
-/// A search, by the name of its preset, and its seed.
+/// Name of a search preset, and the seed.
 pub(crate) type Search = (&'static str, u64);
 
-/// Starts for the fit: points of a search's archive, best first, that differ in the scanned unknown. The
-/// unknowns are searched; `rest` are the nuisances and the parameters of the model's effects, which stay.
+/// Returns starts for the fit: the best points of a global search, best first, that differ clearly in at
+/// least one unknown. The unknowns are searched; `rest` holds the nuisance parameters and the parameters of
+/// the model's effects, which are fixed.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -72,10 +73,10 @@ pub(crate) async fn enter<L: Laboratory>(
     Ok(best.map(point).collect())
 }
 
-/// The best points, no two of which lie near each other in every unknown.
+/// Selects the best points, no two of which are close to each other in every unknown.
 fn apart(axes: &[Axis], ranked: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
     const STARTS: usize = 3;
-    /// What is near in an unknown with a narrow valley, and in any other (coordinates).
+    /// Distance below which two points are close in an unknown with a narrow valley (scaled coordinates).
     const NEAR_IN_VALLEY: f64 = 0.03;
     const NEAR: f64 = 0.15;
     let in_valley = |k: usize| {

@@ -1,5 +1,5 @@
-//! A model that is about to be believed, held against a finer one: a name must still be believed when
-//! what the finer model changes counts as noise too.
+//! Comparison of a model about to be accepted with a finer one: an effect must still be significant when the
+//! change by the finer model counts as noise.
 use crate::ground::preflight::{Preflight, check, left};
 use crate::ground::session::Session;
 use crate::laboratory::{Laboratory, Stage};
@@ -9,18 +9,18 @@ use crate::record::metric::Metric;
 use nalgebra::{DMatrix, DVector};
 use search::least_squares::{Linearized, Prior, Variable};
 
-/// A believed model held against a finer one.
+/// Comparison of an accepted model with a finer one.
 #[derive(Clone, Debug)]
 pub(crate) struct Checked {
-    /// What the finer model changes.
+    /// Change of the curves by the finer model.
     pub(crate) preflight: Preflight,
-    /// The nats that the model still gains over the one before it, over the dispersion, when that
-    /// change counts as noise.
+    /// Gain of log evidence over the previous model, divided by the dispersion (nats), with the change by the
+    /// finer model counted as noise.
     pub(crate) gain: f64,
 }
 
-/// Checks a model that is about to be believed, beside the one before it.
-/// Nothing if no finer model completes.
+/// Checks a model about to be accepted against a finer one, relative to the previous model. Returns `None` if
+/// no finer model completes.
 pub(crate) async fn believed<L: Laboratory>(
     session: &mut Session<'_, L>,
     before: &Fit,
@@ -59,15 +59,15 @@ pub(crate) async fn believed<L: Laboratory>(
     }))
 }
 
-/// By how much each entry counts when the power of an error about it is noise as far as it exceeds that
-/// of an error which the metric knows.
+/// Returns the weight of each residual entry when the power of a numerical error, as far as it exceeds that
+/// of the error already in the metric, counts as noise.
 fn floor(metric: &Metric, error: &DVector<f64>, known: &DVector<f64>) -> DVector<f64> {
     let weight = |own: f64, known: f64| 1.0 / (1.0 + (own - known).max(0.0)).sqrt();
     metric.powers(error).zip_map(&metric.powers(known), weight)
 }
 
-/// What a fit leaves, to first order, in entries that count by weights and with an error of known
-/// shape beside its parameters, whose amount is about one.
+/// Returns the squared residual of a fit to first order, with weighted entries and with an error of known
+/// shape and unit standard deviation as an additional parameter.
 fn cost(fit: &Fit, weights: &DVector<f64>, error: &DVector<f64>) -> f64 {
     let at = fit.search.best();
     let columns = at.jacobian.column_iter();

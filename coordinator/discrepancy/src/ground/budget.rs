@@ -1,17 +1,17 @@
-//! What a diagnosis may cost: simulations by stage. Clocks decide nothing, so that one worker or eighty say the
-//! same.
+//! Budget of a diagnosis: number of simulations per stage. Time is not limited, so that the result does not
+//! depend on the number of workers.
 //!
-//! A stage that has used up its part begins nothing new that it could do without: no further valley, round
-//! or challenger. What was begun is finished, so the part is a bound to within one such look.
+//! A stage that has used up its budget begins no further optional work (valley search, round, challenger).
+//! Work in progress is finished, so the budget may be exceeded by one such unit.
 use crate::laboratory::{Laboratory, Stage};
 use protocol::job::{Observation, SimulateSpec};
 
-/// A laboratory that counts.
+/// Laboratory that counts simulations and enforces the budget.
 pub(crate) struct Budgeted<'a, L> {
     lab: &'a mut L,
-    /// What each stage has left, in plain simulations.
+    /// Remaining budget of each stage, in plain simulations.
     left: [f64; Stage::ALL.len()],
-    /// The stages that were refused something.
+    /// Stages in which work was refused.
     ran_out: Vec<Stage>,
 }
 
@@ -24,13 +24,14 @@ impl<'a, L> Budgeted<'a, L> {
         }
     }
 
-    /// Stages that could not begin something.
+    /// Returns the stages in which work was refused.
     pub(crate) fn ran_out(&self) -> &[Stage] {
         &self.ran_out
     }
 }
 
-/// What a simulation costs, in plain ones: derivatives four more, and each a tenth.
+/// Returns the cost of a simulation in units of a plain one: 1, or with derivatives 5 plus 0.1 per
+/// derivative.
 pub fn cost(spec: &SimulateSpec) -> f64 {
     let columns = spec.columns.len() as f64;
     if spec.columns.is_empty() {

@@ -1,5 +1,5 @@
-//! What every test stands on: noise, way into the valley, recalibration, numerical check, and the fit
-//! in the final metric.
+//! Construction of the baseline: noise, global search, recalibration, numerical check, and fit in the final
+//! metric.
 use crate::ground::base::Base;
 use crate::ground::input_error::input_errors;
 use crate::ground::{basin, preflight, recalibrate, valley};
@@ -18,17 +18,17 @@ use crate::record::whitened::WhitenedRecord;
 use crate::thresholds::{BEYOND, WITHIN};
 use nalgebra::DVector;
 
-/// Why there is no base.
+/// Reason why no baseline exists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Baseless {
-    /// No fit completes.
+    /// No fit completed.
     NothingCompletes,
-    /// The recalibration had no simulations left.
+    /// No simulations were left for the recalibration.
     RanOut,
 }
 
 impl Baseless {
-    /// In words.
+    /// Returns the reason in words.
     pub(crate) const fn reason(self) -> &'static str {
         match self {
             Self::NothingCompletes => {
@@ -39,7 +39,8 @@ impl Baseless {
     }
 }
 
-/// Noise, way into the valley, recalibration, numerical check, final metric, final fit; or why not.
+/// Constructs the baseline: noise, global search, recalibration, numerical check, final metric and final fit;
+/// returns the reason if that is impossible.
 pub(crate) async fn establish<L: Laboratory>(
     lab: &mut L,
     inputs: &Inputs,
@@ -123,7 +124,7 @@ pub(crate) async fn establish<L: Laboratory>(
     }))
 }
 
-/// What is said of errors that channels state of any model.
+/// Describes the model errors that the channels state.
 fn model_errors(record: &Record) -> Option<String> {
     let errors = record.channels.iter().filter_map(|own| {
         let error = own.model_error?;
@@ -135,18 +136,18 @@ fn model_errors(record: &Record) -> Option<String> {
     let errors: Vec<String> = errors.collect();
     (!errors.is_empty()).then(|| {
         format!(
-            "no law is taken to be better than this, which adds to the noise (model_error): {}",
+            "stated model errors (`model_error`), which are added to the noise: {}",
             errors.join(", ")
         )
     })
 }
 
-/// Dispersion from which a first fit may lie outside the valley: a model that lacks nothing leaves less, and the
-/// look costs little beside tests at a wrong place.
+/// Dispersion above which a first fit may lie outside the valley. A complete model leaves less, and the
+/// valley search costs little compared with tests at a wrong point.
 const DOUBTFUL: f64 = 1.3;
 
-/// A fit under the record's own noise alone, in the valley in which the resonances fit as far as the model
-/// without effects has one.
+/// Returns a fit under the record's own noise alone, in the narrow minimum of the model without effects as
+/// far as it has one.
 async fn first_fit<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     inputs: &Inputs,
@@ -179,8 +180,8 @@ async fn first_fit<L: Laboratory>(
     Ok(Some(first))
 }
 
-/// A fit with its instruments held within what they are good to, where one of them stands far beyond: they do not take up
-/// what else is missing. With what stood there, in words.
+/// Refits with the instruments constrained to their tolerance if one of them is far beyond it, so that they
+/// do not absorb missing effects. Returns the fit and descriptions of those instruments.
 async fn held<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: Fit,

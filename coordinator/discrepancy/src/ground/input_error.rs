@@ -1,4 +1,4 @@
-//! What the measured input may be wrong by, as curves.
+//! Errors of the measured inputs, as curves.
 use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
@@ -7,16 +7,16 @@ use crate::record::input_scatter::InputScatter;
 use crate::record::measured::{Curves, difference};
 use protocol::announce::EffectDescriptor;
 
-/// Curves by which cycles differ because an input of theirs did.
+/// Deviation of the curves caused by the scatter of an input between cycles.
 pub(crate) struct InputError {
-    /// Per unit of the input, by channel.
+    /// Change of the curves per unit of the input, by channel.
     pub(crate) curves: Curves,
     /// Standard deviation of the input's mean over the cycles.
     pub(crate) deviation: f64,
 }
 
-/// Errors of the input, as far as they are stated, at a fitted point with its curves under the record's
-/// condition.
+/// Returns the stated input errors as curves at a fitted point; `own` are the curves of that point under the
+/// record's condition.
 pub(crate) async fn input_errors<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     (fit, own): (&Fit, &Curves),

@@ -1,5 +1,5 @@
-//! What every test stands on: the noise, a way into the valley in which resonances fit,
-//! the recalibration there, and how far the discretisation matters. It knows no suspect.
+//! Baseline of all tests: noise, global search for the narrow minimum, recalibration, and size of the
+//! discretisation error. Candidate effects are not part of this module.
 pub(crate) mod base;
 pub mod basin;
 pub(crate) mod believed;

@@ -1,8 +1,8 @@
-//! The numerical check: how far the discretisation moves the curves, once recalibration has taken
-//! what it can.
+//! Numerical check: change of the curves by a finer discretisation that recalibration cannot absorb.
 //!
-//! A finer model at the fitted point; the difference, projected off the tangent space, becomes a part of
-//! the noise (an adequacy floor), so that no effect is named for what a coarser model does.
+//! A finer model is simulated at the fitted point; the difference, projected off the tangent space, becomes a
+//! part of the noise (an adequacy floor), so that no effect is named for an error of the coarser
+//! discretisation.
 use crate::laboratory::{Laboratory, curves};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
@@ -13,35 +13,38 @@ use crate::record::whitened::WhitenedRecord;
 use nalgebra::DVector;
 use protocol::job::Numerics;
 
-/// What a finer model says.
+/// Comparison of a model with a finer one.
 #[derive(Clone, Debug)]
 pub struct Preflight {
     /// Difference of the curves, finer less coarser, by channel.
     pub difference: Curves,
-    /// Its root mean square by channel, in the channel's unit.
+    /// Root mean square of the difference by channel, in the channel's unit.
     pub rms: Vec<f64>,
-    /// The same after recalibration has taken its share.
+    /// Root mean square of the difference by channel after recalibration has absorbed its share, in the
+    /// channel's unit.
     pub rms_left: Vec<f64>,
-    /// Standard error of the record's mean by channel, root mean square over what is compared.
+    /// Standard error of the record's mean by channel, as root mean square over the compared entries.
     pub standard_error: Vec<f64>,
-    /// Entries of what is left, by channel.
+    /// Spectral entries of the difference that recalibration cannot absorb, by channel.
     pub left: Spectra,
-    /// Whether the whole finer model completed; else its parts, one at a time, as far as they did.
+    /// Whether the finer model completed as a whole; otherwise the difference is the sum over those of its
+    /// parts that completed.
     pub whole: bool,
 }
 
 impl Preflight {
-    /// The largest ratio of what is left to the standard error.
+    /// Returns the largest ratio of the unabsorbed difference to the standard error.
     pub fn ratio(&self) -> f64 {
         let each = self.rms_left.iter().zip(&self.standard_error);
         each.map(|(left, error)| left / error).fold(0.0, f64::max)
     }
 }
 
-/// Simulates a fitted point more finely; what a fit (that one, or the one before an effect was added,
-/// for a size must not hide what it does not explain) can absorb is taken off. If the finer model
-/// fails, its parts are refined one at a time, and their differences added: so it is to first order.
-/// Nothing if that fails too. A model that has nothing to refine differs from itself by nothing.
+/// Simulates a fitted point with finer numerics and subtracts the part of the difference that the fit
+/// `absorbing` can absorb: `fit` itself, or the fit before an effect was added, because the size of an effect
+/// must not hide numerical error. If the finer model fails, its parts are refined one at a time and their
+/// differences are added, which is correct to first order; returns `None` if that fails too. A model with
+/// nothing to refine has the difference zero.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -56,7 +59,8 @@ pub async fn check<L: Laboratory>(
     Ok(changed.map(|(difference, whole)| preflight(on, absorbing, difference, whole)))
 }
 
-/// What a finer model changes of a fit's curves on a record, and whether it completed as a whole.
+/// Returns the change of a fit's curves by a finer model on a record, and whether the finer model completed
+/// as a whole.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -83,7 +87,8 @@ pub(crate) async fn changed<L: Laboratory>(
     Ok(sum.map(|difference| (difference, false)))
 }
 
-/// Curves of a fitted point in finer numerics less those in the usual ones; nothing where one failed.
+/// Returns the curves of a fitted point in each finer numerics minus those in the usual numerics; `None`
+/// where a simulation failed.
 async fn differences<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     (fit, coarse): (&Fit, &Curves),
@@ -101,7 +106,7 @@ async fn differences<L: Laboratory>(
     Ok(seen.into_iter().map(|fine| fine.map(less)).collect())
 }
 
-/// What a difference of the curves means beside a record, and beside a fit that absorbs a part of it.
+/// Evaluates a difference of the curves relative to a record and to a fit that absorbs a part of it.
 fn preflight(on: &WhitenedRecord, absorbing: &Fit, difference: Curves, whole: bool) -> Preflight {
     let metric = &on.metric;
     let left = metric.colour(&left(metric, absorbing, &difference));
@@ -115,7 +120,7 @@ fn preflight(on: &WhitenedRecord, absorbing: &Fit, difference: Curves, whole: bo
     }
 }
 
-/// What is left of a change of the curves, in a metric, once what a fit can absorb is taken off.
+/// Returns the part of a change of the curves, whitened, that the parameters of a fit cannot absorb.
 pub(crate) fn left(metric: &Metric, fit: &Fit, difference: &Curves) -> DVector<f64> {
     fit.tangent().project(&metric.whiten(difference))
 }

@@ -1,11 +1,11 @@
-//! Recalibration: all unknowns, in the metric of the tests, until the gradient vanishes.
+//! Recalibration: fit of all unknowns, in the metric of the tests, to convergence.
 use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::unknowns::Point;
 use search::least_squares::Settings;
 
-/// A fit from the best of several starts: a few steps of each, then on with the best.
+/// Fits from several starts: a few iterations from each, then to convergence from the best.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -21,7 +21,7 @@ pub async fn from_starts<L: Laboratory>(
     }
 }
 
-/// A fit to convergence, with central differences.
+/// Fits to convergence, with central differences.
 ///
 /// # Errors
 /// Those of the laboratory.

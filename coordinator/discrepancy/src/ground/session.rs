@@ -1,21 +1,21 @@
-//! What all rounds of a diagnosis work with.
+//! Shared state of all rounds of a diagnosis.
 use crate::ground::base::Base;
 use crate::inputs::Inputs;
 use crate::laboratory::Stage;
 use crate::model::experiments::Experiments;
 
-/// A laboratory, what is diagnosed in it, and what every test stands on.
+/// Laboratory, inputs and baseline of a diagnosis.
 pub(crate) struct Session<'a, L> {
-    /// Who simulates.
+    /// Laboratory that runs the simulations.
     pub(crate) lab: &'a mut L,
-    /// The recalibrated model and its metric.
+    /// Baseline: the recalibrated model and its metric.
     pub(crate) base: &'a Base,
-    /// The case, its records and what may be suspected.
+    /// Case, records and candidate effects.
     pub(crate) inputs: &'a Inputs,
 }
 
 impl<L> Session<'_, L> {
-    /// Experiments on the fitted cycles that count for a stage.
+    /// Creates experiments on the fitted record whose cost counts for a stage.
     pub(crate) fn experiments(&mut self, stage: Stage) -> Experiments<'_, L> {
         Experiments {
             lab: self.lab,

@@ -1,10 +1,10 @@
-//! Another way into a narrow valley of an unknown, from a fit that leaves much.
+//! Search for another narrow valley of an unknown, from a fit with a large residual.
 //!
-//! An excitation rings a model's modes, some of them many times a period. An effect that moves a clock by
-//! a little moves their phase by a lot: without that effect in the model the valley is not where it is
-//! with it, and a fit settles on the plateau on which damping or stiffness hides the modes. So the
-//! unknown is scanned again with the effect switched on, as the case says, and fits race from the best
-//! stations.
+//! An excitation rings the modes of a model, some at many times the frequency of the period. An effect that
+//! shifts time slightly changes their phase considerably: the valley of the model without that effect is
+//! elsewhere, and a fit settles on the plateau where damping or stiffness suppresses the modes. The unknown
+//! is therefore scanned again, as the case specifies, with the effect switched on, and fits race from the
+//! best points of the scan.
 use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
@@ -13,11 +13,11 @@ use search::least_squares::Settings;
 use search::strategy::levenberg::Apart;
 use search::strategy::quick::{RACE, coarse_scan};
 
-/// A fit lies in another valley if it leaves less than this share of what the first one left.
+/// Maximum `chi^2` of a fit in another valley, as a share of that of the first fit.
 pub(crate) const BETTER: f64 = 0.9;
 
-/// A clearly better fit of the same model in another valley, if there is one; none where no unknown has a
-/// narrow valley.
+/// Returns a clearly better fit of the same model in another valley, if there is one; `None` where no unknown
+/// has a narrow valley.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -52,8 +52,8 @@ pub async fn enter<L: Laboratory>(
     follow(experiments, fit, starts).await
 }
 
-/// The best of several starts, where it becomes clearly better than a fit of the same model: a race that gives up
-/// the worse half after every heat, then on with the best.
+/// Returns the fit from the best of several starts if it is clearly better than a given fit of the same
+/// model: a race that drops the worse half after every heat and continues with the best.
 ///
 /// # Errors
 /// Those of the laboratory.

@@ -1,71 +1,72 @@
-//! What a record sees: the answer as data.
+//! Results of an identifiability analysis, as data.
 use crate::record::measured::Curves;
 use crate::record::noise::Known;
 use crate::size::never_exact::NeverExact;
 use serde::{Deserialize, Serialize};
 
-/// What a record sees of a model.
+/// Identifiability of a model's unknowns from a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identified {
     /// The fitted individual \[declared units\], in the case's order.
     pub genes: Vec<f64>,
-    /// Every unknown that was fitted.
+    /// Estimates of all fitted unknowns.
     pub unknowns: Vec<UnknownEstimate>,
-    /// Directions of the unknowns by how well they are seen, the best first.
+    /// Eigenvectors of the Fisher information of the unknowns, best determined first.
     pub directions: Vec<Direction>,
-    /// What the instruments are off by.
+    /// Estimated errors of the instruments.
     pub nuisances: Vec<NeverExact>,
-    /// What the answer predicts, condition by condition.
+    /// Predictions of the fit, by condition.
     pub bands: Vec<Band>,
-    /// What further measurements would pin down, those that tell most first.
+    /// Further measurements that would determine unknowns, most informative first.
     pub further: Vec<Further>,
-    /// Mean square of what the fit leaves, in units of the noise and per degree of freedom.
+    /// Squared residual of the fit divided by that expected of noise alone.
     pub left: f64,
-    /// Whether that may be noise alone.
+    /// Whether the residual may be noise alone.
     pub is_noise: bool,
-    /// How the noise is known.
+    /// Source of the noise level.
     pub noise: Known,
-    /// What else should be known.
+    /// Further remarks for the user.
     pub notes: Vec<String>,
 }
 
-/// An unknown with what the record says of it.
+/// Estimate of an unknown, with its profile likelihood.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UnknownEstimate {
-    /// Its name.
+    /// Name of the unknown.
     pub name: String,
-    /// Its unit.
+    /// Unit of the unknown.
     pub unit: String,
-    /// The likeliest value.
+    /// Most likely value.
     pub value: f64,
-    /// Where the profile rises by 3.84, below and above; none for an open end.
+    /// Lower and upper end of the 95 % interval, where the profile rises by 3.84; `None` for an open end.
     pub interval: [Option<f64>; 2],
-    /// How each side ends.
+    /// Type of end of the profile on the lower and the upper side.
     pub ends: [End; 2],
-    /// Which sides the record sees.
+    /// Sides on which the record bounds the unknown.
     pub seen: Seen,
-    /// Unknowns that trade off with it: names with correlations.
+    /// Names of strongly correlated unknowns, with the correlations.
     pub correlated: Vec<(String, f64)>,
-    /// The profile: values with the rise of `-2 ln L`, all else refitted, by value.
+    /// Profile likelihood: pairs of value and rise of `-2 ln L` with all other unknowns refitted, sorted by
+    /// value.
     pub profile: Vec<[f64; 2]>,
 }
 
-/// Which ends of an unknown's interval a record gives.
+/// Sides on which a record bounds an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Seen {
-    /// Both.
+    /// Bounded on both sides.
     Both,
-    /// It is no smaller than that.
+    /// Bounded below only.
     LowerBound,
-    /// It is no larger than that.
+    /// Bounded above only.
     UpperBound,
-    /// Neither.
+    /// Bounded on neither side.
     NotSeen,
 }
 
 impl Seen {
-    /// By which sides the profile rises on.
+    /// Creates the value from the sides on which the profile rises.
     pub const fn of(below: bool, above: bool) -> Self {
         match (below, above) {
             (true, true) => Self::Both,
@@ -76,38 +77,39 @@ impl Seen {
     }
 }
 
-/// How a side of a profile ends.
+/// Type of end of one side of a profile likelihood.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum End {
-    /// It rises by 3.84 there.
+    /// The profile rises by 3.84.
     Rises,
-    /// It has not risen so far at the bound of the search.
+    /// The bound of the search is reached before the profile has risen by 3.84.
     Bound,
-    /// Simulations fail before it has: an end of the model, not of the record.
+    /// Simulations fail before the profile has risen by 3.84: a limit of the model, not of the record.
     Fails,
-    /// It had not risen so far where it was given up.
+    /// The maximum number of points is reached before the profile has risen by 3.84.
     GivenUp,
 }
 
-/// A direction in which unknowns are seen independently of all others.
+/// Eigenvector of the Fisher information: a combination of unknowns that is determined independently of all
+/// others.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Direction {
-    /// Standard deviation along it: decades, or halves of the interval of what is searched on a linear
-    /// scale; infinite where nothing is seen.
+    /// Standard deviation along the direction: decades, or half-widths of the search interval for unknowns on
+    /// a linear scale; infinite where the record does not determine the direction.
     pub sd_decades: f64,
-    /// Unknowns with their parts of the unit vector, the largest first.
+    /// Unknowns with their components of the unit vector, largest first.
     pub parts: Vec<Part>,
-    /// In words.
+    /// Description in words.
     pub words: String,
 }
 
-/// An unknown's part of a direction.
+/// Component of one unknown in a direction.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Part {
-    /// Its name.
+    /// Name of the unknown.
     pub name: String,
-    /// Its component.
+    /// Component of the unit vector.
     pub part: f64,
 }
 
@@ -116,23 +118,23 @@ pub struct Part {
 pub struct Band {
     /// Index of the condition in the case.
     pub condition: usize,
-    /// Its channels in their order.
+    /// Predicted curves of the condition's channels, in order.
     pub channels: Vec<Curve>,
 }
 
-/// A predicted curve.
+/// Predicted curve with its 95 % band.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// The likeliest.
+    /// Most likely curve.
     pub likeliest: Vec<f64>,
     /// Lower end of the band.
     pub low: Vec<f64>,
-    /// Upper end.
+    /// Upper end of the band.
     pub high: Vec<f64>,
 }
 
 impl Curve {
-    /// Mean half width of the band, in the channel's unit.
+    /// Returns the mean half-width of the band, in the channel's unit.
     pub fn half_width(&self) -> f64 {
         let widths = self
             .low
@@ -143,34 +145,34 @@ impl Curve {
     }
 }
 
-/// A measurement that was not fitted, and what it would pin down.
+/// Possible further measurement, and the unknowns that it would determine.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Further {
-    /// The measurement, in words.
+    /// Description of the measurement.
     pub measurement: String,
-    /// Unknowns whose standard deviation it would halve at least, the most first.
+    /// Unknowns whose standard deviation the measurement would at least halve, strongest reduction first.
     pub pins: Vec<Pin>,
 }
 
-/// An unknown that a measurement would pin down.
+/// Unknown that a further measurement would determine.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Pin {
-    /// Its name.
+    /// Name of the unknown.
     pub name: String,
-    /// Standard deviation now (decades, or halves of a linear interval).
+    /// Present standard deviation (decades, or half-widths of the interval on a linear scale).
     pub sd_now: f64,
-    /// Standard deviation with the measurement beside the record.
+    /// Standard deviation if the measurement is added to the record.
     pub sd_then: f64,
 }
 
-/// Curves under a condition, and how they change per unit of every variable of a fit.
+/// Curves under a condition, and their derivatives by every variable of a fit.
 #[derive(Clone, Debug)]
 pub(crate) struct Sight {
     pub(crate) condition: usize,
-    /// At the fit, all channels of the condition.
+    /// Curves of all channels of the condition at the fit.
     pub(crate) curves: Curves,
-    /// By variable; none for one that is not known.
+    /// Changes of the curves per unit of each variable; `None` where the change is unknown.
     pub(crate) changes: Vec<Option<Curves>>,
-    /// The same channels at other points that the record does not refuse.
+    /// Curves of the same channels at other points that are compatible with the record.
     pub(crate) others: Vec<Curves>,
 }

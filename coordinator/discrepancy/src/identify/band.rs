@@ -1,8 +1,8 @@
-//! What the answer predicts, and how far the record leaves it open: bands of every channel under every
-//! condition.
+//! Prediction bands of every channel under every condition.
 //!
-//! A band spans what the record does not refuse: the linear one, each unknown within its own interval, and
-//! the curves of the outermost point of each profile's side. It is one of the simulated curve; noise is not in it.
+//! A band is the envelope of all curves compatible with the record: the linear band, with each unknown
+//! limited to its own interval, and the curves at the outermost point of each side of the profiles. It is a
+//! band of the simulated curve and does not include measurement noise.
 use super::answer::{Band, Curve, End, Sight};
 use super::profile::{Mark, NEAR, Next};
 use super::walk::Walked;
@@ -13,11 +13,12 @@ use crate::record::measured::{Curves, Record, Recorded, Stated};
 use nalgebra::{DMatrix, DVector};
 use protocol::case::Channel;
 
-/// How far a point of a profile may have risen, over the wanted rise.
+/// Maximum rise of a profile point that counts as compatible with the record, relative to the rise that ends
+/// an interval.
 const INSIDE: f64 = 1.0 + NEAR;
 
-/// All conditions at a fit: curves, their changes by every variable, and the curves of the outermost points that
-/// the record does not refuse. A condition under which the fit fails is left out.
+/// Computes, for every condition, the curves at a fit, their derivatives by every variable, and the curves at
+/// the outermost points compatible with the record. Conditions under which the fit fails are omitted.
 pub(super) async fn sights<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     walked: &Walked,
@@ -54,7 +55,7 @@ pub(super) async fn sights<L: Laboratory>(
     Ok(sights)
 }
 
-/// All channels of a condition, nothing measured.
+/// Creates a record without measurements of all channels of a condition.
 fn blank(condition: usize, channels: &[Channel]) -> Record {
     let channels = channels.iter().enumerate();
     Record {
@@ -68,7 +69,7 @@ fn blank(condition: usize, channels: &[Channel]) -> Record {
     }
 }
 
-/// Curves as they are where instruments read them with their gains.
+/// Divides the estimated gains of the instruments out of the curves.
 fn ungained(fit: &Fit, record: &Record, mut curves: Curves) -> Curves {
     for (place, one) in fit.model.placed() {
         if let Some(channel) = one.channel(record) {
@@ -81,8 +82,9 @@ fn ungained(fit: &Fit, record: &Record, mut curves: Curves) -> Curves {
     curves
 }
 
-/// Covariance of the variables, dispersion and colour of the residual counted in; an unknown that the record does not see from both sides
-/// stays within its own interval. Of the others the Jacobian says how far they go.
+/// Returns the covariance of the variables from a Jacobian, including dispersion and autocorrelation of the
+/// residual. An unknown that the record does not bound on both sides is limited to its own interval by a
+/// prior; `None` if the information matrix is singular.
 pub(super) fn covariance(walked: &Walked, jacobian: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let fit = &walked.fit;
     let spread = &walked.spread;
@@ -112,7 +114,7 @@ pub(super) fn covariance(walked: &Walked, jacobian: &DMatrix<f64>) -> Option<DMa
     Some(covariance)
 }
 
-/// The bands of a condition.
+/// Computes the bands of a condition.
 pub(super) fn band(walked: &Walked, sight: &Sight) -> Band {
     let covariance = covariance(walked, &walked.fit.search.best().jacobian);
     let gains: Vec<usize> = walked

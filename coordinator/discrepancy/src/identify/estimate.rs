@@ -1,13 +1,13 @@
-//! Unknowns with their intervals, by their profiles.
+//! Estimates of the unknowns with intervals from their profiles.
 use super::answer::{End, Seen, UnknownEstimate};
 use super::information::correlation;
 use super::profile::Next;
 use super::walk::Walked;
 
-/// Correlation from which two unknowns are told to trade off.
+/// Absolute correlation above which two unknowns are reported as correlated.
 const TRADES: f64 = 0.7;
 
-/// Every unknown of a fit, in the order of its axes.
+/// Returns the estimates of all unknowns of a fit, in the order of the axes.
 pub(super) fn estimates(walked: &Walked) -> Vec<UnknownEstimate> {
     (0..walked.fit.model.space.dimension())
         .map(|k| estimate(walked, k))
@@ -44,7 +44,8 @@ fn estimate(walked: &Walked, k: usize) -> UnknownEstimate {
     }
 }
 
-/// Values with the rise of `-2 ln L`, scaled so that it is 3.84 at the ends of the interval.
+/// Returns the profile as pairs of value and rise of `-2 ln L`, scaled so that the rise is 3.84 at the ends
+/// of the interval.
 fn profile(walked: &Walked, k: usize) -> Vec<[f64; 2]> {
     let axis = &walked.fit.model.space.axes()[k];
     let cost = walked.fit.search.cost();

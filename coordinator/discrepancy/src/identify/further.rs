@@ -1,7 +1,7 @@
-//! What further measurements would pin down: another channel, another condition, more cycles.
+//! Value of further measurements: another channel, another condition, more cycles.
 //!
-//! Linear at the fit. A channel that was never recorded is given the noise of one that was and has its
-//! unit.
+//! The computation is linear at the fit. A channel that was never recorded is assumed to have the noise of a
+//! recorded channel of the same unit.
 use super::answer::{Further, Pin, Sight};
 use super::band::covariance;
 use super::walk::Walked;
@@ -12,14 +12,14 @@ use crate::record::whitened::WhitenedRecord;
 use nalgebra::DMatrix;
 use protocol::case::Channel;
 
-/// How many times as many cycles are weighed.
+/// Factor on the number of cycles in the measurement of more cycles.
 const CYCLES: f64 = 4.0;
-/// Share of its standard deviation to which an unknown must fall to count as pinned down.
+/// Ratio of new to present standard deviation below which an unknown counts as determined by a measurement.
 const PINNED: f64 = 0.5;
-/// Most measurements that are told.
+/// Maximum number of measurements that are reported.
 const TOLD: usize = 8;
 
-/// Measurements that would pin down an unknown at least, those that pin most first.
+/// Returns the measurements that would determine at least one unknown, most informative first.
 pub(super) fn further(
     walked: &Walked,
     sights: &[Sight],
@@ -64,7 +64,8 @@ pub(super) fn further(
     all
 }
 
-/// Channels of the fitted condition that the record lacks, each with the noise of its like.
+/// Returns the channels of the fitted condition that the record lacks, each with the noise of a recorded
+/// channel of the same unit.
 fn unrecorded(record: &Record, channels: &[Channel]) -> Vec<(Record, String)> {
     let lacks = |curve: &usize| record.channels.iter().all(|own| own.curve != *curve);
     let candidate = |curve: usize| {
@@ -79,7 +80,7 @@ fn unrecorded(record: &Record, channels: &[Channel]) -> Vec<(Record, String)> {
         blank.cycles = record.cycles.iter().map(cycle).collect();
         blank.channels = vec![Recorded::new(curve, channel)];
         blank.stated.cycle_variance = Vec::new();
-        let words = format!("{} beside what was recorded", channel.title);
+        let words = format!("{} in addition to the recorded channels", channel.title);
         Some((blank, words))
     };
     (0..channels.len())
@@ -88,7 +89,8 @@ fn unrecorded(record: &Record, channels: &[Channel]) -> Vec<(Record, String)> {
         .collect()
 }
 
-/// Another condition: as it was recorded, else with the channels and the noise of the fitted one.
+/// Returns the record of another condition if there is one, otherwise a hypothetical record with the channels
+/// and the noise of the fitted condition; with its description.
 fn conditions_words(
     inputs: &Inputs,
     fitted: &Record,
@@ -98,7 +100,10 @@ fn conditions_words(
     let mut recorded = inputs.records.iter().skip(1);
     let recorded = recorded.find(|record| record.condition == condition);
     if let Some(record) = recorded.filter(|record| !record.cycles.is_empty()) {
-        let words = format!("the record of {} fitted, too", inputs.condition(condition));
+        let words = format!(
+            "the record of {}, fitted as well",
+            inputs.condition(condition)
+        );
         return Some((record.clone(), words));
     }
     let same = |own: &Recorded| {
@@ -122,7 +127,7 @@ fn conditions_words(
     Some((record, words))
 }
 
-/// Derivatives of a further record's residual; zeros by what is not known.
+/// Returns the Jacobian of a further record's residual; columns of unknown derivatives are zero.
 fn columns(on: &WhitenedRecord, sight: &Sight) -> DMatrix<f64> {
     let mut columns = DMatrix::zeros(on.metric.len(), sight.changes.len());
     for (k, change) in sight.changes.iter().enumerate() {
@@ -138,7 +143,7 @@ fn columns(on: &WhitenedRecord, sight: &Sight) -> DMatrix<f64> {
     columns
 }
 
-/// Unknowns that a record of this Jacobian would pin down.
+/// Returns the unknowns that a measurement with this stacked Jacobian would determine.
 fn weigh(walked: &Walked, jacobian: &DMatrix<f64>, measurement: String) -> Further {
     let own = &walked.fit.search.best().jacobian;
     let (Some(now), Some(then)) = (covariance(walked, own), covariance(walked, jacobian)) else {

@@ -1,8 +1,8 @@
-//! A first look at what a record sees, from one linearised simulation at parameters that were found elsewhere.
+//! Quick linear identifiability analysis from one linearised simulation at given parameters.
 //!
-//! Linear throughout, and under the noise of the record alone: no tolerance of an instrument, no numerical
-//! error and no refit is in it. What is left widens every interval, as everywhere. It is what a table of a
-//! calibration says beside its numbers; [`super::identify`] says it with profiles.
+//! It assumes the noise of the record alone, without instrument tolerances, numerical error or refits. A
+//! residual above the noise widens every interval. The result accompanies the table of a calibration;
+//! [`super::identify`] computes profile likelihoods instead.
 use super::answer::{End, Seen, UnknownEstimate};
 use super::settings::FREE;
 use crate::inputs::Inputs;
@@ -13,8 +13,8 @@ use crate::record::whitened::WhitenedRecord;
 use crate::size::spread::Spread;
 use search::least_squares::Settings;
 
-/// Looks at the calibrated condition's record from where the inputs start; the unknowns that are searched,
-/// each with what the record says of it. Nothing where there is no record, no start, or it does not complete.
+/// Estimates the searched unknowns with linear intervals from the record of the calibrated condition, at the
+/// start of the inputs. Returns `None` without a record or a start, or if the simulation does not complete.
 ///
 /// # Errors
 /// Those of the laboratory.

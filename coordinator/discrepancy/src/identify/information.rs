@@ -1,7 +1,7 @@
-//! Fisher's information of a fit: covariances, and the directions in which unknowns are seen.
+//! Fisher information of a fit: covariances, and the eigenvectors of the information of the unknowns.
 //!
-//! Whitened residuals have variance 1, so the information of a record is `J^T J`; what is known beforehand
-//! adds its own. The record counts the dispersion less (Cramér and Rao's bound, widened).
+//! Whitened residuals have variance 1, so the information of a record is `J^T J`; priors add their own. The
+//! information of the record is divided by the dispersion (Cramér-Rao bound, widened).
 use super::answer::{Direction, Part};
 use crate::model::fit::Fit;
 use crate::size::spread::Spread;
@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use protocol::case::Scale;
 use search::least_squares::Variable;
 
-/// Information of a Jacobian and of what is known beforehand.
+/// Returns the information matrix of a Jacobian and the priors.
 pub(super) fn with_priors(jacobian: &DMatrix<f64>, variables: &[Variable]) -> DMatrix<f64> {
     let mut information = jacobian.tr_mul(jacobian);
     for (k, v) in variables.iter().enumerate() {
@@ -30,8 +30,8 @@ pub(super) fn correlation(covariance: &DMatrix<f64>, i: usize, j: usize) -> f64 
     covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt()
 }
 
-/// Information of the first `unknowns` variables alone, whatever the others are within what is known of
-/// them. Of the unknowns the record's own counts, and no prior.
+/// Returns the information of the first `unknowns` variables after marginalising the others (Schur
+/// complement). The priors of the others are included, those of the unknowns are not.
 fn of_unknowns(jacobian: &DMatrix<f64>, variables: &[Variable], unknowns: usize) -> DMatrix<f64> {
     let whole = with_priors(jacobian, variables);
     let rest = whole.nrows() - unknowns;
@@ -45,14 +45,15 @@ fn of_unknowns(jacobian: &DMatrix<f64>, variables: &[Variable], unknowns: usize)
     information
 }
 
-/// Parts below this are not told.
+/// Absolute component below which an unknown is omitted from a direction.
 const LEAST_PART: f64 = 0.1;
-/// Parts from which an unknown is named in the words.
+/// Absolute component above which an unknown is named in the description.
 const NAMED: f64 = 0.3;
-/// Standard deviation from which a direction is not seen: a factor of a thousand either way.
+/// Standard deviation above which a direction counts as undetermined: a 95 % interval of a factor of a
+/// thousand either way.
 const BLIND: f64 = 1.5;
 
-/// Directions in which a record sees the unknowns of a fit, the best first.
+/// Returns the eigenvectors of the information of a fit's unknowns, best determined first.
 pub(super) fn directions(fit: &Fit, spread: &Spread) -> Vec<Direction> {
     let unknowns = fit.model.space.dimension();
     let jacobian = &fit.search.best().jacobian;
@@ -127,18 +128,21 @@ fn described(fit: &Fit, mut along: DVector<f64>, deviation: f64) -> Direction {
     }
 }
 
-/// How well a direction is seen.
+/// Describes the precision with which a direction is determined.
 fn seen_to(deviation: f64, linear: bool) -> String {
     /// Half width of a 95 % interval in standard deviations.
     const NORMAL: f64 = 1.96;
     let half = NORMAL * deviation;
     if deviation >= BLIND {
-        "not seen by this record".to_owned()
+        "not determined by this record".to_owned()
     } else if linear {
-        format!("seen to {:.2} % of half the interval", 100.0 * half)
+        format!(
+            "determined to {:.2} % of half the search interval",
+            100.0 * half
+        )
     } else if half < 0.2 {
         format!("seen to {:.2} %", 100.0 * (libm::exp10(half) - 1.0))
     } else {
-        format!("seen to a factor of {:.1}", libm::exp10(half))
+        format!("determined to a factor of {:.1}", libm::exp10(half))
     }
 }

@@ -1,9 +1,9 @@
-//! What a record sees of a model's unknowns, at all and apart, and what the answer inherits of what it does
-//! not see.
+//! Identifiability analysis: which unknowns and combinations of unknowns a record determines, and how the
+//! undetermined ones affect predictions.
 //!
-//! The metric, the tolerances of the instruments and the numerical error are those of a diagnosis. It knows
-//! no effects that may be missing: where the fit leaves more than noise its intervals are widened, and a
-//! diagnosis is the next thing to do.
+//! The metric, the tolerances of the instruments and the numerical error are those of a diagnosis. Missing
+//! effects are not considered: where the fit leaves more than noise, the intervals are widened, and a
+//! diagnosis should follow.
 pub mod answer;
 mod band;
 mod estimate;
@@ -31,11 +31,12 @@ use crate::size::spread::coloured;
 use protocol::case::Channel;
 use settings::FREE;
 
-/// Fits the calibrated condition's record and says what it sees. `conditions` are the channels of every
-/// condition of the case, in its order. Nothing where no fit completes, or there is nothing to fit.
+/// Fits the record of the calibrated condition and determines the identifiability of its unknowns.
+/// `conditions` are the channels of every condition of the case, in its order. Returns `None` where no fit
+/// completes or there is nothing to fit.
 ///
 /// # Errors
-/// Those of the laboratory: nobody simulates any more, or the user stopped.
+/// Those of the laboratory: no worker is left, or the user stopped the run.
 pub async fn identify<L: Laboratory>(
     lab: &mut L,
     inputs: &Inputs,

@@ -1,53 +1,54 @@
-//! One side of a profile likelihood: where to look next, and where it ends.
+//! Search for the end of one side of a profile likelihood.
 //!
-//! The square root of the rise of a quadratic is straight, so looks go where it would cross; a bracket is
-//! narrowed until the rise is near enough to the one that is wanted. It knows no simulation.
+//! The square root of the rise of a quadratic is linear in the distance, so the next point is where that line
+//! would cross the wanted rise; a bracket is narrowed until the rise is close enough. No simulations are run
+//! here.
 use super::answer::End;
 
 /// The rise of `-2 ln L` at the ends of a 95 % interval of one unknown.
 pub(super) const RISE: f64 = 3.84;
-/// How near to the wanted rise a look is near enough, as a share of it.
+/// Relative tolerance on the wanted rise at which a side ends.
 pub(super) const NEAR: f64 = 0.3;
-/// Longest step outwards (coordinate).
+/// Longest step outwards (scaled coordinate).
 const LONGEST: f64 = 1.0;
-/// Looks after which a side is given up.
+/// Maximum number of points on a side.
 const MOST: usize = 12;
 
 /// A point of a profile.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Mark {
-    /// Where the unknown was held (coordinate).
+    /// Value at which the unknown was held (scaled coordinate).
     pub(super) at: f64,
-    /// What was left there, all else refitted.
+    /// Cost at that value, with all other variables refitted.
     pub(super) cost: f64,
-    /// The whole point.
+    /// All variables at the point.
     pub(super) x: Vec<f64>,
 }
 
-/// One side of an unknown.
+/// One side of the profile of an unknown.
 #[derive(Clone, Debug)]
 pub(super) struct Side {
-    /// The unknown's place.
+    /// Index of the unknown.
     pub(super) unknown: usize,
-    /// 1 above, -1 below.
+    /// 1 for the upper side, -1 for the lower side.
     pub(super) sign: f64,
     /// The bound of the search on this side (coordinate).
     pub(super) bound: f64,
-    /// How far away the quadratic has the end.
+    /// Distance of the end as predicted by the quadratic approximation.
     pub(super) predicted: f64,
-    /// What was seen on this side.
+    /// Points computed on this side.
     pub(super) marks: Vec<Mark>,
-    /// The nearest place where nothing completes.
+    /// Nearest value at which no simulation completes.
     wall: Option<f64>,
     looks: usize,
 }
 
-/// What comes next on a side.
+/// Next step on a side of a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Next {
-    /// Look there (coordinate).
+    /// Compute the profile at this value (scaled coordinate).
     Look(f64),
-    /// It ends like this, there.
+    /// The side ends in this way, at this value (scaled coordinate).
     Over(End, f64),
 }
 
@@ -64,7 +65,7 @@ impl Side {
         }
     }
 
-    /// Takes what a look gave; nothing where nothing completes.
+    /// Adds the result of a computed point; `None` where no simulation completed.
     pub(super) fn absorb(&mut self, at: f64, found: Option<(f64, Vec<f64>)>) {
         self.looks += 1;
         if let Some((cost, x)) = found {
@@ -74,8 +75,8 @@ impl Side {
         }
     }
 
-    /// Takes a point that is known from elsewhere, if it lies on this side of an estimate and away from it: a fit
-    /// in another valley says nothing of a profile that it hardly leaves.
+    /// Adds a point from another fit if it lies on this side and sufficiently far from the estimate. A fit in
+    /// another valley with nearly the same value of the unknown gives no information on the profile.
     pub(super) fn know(&mut self, from: f64, cost: f64, x: &[f64]) {
         let at = x[self.unknown];
         if self.sign * (at - from) > 0.5 * self.predicted.min(LONGEST) {
@@ -84,7 +85,8 @@ impl Side {
         }
     }
 
-    /// What comes next, from an estimate that leaves `best`; `rise` is what ends a side.
+    /// Returns the next step, from an estimate at `from` with cost `best`; `rise` is the rise of the cost
+    /// that ends a side.
     pub(super) fn next(&self, from: f64, best: f64, rise: f64) -> Next {
         let there = |distance: f64| from + self.sign * distance;
         let away = |at: f64| self.sign * (at - from);
@@ -156,7 +158,7 @@ impl Side {
 mod tests {
     use super::*;
 
-    /// Follows a profile to its end; gives the end and the number of looks.
+    /// Follows a profile to its end; returns the type of end, its position and the number of computed points.
     fn follow(
         bound: f64,
         predicted: f64,
@@ -183,7 +185,8 @@ mod tests {
         assert!((at - half).abs() < 1e-12, "{at}");
     }
 
-    /// However wrong the prediction, the crossing is found, within what the nearness allows.
+    /// Checks that the crossing is found within the tolerance and few points, however wrong the prediction
+    /// is.
     #[test]
     fn a_wrong_prediction_costs_a_few_looks() {
         for (predicted, half) in [(0.001, 0.3), (0.9, 0.004), (2.0, 3.3)] {
@@ -209,8 +212,8 @@ mod tests {
         assert_eq!(follow(4.0, 0.5, |_| None).0, End::Fails);
     }
 
-    /// A fit in another valley that leaves nearly too much, but hardly moves the unknown, does not end its side;
-    /// one far out is part of the profile.
+    /// Checks that a fit in another valley with nearly the same value of the unknown does not end the side,
+    /// and that one with a distant value is used as a point of the profile.
     #[test]
     fn another_valley_counts_where_it_is_another_value() {
         let mut side = Side::new(0, 1.0, 4.0, 50.0);
@@ -222,7 +225,7 @@ mod tests {
         assert!(matches!(next, Next::Look(at) if at > 2.5), "{next:?}");
     }
 
-    /// A profile that is flat and then a cliff.
+    /// Checks that the end of a profile that is flat up to a step is bracketed.
     #[test]
     fn a_cliff_is_bracketed() {
         let (end, at, _) = follow(4.0, 50.0, |d| Some(if d < 2.6 { 0.5 } else { 400.0 }));

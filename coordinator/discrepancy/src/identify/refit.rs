@@ -1,5 +1,5 @@
-//! Refits beside a fit, with one unknown held: steps by the Jacobian of the fit, which cost a simulation or two
-//! each, and a new Jacobian only where those no longer help.
+//! Refits with one unknown held: steps with the Jacobian of the original fit, at the cost of one or two
+//! simulations each, and a new Jacobian only where these steps no longer help.
 use super::profile::{NEAR, RISE};
 use super::settings::FREE;
 use crate::laboratory::Laboratory;
@@ -9,39 +9,39 @@ use crate::model::unknowns::Point;
 use nalgebra::{DMatrix, DVector};
 use search::least_squares::{Linearized, Settings, prior_cost, undamped};
 
-/// So much of the wanted rise is little: a point that leaves it is not refitted, for a refit leaves less.
+/// Share of the wanted rise below which a point is not refitted, because a refit would only lower it further.
 const LITTLE: f64 = 1.0 - NEAR;
-/// A step that gains less than this share of the wanted rise is the last by its Jacobian.
+/// Share of the wanted rise that a step must gain; after a smaller gain the Jacobian is renewed.
 const GAIN: f64 = 0.02;
-/// Steps that are tried side by side, as shares of the whole one.
+/// Step lengths that are tried in parallel, as shares of the full step.
 const TRIED: [f64; 2] = [1.0, 0.3];
-/// Most steps, and most new Jacobians.
+/// Maximum number of steps. [`JACOBIANS`] is the maximum number of new Jacobians.
 const STEPS: usize = 8;
 const JACOBIANS: usize = 2;
 
-/// Beside what is refitted, and what rise is wanted of each unknown that may be held.
+/// Original fit, and the wanted rise of the cost for each unknown that may be held.
 pub(super) struct Asked<'a> {
     pub(super) fit: &'a Fit,
     pub(super) rises: &'a [f64],
 }
 
-/// A refit on its way.
+/// State of a refit in progress.
 struct Descent {
     point: Point,
     residual: DVector<f64>,
     cost: f64,
     jacobian: DMatrix<f64>,
-    /// Jacobians of its own so far.
+    /// Number of Jacobians computed for this refit so far.
     own: usize,
-    /// Whether the Jacobian is of this point.
+    /// Whether the Jacobian was computed at this point.
     fresh: bool,
     over: bool,
-    /// The rise that is wanted.
+    /// Wanted rise of the cost.
     rise: f64,
 }
 
 impl Descent {
-    /// Points that may leave less.
+    /// Returns candidate points along the undamped step.
     fn trials(&self) -> Vec<Point> {
         let at = Linearized {
             x: self.point.x.clone(),
@@ -63,7 +63,7 @@ impl Descent {
     }
 }
 
-/// Refits from the best of several starts each; what is left and where, nothing where no start completes.
+/// Refits from the best of several starts each; returns cost and variables, `None` where no start completes.
 pub(super) async fn refit<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     asked: &Asked<'_>,
@@ -119,7 +119,7 @@ pub(super) async fn refit<L: Laboratory>(
         .collect())
 }
 
-/// Gives refits the Jacobians of where they are; one that has none is over.
+/// Computes new Jacobians at the current points of refits; a refit whose Jacobian fails is finished.
 async fn renew<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     stale: Vec<&mut Descent>,
@@ -143,7 +143,7 @@ async fn renew<L: Laboratory>(
     Ok(())
 }
 
-/// Of each set of points the one that leaves least: that, its residual, the point; nothing where none
+/// Returns the point with the least cost of each set, with its cost and residual; `None` where no point
 /// completes.
 async fn best_of<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,

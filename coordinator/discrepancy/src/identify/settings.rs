@@ -1,7 +1,7 @@
-//! How everything here is fitted.
+//! Settings of the fits of an identifiability analysis.
 use search::least_squares::Settings;
 
-/// How the free fit goes: to its floor, with unknowns of next to no curvature held where they are.
+/// Settings of the free fit: to full convergence, with variables of negligible curvature held.
 pub(super) const FREE: Settings = Settings {
     iterations: 20,
     gradient: 3e-3,

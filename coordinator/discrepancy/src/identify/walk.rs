@@ -1,7 +1,8 @@
-//! Profile likelihoods of all unknowns, side by side: every look holds one unknown and refits all else.
+//! Profile likelihoods of all unknowns, computed in parallel: each point holds one unknown and refits all
+//! other variables.
 //!
-//! Where the quadratic picture holds, simulations at the end that it has say so, and a refit finds nothing to
-//! do. It decides what to simulate; [`super::profile`] decides where.
+//! Where the quadratic approximation holds, simulations at its predicted end confirm it and no refit is
+//! needed. This module runs the simulations; [`super::profile`] chooses the points.
 use super::information::{inverse, with_priors};
 use super::profile::{Next, Side};
 use super::refit::{Asked, refit};
@@ -15,34 +16,34 @@ use crate::size::spread::Spread;
 use nalgebra::DMatrix;
 use search::least_squares::Settings;
 
-/// A point that leaves less than the fit by this share of the wanted rise is a better fit.
+/// Share of the wanted rise by which a point must be below the fit to count as a better fit.
 const BETTER: f64 = 0.05;
-/// How often a better fit is taken.
+/// Maximum number of restarts from a better fit.
 const AGAIN: usize = 2;
 
 /// A fit with the profiles of its unknowns.
 pub(super) struct Walked {
     /// The best fit.
     pub(super) fit: Fit,
-    /// How far the record leaves its variables open, to first order.
+    /// Linearised uncertainty of the variables of the fit.
     pub(super) spread: Spread,
-    /// Covariance of its variables for a dispersion of one.
+    /// Covariance of the variables for a dispersion of one.
     pub(super) covariance: Option<DMatrix<f64>>,
-    /// Below and above, unknown by unknown.
+    /// Lower and upper side of each unknown.
     pub(super) sides: Vec<Side>,
-    /// The rise that ends an interval, unknown by unknown: the square of the interval's quantile, times the dispersion,
-    /// times the variance that the colour of the residual costs.
+    /// Rise of the cost that ends the interval of each unknown: the squared quantile of the interval, times
+    /// the dispersion, times the variance inflation by the autocorrelation of the residual.
     pub(super) rises: Vec<f64>,
 }
 
 impl Walked {
-    /// How a side ends, and where (coordinate).
+    /// Returns the end of a side, with its position (scaled coordinate).
     pub(super) fn end(&self, side: &Side) -> Next {
         let from = self.fit.x()[side.unknown];
         side.next(from, self.fit.search.cost(), self.rises[side.unknown])
     }
 
-    /// The sides of an unknown.
+    /// Returns the two sides of an unknown.
     pub(super) fn of(&self, unknown: usize) -> impl Iterator<Item = &Side> {
         self.sides
             .iter()
@@ -82,7 +83,7 @@ pub(super) async fn walk<L: Laboratory>(
     Ok(walked)
 }
 
-/// A fit with all its profiles still to follow, but for what other fits say of them.
+/// Creates the state before any profile point is computed; points known from other fits are included.
 fn begin(metric: &Metric, fit: Fit, others: &[Fit]) -> Walked {
     let spread = Spread::of(metric, &fit);
     let rises: Vec<f64> = spread
@@ -117,13 +118,14 @@ fn begin(metric: &Metric, fit: Fit, others: &[Fit]) -> Walked {
     walked
 }
 
-/// Fits from where unknowns that are hardly seen have their recommended values, each alone and all of them: a
-/// record that does not part two valleys sees what lies between them no better. The best one is the last.
+/// Refits from points at which poorly determined unknowns are reset to their recommended values, individually
+/// and all together, to find other valleys that the record cannot distinguish. Returns all fits, the best one
+/// last.
 async fn restarted<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: Fit,
 ) -> Result<Vec<Fit>, L::Error> {
-    /// Half width of an interval from which an unknown is hardly seen (coordinate).
+    /// Half-width of the interval above which an unknown counts as poorly determined (scaled coordinate).
     const HARDLY: f64 = 0.05;
     let sides = begin(&experiments.on.metric, fit.clone(), &[]).sides;
     let weak = sides.iter().filter(|side| side.sign > 0.0);
@@ -151,7 +153,7 @@ async fn restarted<L: Laboratory>(
     Ok(all)
 }
 
-/// Looks until every side has its end.
+/// Computes profile points until every side has ended.
 async fn follow<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     walked: &mut Walked,
@@ -182,8 +184,8 @@ async fn follow<L: Laboratory>(
     }
 }
 
-/// Where a look may start: from the nearest point of the profile as it is, along the quadratic's ridge, and
-/// along the line through the last two.
+/// Returns the possible starts of a refit: the nearest profile point with only the held unknown moved, the
+/// point along the ridge of the quadratic approximation, and the extrapolation of the two nearest points.
 fn starts(walked: &Walked, side: &Side, at: f64) -> Vec<Point> {
     let k = side.unknown;
     let own = (walked.fit.x()[k], walked.fit.x());

@@ -1,14 +1,14 @@
-//! How well a refitted model explains the record, penalised by what it had to choose: the Laplace
-//! approximation of its evidence.
+//! Log evidence of a fitted model (Laplace approximation): goodness of fit, penalised by the freedom of its
+//! parameters.
 //!
-//! `ln Z = -1/2 (|r|^2 + u^T u) + 1/2 ln |L| - 1/2 ln |J^T J + L|`, with `u` the parameters in units of
-//! their priors. Differences are divided by the dispersion `chi^2 / (n - p)` of the best model, at least 1: the
-//! quasi-likelihood of an error whose variance is so many times the noise's (Burnham & Anderson, *Model Selection and
-//! Multimodel Inference*, 2.5).
+//! `ln Z = -1/2 (|r|^2 + u^T u) + 1/2 ln |L| - 1/2 ln |J^T J + L|`, with `u` the parameters in units of their
+//! priors. Differences are divided by the dispersion `chi^2 / (n - p)` of the best model, at least 1: the
+//! quasi-likelihood of an error whose variance is that multiple of the noise variance (Burnham & Anderson,
+//! *Model Selection and Multimodel Inference*, 2.5).
 use nalgebra::{Cholesky, Dyn};
 use search::least_squares::{Linearized, Variable};
 
-/// The log evidence of a fitted model (nats), up to a constant of the record.
+/// Returns the log evidence of a fitted model (nats), up to a constant of the record.
 pub fn log_evidence(at: &Linearized, variables: &[Variable]) -> f64 {
     let mut curvature = at.jacobian.tr_mul(&at.jacobian);
     let mut penalty = 0.0;
@@ -34,7 +34,7 @@ pub fn log_evidence(at: &Linearized, variables: &[Variable]) -> f64 {
     -0.5 * (at.residual.norm_squared() + penalty) + prior - 0.5 * log_determinant
 }
 
-/// Standard deviation of a variable before any record: that of its prior; without one, that of a uniform
+/// Returns the prior standard deviation of a variable: that of its prior or, without one, of a uniform
 /// distribution between its bounds.
 pub(crate) fn deviation(variable: &Variable) -> f64 {
     let width = variable.upper - variable.lower;
@@ -42,13 +42,14 @@ pub(crate) fn deviation(variable: &Variable) -> f64 {
     prior.unwrap_or(width / 12_f64.sqrt())
 }
 
-/// Logarithm of the determinant of a factorised matrix.
+/// Returns the logarithm of the determinant of a factorised matrix.
 pub(crate) fn log_determinant(factor: &Cholesky<f64, Dyn>) -> f64 {
     let diagonal = factor.l_dirty().diagonal();
     diagonal.iter().map(|d| 2.0 * libm::log(*d)).sum()
 }
 
-/// The positions whose evidence, over a dispersion, lies within so many nats of the best, best first.
+/// Returns the positions whose evidence, divided by a dispersion, lies within `margin` nats of the best, best
+/// first.
 pub fn ambiguity_set(evidences: &[f64], dispersion: f64, margin: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..evidences.len())
         .filter(|&i| evidences[i].is_finite())

@@ -1,31 +1,31 @@
-//! What this record could tell apart, before any verdict: detection limits of single effects, and
-//! how far two effects lie apart once recalibration has taken its share.
+//! Isolability of effects from a record, before any verdict: detection limits of single effects, and
+//! distances between pairs of effects after recalibration has absorbed its share.
 //!
-//! `D_jk^2 = g~_j^T (I - P_G~k) g~_j` with projected signatures: two effects are told apart where
-//! `D^2 > 11`. (Eriksson, Frisk, Krysander: distinguishability; Doehler, Mevel, Zhang: min-max test.)
+//! `D_jk^2 = g~_j^T (I - P_G~k) g~_j` with projected signatures: two effects are distinguishable where `D^2 >
+//! 11`. (Eriksson, Frisk, Krysander: distinguishability; Doehler, Mevel, Zhang: min-max test.)
 use crate::linear::tangent::Tangent;
 use crate::thresholds::APART;
 use nalgebra::DMatrix;
 use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 
-/// What an effect has to overcome to be seen.
+/// Detection threshold of an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hurdle {
-    /// Tail probability that its own score test must fall below.
+    /// p-value below which the effect's own score test must fall.
     pub p_value: f64,
-    /// Variance of a residual in units of the noise's.
+    /// Variance of the residual in units of the noise variance.
     pub dispersion: f64,
 }
 
 /// Normal quantile of the power at which a limit is stated: 90 %.
 const POWER: f64 = 1.281_551_565_544_6;
 
-/// The size from which one size of an effect is seen in nine records of ten, in units of its
-/// signature's size; infinite if recalibration absorbs it.
+/// Returns the detection limit of one size of an effect: the size that is detected in 90 % of records, in
+/// units of the signature's size; infinite if recalibration absorbs it.
 ///
-/// `signature` holds all sizes of the effect, of which `column` is the one that is there;
-/// `one_sided` says that it is the only one and has a sign. With `m` sizes and a noncentrality `d^2`
-/// the statistic has mean `m + d^2` and variance `2 m + 4 d^2`, and must exceed the test's quantile.
+/// `signature` holds all sizes of the effect, of which `column` is the one that is present; `one_sided`
+/// states that it is the only one and has a sign. With `m` sizes and a noncentrality `d^2` the statistic has
+/// mean `m + d^2` and variance `2 m + 4 d^2`, and must exceed the test's quantile.
 pub fn detection_limit(
     signature: &DMatrix<f64>,
     column: usize,
@@ -55,9 +55,8 @@ pub fn detection_limit(
     (hurdle.dispersion * noncentrality / own).sqrt()
 }
 
-/// How alike two effects are once recalibration has taken its share: the squared cosine of the
-/// smallest angle between a direction of the first and the span of the second; 0 where either is
-/// absorbed.
+/// Returns the similarity of two effects after recalibration has absorbed its share: the squared cosine of
+/// the smallest principal angle between their projected signatures; 0 where either is absorbed.
 pub fn likeness(a: &DMatrix<f64>, b: &DMatrix<f64>, tangent: &Tangent) -> f64 {
     let visible = |g: &DMatrix<f64>| {
         let projected = tangent.project_columns(g);
@@ -73,9 +72,9 @@ pub fn likeness(a: &DMatrix<f64>, b: &DMatrix<f64>, tangent: &Tangent) -> f64 {
     }
 }
 
-/// `D_jk^2` for every pair: row j, column k: how much of effect j no amount of effect k, and no
-/// recalibration, explains; of an effect with several sizes the one that shows least. Sizes are the
-/// signatures' own.
+/// Returns `D_jk^2` for every pair (row j, column k): the part of effect j that no amount of effect k and no
+/// recalibration explains. Of an effect with several sizes the least visible one counts. Sizes are those of
+/// the signatures.
 pub fn distances(signatures: &[DMatrix<f64>], tangent: &Tangent) -> DMatrix<f64> {
     let projected: Vec<DMatrix<f64>> = signatures
         .iter()
@@ -89,16 +88,16 @@ pub fn distances(signatures: &[DMatrix<f64>], tangent: &Tangent) -> DMatrix<f64>
     })
 }
 
-/// Two effects, by their place in a list.
+/// Separation of two effects of a list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Separation {
-    /// The two, in the list's order.
+    /// Indices of the two effects, in ascending order.
     pub members: [usize; 2],
-    /// The smaller of their two distances, over what it takes to tell them apart at this dispersion.
+    /// Smaller of the two distances `D^2`, divided by the distance needed for isolation at this dispersion.
     pub apart: f64,
 }
 
-/// How far all pairs are apart at the signatures' sizes under a dispersion, in the list's order.
+/// Returns the separations of all pairs at the signatures' sizes under a dispersion, in the list's order.
 pub fn pairs(signatures: &[DMatrix<f64>], tangent: &Tangent, dispersion: f64) -> Vec<Separation> {
     let distances = distances(signatures, tangent);
     let n = signatures.len();
@@ -111,7 +110,7 @@ pub fn pairs(signatures: &[DMatrix<f64>], tangent: &Tangent, dispersion: f64) ->
         .collect()
 }
 
-/// Orthonormal basis of the columns' span.
+/// Returns an orthonormal basis of the span of the columns.
 fn orthonormal(columns: &DMatrix<f64>) -> DMatrix<f64> {
     let svd = columns.clone().svd(true, false);
     let largest = svd.singular_values.max();
@@ -180,8 +179,8 @@ mod tests {
         assert!(d[(0, 1)] < 1e-9);
     }
 
-    /// One size whose estimate has deviation 1: found in nine of ten records where
-    /// `P(|N(d, 1)| > sqrt(quantile)) = 0.9`.
+    /// Checks the power of a detection limit for one size whose estimate has standard deviation 1: detected
+    /// in nine of ten records where `P(|N(d, 1)| > sqrt(quantile)) = 0.9`.
     #[test]
     fn a_limit_has_the_power_that_it_states() {
         let tangent = nothing(1);

@@ -1,6 +1,6 @@
-//! Statistics of a model that is linear about its fit: what recalibration absorbs, tests of
-//! signatures, evidence, and what could be told apart. Algebra alone: it knows neither effects nor
-//! simulations.
+//! Linear statistics of a model about its fitted point: projection on the complement of the tangent space,
+//! score tests of signatures, log evidence and isolability. The module contains algebra alone and knows
+//! neither effects nor simulations.
 pub mod evidence;
 pub mod isolability;
 pub mod score;

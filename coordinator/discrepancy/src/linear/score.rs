@@ -1,34 +1,35 @@
-//! The score (Lagrange multiplier) test of one effect on the residual of a fitted model.
+//! Score (Lagrange multiplier) test of one effect on the residual of a fitted model.
 //!
-//! `T^2 = r^T G (G^T B G)^-1 G^T r`, chi-squared with as many degrees of freedom as the effect has
-//! sizes when the effect is not there. For an effect whose size has a sign, the tail is halved, and
-//! an estimate of the wrong sign speaks against it.
+//! `T^2 = r^T G (G^T B G)^-1 G^T r` is chi-squared under the null hypothesis, with as many degrees of freedom
+//! as the effect has sizes. For an effect whose size has a known sign the tail probability is halved, and an
+//! estimate of the wrong sign counts against the effect.
 use crate::linear::tangent::Tangent;
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF as _, FisherSnedecor, StudentsT};
 
-/// The result of a score test.
+/// Result of a score test.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Score {
-    /// `T^2`.
+    /// Test statistic `T^2`.
     pub statistic: f64,
-    /// Sizes that are left after projection: degrees of freedom.
+    /// Degrees of freedom: number of sizes that are not absorbed by the projection.
     pub freedom: usize,
     /// Tail probability, before any correction for the number of tests.
     pub p_value: f64,
     /// Estimated sizes, in the units of the signatures.
     pub size: Vec<f64>,
-    /// Their standard deviations; infinite for a size that recalibration absorbs wholly.
+    /// Standard deviations of `size`; infinite for a size that recalibration absorbs completely.
     pub deviation: Vec<f64>,
     /// Share of the signature that recalibration absorbs, 0 to 1.
     pub absorbed: f64,
 }
 
-/// Below this share of its squared length a projected signature counts as absorbed.
+/// Share of the squared length of a signature below which its projection counts as zero, so that the
+/// signature is absorbed.
 const ABSORBED: f64 = 1e-9;
 
-/// Tests signatures (columns: change of the whitened prediction per unit of each size) on the
-/// residual `data - prediction`; `positive` marks sizes that cannot be negative.
+/// Tests signatures on the residual `data - prediction`. A column of `signature` is the change of the
+/// whitened prediction per unit of one size; `positive` marks sizes that cannot be negative.
 pub fn score(
     residual: &DVector<f64>,
     signature: &DMatrix<f64>,
@@ -89,13 +90,14 @@ pub fn score(
     }
 }
 
-/// Probability that chi-squared with `freedom` degrees exceeds `x`.
+/// Returns the probability that a chi-squared variable with `freedom` degrees of freedom exceeds `x`.
 pub fn chi_squared_tail(x: f64, freedom: usize) -> f64 {
     ChiSquared::new(freedom.max(1) as f64).map_or(1.0, |law| law.sf(x.max(0.0)))
 }
 
-/// Probability that a whitened residual of `n` entries, fitted with `parameters`, is so long where only
-/// noise is left, its variances known with `freedom` degrees of freedom: the tail of `F`.
+/// Returns the p-value of the misfit test: the upper tail of the F distribution for the squared length
+/// `chi_squared` of a whitened residual of `n` entries after a fit of `parameters` unknowns, where the noise
+/// variances are known with `freedom` degrees of freedom.
 pub fn misfit_tail(chi_squared: f64, n: usize, parameters: f64, freedom: f64) -> f64 {
     let left = (n as f64 - parameters).max(1.0);
     // variances without doubt are like very many degrees of freedom
@@ -103,22 +105,23 @@ pub fn misfit_tail(chi_squared: f64, n: usize, parameters: f64, freedom: f64) ->
         .map_or(1.0, |law| law.sf((chi_squared / left).max(0.0)))
 }
 
-/// Half-width of a two-sided 95 % interval in standard deviations that are known with `freedom` degrees of freedom
-/// (at least one): Student's quantile, 1.96 where they are known exactly.
+/// Returns the half-width of a two-sided 95 % interval in standard deviations: the quantile of Student's
+/// distribution with `freedom` degrees of freedom (at least one), 1.96 where the standard deviation is known
+/// exactly.
 pub fn student(freedom: f64) -> f64 {
     // beyond ten thousand its third digit no longer changes
     StudentsT::new(0.0, 1.0, freedom.clamp(1.0, 1e4))
         .map_or(f64::INFINITY, |law| law.inverse_cdf(0.975))
 }
 
-/// Probability of a p-value so small among that many independent tests (Sidak).
+/// Returns the family-wise p-value of the smallest p-value among `tests` independent tests (Sidak).
 pub fn family_wise(p_value: f64, tests: usize) -> f64 {
     // 1 - (1 - p)^k without cancellation
     -libm::expm1(tests as f64 * libm::log1p(-p_value.clamp(0.0, 1.0 - 1e-16)))
 }
 
-/// The p-value of one among that many independent tests whose family has level `alpha`: the inverse
-/// of [`family_wise`].
+/// Returns the level of each of `tests` independent tests whose family has the level `alpha`: the inverse of
+/// [`family_wise`].
 pub fn single(alpha: f64, tests: usize) -> f64 {
     -libm::expm1(libm::log1p(-alpha) / tests.max(1) as f64)
 }
@@ -170,8 +173,8 @@ mod tests {
         assert!((against.p_value - 1.0).abs() < 1e-12);
     }
 
-    /// Acceptance: a planted look-alike that satisfies `rho^2 (1 - a_j) > 1 - a_k` takes the name in
-    /// a test on raw signatures, and loses it in the projected one.
+    /// Checks that projected signatures select the true effect where raw signatures select a look-alike: the
+    /// planted look-alike satisfies `rho^2 (1 - a_j) > 1 - a_k`, with the absorbed shares `a`.
     #[test]
     fn projection_names_the_truth_where_the_raw_test_names_the_impostor() {
         let fit = basis(0);

@@ -1,32 +1,32 @@
-//! Which few of many effects explain a residual together, to first order: every pair and every triple, on
-//! signatures of which recalibration has taken its share. What it proposes, refits judge.
+//! Selection of small subsets of effects that explain a residual together, to first order: every pair and
+//! every triple is tried on projected signatures. The proposed subsets are confirmed or rejected by refits.
 use crate::linear::tangent::Tangent;
 use nalgebra::{DMatrix, DVector, Matrix};
 
-/// Several effects, by their places, with their joint estimate.
+/// Subset of effects, by their indices, with the joint estimate of their sizes.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Subset {
     pub(crate) members: Vec<usize>,
-    /// Sizes, member by member, in the units of the signatures.
+    /// Estimated sizes of the members in their order, in the units of the signatures.
     pub(crate) sizes: Vec<f64>,
-    /// By how much they lower `chi^2`, less two for each size that they have to choose.
+    /// Decrease of `chi^2` less two per estimated size (Akaike's penalty).
     pub(crate) merit: f64,
 }
 
-/// Effects that may be asked for in any combination.
+/// Normal equations of all effects, from which any subset can be estimated.
 pub(crate) struct Subsets {
-    /// `G^T B G` of all columns, and `G^T r`.
+    /// Information matrix `G^T B G` of all columns; `gain` is `G^T r`.
     information: DMatrix<f64>,
     gain: DVector<f64>,
-    /// Where each effect's columns begin and how many they are.
+    /// First column and number of columns of each effect.
     columns: Vec<(usize, usize)>,
-    /// Which columns cannot be negative.
+    /// Whether the size of each column cannot be negative.
     positive: Vec<bool>,
 }
 
 impl Subsets {
-    /// Of signatures (columns: change of the whitened prediction per unit of each size), with which of their
-    /// sizes cannot be negative.
+    /// Builds the normal equations from signatures (a column is the change of the whitened prediction per
+    /// unit of one size), each with flags for the sizes that cannot be negative.
     pub(crate) fn new(
         residual: &DVector<f64>,
         signatures: &[(&DMatrix<f64>, Vec<bool>)],
@@ -53,7 +53,8 @@ impl Subsets {
         }
     }
 
-    /// The best of all subsets of so many effects, the best first; none with a size that it cannot have.
+    /// Returns the `kept` best subsets of `count` effects, the best first; subsets whose estimate violates
+    /// the sign of a size are left out.
     pub(crate) fn best(&self, count: usize, kept: usize) -> Vec<Subset> {
         let mut all: Vec<Subset> = Vec::new();
         let mut members: Vec<usize> = (0..count).collect();
@@ -76,7 +77,8 @@ impl Subsets {
         }
     }
 
-    /// The joint estimate of some effects; nothing where they are not independent, or a size is wrong.
+    /// Returns the joint estimate of the effects `members`; `None` where they are linearly dependent or a
+    /// size has a sign that is not allowed.
     fn judge(&self, members: &[usize]) -> Option<Subset> {
         let of = |&member: &usize| {
             let (first, count) = self.columns[member];
@@ -107,8 +109,8 @@ mod tests {
     use search::least_squares::Linearized;
     use search::random::{Phase, Streams};
 
-    /// Two that act together are found among look-alikes of their sum, with their sizes; what cannot be
-    /// negative is not proposed so.
+    /// Checks that two effects that act together are found, with their sizes, in spite of a third one that
+    /// resembles their sum, and that no subset with a negative estimate of a positive size is proposed.
     #[test]
     fn what_acts_together_is_proposed_together() {
         let mut stream = Streams::new(3, 0).at(0, Phase::Initial, 0);

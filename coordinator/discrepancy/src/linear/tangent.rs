@@ -1,12 +1,13 @@
-//! What recalibration can absorb: the tangent space of the fitted model.
+//! Tangent space of the fitted model: the changes of the prediction that recalibration can absorb.
 //!
-//! `B x = x - J (J^T J + L)^-1 J^T x` takes from a whitened vector what the free parameters, each
-//! held by its prior, would explain. Signatures of effects are tested after this projection, so that
-//! what a recalibration hides does not count for or against a name.
+//! `B x = x - J (J^T J + L)^-1 J^T x` removes from a whitened vector the part that the free parameters, each
+//! held by its prior, would explain. Signatures of effects are tested after this projection, so that the part
+//! that a recalibration hides counts neither for nor against an effect.
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use search::least_squares::{Linearized, Variable};
 
-/// Places of the variables that are free at a point: inside of their bounds, and of some influence.
+/// Returns the indices of the variables that are free at a point: strictly inside their bounds and with a
+/// Jacobian column that is not zero.
 pub(crate) fn free(at: &Linearized, variables: &[Variable]) -> Vec<usize> {
     let inside = |k: &usize| {
         let (x, v) = (at.x[*k], &variables[*k]);
@@ -16,18 +17,18 @@ pub(crate) fn free(at: &Linearized, variables: &[Variable]) -> Vec<usize> {
     (0..variables.len()).filter(inside).collect()
 }
 
-/// The projector off a tangent space.
+/// Projector onto the complement of a tangent space, regularised by the priors.
 #[derive(Clone, Debug)]
 pub struct Tangent {
-    /// Places of the variables that absorb.
+    /// Indices of the free variables.
     free: Vec<usize>,
     jacobian: DMatrix<f64>,
-    /// Of `J^T J + L`; none where there is nothing to absorb.
+    /// Cholesky factor of `J^T J + L`; `None` where no variable is free.
     factor: Option<Cholesky<f64, Dyn>>,
 }
 
 impl Tangent {
-    /// At a fitted point. Variables that lie on a bound of theirs, or change nothing, absorb
+    /// Builds the projector at a fitted point. Variables on a bound and variables without influence absorb
     /// nothing.
     pub fn new(at: &Linearized, variables: &[Variable]) -> Self {
         let free = free(at, variables);
@@ -52,13 +53,14 @@ impl Tangent {
         }
     }
 
-    /// Number of parameters that absorb.
+    /// Returns the number of free variables.
     pub fn dimension(&self) -> usize {
         self.jacobian.ncols()
     }
 
-    /// How many parameters worth the fit has: the trace of the projector, which counts one that is known beforehand by
-    /// as much of it as the record says (Hastie, Tibshirani, Friedman, *Elements of Statistical Learning*, 7.6).
+    /// Returns the effective number of parameters of the fit: the trace of the projector, which counts a
+    /// variable with a prior by the share of its information that comes from the record (Hastie, Tibshirani,
+    /// Friedman, *Elements of Statistical Learning*, 7.6).
     pub fn parameters(&self) -> f64 {
         self.factor.as_ref().map_or(0.0, |factor| {
             let curvature = self.jacobian.tr_mul(&self.jacobian);
@@ -66,7 +68,7 @@ impl Tangent {
         })
     }
 
-    /// By how much each variable that absorbs, by its place, moves to explain a vector.
+    /// Returns, for each free variable, its index and the step by which it moves to explain a vector.
     pub(crate) fn estimate(&self, x: &DVector<f64>) -> Vec<(usize, f64)> {
         let Some(factor) = &self.factor else {
             return Vec::new();
@@ -79,7 +81,7 @@ impl Tangent {
             .collect()
     }
 
-    /// What is left of a vector.
+    /// Returns the part of a vector that the free variables do not explain.
     pub fn project(&self, x: &DVector<f64>) -> DVector<f64> {
         match &self.factor {
             None => x.clone(),
@@ -87,7 +89,7 @@ impl Tangent {
         }
     }
 
-    /// What is left of each column.
+    /// Returns the part of each column that the free variables do not explain.
     pub fn project_columns(&self, x: &DMatrix<f64>) -> DMatrix<f64> {
         match &self.factor {
             None => x.clone(),

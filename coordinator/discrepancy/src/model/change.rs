@@ -1,6 +1,7 @@
-//! What curves change by per unit of a model's unknown: the columns of simulations, times rates.
+//! Derivatives of curves by the unknowns of a model: simulated derivative columns times the rate of the
+//! simulated parameter per unit of the unknown.
 //!
-//! Unknowns of the case count by the coordinates of their space, parameters of effects by their scales.
+//! Unknowns of the case are measured in coordinates of their space, parameters of effects in their scales.
 use crate::model::parameter::setting;
 use crate::model::tolerated::{Tolerated, effects, read};
 use crate::model::unknowns::{Model, Point};
@@ -9,7 +10,7 @@ use protocol::announce::EffectDescriptor;
 use protocol::job::{Column, Derivative};
 use search::derivative::Term;
 
-/// The terms of a change by the k-th unknown of a model at a point.
+/// Returns the terms of the derivative by the `k`-th unknown of a model at a point.
 fn terms(model: &Model, x: &[f64], k: usize) -> Vec<Term> {
     if k >= model.first_of(0) {
         return term_of_added(model, x, k).into_iter().collect();
@@ -31,7 +32,8 @@ fn term_of_added(model: &Model, x: &[f64], k: usize) -> Option<Term> {
     })
 }
 
-/// Nothing of a gain, which takes no column.
+/// Returns the term of a nuisance parameter that acts as an effect; `None` for a gain, which needs no
+/// derivative column.
 fn term_of_nuisance(model: &Model, x: &[f64], nuisance: &Tolerated) -> Option<Term> {
     let (effect, k) = nuisance.effect()?;
     let own = &effect.parameters[k];
@@ -53,8 +55,8 @@ fn term_of_nuisance(model: &Model, x: &[f64], nuisance: &Tolerated) -> Option<Te
     })
 }
 
-/// The name of a parameter of something suspected among the columns: an unknown that is off is one
-/// of the case.
+/// Returns the column name of a parameter of a candidate effect; an unknown of the case that is off has its
+/// own name without a prefix.
 fn column_name(model: &Model, effect: &EffectDescriptor, parameter: &str) -> String {
     if is_off(model, effect) {
         parameter.to_owned()
@@ -67,8 +69,9 @@ fn is_off(model: &Model, effect: &EffectDescriptor) -> bool {
     model.off.iter().any(|off| off.suspect.id == effect.id)
 }
 
-/// The change by a size of something suspected that the model does not have, at a shape: scaled values
-/// of its parameters. Nothing of what the point has as a nuisance.
+/// Returns the term of the derivative by a size of a candidate effect that the model does not contain, at the
+/// scaled values `shape` of the effect's parameters; `None` where the point already contains the effect as a
+/// nuisance parameter that is not zero.
 pub(crate) fn term_of_absent(
     Point { model, x }: &Point,
     effect: &EffectDescriptor,
@@ -94,17 +97,17 @@ pub(crate) fn term_of_absent(
     })
 }
 
-/// A point whose curves are wanted with changes of them.
+/// Point to be simulated, with the derivatives that are requested there.
 pub(crate) struct Wanted {
     pub(crate) point: Point,
-    /// The terms of each.
+    /// Terms of each requested derivative.
     changes: Vec<Vec<Term>>,
-    /// Whether those are the changes by all of the point's unknowns.
+    /// Whether the requested derivatives are those by all unknowns of the point.
     by_unknowns: bool,
 }
 
 impl Wanted {
-    /// A point and its changes by all of its unknowns, or by none.
+    /// Requests a point with its derivatives by all of its unknowns, or by none.
     pub(crate) fn new(point: Point, with_changes: bool) -> Self {
         let unknowns = if with_changes { point.x.len() } else { 0 };
         let changes = (0..unknowns).map(|k| terms(&point.model, &point.x, k));
@@ -115,7 +118,7 @@ impl Wanted {
         }
     }
 
-    /// A point and first-order changes by single terms.
+    /// Requests a point with one first-order derivative per term.
     pub(crate) fn with_terms(point: Point, terms: &[Term]) -> Self {
         Self {
             point,
@@ -124,14 +127,14 @@ impl Wanted {
         }
     }
 
-    /// The columns that this takes.
+    /// Returns the derivative columns to be simulated.
     pub(crate) fn columns(&self) -> Vec<Column> {
         let terms = self.changes.iter().flatten();
         terms.map(|term| term.column.clone()).collect()
     }
 
-    /// The changes from those columns, in the record's channels; none for one that lacks a column. Those of
-    /// gains follow from the curves that are simulated.
+    /// Combines simulated columns into the requested derivatives in the record's channels; `None` for a
+    /// derivative that lacks a column. Derivatives by gains are computed from the simulated curves.
     pub(crate) fn changes(
         &self,
         columns: &[Derivative],
@@ -190,8 +193,8 @@ mod tests {
     use protocol::job::Per;
     use search::space::Space;
 
-    /// Two unknowns that move together, and one alone: the terms of a change are taken in order, and what
-    /// lacks a column is not known, whatever stands beside it. Never zeros.
+    /// Checks, for two tied unknowns and a single one, that columns are consumed in the order of the terms
+    /// and that a derivative that lacks a column is `None`, never zeros, whichever other columns are present.
     #[test]
     fn what_has_no_column_is_not_known() {
         let unknown = |name: &str| Unknown::new(name, "mm", Scale::Linear, 2.0, [0.0, 8.0]);

@@ -1,4 +1,4 @@
-//! Experiments on one record: the curves of points and their changes, and fits of models to it.
+//! Simulations for one record: curves of points and their derivatives, and fits of models to the record.
 use crate::laboratory::{Laboratory, Stage, channels};
 use crate::model::change::Wanted;
 use crate::model::fit::Fit;
@@ -10,31 +10,31 @@ use search::derivative::Term;
 use search::least_squares::{Ended, Evaluated, LeastSquares, Settings, Variable};
 use search::strategy::Residual;
 
-/// A laboratory, the record that its experiments are compared with, and the stage that they count for.
+/// Laboratory, the record with which its simulations are compared, and the stage whose budget they use.
 #[derive(Debug)]
 pub struct Experiments<'a, L> {
-    /// Who simulates.
+    /// Laboratory that runs the simulations.
     pub lab: &'a mut L,
-    /// What simulations are compared with.
+    /// Record with which simulations are compared.
     pub on: &'a WhitenedRecord,
-    /// The part of the diagnosis that asks.
+    /// Stage of the diagnosis for which the simulations are counted.
     pub stage: Stage,
 }
 
 impl<L: Laboratory> Experiments<'_, L> {
-    /// The same for another record.
+    /// Returns these experiments for another record.
     pub fn with<'b>(&'b mut self, on: &'b WhitenedRecord) -> Experiments<'b, L> {
         let (lab, stage) = (&mut *self.lab, self.stage);
         Experiments { lab, on, stage }
     }
 
-    /// The same for another stage.
+    /// Returns these experiments for another stage.
     pub fn during(&mut self, stage: Stage) -> Experiments<'_, L> {
         let (lab, on) = (&mut *self.lab, self.on);
         Experiments { lab, on, stage }
     }
 
-    /// Simulated curves of points, in their order; nothing for one that failed.
+    /// Simulates the curves of points, in their order; `None` for a point that failed.
     ///
     /// # Errors
     /// Those of the laboratory.
@@ -44,8 +44,8 @@ impl<L: Laboratory> Experiments<'_, L> {
         Ok(seen.into_iter().map(|seen| Some(seen?.curves)).collect())
     }
 
-    /// Residuals of points, with their derivatives by the case's unknowns where those are wanted and the
-    /// laboratory knows them; nothing for a point that failed.
+    /// Computes the residuals of points, with their derivatives by the case's unknowns where these are
+    /// requested and the laboratory provides them; `None` for a point that failed.
     ///
     /// # Errors
     /// Those of the laboratory.
@@ -85,8 +85,8 @@ impl<L: Laboratory> Experiments<'_, L> {
         Ok(points.iter().zip(observed).map(residual).collect())
     }
 
-    /// Curves of points under the condition of a record, with the changes of them that are wanted; nothing
-    /// for a point that failed.
+    /// Simulates points under the condition of a record, with the requested derivatives; `None` for a point
+    /// that failed.
     async fn seen(
         &mut self,
         record: &Record,
@@ -109,14 +109,15 @@ impl<L: Laboratory> Experiments<'_, L> {
         Ok(wanted.into_iter().zip(observed).map(seen).collect())
     }
 
-    /// First-order changes of a fit's curves by terms of its model, as far as there is a term and the
-    /// laboratory knows them.
+    /// Computes first-order changes of a fit's curves by terms of its model; `None` where there is no term or
+    /// the laboratory provides no derivatives.
     pub(crate) async fn changes(
         &mut self,
         fit: &Fit,
         terms: Vec<Option<Term>>,
     ) -> Result<Vec<Option<Curves>>, L::Error> {
-        /// Terms of one simulation: the more, the less each costs; several occupy several slots.
+        /// Number of terms in one simulation: the more terms, the lower the cost of each; several simulations
+        /// occupy several slots.
         const TOGETHER: usize = 80;
         let mut changes = vec![None; terms.len()];
         if !self.lab.differentiates() {
@@ -137,9 +138,9 @@ impl<L: Laboratory> Experiments<'_, L> {
         Ok(changes)
     }
 
-    /// Curves of a fit on a record, and their change per unit of each of its unknowns: as the laboratory
-    /// differentiates them, else by differences. Nothing where the point fails; no change by an unknown
-    /// whose difference does.
+    /// Computes the curves of a fit on a record and their derivatives by each of its unknowns, from the
+    /// laboratory's derivatives or else by finite differences. Returns `None` where the point itself fails;
+    /// the derivative by an unknown whose difference fails is `None`.
     pub(crate) async fn linearized(
         &mut self,
         fit: &Fit,
@@ -173,8 +174,8 @@ impl<L: Laboratory> Experiments<'_, L> {
         Ok(Some(own))
     }
 
-    /// Runs several fits side by side, so that their points fill one batch. A start that cannot be
-    /// simulated is tried once more, a little beside.
+    /// Runs several fits side by side, so that their points fill one batch. A fit whose start cannot be
+    /// simulated is started once more at a slightly shifted point.
     ///
     /// # Errors
     /// Those of the laboratory.
@@ -252,7 +253,8 @@ impl<L: Laboratory> Experiments<'_, L> {
     }
 }
 
-/// A derivative of curves as one of the residual, which is measured less simulated.
+/// Converts a derivative of the curves into the derivative of the whitened residual, which is measured less
+/// simulated.
 fn whitened(by: &Derivative, on: &WhitenedRecord, point: &Point) -> Derivative {
     let Derivative::Curves { per, curves } = by else {
         return by.clone();
@@ -263,7 +265,7 @@ fn whitened(by: &Derivative, on: &WhitenedRecord, point: &Point) -> Derivative {
     };
     let own: Option<Curves> = on.record.channels.iter().map(own).collect();
     let Some(mut own) = own else {
-        let reason = "it lacks a channel of the record".to_owned();
+        let reason = "the derivative lacks a channel of the record".to_owned();
         return Derivative::Missing { reason };
     };
     point.read(&on.record, &mut own);
@@ -278,14 +280,15 @@ fn whitened(by: &Derivative, on: &WhitenedRecord, point: &Point) -> Derivative {
     }
 }
 
-/// Curves at a point, and changes of them per unit of what was asked for.
+/// Curves at a point, with the requested derivatives.
 pub(crate) struct Seen {
     pub(crate) curves: Curves,
     pub(crate) changes: Vec<Option<Curves>>,
 }
 
 impl Seen {
-    /// In a record's metric; residuals are measured less simulated.
+    /// Whitens the residual and its derivatives in the metric of a record; the residual is measured less
+    /// simulated.
     fn whitened(&self, on: &WhitenedRecord) -> Evaluated {
         let column = |change: &Option<Curves>| Some(-on.metric.whiten(change.as_ref()?));
         Evaluated {
@@ -295,7 +298,8 @@ impl Seen {
     }
 }
 
-/// The same unknowns, starting a tenth of a difference step beside, away from the nearer bound.
+/// Returns the variables with each start shifted by a tenth of its difference step, away from the nearer
+/// bound.
 fn beside(variables: &[Variable]) -> Vec<Variable> {
     let moved = |v: &Variable| {
         let upwards = v.upper - v.start > v.start - v.lower;

@@ -1,4 +1,4 @@
-//! A model that was fitted to a record, and what every test asks of it.
+//! Model that was fitted to a record, with the quantities that the tests use.
 use crate::linear::evidence;
 use crate::linear::tangent::Tangent;
 use crate::model::unknowns::{Model, Point};
@@ -6,34 +6,34 @@ use crate::record::measured::Curves;
 use protocol::announce::EffectDescriptor;
 use search::least_squares::{LeastSquares, Variable};
 
-/// A model at the end of its fit.
+/// Model with the final state of its fit.
 #[derive(Clone, Debug)]
 pub struct Fit {
-    /// What was fitted.
+    /// Fitted model.
     pub model: Model,
-    /// The search at its end: point, residual, Jacobian.
+    /// Search at its end: point, residual, Jacobian.
     pub search: LeastSquares,
-    /// Curves of the point.
+    /// Simulated curves at the fitted point.
     pub curves: Curves,
 }
 
 impl Fit {
-    /// The unknowns' values.
+    /// Returns the fitted values of the unknowns.
     pub fn x(&self) -> &[f64] {
         &self.search.best().x
     }
 
-    /// The unknowns.
+    /// Returns the unknowns as variables of the search.
     pub fn variables(&self) -> &[Variable] {
         self.search.variables()
     }
 
-    /// The model at these values.
+    /// Returns the model at the fitted values.
     pub fn point(&self) -> Point {
         self.at(self.x().to_vec())
     }
 
-    /// The model at other values.
+    /// Returns the model at other values.
     pub fn at(&self, x: Vec<f64>) -> Point {
         Point {
             model: self.model.clone(),
@@ -41,44 +41,46 @@ impl Fit {
         }
     }
 
-    /// The model with one more effect at scaled values of its parameters.
+    /// Returns the model with one more effect at scaled values of its parameters.
     pub fn with(&self, effect: &EffectDescriptor, own: &[f64]) -> Point {
         self.point().with(effect, own)
     }
 
-    /// Squared length of the whitened residual.
+    /// Returns the squared length of the whitened residual.
     pub fn chi_squared(&self) -> f64 {
         self.search.best().residual.norm_squared()
     }
 
-    /// Length of the whitened residual; its squared length where noise alone is left.
+    /// Returns the number of entries of the whitened residual, which is also its expected squared length
+    /// under noise alone.
     pub fn entries(&self) -> usize {
         self.search.best().residual.len()
     }
 
-    /// Degrees of freedom of the residual: `n - p`, at least 1.
+    /// Returns the degrees of freedom of the residual: `n - p`, at least 1.
     pub fn freedom(&self) -> f64 {
         (self.entries() as f64 - self.tangent().parameters()).max(1.0)
     }
 
-    /// Variance of an entry of the residual in units of the noise's, `max(1, chi^2 / (n - p))`: the dispersion by which
-    /// differences of log likelihoods are divided (`McCullagh` & Nelder, *Generalized Linear Models*, 4.5).
+    /// Returns the variance of a residual entry in units of the noise variance, `max(1, chi^2 / (n - p))`:
+    /// the dispersion by which differences of log likelihoods are divided (`McCullagh` & Nelder, *Generalized
+    /// Linear Models*, 4.5).
     pub fn dispersion(&self) -> f64 {
         (self.chi_squared() / self.freedom()).max(1.0)
     }
 
-    /// The log evidence of the model (nats), up to a constant of the record.
+    /// Returns the log evidence of the model (nats), up to a constant of the record.
     pub fn log_evidence(&self) -> f64 {
         evidence::log_evidence(self.search.best(), self.variables())
     }
 
-    /// What its unknowns can absorb.
+    /// Returns the tangent space of the fitted model.
     pub fn tangent(&self) -> Tangent {
         Tangent::new(self.search.best(), self.variables())
     }
 
-    /// Points beside this one, each with the signed step of the unknown that was moved: in its order,
-    /// away from a bound that lies within the step.
+    /// Iterates over points for finite differences, each with the signed step of the unknown that was moved,
+    /// in the order of the unknowns. A step that would cross the upper bound is taken downwards.
     pub fn neighbours(&self) -> impl Iterator<Item = (f64, Point)> {
         let unknowns = self.variables().iter().zip(self.x()).enumerate();
         unknowns.map(|(k, (v, at))| {
@@ -91,7 +93,7 @@ impl Fit {
     }
 }
 
-/// Of fits, some of which failed, the one that leaves least.
+/// Returns the fit with the smallest `chi^2` among those that did not fail.
 pub(crate) fn closest(fits: Vec<Option<Fit>>) -> Option<Fit> {
     let left = |a: &Fit, b: &Fit| a.chi_squared().total_cmp(&b.chi_squared());
     fits.into_iter().flatten().min_by(left)

@@ -1,5 +1,5 @@
-//! What is fitted, and how: the case's unknowns, nuisances and the parameters of added effects, fits of
-//! them to a record, and the experiments that a fit takes. What an effect does it does not know.
+//! Models and their fits: the unknowns of the case, nuisance parameters and parameters of added effects,
+//! their fits to a record, and the simulations that a fit needs. The module does not know how an effect acts.
 pub(crate) mod change;
 pub mod experiments;
 pub(crate) mod fit;

@@ -1,22 +1,23 @@
-//! Unknowns of the case that stand where they do nothing: held there in every fit, and suspected like the
-//! effects of the library, by their own name with one size, or several of them together.
+//! Unknowns of the case that are off, that is at a value where they have no effect. They are held there in
+//! every fit and tested like effects of the library: an unknown by its own name with one size, or several
+//! unknowns together.
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
 use protocol::case::Unknown;
 
-/// How large an unknown of which the case says nothing more commonly is, over its interval.
+/// Typical size of an unknown for which the case states none, as a share of its interval.
 const SHARE: f64 = 0.25;
 
-/// Unknowns that are off, and suspected together.
+/// Unknowns that are off and are tested together as one candidate effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Off {
-    /// Their places in the case, in the order of the suspect's parameters.
+    /// Indices of the unknowns in the case, in the order of the candidate effect's parameters.
     pub positions: Vec<usize>,
-    /// What is suspected.
+    /// Candidate effect that stands for these unknowns.
     pub suspect: EffectDescriptor,
 }
 
 impl Off {
-    /// Those of a case.
+    /// Collects the unknowns of a case that are off, grouped by candidate effect.
     pub fn of(unknowns: &[Unknown]) -> Vec<Self> {
         let mut all: Vec<Self> = Vec::new();
         for (position, unknown) in unknowns.iter().enumerate() {
@@ -47,7 +48,8 @@ impl Off {
     }
 }
 
-/// An unknown as the size of a suspect; nothing of one that is on, fixed, or follows another.
+/// Describes an unknown as a size of a candidate effect; `None` for an unknown that is on, fixed, or tied to
+/// another one.
 fn parameter(unknown: &Unknown) -> Option<ParameterDescriptor> {
     let absent = unknown
         .absent

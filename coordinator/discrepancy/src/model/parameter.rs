@@ -1,5 +1,5 @@
-//! The parameters of an effect as unknowns: in units of their physical scale, from their absent value.
-//! A size is absent where the effect is not there; a shape has a value even then.
+//! Parameters of an effect as unknowns, in units of their physical scale, counted from their absent value. A
+//! size is zero where the effect is absent; a shape has a value even then.
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Role, Sign};
 use protocol::case::EffectSetting;
 use search::least_squares::{Prior, Variable};
@@ -8,7 +8,7 @@ use std::slice::Iter;
 /// Prior standard deviation of a size, in units of its scale.
 const SIZE_DEVIATION: f64 = 2.0;
 
-/// A parameter as an unknown, in units of its scale from its absent value.
+/// Returns a parameter as a variable of the search, in units of its scale from its absent value.
 pub(crate) fn variable(parameter: &ParameterDescriptor) -> Variable {
     let scaled = |value: f64| (value - parameter.absent) / parameter.scale;
     let (lower, upper) = (scaled(parameter.lower), scaled(parameter.upper));
@@ -33,7 +33,7 @@ pub(crate) fn variable(parameter: &ParameterDescriptor) -> Variable {
     }
 }
 
-/// An effect with the values of a scaled vector; one entry per parameter.
+/// Returns the setting of an effect at scaled parameter values, one per parameter.
 pub(crate) fn setting(effect: &EffectDescriptor, scaled: &[f64]) -> EffectSetting {
     let value = |(p, u): (&ParameterDescriptor, &f64)| {
         let value = (p.absent + u * p.scale).clamp(p.lower, p.upper);
@@ -45,7 +45,7 @@ pub(crate) fn setting(effect: &EffectDescriptor, scaled: &[f64]) -> EffectSettin
     }
 }
 
-/// Values of an effect that is not there: sizes absent, shapes typical; scaled.
+/// Returns the scaled parameter values of an absent effect: sizes zero, shapes typical.
 pub fn absent(effect: &EffectDescriptor) -> Vec<f64> {
     effect
         .parameters
@@ -54,12 +54,12 @@ pub fn absent(effect: &EffectDescriptor) -> Vec<f64> {
         .collect()
 }
 
-/// Positions of an effect's sizes among its parameters.
+/// Returns the positions of an effect's sizes among its parameters.
 pub fn sizes(effect: &EffectDescriptor) -> Vec<usize> {
     positions(effect, Role::Size)
 }
 
-/// Positions of an effect's shapes among its parameters.
+/// Returns the positions of an effect's shapes among its parameters.
 pub fn shapes(effect: &EffectDescriptor) -> Vec<usize> {
     positions(effect, Role::Shape)
 }
@@ -72,18 +72,19 @@ fn positions(effect: &EffectDescriptor, role: Role) -> Vec<usize> {
         .collect()
 }
 
-/// Bounds of a scaled parameter.
+/// Returns the bounds of a parameter in units of its scale.
 pub fn bounds(parameter: &ParameterDescriptor) -> [f64; 2] {
     let variable = variable(parameter);
     [variable.lower, variable.upper]
 }
 
-/// The typical value of a size, scaled.
+/// Returns the typical value of a size in units of its scale.
 pub(crate) fn typical(parameter: &ParameterDescriptor) -> f64 {
     (parameter.typical - parameter.absent) / parameter.scale
 }
 
-/// Scaled values of an effect at the typical sizes that are chosen by position, all others absent.
+/// Returns the scaled values of an effect with the sizes at the given positions typical and all others
+/// absent.
 pub fn at_typical(effect: &EffectDescriptor, sizes: &[usize]) -> Vec<f64> {
     let mut own = absent(effect);
     for &k in sizes {
@@ -92,13 +93,13 @@ pub fn at_typical(effect: &EffectDescriptor, sizes: &[usize]) -> Vec<f64> {
     own
 }
 
-/// Which of an effect's sizes cannot be negative.
+/// Returns, for each size of an effect, whether it cannot be negative.
 pub(crate) fn positive(effect: &EffectDescriptor) -> Vec<bool> {
     let of = |k: usize| effect.parameters[k].sign == Sign::Positive;
     sizes(effect).into_iter().map(of).collect()
 }
 
-/// An effect's scaled values with its sizes at estimates, each within its bounds.
+/// Sets the sizes in the scaled values of an effect to estimates, each clamped to its bounds.
 pub(crate) fn sized(
     effect: &EffectDescriptor,
     mut own: Vec<f64>,

@@ -1,16 +1,17 @@
-//! Forces without a cause: what the identifier of such an effect, `probe.JOINT.FORM`, says of its form.
+//! Parsing of the identifiers `probe.JOINT.FORM` of probe forces, that is of forces at a joint without a
+//! physical cause.
 
-/// The form: the last part of the identifier.
+/// Returns the form of a probe force: the last part of its identifier.
 pub fn form(id: &str) -> &str {
     id.rsplit_once('.').map_or(id, |(_, form)| form)
 }
 
-/// Whether a periodic force is a sine.
+/// Returns whether a periodic probe force is a sine.
 pub fn is_sine(id: &str) -> bool {
     form(id).starts_with("sin")
 }
 
-/// The order of a periodic force, whose form is `cosH`, `sinH` or `const`.
+/// Returns the order of a periodic probe force, whose form is `cosH`, `sinH` or `const`.
 pub fn order(id: &str) -> Option<usize> {
     let form = form(id);
     if form == "const" {
@@ -22,7 +23,7 @@ pub fn order(id: &str) -> Option<usize> {
     digits.parse().ok()
 }
 
-/// The order of a harmonic of the period; nothing for a constant.
+/// Returns the order of a harmonic probe force; `None` for a constant.
 pub fn harmonic(id: &str) -> Option<usize> {
     order(id).filter(|order| *order > 0)
 }

@@ -1,31 +1,34 @@
-//! Nuisances of a record as unknowns of every model: in standard deviations from where they do nothing.
+//! Nuisance parameters of a record as unknowns of every model, in standard deviations from their absent
+//! value.
 //!
-//! An effect that is added takes the place of the nuisance that it is; then its size is all of it.
+//! An added effect replaces the nuisance parameter that stands for it; its size is then the whole size of the
+//! effect.
 use crate::model::parameter::absent;
 use crate::record::measured::{Curves, Record};
 use crate::record::nuisance::{Acts, Nuisance};
 use protocol::announce::EffectDescriptor;
 use search::least_squares::{Prior, Variable};
 
-/// Farthest from the absent value (standard deviations).
+/// Largest distance of a nuisance parameter from its absent value (standard deviations).
 const FARTHEST: f64 = 30.0;
-/// First difference step (standard deviations).
+/// First difference step of a nuisance parameter (standard deviations).
 const STEP: f64 = 0.5;
 
-/// A nuisance, and what of the library it is.
+/// Nuisance parameter, with the effect of the library that it stands for.
 #[derive(Clone, Debug)]
 pub struct Tolerated {
-    /// What is known of it.
+    /// Description of the nuisance parameter.
     pub nuisance: Nuisance,
-    /// The effect that it is, and which of its parameters; nothing of a channel's gain.
+    /// Effect that the nuisance parameter stands for, and the position of its parameter; `None` for the gain
+    /// of a channel.
     effect: Option<(EffectDescriptor, usize)>,
-    /// Farthest from the absent value (standard deviations).
+    /// Largest distance from the absent value (standard deviations).
     pub(crate) farthest: f64,
 }
 
 impl Tolerated {
-    /// Those of a measurement that a library can simulate, or that need no simulation; one that cannot be
-    /// off is none.
+    /// Collects the nuisance parameters that a library can simulate or that need no simulation. Those with a
+    /// standard deviation of zero are left out.
     pub fn all(nuisances: &[Nuisance], library: &[EffectDescriptor]) -> Vec<Self> {
         let one = |nuisance: &Nuisance| {
             let effect = match nuisance.acts {
@@ -46,17 +49,17 @@ impl Tolerated {
         nuisances.iter().filter_map(one).collect()
     }
 
-    /// The effect that it is, and which of its parameters.
+    /// Returns the effect that the nuisance parameter stands for, and the position of its parameter.
     pub(crate) fn effect(&self) -> Option<(&EffectDescriptor, usize)> {
         self.effect.as_ref().map(|(effect, k)| (effect, *k))
     }
 
-    /// Whether it is this effect.
+    /// Returns whether the nuisance parameter stands for the effect `id`.
     pub(crate) fn is(&self, id: &str) -> bool {
         self.effect.is_some() && self.nuisance.id == id
     }
 
-    /// As an unknown.
+    /// Returns the nuisance parameter as a variable of the search.
     pub(crate) fn variable(&self) -> Variable {
         let scaled = |bound: f64, absent: f64| (bound - absent) / self.nuisance.deviation;
         let [mut lower, mut upper] = [-self.farthest, self.farthest];
@@ -81,14 +84,14 @@ impl Tolerated {
         }
     }
 
-    /// What so many standard deviations are in scales of the effect's parameter; zero of a gain.
+    /// Converts standard deviations into scales of the effect's parameter; zero for a gain.
     pub(crate) fn in_scales(&self, x: f64) -> f64 {
         self.effect().map_or(0.0, |(effect, k)| {
             x * self.nuisance.deviation / effect.parameters[k].scale
         })
     }
 
-    /// Its place among the channels of a record, if it is the gain of one of them.
+    /// Returns the index of the channel whose gain this is; `None` if no channel of the record has this gain.
     pub(crate) fn channel(&self, record: &Record) -> Option<usize> {
         let Acts::Gain { curve } = self.nuisance.acts else {
             return None;
@@ -97,7 +100,8 @@ impl Tolerated {
     }
 }
 
-/// Scaled values of the effects that nuisances are, each once: `values` are those of the nuisances.
+/// Collects the effects that nuisance parameters stand for, each once, with their scaled parameter values.
+/// Each nuisance parameter comes with its value (standard deviations).
 pub(crate) fn effects<'a>(
     nuisances: impl Iterator<Item = (&'a Tolerated, f64)>,
 ) -> Vec<(&'a EffectDescriptor, Vec<f64>)> {
@@ -116,7 +120,7 @@ pub(crate) fn effects<'a>(
     all
 }
 
-/// Gives the channels of a record their gains.
+/// Multiplies the channels of a record by their gains.
 pub(crate) fn read<'a, I: Iterator<Item = (&'a Tolerated, f64)>>(
     nuisances: I,
     record: &Record,

@@ -1,8 +1,9 @@
-//! The model that is fitted: the case's unknowns, and the effects that have been added to it.
+//! Model that is fitted: the unknowns of the case, nuisance parameters and added effects.
 //!
-//! A point is a vector: unknowns of the case by their coordinates in the space, nuisances of the record by
-//! standard deviations, then the parameters of each added effect in units of their physical scale, from
-//! their absent value. What an effect does is the workers' business; here it is a name with numbers.
+//! A point is a vector: unknowns of the case by their coordinates in the space, nuisance parameters of the
+//! record in standard deviations, then the parameters of each added effect in units of their physical scale,
+//! from their absent value. Only the workers know how an effect acts; here it is a name with parameter
+//! values.
 use crate::model::off::Off;
 use crate::model::parameter::{setting, variable};
 use crate::model::tolerated::{Tolerated, effects, read};
@@ -13,44 +14,46 @@ use protocol::job::{Individual, Numerics, Reply, SimulateSpec};
 use search::least_squares::{Prior, Variable};
 use search::space::Space;
 
-/// Prior standard deviation of an unknown of which the case states none (coordinate): the recommended
-/// values of a manual are rarely off by more than a few of these decades. What is on a linear scale is
-/// hardly held by it: the whole interval that it is searched in is two long.
+/// Prior standard deviation of an unknown for which the case states none (coordinate): the recommended values
+/// of a manual are rarely off by more than a few of these decades. An unknown on a linear scale is hardly
+/// constrained by it, since its whole interval has the length two.
 const USUAL_DEVIATION: f64 = 1.5;
 /// First difference step of an unknown of the case (coordinate).
 const STEP: f64 = 0.02;
-/// Longest step of one (coordinate): resonances move with a twentieth of it.
+/// Longest step of an unknown of the case (coordinate): resonances move with a twentieth of it.
 const LONGEST: f64 = 0.7;
 
-/// A case with added effects.
+/// Model of a case with added effects.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Those of the case that are searched.
+    /// Space of the case's unknowns that are searched.
     pub space: Space,
-    /// Those of the case that are off.
+    /// Unknowns of the case that are off.
     pub off: Vec<Off>,
-    /// What is never exact about the record; of these, what an added effect is does not count.
+    /// Nuisance parameters of the record; those that an added effect stands for are ignored.
     pub nuisances: Vec<Tolerated>,
     /// Added effects, in the order in which they were added.
     pub added: Vec<EffectDescriptor>,
-    /// What holds an unknown of which the case says nothing but its bounds.
+    /// Prior of an unknown for which the case states only bounds.
     pub unstated: Unstated,
-    /// An unknown that stays where a point has it, by its place.
+    /// Index of an unknown that is held at its start.
     pub held: Option<usize>,
 }
 
-/// What holds an unknown of which the case says nothing but its bounds.
+/// Prior of an unknown for which the case states only bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Unstated {
-    /// That a recommended value is rarely off by more than a few decades.
+    /// Normal prior about the recommended value, with a standard deviation of 1.5 coordinates: a recommended
+    /// value is rarely off by more than a few decades.
     #[default]
     Recommended,
-    /// Next to nothing: at a bound, no more than a quarter of a unit of `-2 ln L` is its own.
+    /// Weak prior about the middle of the interval: at a bound it adds no more than a quarter of a unit to
+    /// `-2 ln L`.
     Bounds,
 }
 
 impl Model {
-    /// The case alone.
+    /// Creates the model of the case without nuisance parameters and effects.
     pub const fn plain(space: Space) -> Self {
         Self {
             space,
@@ -62,13 +65,14 @@ impl Model {
         }
     }
 
-    /// Nuisances that no added effect is, in the order of their unknowns.
+    /// Iterates over the nuisance parameters that no added effect replaces, in the order of their unknowns.
     pub fn standing(&self) -> impl Iterator<Item = &Tolerated> {
         let replaced = |one: &&Tolerated| self.added.iter().any(|effect| one.is(&effect.id));
         self.nuisances.iter().filter(move |one| !replaced(one))
     }
 
-    /// Those with the place of their unknown.
+    /// Iterates over the nuisance parameters that no added effect replaces, each with the index of its
+    /// unknown.
     pub(crate) fn placed(&self) -> impl Iterator<Item = (usize, &Tolerated)> {
         let first = self.space.dimension();
         self.standing()
@@ -76,20 +80,20 @@ impl Model {
             .map(move |(k, one)| (first + k, one))
     }
 
-    /// Those with their values at a point.
+    /// Iterates over the nuisance parameters that no added effect replaces, each with its value at a point.
     pub(crate) fn valued(&self, x: &[f64]) -> impl Iterator<Item = (&Tolerated, f64)> {
         self.placed().map(|(k, one)| (one, x[k]))
     }
 
-    /// Where the unknowns of an added effect begin.
+    /// Returns the index of the first unknown of the added effect at `position`.
     pub fn first_of(&self, position: usize) -> usize {
         let before = self.added.iter().take(position);
         let nuisances = self.standing().count();
         self.space.dimension() + nuisances + before.map(|e| e.parameters.len()).sum::<usize>()
     }
 
-    /// The unknowns, starting at `x`; what is beyond its length starts at its typical value for a
-    /// shape, absent for a size.
+    /// Returns the unknowns as variables that start at `x`. Unknowns beyond the length of `x` start at their
+    /// default: zero for nuisance parameters and sizes, the typical value for a shape.
     pub fn variables(&self, x: &[f64]) -> Vec<Variable> {
         let own = self.space.axes().iter().map(|axis| {
             let interval = axis.interval();
@@ -131,7 +135,7 @@ impl Model {
         all
     }
 
-    /// Values of all unknowns of the case at a point, in declared units.
+    /// Returns the values of all unknowns of the case at a point, in declared units.
     pub fn genes(&self, x: &[f64]) -> Vec<f64> {
         let mut values = self.space.values(&x[..self.space.dimension()]);
         for (off, setting) in self.settings(x) {
@@ -143,7 +147,8 @@ impl Model {
         values
     }
 
-    /// What was added, at a point; with the unknown that it is, if it is one.
+    /// Iterates over the added effects with their settings at a point, each with the unknowns of the case
+    /// that it stands for, if any.
     fn settings(&self, x: &[f64]) -> impl Iterator<Item = (Option<&Off>, EffectSetting)> {
         let added = self.added.iter().enumerate();
         added.map(move |(position, added)| {
@@ -158,14 +163,15 @@ impl Model {
 /// A model at values of its unknowns.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// The model.
+    /// Model.
     pub model: Model,
-    /// One value per unknown.
+    /// Values of the unknowns, one each.
     pub x: Vec<f64>,
 }
 
 impl Point {
-    /// With one more effect at scaled values of its parameters, beside what it is as a nuisance.
+    /// Adds an effect at scaled values of its parameters. The value of a nuisance parameter that the effect
+    /// replaces is added to them.
     #[must_use]
     pub fn with(mut self, effect: &EffectDescriptor, own: &[f64]) -> Self {
         let mut own = own.to_vec();
@@ -185,7 +191,8 @@ impl Point {
         self
     }
 
-    /// Without the effect at a position and its unknowns.
+    /// Removes the effect at a position with its unknowns; the nuisance parameters that it replaced return
+    /// with value zero.
     #[must_use]
     pub fn without(mut self, position: usize) -> Self {
         let first = self.model.first_of(position);
@@ -200,12 +207,12 @@ impl Point {
         self
     }
 
-    /// What a record's channels read where they would show these curves.
+    /// Applies the gains of the record's channels to simulated curves.
     pub(crate) fn read(&self, record: &Record, curves: &mut Curves) {
         read(self.model.valued(&self.x), record, curves);
     }
 
-    /// The job that simulates it under a condition.
+    /// Creates the job that simulates the point under a condition.
     pub fn experiment(&self, condition: usize, numerics: &Numerics) -> SimulateSpec {
         let Self { model, x } = self;
         let added = model.settings(x).filter(|(off, _)| off.is_none());

@@ -1,56 +1,55 @@
-//! Joint: where in the simulated thing an unknown periodic force would explain the residual best.
+//! Ranking of joints by how well an unknown periodic force at each would explain the residual.
 //!
-//! A latent force pair across a joint with harmonics up to `H_f`, whose amplitudes have a prior that
-//! falls off with the order, has the Bayes factor
-//! `ln BF = 1/2 u^T (Q^-1 + F)^-1 u - 1/2 ln |I + Q F|`, `u = H^T r`, `F = H^T B H`,
-//! `Q = s^2 diag((1 + h/2)^-4)`, maximised over the scale s. Joints within 3 nats, times the dispersion, or
-//! 10 % of the best are not told apart. The amplitudes that are likeliest then give the force itself over the
-//! period: its shape is a hint at the cause where no name fits (a latent force).
+//! A latent force pair across a joint with harmonics up to `H_f`, whose amplitudes have a prior that falls
+//! off with the order, has the Bayes factor `ln BF = 1/2 u^T (Q^-1 + F)^-1 u - 1/2 ln |I + Q F|`, `u = H^T
+//! r`, `F = H^T B H`, `Q = s^2 diag((1 + h/2)^-4)`, maximised over the scale s. Joints within 3 nats, times
+//! the dispersion, or 10 % of the best are not told apart. The most likely amplitudes give the force over the
+//! period, whose shape is a hint at the cause where no listed effect fits.
 use crate::linear::evidence::log_determinant;
 use crate::linear::tangent::Tangent;
 use crate::thresholds::{JOINTS, SET};
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-/// The case for one joint.
+/// Evidence for a periodic force at one joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointEvidence {
-    /// Its name.
+    /// Name of the joint.
     pub joint: String,
     /// Log Bayes factor against no force (nats).
     pub log_bayes: f64,
-    /// The likeliest force: its harmonics.
+    /// Most likely force, as harmonics.
     pub force: Vec<Harmonic>,
     /// Unit of the force.
     pub unit: String,
 }
 
-/// One part of a periodic force.
+/// One harmonic of a periodic force.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Harmonic {
     /// Order of the period; 0 for a constant.
     pub order: usize,
     /// Whether it is a sine rather than a cosine of the phase.
     pub sine: bool,
-    /// Amplitude, in the joint's unit.
+    /// Amplitude, in the unit of the joint's force.
     pub amplitude: f64,
 }
 
-/// One joint's columns: whitened change per part of a force.
+/// Columns of one joint: whitened change of the curves per harmonic of a force.
 #[derive(Clone, Debug)]
 pub struct Latent {
     /// Name of the joint.
     pub joint: String,
-    /// Entries x parts.
+    /// Matrix of entries x harmonics.
     pub columns: DMatrix<f64>,
-    /// The parts at which the columns were taken.
+    /// Harmonics at whose amplitudes the columns were computed.
     pub parts: Vec<Harmonic>,
-    /// Unit of their amplitudes.
+    /// Unit of the harmonics' amplitudes.
     pub unit: String,
 }
 
 impl JointEvidence {
-    /// The likeliest force at a phase of the period (deg), in its unit.
+    /// Returns the most likely force at a phase of the period (deg), in its unit.
     pub fn force_at(&self, phase_deg: f64) -> f64 {
         let part = |part: &Harmonic| {
             let angle = part.order as f64 * phase_deg.to_radians();
@@ -65,7 +64,7 @@ impl JointEvidence {
     }
 }
 
-/// All joints, the most likely first.
+/// Ranks all joints by their evidence, the most likely first.
 pub fn rank(latents: &[Latent], residual: &DVector<f64>, tangent: &Tangent) -> Vec<JointEvidence> {
     let mut ranked: Vec<JointEvidence> = latents
         .iter()
@@ -75,7 +74,7 @@ pub fn rank(latents: &[Latent], residual: &DVector<f64>, tangent: &Tangent) -> V
     ranked
 }
 
-/// How many of a ranking, from the first on, are not told apart.
+/// Returns how many joints of a ranking, from the first on, cannot be told apart.
 pub fn indistinguishable(ranked: &[JointEvidence], dispersion: f64) -> usize {
     let best = ranked.first().map_or(0.0, |first| first.log_bayes);
     let margin = (SET * dispersion).max(JOINTS * best);
@@ -138,8 +137,8 @@ mod tests {
     use search::least_squares::Linearized;
     use search::random::{Phase, Streams};
 
-    /// A force that acted at a joint comes back with its amplitudes and its curve; a joint that has
-    /// nothing to do with it explains less, one that moves no channel nothing.
+    /// Checks that the joint of a planted force is ranked first with the force's amplitudes and curve, that
+    /// an unrelated joint explains less, and that a joint that moves no channel explains nothing.
     #[test]
     fn the_force_that_acted_is_found() {
         let mut stream = Streams::new(5, 0).at(0, Phase::Initial, 0);

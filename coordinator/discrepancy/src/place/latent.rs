@@ -1,4 +1,4 @@
-//! Signatures of periodic forces without a cause, joint by joint.
+//! Signatures of periodic probe forces (forces without a physical cause), joint by joint.
 use crate::laboratory::Laboratory;
 use crate::model::change::term_of_absent;
 use crate::model::experiments::Experiments;
@@ -12,10 +12,10 @@ use nalgebra::{DMatrix, DVector};
 use protocol::announce::EffectDescriptor;
 use std::collections::BTreeMap;
 
-/// Highest harmonic of the forces.
+/// Highest harmonic of the probe forces.
 const HARMONICS: usize = 5;
 
-/// What is gathered of one joint.
+/// Columns and harmonics collected for one joint.
 #[derive(Default)]
 struct Parts {
     columns: Vec<DVector<f64>>,
@@ -23,7 +23,7 @@ struct Parts {
     unit: String,
 }
 
-/// The periodic forces of a library at a fitted point.
+/// Computes the signatures of a library's periodic probe forces at a fitted point, by joint.
 pub(crate) async fn latents<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
@@ -75,8 +75,8 @@ pub(crate) async fn latents<L: Laboratory>(
     Ok(latents.collect())
 }
 
-/// What each force of a usual size changes, to first order, as far as the laboratory knows it: forces are
-/// linear in their size.
+/// Computes the first-order change of the curves by each probe force at its typical amplitude, as far as the
+/// laboratory provides derivatives; forces are linear in their amplitude.
 async fn changes<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,

@@ -1,8 +1,9 @@
-//! Where simulation and measurement disagree: three maps, each with its own control of false alarms,
-//! whether what is left lies anywhere at all, and which parameters would have to wander with it.
+//! Localisation of the disagreement between simulation and measurement: three maps, each with its own control
+//! of false alarms, a test of whiteness, and the parameters that would have to vary along the abscissa or
+//! with the condition.
 //!
-//! They are hints for the eye. The named test is far sharper than any of them, and where motion is slow
-//! all forces along one load path look nearly alike, so joints come as sets.
+//! The maps are visual hints. The tests of named effects are far more powerful, and where motion is slow all
+//! forces along one load path look nearly alike, so joints are given as sets.
 pub mod along;
 pub mod joint;
 pub(crate) mod latent;

@@ -1,7 +1,7 @@
-//! Channel x order of the period: coefficients of the residual that are no noise.
+//! Map of a residual by channel and order of the period: coefficients that are larger than noise.
 //!
-//! The squared modulus of a whitened coefficient, over its mean under noise, follows F(2, 2 nu);
-//! Benjamini and Hochberg's rule keeps the share of false entries below a set level.
+//! The squared modulus of a whitened coefficient, over its mean under noise, follows F(2, 2 nu); the rule of
+//! Benjamini and Hochberg keeps the share of false entries below a set level.
 use crate::linear::tangent::Tangent;
 use crate::place::residual::Residual;
 use crate::record::metric::Metric;
@@ -10,7 +10,7 @@ use nalgebra::{Complex, DVector};
 use search::random::{Phase, Streams};
 use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
-/// One entry of the map that is no noise.
+/// Significant entry of the map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Peak {
     /// Index of the channel.
@@ -19,21 +19,21 @@ pub struct Peak {
     pub order: usize,
     /// Squared modulus over its mean under noise.
     pub ratio: f64,
-    /// Tail probability of that one entry.
+    /// Tail probability of this single entry.
     pub p_value: f64,
 }
 
-/// Which orders of which channels hold more than noise.
+/// Map of orders by channel, with the entries that exceed noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrderMap {
-    /// Ratio by channel and order.
+    /// Squared modulus over its mean under noise, by channel and order.
     pub ratio: Vec<Vec<f64>>,
     /// Significant entries, the strongest first.
     pub peaks: Vec<Peak>,
 }
 
-/// Maps a whitened residual; `freedom` is that of the noise's variances. A channel without a period has no
-/// orders.
+/// Maps a whitened residual. `freedom` is the number of degrees of freedom of the noise variances, `level`
+/// the allowed share of false entries. A channel without a period has no orders.
 pub fn map(residual: &Residual<'_>, freedom: f64, level: f64) -> OrderMap {
     let bins = residual.metric.bins();
     let mut ratio = vec![Vec::new(); bins.len()];
@@ -74,8 +74,8 @@ pub fn map(residual: &Residual<'_>, freedom: f64, level: f64) -> OrderMap {
     }
 }
 
-/// Powers of the waves of a whitened residual, over what they would be of noise; channel by channel, the
-/// lowest first.
+/// Returns the powers of the waves of a whitened residual over their means under noise, by channel, lowest
+/// wave first.
 pub fn powers(residual: &Residual<'_>) -> Vec<Vec<f64>> {
     let Residual {
         left,
@@ -90,7 +90,7 @@ pub fn powers(residual: &Residual<'_>) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Mean power of the waves of projected noise, by sampling.
+/// Estimates the mean power of the waves of projected noise by sampling.
 fn expectation(metric: &Metric, tangent: &Tangent) -> Vec<Vec<f64>> {
     const DRAWS: usize = 64;
     let streams = Streams::new(0x6f72_6465, 0);

@@ -1,4 +1,4 @@
-//! What a fit leaves, and what tells how noise alone would look there.
+//! Whitened residual of a fit, with what is needed to predict its distribution under noise.
 use crate::linear::tangent::Tangent;
 use crate::record::metric::Metric;
 use nalgebra::DVector;
@@ -8,8 +8,8 @@ use nalgebra::DVector;
 pub struct Residual<'a> {
     /// Measured less simulated, one number per entry of the metric.
     pub left: &'a DVector<f64>,
-    /// The metric in which it is whitened.
+    /// Metric in which the residual is whitened.
     pub metric: &'a Metric,
-    /// What recalibration has absorbed.
+    /// Tangent space that recalibration has absorbed.
     pub tangent: &'a Tangent,
 }

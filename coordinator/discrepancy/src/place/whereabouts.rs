@@ -1,4 +1,4 @@
-//! The three maps of where simulation and measurement part.
+//! Maps of where simulation and measurement disagree: by abscissa, by order and by joint.
 use crate::ground::base::Base;
 use crate::ground::session::Session;
 use crate::laboratory::{Laboratory, Stage};
@@ -12,22 +12,22 @@ use crate::record::whitened::WhitenedRecord;
 use crate::thresholds::MAPS;
 use nalgebra::DVector;
 
-/// Where the disagreement lies.
+/// Location of the disagreement between simulation and measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Where {
-    /// By abscissa and channel.
+    /// Map by abscissa and channel.
     pub along: along::AlongMap,
-    /// By channel and order of the period, where there is one.
+    /// Map by channel and order of the period, where there is a period.
     pub order: order::OrderMap,
-    /// Joints at which a periodic force would explain it, the most likely first.
+    /// Joints at which a periodic force would explain the residual, the most likely first.
     pub joints: Vec<joint::JointEvidence>,
-    /// How many of them are not told apart.
+    /// Number of joints, from the first on, that cannot be told apart.
     pub equivalent: usize,
 }
 
 impl Where {
-    /// Whether the map by abscissa or that by order rejects that only noise is left, each at a level over
-    /// all its places.
+    /// Returns whether the map by abscissa or the map by order rejects the hypothesis of noise alone, each at
+    /// the family-wise level `alpha`.
     pub fn rejects(&self, alpha: f64) -> bool {
         let entries: usize = self.order.ratio.iter().map(Vec::len).sum();
         let mut peaks = self.order.peaks.iter();
@@ -36,7 +36,7 @@ impl Where {
     }
 }
 
-/// Draws the maps of what the recalibrated model leaves.
+/// Computes the maps of the residual of the recalibrated model.
 pub(crate) async fn look<L: Laboratory>(session: &mut Session<'_, L>) -> Result<Where, L::Error> {
     let (base, inputs) = (session.base, session.inputs);
     let fit = &base.fit;
@@ -62,7 +62,7 @@ pub(crate) async fn look<L: Laboratory>(session: &mut Session<'_, L>) -> Result<
     })
 }
 
-/// Tail probability that what a fit leaves is white.
+/// Returns the p-value of the test that the residual of a fit is white.
 pub(crate) fn white(base: &Base, fit: &Fit) -> f64 {
     let residual = Residual {
         left: &fit.search.settled_residual(),
@@ -72,7 +72,8 @@ pub(crate) fn white(base: &Base, fit: &Fit) -> f64 {
     whiteness::p_value(&order::powers(&residual), base.on.metric.freedom())
 }
 
-/// What recalibration leaves of each cycle's deviation from the mean, whitened.
+/// Returns the whitened deviation of each cycle from the mean after projection on the complement of the
+/// tangent space.
 fn deviations(on: &WhitenedRecord, tangent: &Tangent) -> Vec<DVector<f64>> {
     let deviation = |cycle| tangent.project(&(on.metric.whiten(cycle) - &on.measured));
     on.record.cycles.iter().map(deviation).collect()

@@ -1,14 +1,13 @@
-//! Whether what is left is white: spread over the orders of a period, or the waves of a row of samples, as
-//! noise spreads.
+//! Test of whether a residual is white: its power spread evenly over the orders of a period, or over the
+//! waves of a row of samples.
 //!
-//! Powers of a whitened residual, each over its mean under noise, are summed from the lowest on. Of
-//! noise the share grows evenly; its largest distance from that line follows Kolmogorov's law
-//! (Bartlett's test of the cumulated periodogram; Priestley, *Spectral Analysis and Time Series*, 6.2.5).
-//! The level does not count, only where it lies: too little noise assumed at every wave alike passes
-//! here, and shows as the misfit.
-/// Tail probability that noise alone is spread so unevenly, from powers over their mean under noise, by
-/// channel; `freedom` is that of the noise's
-/// variances. 1 for fewer than two entries.
+//! Powers of a whitened residual, each over its mean under noise, are summed from the lowest on. For noise
+//! the cumulated share grows evenly; its largest distance from that line follows Kolmogorov's distribution
+//! (Bartlett's test of the cumulated periodogram; Priestley, *Spectral Analysis and Time Series*, 6.2.5). The
+//! test is independent of the level: noise that is underestimated at every wave alike passes here and shows
+//! in the misfit.
+/// Returns the p-value of the whiteness test from powers over their means under noise, by channel. `freedom`
+/// is the number of degrees of freedom of the noise variances. Returns 1 for fewer than two entries.
 pub fn p_value(ratio: &[Vec<f64>], freedom: f64) -> f64 {
     let highest = ratio.iter().map(Vec::len).max().unwrap_or(0);
     let at = |k: usize| ratio.iter().filter_map(move |row| row.get(k));
@@ -29,7 +28,7 @@ pub fn p_value(ratio: &[Vec<f64>], freedom: f64) -> f64 {
     kolmogorov((root + 0.12 + 0.11 / root) * distance / scatter)
 }
 
-/// Tail of Kolmogorov's law.
+/// Returns the upper tail of Kolmogorov's distribution.
 fn kolmogorov(x: f64) -> f64 {
     if x < 0.2 {
         // one to twelve digits, where the series no longer falls
@@ -45,7 +44,8 @@ mod tests {
     use super::*;
     use search::random::{Phase, Streams};
 
-    /// Powers of noise with variances from `freedom` draws, of two channels over fifty orders.
+    /// Draws noise powers of two channels over fifty orders, with variances estimated from `freedom` draws
+    /// (0: known exactly).
     fn noise(seed: u64, freedom: usize) -> Vec<Vec<f64>> {
         let mut stream = Streams::new(seed, 3).at(0, Phase::Initial, 0);
         let mut square = |count: usize| (0..count).map(|_| stream.normal().powi(2)).sum::<f64>();
@@ -63,7 +63,7 @@ mod tests {
         ]
     }
 
-    /// Kolmogorov's law at its usual points.
+    /// Checks Kolmogorov's distribution at its usual quantiles.
     #[test]
     fn kolmogorovs_points() {
         for (x, p) in [(1.2238, 0.10), (1.3581, 0.05), (1.6276, 0.01)] {
@@ -72,7 +72,8 @@ mod tests {
         assert!((kolmogorov(0.2) - 1.0).abs() < 1e-9);
     }
 
-    /// Of noise one map in twenty falls below 5 %, whether its variances are known or estimated.
+    /// Checks that about one noise map in twenty has a p-value below 5 %, whether its variances are known or
+    /// estimated.
     #[test]
     fn noise_is_white_as_often_as_it_should() {
         for freedom in [0, 12] {
@@ -85,7 +86,8 @@ mod tests {
         }
     }
 
-    /// What is left at some orders more than at others is not white; what is left at all alike is.
+    /// Checks that a residual with more power at low orders is not white, and that a common factor of all
+    /// powers changes nothing.
     #[test]
     fn what_is_left_at_low_orders_is_not_white() {
         let mut map = noise(4, 12);

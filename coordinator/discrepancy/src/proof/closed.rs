@@ -1,38 +1,39 @@
-//! The gap that is left, with its interval: on the cycles that were fitted, on those that were not,
-//! and under a condition that took no part.
+//! Share of the gap that an effect closes, with its interval: on the cycles that were fitted, on held-out
+//! cycles, and under a condition that took no part.
 //!
-//! By channel `g = (MSE - se^2) / var`, both curves without their means; over the scored channels the mean.
-//! `closed = 1 - g_after / g_before`; intervals by resampling cycles, before and after on the same
-//! resample: its own, or of one that holds more of the same. A gap that closes does not prove a name: a wrong effect often closes most of it,
-//! which is why the best rejected rival is always shown beside.
+//! By channel `g = (MSE - se^2) / var`, both curves without their means; the gap is the mean over the scored
+//! channels. `closed = 1 - g_after / g_before`. Intervals come from a bootstrap of cycles, with the same
+//! resample before and after; the cycles are the record's own, or those of a record that holds more of the
+//! same kind. A gap that closes does not prove an effect: a wrong effect often closes most of it, which is
+//! why the best rejected rival is always shown beside it.
 use crate::record::measured::{Curves, Record, mean_of, power, scatter};
 use search::random::{Phase, Stream, Streams};
 use serde::Serialize;
 
-/// The gap before and after.
+/// Gap before and after an effect is added.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Closed {
     /// Gap of the recalibrated model without the effect.
     pub before: f64,
-    /// Gap with it.
+    /// Gap of the recalibrated model with the effect.
     pub after: f64,
-    /// `1 - after / before`.
+    /// Share of the gap that is closed: `1 - after / before`.
     pub closed: f64,
     /// 95 % interval of `closed`; none where fewer than two cycles are known.
     #[serde(rename = "ci95")]
     pub interval: Option<[f64; 2]>,
 }
 
-/// The gap over the scored channels of a record; the mean of the channels' gaps, not below 0.
+/// Returns the gap over the scored channels of a record: the mean of the channels' gaps, not below 0.
 pub fn gap(record: &Record, simulated: &Curves) -> f64 {
     Ruler::new(record).gap(simulated)
 }
 
-/// Before and after, with the interval. `alike` are cycles of the same channels and condition that scatter
-/// as the record's own do, its own among them.
+/// Computes the gap before and after an effect, with the interval of the closed share. `alike` are cycles of
+/// the same channels and condition that scatter as the record's own do, its own among them.
 ///
-/// A mean of drawn cycles scatters about the record's mean as that one does about the truth, so its
-/// squared residual holds that scatter once more: it is taken off too, and the draws lie about the
+/// A mean of resampled cycles scatters about the record's mean as that mean does about the truth, so its
+/// squared residual holds the scatter twice: the second part is subtracted too, and the draws lie about the
 /// gap that is printed.
 pub fn closed(record: &Record, alike: &[Curves], before: &Curves, after: &Curves) -> Closed {
     const DRAWS: usize = 1000;
@@ -72,7 +73,7 @@ pub fn closed(record: &Record, alike: &[Curves], before: &Curves, after: &Curves
     }
 }
 
-/// Cycles to draw from: at least two.
+/// Cycles to resample from: at least two.
 struct Pool<'a> {
     cycles: &'a [Curves],
     mean: Curves,
@@ -86,8 +87,8 @@ impl<'a> Pool<'a> {
         })
     }
 
-    /// The mean of so many cycles, drawn with replacement, and moved away from a record's mean by as much as
-    /// a few cycles scatter less about their own mean than about the truth.
+    /// Returns the mean of `count` cycles drawn with replacement, its deviation from a record's mean
+    /// stretched by `sqrt(n / (n - 1))` since cycles scatter less about their own mean than about the truth.
     fn drawn(&self, count: usize, about: &Curves, stream: &mut Stream) -> Curves {
         let n = self.cycles.len();
         let drawn: Vec<&Curves> = (0..count).map(|_| &self.cycles[stream.index(n)]).collect();
@@ -102,16 +103,16 @@ impl<'a> Pool<'a> {
     }
 }
 
-/// What curves are held against: the mean of a record's channels, in units of their variance.
+/// Reference for simulated curves: the mean of a record's channels, in units of their variance.
 struct Ruler {
     /// Number of cycles.
     cycles: f64,
     mean: Curves,
     /// Channels on which the gap is counted, and their variances.
     channels: Vec<(usize, f64)>,
-    /// Whether a channel's constant counts, by channel.
+    /// Whether the constant of the difference counts, by channel.
     absolute: Vec<bool>,
-    /// What the scatter between cycles explains of a squared residual.
+    /// Part of the squared residual that the scatter between cycles explains.
     noise: f64,
 }
 
@@ -139,7 +140,7 @@ impl Ruler {
         (self.mse(&self.mean, simulated) - self.noise).max(0.0)
     }
 
-    /// Mean over the channels of a mean's squared residual over the record's variance.
+    /// Returns the mean over the channels of the squared residual of `mean` over the record's variance.
     fn mse(&self, mean: &Curves, simulated: &Curves) -> f64 {
         let each = self.channels.iter().map(|&(c, whole)| {
             let pairs = mean[c].iter().zip(&simulated[c]);
@@ -149,7 +150,8 @@ impl Ruler {
         each.sum::<f64>() / self.channels.len().max(1) as f64
     }
 
-    /// What a variance of single cycles, by channel, explains of it.
+    /// Returns the part of the mean squared residual that a variance of single cycles, given by channel,
+    /// explains.
     fn explained_by(&self, scatter: &[f64]) -> f64 {
         let each = self.channels.iter();
         let each = each.map(|&(c, whole)| scatter[c] / self.cycles / whole);
@@ -216,7 +218,7 @@ mod tests {
         );
     }
 
-    /// A record of a turn with white noise and a load that differs from cycle to cycle.
+    /// Creates a record of one turn with white noise and a load that differs from cycle to cycle.
     fn scattered(seed: u64, truth: &[f64], cycles: usize) -> Record {
         let cycle = |k: usize| {
             let mut stream = Streams::new(seed, 5).at(0, Phase::Initial, k);
@@ -233,8 +235,8 @@ mod tests {
         }
     }
 
-    /// Counted on records whose gaps are known: a model that is right, one that leaves as much as the
-    /// noise of the mean, one that leaves much; of few cycles and of more.
+    /// Checks the coverage of the interval on records whose gaps are known: a model that is right, one that
+    /// leaves as much as the noise of the mean, and one that leaves much; with few and with more cycles.
     #[test]
     fn intervals_of_the_closed_share_hold_it_in_nineteen_of_twenty() {
         let sparse = |curve: Vec<f64>| -> Vec<f64> { curve.into_iter().step_by(5).collect() };

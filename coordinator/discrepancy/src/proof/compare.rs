@@ -1,4 +1,4 @@
-//! The proof: curves of the model before and after, under every condition that has a record.
+//! Validation of an answer: curves of the model before and after, under every condition that has a record.
 use crate::ground::input_error::{InputError, input_errors};
 use crate::ground::preflight;
 use crate::ground::session::Session;
@@ -14,42 +14,43 @@ use crate::record::noise::Noise;
 use crate::record::nuisance::{Acts, Nuisance};
 use crate::record::whitened::WhitenedRecord;
 
-/// The gap before and after on one record.
+/// Gap before and after on one record.
 #[derive(Clone, Debug)]
 pub struct Row {
     /// Index of the condition.
     pub condition: usize,
-    /// What of the records it is.
+    /// Part of the data that the record is.
     pub part: Portion,
-    /// Whether the case holds it out: its condition, or that channel or part of a record.
+    /// Whether the case holds the record out: its condition, or this channel or part of a record.
     pub held_out: bool,
-    /// The gap.
+    /// Gap before and after.
     pub closed: Closed,
-    /// Curves before, by channel.
+    /// Curves of the model before, by channel.
     pub before: Curves,
-    /// Curves after.
+    /// Curves of the model after, by channel.
     pub after: Curves,
 }
 
-/// Which part of the records a gap is counted on.
+/// Part of the data on which a gap is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Portion {
-    /// What was fitted.
+    /// Cycles that were fitted.
     Fitted,
     /// Cycles of the calibrated condition that took no part in the fit.
     Cycles,
-    /// Channels of the calibrated condition that took no part in it; none of its others.
+    /// Channels of the calibrated condition that took no part in the fit, and no other channel.
     Channels,
-    /// Parts of channels of the calibrated condition that took no part in it, and no whole channel.
+    /// Parts of channels of the calibrated condition that took no part in the fit; no channel is held out as
+    /// a whole.
     Segment,
     /// Another condition.
     Condition,
-    /// Blocks of what was fitted, each left out of the fit in turn.
+    /// Blocks of the fitted record, each left out of the fit in turn.
     LeftOut,
 }
 
 impl Portion {
-    /// In words, of a condition in words.
+    /// Describes the part of the data in words; `condition` is the description of its condition.
     pub(crate) fn words(self, condition: &str) -> String {
         match self {
             Self::Fitted => "the cycles that were fitted".to_owned(),
@@ -57,26 +58,28 @@ impl Portion {
             Self::Channels => "the channels that were held out".to_owned(),
             Self::Segment => "the part of the record that was held out".to_owned(),
             Self::Condition => condition.to_owned(),
-            Self::LeftOut => "blocks of the record that are left out in turn".to_owned(),
+            Self::LeftOut => {
+                "blocks of the fitted record, each left out of the fit in turn".to_owned()
+            }
         }
     }
 }
 
-/// A record of the proof.
+/// Record on which an answer is validated.
 #[derive(Clone, Debug)]
 pub(crate) struct Shown<'a> {
-    /// What was measured.
+    /// Measured record.
     pub(crate) record: &'a Record,
-    /// Cycles that scatter as its own do, its own among them.
+    /// Cycles that scatter as the record's own do, its own among them.
     pub(crate) alike: Vec<Curves>,
-    /// Where it counts by its noise.
+    /// Scale that expresses residuals in units of the record's own uncertainty.
     pub(crate) scale: Scale,
-    /// What of the records it is.
+    /// Part of the data that the record is.
     pub(crate) part: Portion,
 }
 
-/// Everything that an answer is shown on: the calibrated condition's record in parts, in the metric of the
-/// tests, then the others, each under its own noise and what its input may be wrong by.
+/// Collects the records on which an answer is validated: the calibrated condition's record in parts, in the
+/// metric of the tests, then the other conditions, each under its own noise and its own input errors.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -125,8 +128,9 @@ pub(crate) async fn shown<'a, L: Laboratory>(
     Ok(shown)
 }
 
-/// A record that took no part in the fit, under its own noise, errors of its input and instruments that only it has,
-/// and what a finer model changes there once the fit has taken what it can.
+/// Builds the scale of a record that took no part in the fit, from its own noise, the errors of its input,
+/// the instruments that only it has, and the numerical error of the model there after a refit to the finer
+/// model.
 async fn elsewhere<L: Laboratory>(
     session: &mut Session<'_, L>,
     record: &Record,
@@ -169,7 +173,8 @@ async fn elsewhere<L: Laboratory>(
     Ok(Scale::of(record, &record.cycles, &metric, cycles))
 }
 
-/// What the instruments of a record that a fit knows nothing of may change, one standard deviation each.
+/// Returns the changes of a record's curves by the gains that the fit does not contain, one standard
+/// deviation each.
 fn instruments(fit: &Fit, record: &Record, curves: &Curves) -> Vec<Curves> {
     let known = |own: &Nuisance| {
         let mut all = fit.model.nuisances.iter();
@@ -188,13 +193,13 @@ fn instruments(fit: &Fit, record: &Record, curves: &Curves) -> Vec<Curves> {
     .collect()
 }
 
-/// Curves times a number.
+/// Multiplies curves by a number.
 fn scaled(mut curves: Curves, by: f64) -> Curves {
     curves.iter_mut().flatten().for_each(|value| *value *= by);
     curves
 }
 
-/// Compares two models on records; nothing for a record on which one of them fails.
+/// Compares two models on records; a record on which one of them fails has no row.
 pub(crate) async fn compare<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     records: &[Shown<'_>],

@@ -1,30 +1,30 @@
-//! The gap between a record and a simulation at one channel, less what the record's own scatter
-//! explains, and where on the period and in which of its orders it lies.
+//! Gap between a record and a simulation at one channel, less the part that the record's own scatter
+//! explains, with its distribution over sectors of the abscissa and bands of orders.
 //!
 //! With the mean over N cycles `y`, its standard error `se` from the scatter between cycles, and the
-//! simulated curve `s`, both without their means:
-//! `gap = (mean (y - s)^2 - mean se^2) / mean y^2`. A gap of 0 means that nothing is left to explain.
-//! Shares of sectors and orders are those of the squared residual; they say where to look, not what
-//! it is.
+//! simulated curve `s`, both without their means: `gap = (mean (y - s)^2 - mean se^2) / mean y^2`. A gap of 0
+//! means that nothing is left to explain. Shares of sectors and orders are those of the squared residual;
+//! they locate the disagreement and do not name its cause.
 use crate::record::measured::power;
 use crate::record::spectrum::Orders;
 use protocol::case::ChannelRecord;
 use std::ops::RangeInclusive;
 
-/// Equal sectors that an abscissa is divided into.
+/// Number of equal sectors of an abscissa.
 pub const SECTORS: usize = 12;
 
 /// Bands of orders of the period.
 pub const BANDS: [RangeInclusive<usize>; 4] = [1..=5, 6..=30, 31..=120, 121..=usize::MAX];
 
-/// The remaining disagreement at one channel.
+/// Remaining disagreement at one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gap {
-    /// Mean squared residual, in the channel's unit squared, as the two that follow.
+    /// Mean squared residual, in the channel's unit squared.
     pub mse: f64,
-    /// What the scatter between cycles explains of it; 0 with one cycle, where it is unknown.
+    /// Part of the mean squared residual that the scatter between cycles explains, in the channel's unit
+    /// squared; 0 with one cycle, where it is unknown.
     pub noise: f64,
-    /// Mean square of the measured curve about its mean.
+    /// Mean square of the measured curve about its mean, in the channel's unit squared.
     pub variance: f64,
     /// Share of the squared residual per sector of [`SECTORS`], from the first sample on.
     pub sectors: Vec<f64>,
@@ -33,8 +33,8 @@ pub struct Gap {
 }
 
 impl Gap {
-    /// Compares a record with a simulated curve on the same abscissa; nothing if they have not as
-    /// many values or none. `absolute` says that the constant of their difference counts.
+    /// Compares a record with a simulated curve on the same abscissa; `None` if their lengths differ or are
+    /// zero. `absolute` says that the constant of their difference counts.
     pub fn between(record: &ChannelRecord, simulated: &[f64], absolute: bool) -> Option<Self> {
         let n = record.mean.len();
         if n == 0 || simulated.len() != n {
@@ -64,23 +64,24 @@ impl Gap {
         })
     }
 
-    /// The gap: residual above the noise over the measured variance; 0 where the noise explains
-    /// all.
+    /// Returns the gap: residual above the noise over the measured variance; 0 where the noise explains
+    /// everything.
     pub fn share(&self) -> f64 {
         (self.mse - self.noise).max(0.0) / self.variance
     }
 
-    /// How many times the noise of the record the residual is; nothing where the noise is unknown.
+    /// Returns the ratio of the residual's root mean square to the noise of the record's mean; `None` where
+    /// the noise is unknown.
     pub fn over_noise(&self) -> Option<f64> {
         (self.noise > 0.0).then(|| (self.mse / self.noise).sqrt())
     }
 
-    /// The sector with the largest share: its number from 0, and the share.
+    /// Returns the sector with the largest share: its number from 0, and the share.
     pub fn worst_sector(&self) -> (usize, f64) {
         largest(&self.sectors).unwrap_or_default()
     }
 
-    /// The band with the largest share: its orders, and the share.
+    /// Returns the band with the largest share: its orders, and the share.
     pub fn worst_band(&self) -> (RangeInclusive<usize>, f64) {
         let (k, share) = largest(&self.bands).unwrap_or_default();
         (BANDS[k].clone(), share)
@@ -92,7 +93,7 @@ fn largest(shares: &[f64]) -> Option<(usize, f64)> {
     shares.iter().copied().enumerate().max_by(by_size)
 }
 
-/// Parts over their sum; zeros where there is nothing to share.
+/// Divides parts by their sum; leaves zeros where the sum is zero.
 fn shares(parts: &mut [f64]) {
     let sum: f64 = parts.iter().sum();
     if sum > 0.0 {
@@ -111,7 +112,7 @@ fn sectors(residual: &[f64]) -> Vec<f64> {
     parts
 }
 
-/// Power per band: half the grid's orders, once per report.
+/// Returns the share of the residual's power per band; the orders end at half the number of samples.
 fn bands(residual: &[f64]) -> [f64; BANDS.len()] {
     let n = residual.len();
     let orders = Orders::new(n, n / 2);

@@ -1,5 +1,5 @@
-//! The proof: how far the gap between simulation and record closes, on cycles that were fitted and on
-//! those that were not. It knows no name.
+//! Validation: how far the gap between simulation and record closes, on fitted and on held-out data. The
+//! module knows no effect by name.
 pub mod closed;
 pub mod compare;
 pub mod gap;

@@ -1,24 +1,27 @@
-//! The predictive score: how much likelier a record that took no part in a fit is with an effect than without it.
+//! Predictive score: the log ratio of the densities, with and without an effect, of a record that took no
+//! part in the fit.
 //!
-//! At a fit with residual Jacobian `J` and prior precision `L` the unknowns are Gaussian with precision
-//! `A = J^T J + L`. A whitened record with residual `z` and Jacobian `J_h` at that point then has the covariance
+//! At a fit with residual Jacobian `J` and prior precision `L` the unknowns are Gaussian with precision `A =
+//! J^T J + L`. A whitened record with residual `z` and Jacobian `J_h` at that point then has the covariance
 //! `I + J_h A^-1 J_h^T`, and with `b = J_h^T z`, `K = A + J_h^T J_h`
 //!
 //! `ln p = -1/2 (z^T z - b^T K^-1 b + ln |K| - ln |A|)`
 //!
-//! up to a constant of the record. What the fit leaves open is integrated out, so directions that the fitted record
-//! does not see decide nothing. With `dS = ln p(with) - ln p(without)`, `E exp dS = 1` where the effect is not there,
-//! so that `P(dS >= T) <= exp(-T)` however many effects were tried on the fitted record (Markov's inequality).
+//! up to a constant of the record. Directions that the fit does not determine are integrated out, so they do
+//! not influence the score. With `dS = ln p(with) - ln p(without)`, `E exp dS = 1` where the effect is
+//! absent, so that `P(dS >= T) <= exp(-T)` however many effects were tried on the fitted record (Markov's
+//! inequality).
 //!
-//! Residuals and Jacobians of both models are divided by one scale, the smaller of their dispersions: a model that is
-//! wrong by more than the noise predicts no better than that.
+//! Residuals and Jacobians of both models are divided by one scale, the smaller of their dispersions: a model
+//! that is wrong by more than the noise predicts no better than that.
 //!
-//! Where nothing is held out, blocks of the fitted record are left out one after the other, which takes no simulation:
-//! with `b = J_B^T r_B` and `M = A - J_B^T J_B`
+//! Where nothing is held out, blocks of the fitted record are left out one after the other, which takes no
+//! simulation: with `b = J_B^T r_B` and `M = A - J_B^T J_B`
 //!
 //! `ln p = -1/2 (r_B^T r_B + b^T M^-1 b + ln |A| - ln |M|)`
 //!
-//! The same data chose the effect, so that Markov's bound needs as many times more as effects were tried.
+//! The same data selected the effect, so Markov's bound is multiplied by the number of effects that were
+//! tried.
 use crate::inputs::Inputs;
 use crate::laboratory::Laboratory;
 use crate::linear::evidence::{deviation, log_determinant};
@@ -36,30 +39,31 @@ use crate::thresholds::Thresholds;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use search::least_squares::{Linearized, Variable};
 
-/// How much likelier one record that took no part in the fit is with an answer than without it.
+/// Predictive score of an answer on one record that took no part in the fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
     /// Index of the condition.
     pub condition: usize,
-    /// What of the records it is; never [`Portion::Fitted`].
+    /// Part of the data that the record is; never [`Portion::Fitted`].
     pub part: Portion,
-    /// The predictive score (nats).
+    /// Predictive score: log ratio of the record's densities with and without the answer (nats).
     pub nats: f64,
 }
 
-/// Predictive scores of a model against another one.
+/// Predictive scores of one model relative to another.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Scores {
-    /// Record by record.
+    /// Score of each record.
     pub(crate) records: Vec<Prediction>,
-    /// Of all of them as one record; none where there is none.
+    /// Score of all records as one; `None` where there is no record.
     pub(crate) together: Option<f64>,
-    /// Records on which the model fails and the other one does not: part and condition.
+    /// Part and condition of records on which the model fails and the other one does not.
     pub(crate) failed: Vec<(Portion, usize)>,
 }
 
 impl Scores {
-    /// What all of them together must reach for a name of so many effects out of so many that were tried (nats).
+    /// Returns the joint score (nats) that an answer of `effects` effects out of `tried` candidates must
+    /// reach.
     pub(crate) fn needed(&self, thresholds: &Thresholds, effects: usize, tried: usize) -> f64 {
         let left_out = self.records.iter().any(|one| one.part == Portion::LeftOut);
         let searched = libm::log(tried.max(1) as f64) * effects as f64;
@@ -67,8 +71,8 @@ impl Scores {
     }
 }
 
-/// Scores a model on everything that took no part in the fit, against another one. Records whose noise is neither seen
-/// nor stated say nothing; where no other is held out, blocks of the fitted one are left out.
+/// Scores a model against another on all data that took no part in the fit. Records whose noise is neither
+/// seen nor stated are skipped; where no record is held out, blocks of the fitted one are left out in turn.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -128,8 +132,8 @@ pub(crate) async fn scores<L: Laboratory>(
     Ok(found)
 }
 
-/// Why a score is not enough for a name, if it is not: no record may be less likely by as much as the first of two
-/// bounds, and all of them together must be likelier by the second.
+/// Returns the reason why the scores do not support the effect `id`, if they do not: no record may score
+/// below `-alone`, and the joint score must reach `needed`.
 pub(crate) fn unpredicted(
     id: &str,
     scores: &Scores,
@@ -139,34 +143,33 @@ pub(crate) fn unpredicted(
     let words = |part: Portion, condition: usize| part.words(&inputs.condition(condition));
     if let Some((part, condition)) = scores.failed.first() {
         return Some(format!(
-            "{id} does not run under {}",
+            "the simulation with {id} does not run for {}",
             words(*part, *condition)
         ));
     }
     let worst = scores.records.iter().find(|one| one.nats < -alone);
     if let Some(worst) = worst {
         return Some(format!(
-            "{id} explains the fitted cycles and predicts {} worse: with it they are {:.1} nats less likely",
+            "{id} explains the fitted cycles but predicts {} worse: their log likelihood falls by {:.1} nats when it is added",
             words(worst.part, worst.condition),
             -worst.nats
         ));
     }
     let Some(together) = scores.together else {
         return Some(format!(
-            "{id} explains what was fitted, and there is nothing that it could predict: nothing is held out, and the \
-             record is too short to leave a part of it out"
+            "{id} explains the fitted data, but there is nothing that it could predict: the case holds no data out and the record is too short to leave out a part of it; hold out a condition, channel or cycles"
         ));
     };
     // no number is no evidence
     (together.is_nan() || together < needed).then(|| {
         format!(
-            "{id} explains the fitted cycles and predicts the others no better: with it what took no part is \
-             {together:.1} nats likelier, and {needed:.1} are needed"
+            "{id} explains the fitted cycles but predicts the held-out data no better: the gain in log likelihood there is {together:.1} nats, and {needed:.1} nats are needed"
         )
     })
 }
 
-/// A record as a fit predicts it. Held-out cycles of the fitted condition need no simulation.
+/// Computes the residual and Jacobian of a record at a fit. Held-out cycles of the fitted condition need no
+/// simulation.
 async fn predicted<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     shown: &Shown<'_>,
@@ -198,7 +201,7 @@ async fn predicted<L: Laboratory>(
     Ok(Some(Predicted { residual, jacobian }))
 }
 
-/// A whitened record at a fitted point: residual, and its Jacobian by the fit's unknowns.
+/// Whitened residual of a record at a fitted point, and its Jacobian by the fit's unknowns.
 #[derive(Clone, Debug)]
 pub(crate) struct Predicted {
     pub(crate) residual: DVector<f64>,
@@ -206,7 +209,7 @@ pub(crate) struct Predicted {
 }
 
 impl Predicted {
-    /// Several records as one.
+    /// Stacks several records into one.
     pub(crate) fn stacked(all: &[Self]) -> Self {
         let rows = all.iter().map(|one| one.residual.len()).sum();
         let columns = all.first().map_or(0, |one| one.jacobian.ncols());
@@ -231,7 +234,7 @@ impl Predicted {
     }
 }
 
-/// What a fit says of its unknowns, residuals in standard deviations.
+/// Gaussian posterior of a fit's unknowns, with residuals in standard deviations.
 struct Posterior<'a> {
     variables: &'a [Variable],
     at: Linearized,
@@ -239,7 +242,7 @@ struct Posterior<'a> {
 }
 
 impl<'a> Posterior<'a> {
-    /// Of a fit to a record in a metric, under a dispersion.
+    /// Builds the posterior of a fit to a record in a metric, under a dispersion.
     fn of(metric: &Metric, fit: &'a Fit, dispersion: f64) -> Self {
         let at = fit.search.best();
         let root = dispersion.sqrt();
@@ -255,7 +258,7 @@ impl<'a> Posterior<'a> {
         }
     }
 
-    /// Precision of unknowns after the fit.
+    /// Returns the posterior precision of the unknowns `of`.
     fn precision(&self, of: &[usize]) -> DMatrix<f64> {
         let jacobian = self.at.jacobian.select_columns(of);
         let mut precision = jacobian.tr_mul(&jacobian);
@@ -266,8 +269,9 @@ impl<'a> Posterior<'a> {
         precision
     }
 
-    /// The log density of a record (nats), up to a constant of it and of the dispersion. No number where the fit leaves
-    /// an unknown open altogether.
+    /// Returns the log predictive density of a record (nats), up to a constant of the record and the
+    /// dispersion. `NaN` where the precision is not positive definite, that is where the fit leaves an
+    /// unknown undetermined.
     fn predicted(&self, record: &Predicted) -> f64 {
         let root = self.dispersion.sqrt();
         let (z, jacobian) = (&record.residual / root, &record.jacobian / root);
@@ -293,8 +297,8 @@ impl<'a> Posterior<'a> {
         -0.5 * (z.norm_squared() - explained + volume)
     }
 
-    /// The sum of the log densities of blocks of the fitted record, each left out of the fit: its cycles where there
-    /// are several, else these parts of it. None where it has no two.
+    /// Returns the sum of the log densities of blocks of the fitted record, each left out of the fit: its
+    /// cycles where there are several, else the given parts. `None` where there are fewer than two blocks.
     fn left_out(&self, (on, fit): (&WhitenedRecord, &Fit), blocks: &[Vec<usize>]) -> Option<f64> {
         let blocks: Vec<Predicted> = if on.record.cycles.len() > 1 {
             self.cycles(on, fit)
@@ -308,7 +312,8 @@ impl<'a> Posterior<'a> {
         (blocks.len() > 1).then(|| self.blocks_left_out(&blocks))
     }
 
-    /// The sum of the log densities of blocks of the fitted record, each beside all the rest of it.
+    /// Returns the sum of the log densities of blocks of the fitted record, each given the rest of the
+    /// record.
     fn blocks_left_out(&self, blocks: &[Predicted]) -> f64 {
         let free = free(&self.at, self.variables);
         let precision = self.precision(&free);
@@ -334,7 +339,7 @@ impl<'a> Posterior<'a> {
         blocks.iter().map(block).sum()
     }
 
-    /// Each cycle of the fitted record by itself: of `n` it is worth an `n`-th of their mean.
+    /// Returns each cycle of the fitted record as a block, weighted as an `n`-th of the mean of `n` cycles.
     fn cycles(&self, on: &WhitenedRecord, fit: &Fit) -> Vec<Predicted> {
         let share = (on.record.cycles.len() as f64).sqrt();
         let cycles = on.record.cycles.iter();

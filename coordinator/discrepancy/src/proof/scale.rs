@@ -1,29 +1,31 @@
-//! Records in units of their own uncertainty, where an answer is scored.
+//! Records in units of their own uncertainty, for scoring an answer.
 //!
-//! Along the directions in which cycles differ from their mean (their input did) a record says less: with `E` the
-//! deviations of the mean that they show, `(I + E E^T)^(-1/2)` is applied to every residual. A variance that few cycles
-//! tell is wider than it seems: entries are divided by `sqrt(nu / (nu - 2))`, the standard deviation of Student's law of
-//! `nu` degrees of freedom, at most `sqrt(1.5)`.
+//! Along the directions in which cycles differ from their mean (because their input did) a record is less
+//! informative: with `E` the deviations of the mean in these directions, `(I + E E^T)^(-1/2)` is applied to
+//! every residual. A variance estimated from few cycles is less certain than it seems: entries are divided by
+//! `sqrt(nu / (nu - 2))`, the standard deviation of Student's distribution with `nu` degrees of freedom, at
+//! most `sqrt(1.5)`.
 use crate::record::measured::{Curves, Record};
 use crate::record::metric::Metric;
 use crate::record::noise::Known;
 use crate::thresholds::WIDEST;
 use nalgebra::{DMatrix, DVector};
 
-/// A record's mean in a metric.
+/// Mean of a record in a metric, with the weights for scoring.
 #[derive(Clone, Debug)]
 pub(crate) struct Scale {
     metric: Metric,
-    /// What a unit of the metric is, in standard deviations of this record's mean.
+    /// Unit of the metric in standard deviations of this record's mean.
     unit: f64,
     measured: DVector<f64>,
-    /// Orthonormal directions in which cycles differ, and by how much each is shortened.
+    /// Orthonormal directions in which cycles differ, and the share by which each is shortened.
     shortened: Option<(DMatrix<f64>, DVector<f64>)>,
 }
 
 impl Scale {
-    /// A record in the metric of the mean of so many cycles of the same condition and channels; `alike` are
-    /// cycles that scatter as its own do: its own, or such as it has no part in.
+    /// Builds the scale of a record from the metric of the mean of `cycles` cycles of the same condition and
+    /// channels. `alike` are cycles that scatter as the record's own do: its own, or others that exclude
+    /// them.
     pub(crate) fn of(record: &Record, alike: &[Curves], metric: &Metric, cycles: usize) -> Self {
         let unit = (record.cycles.len() as f64 / cycles.max(1) as f64).sqrt();
         let own = record.cycles.len();
@@ -35,20 +37,20 @@ impl Scale {
         }
     }
 
-    /// What is left of a record by curves, in standard deviations.
+    /// Returns the residual of the record, measured less `curves`, in standard deviations.
     pub(crate) fn left(&self, curves: &Curves) -> DVector<f64> {
         let left = &self.measured - self.metric.whiten(curves);
         let weighed = self.weigh(DMatrix::from_columns(&[left]));
         weighed.column(0).into_owned()
     }
 
-    /// Curves in the metric, before [`Self::weigh`].
+    /// Whitens curves in the metric, before [`Self::weigh`].
     pub(crate) fn whiten(&self, curves: &Curves) -> DVector<f64> {
         self.metric.whiten(curves)
     }
 
-    /// Columns of the metric in standard deviations of this record's mean, shortened where cycles differ and widened
-    /// where few cycles tell how much.
+    /// Converts columns of the metric into standard deviations of this record's mean: shortened in the
+    /// directions in which cycles differ, and divided by the widening for few cycles.
     pub(crate) fn weigh(&self, columns: DMatrix<f64>) -> DMatrix<f64> {
         let mut columns = columns * self.unit;
         if let Some((u, lost)) = &self.shortened {
@@ -61,18 +63,19 @@ impl Scale {
         widened(&self.metric, columns)
     }
 
-    /// How many entries there are.
+    /// Returns the number of entries.
     pub(crate) fn len(&self) -> usize {
         self.metric.len()
     }
 
-    /// How the record's noise is known.
+    /// Returns how the record's noise is known.
     pub(crate) const fn known(&self) -> Known {
         self.metric.known()
     }
 }
 
-/// Divides the rows of columns by how much wider the entries of a metric are than they seem.
+/// Divides each row by the factor by which the standard deviation of its entry is underestimated, given its
+/// degrees of freedom.
 pub(crate) fn widened(metric: &Metric, mut columns: DMatrix<f64>) -> DMatrix<f64> {
     for (mut row, freedom) in columns.row_iter_mut().zip(metric.freedoms().iter()) {
         let variance = if freedom.is_infinite() {
@@ -87,8 +90,9 @@ pub(crate) fn widened(metric: &Metric, mut columns: DMatrix<f64>) -> DMatrix<f64
     columns
 }
 
-/// The directions in which whitened cycles differ from their mean, `deviation` of each being what it is in a
-/// record's mean; nothing of fewer than two.
+/// Returns the directions in which whitened cycles differ from their mean, and by how much each is shortened;
+/// `deviation` converts a deviation of one cycle into that of a record's mean. `None` for fewer than two
+/// cycles.
 fn shortened(
     metric: &Metric,
     cycles: &[Curves],

@@ -1,5 +1,5 @@
-//! The coordinates in which curves are compared: orders of a period where the abscissa has one and the
-//! grid is even, samples elsewhere. Whoever whitens or maps asks here and need not know which.
+//! Coordinates in which curves are compared: orders of a period where the abscissa is periodic with equal
+//! steps, samples elsewhere. Callers that whiten or map curves need not know which basis is used.
 use crate::record::measured::Record;
 use crate::record::samples::Samples;
 use crate::record::scatter::unexplained;
@@ -10,31 +10,31 @@ use std::ops::RangeInclusive;
 
 type C = Complex<f64>;
 
-/// Waves of a row of samples at most: what is left of a model lies in the slow ones.
+/// Largest number of waves of a row of samples: model errors lie in the slow ones.
 const WAVES: usize = 240;
 
-/// Channels that share an abscissa, and what they are compared in.
+/// Channels that share an abscissa, and the basis in which they are compared.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// Their places in the record, ascending.
+    /// Indices of the channels in the record, ascending.
     pub channels: Vec<usize>,
-    /// Their abscissa.
+    /// Common abscissa of the channels.
     pub abscissa: Abscissa,
-    /// Their coordinates.
+    /// Basis in which the channels are compared.
     pub basis: Basis,
 }
 
-/// Coordinates of a group's curves; they hold a curve's constant where its channel has a zero.
+/// Basis of a group's curves; it includes a curve's constant where its channel has a fixed zero.
 #[derive(Clone, Debug)]
 pub enum Basis {
     /// Orders of the period.
     Orders(Orders),
-    /// Samples, with a correlation length for each channel of the group.
+    /// Innovations of samples, with a correlation length for each channel of the group.
     Samples(Vec<Samples>),
 }
 
 impl Basis {
-    /// Entries of a curve.
+    /// Returns the number of entries of a curve.
     pub fn places(&self) -> usize {
         match self {
             Self::Orders(orders) => orders.highest(),
@@ -42,7 +42,7 @@ impl Basis {
         }
     }
 
-    /// Real numbers that an entry has.
+    /// Returns the number of real numbers per entry: 2 for an order, 1 for a sample.
     pub const fn parts(&self) -> usize {
         match self {
             Self::Orders(_) => 2,
@@ -50,7 +50,7 @@ impl Basis {
         }
     }
 
-    /// The entries of a curve of a channel, by its place in the group.
+    /// Returns the entries of a curve; `row` is the index of its channel in the group.
     pub fn transform(&self, row: usize, curve: &[f64]) -> Vec<C> {
         match self {
             Self::Orders(orders) => orders.transform(curve),
@@ -58,8 +58,8 @@ impl Basis {
         }
     }
 
-    /// The entries about one (from 0) in which noise is about as strong, that one among them. Slow curves of samples
-    /// stand for themselves: the constant, and both phases of the first order.
+    /// Returns the entries about `place` (from 0) in which noise is about as strong, `place` among them. Slow
+    /// curves of samples form groups of their own: the constant, and both phases of the first order.
     pub fn neighbours(&self, place: usize) -> RangeInclusive<usize> {
         let (reach, slow) = match self {
             Self::Orders(_) => {
@@ -81,7 +81,7 @@ impl Basis {
         }
     }
 
-    /// How many entries, from the first on, are slow curves of samples.
+    /// Returns how many entries, from the first on, are slow curves of samples.
     pub fn slow(&self) -> usize {
         match self {
             Self::Orders(_) => 0,
@@ -89,7 +89,8 @@ impl Basis {
         }
     }
 
-    /// Root mean square of the curve of a channel's entries.
+    /// Returns the root mean square of the curve with the given entries; `row` is the index of its channel in
+    /// the group.
     pub fn rms(&self, row: usize, entries: &[C]) -> f64 {
         match self {
             Self::Orders(_) => (2.0 * entries.iter().map(C::norm_sqr).sum::<f64>()).sqrt(),
@@ -97,9 +98,9 @@ impl Basis {
         }
     }
 
-    /// How many times as strong an entry of noise is as one of white noise of the same standard deviation, where it is
-    /// correlated from one value to the next: a first-order process is stronger at low orders, and innovations of
-    /// samples are as strong as the noise itself.
+    /// Returns the variance of a noise entry relative to white noise of the same standard deviation, for
+    /// noise with a correlation from one value to the next: a first-order process is stronger at low orders,
+    /// and innovations of samples are as strong as the noise itself.
     pub fn shape_of_noise(&self, correlation: f64, place: usize) -> f64 {
         match self {
             Self::Orders(orders) => {
@@ -111,7 +112,7 @@ impl Basis {
         }
     }
 
-    /// Variance of an entry of white noise of a standard deviation.
+    /// Returns the variance of an entry of white noise with a given standard deviation.
     pub fn variance_of_noise(&self, deviation: f64) -> f64 {
         match self {
             Self::Orders(orders) => deviation * deviation / orders.samples() as f64,
@@ -119,7 +120,7 @@ impl Basis {
         }
     }
 
-    /// Standard deviation of a curve whose entries have these.
+    /// Returns the standard deviation of a curve whose entries have the given standard deviations.
     pub fn deviation(&self, entries: &[f64]) -> f64 {
         let square: f64 = entries.iter().map(|d| d * d).sum();
         match self {
@@ -129,8 +130,8 @@ impl Basis {
         }
     }
 
-    /// The waves of which a channel's whitened entries consist, each with two parts that are as strong as
-    /// one entry: its orders as they are, or those of a row of samples.
+    /// Returns the waves of a channel's whitened entries, each with two parts that are as strong as one
+    /// entry: the orders themselves, or the Fourier coefficients of a row of samples.
     pub fn waves(&self, row: usize, entries: Vec<C>) -> Vec<C> {
         match self {
             Self::Orders(_) => entries,
@@ -148,8 +149,8 @@ impl Basis {
 }
 
 impl Group {
-    /// Which of a record's channels are compared in what, up to an order where they have a period.
-    /// `inputs` are curves by which cycles may differ because their input did.
+    /// Groups a record's channels by abscissa and selects their basis, with orders up to `highest` where they
+    /// have a period. `inputs` are curves by which cycles may differ because their input did.
     pub fn of(record: &Record, highest: usize, inputs: &[Vec<Vec<f64>>]) -> Vec<Self> {
         let mut groups: Vec<(Vec<usize>, &Channel)> = Vec::new();
         for (c, own) in record.channels.iter().enumerate() {
@@ -181,12 +182,12 @@ impl Group {
         groups.into_iter().map(group).collect()
     }
 
-    /// Whether its channels are compared by orders.
+    /// Returns whether the channels are compared by orders.
     pub const fn is_periodic(&self) -> bool {
         matches!(self.basis, Basis::Orders(_))
     }
 
-    /// Entries of this group's channels, of curves of all channels.
+    /// Returns the entries of this group's channels; `curves` holds those of all channels.
     pub fn transform(&self, curves: &[Vec<f64>]) -> Spectra {
         let channels = self.channels.iter().enumerate();
         channels
@@ -194,7 +195,7 @@ impl Group {
             .collect()
     }
 
-    /// The change of a curve per unit of its abscissa.
+    /// Returns the derivative of a curve by its abscissa.
     pub fn slope(&self, curve: &[f64]) -> Vec<f64> {
         if let (Basis::Orders(orders), Some(period)) = (&self.basis, self.abscissa.period) {
             let per_unit = std::f64::consts::TAU / period;
@@ -218,8 +219,8 @@ impl Group {
     }
 }
 
-/// Whether a channel is compared by the orders of its period: that is in equal steps, its values count alike, and
-/// a constant does not.
+/// Returns whether a channel is compared by the orders of its period: it has a period in equal steps, equal
+/// weights and no fixed zero.
 fn is_turn(channel: &Channel) -> bool {
     let abscissa = &channel.abscissa;
     if channel.is_absolute() || !channel.weights.is_empty() {
@@ -233,8 +234,8 @@ fn is_turn(channel: &Channel) -> bool {
     points.all(|(i, x)| (x - first - step * i as f64).abs() < 1e-6 * step)
 }
 
-/// The noise of each channel along its samples: its correlation from the scatter between cycles where
-/// there are several, else as stated.
+/// Estimates the noise model of each channel along its samples: its correlation from the scatter between
+/// cycles where there are several, else as stated.
 fn samples(
     record: &Record,
     channels: &[usize],
@@ -277,7 +278,7 @@ fn samples(
         .collect()
 }
 
-/// Powers, each the mean over the entries about it in which noise is about as strong.
+/// Returns the powers, each averaged over the neighbouring entries in which noise is about as strong.
 pub(crate) fn smoothed(basis: &Basis, powers: &[f64]) -> Vec<f64> {
     let mean = |place: usize| {
         let about = basis.neighbours(place);

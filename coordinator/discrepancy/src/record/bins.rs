@@ -1,25 +1,25 @@
-//! Equal parts of an abscissa, and what a whitened curve is in each.
+//! Equal bins of an abscissa, and the values of a whitened curve in them.
 use crate::record::basis::{Basis, Group};
 use nalgebra::Complex;
 
-/// Parts of an abscissa at most.
+/// Largest number of bins of an abscissa.
 pub const BINS: usize = 120;
 
-/// Equal parts of an abscissa.
+/// Equal bins of an abscissa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bins {
-    /// Where the first one begins, in the abscissa's unit.
+    /// Start of the first bin, in the abscissa's unit.
     pub from: f64,
-    /// How wide each is.
+    /// Width of a bin, in the abscissa's unit.
     pub width: f64,
-    /// How many there are.
+    /// Number of bins.
     pub count: usize,
-    /// Whether the first one follows the last.
+    /// Whether the abscissa is periodic, so that the first bin follows the last.
     pub around: bool,
 }
 
 impl Bins {
-    /// Those of a group's abscissa: no more than there are samples.
+    /// Divides a group's abscissa into bins: no more than there are samples.
     pub fn of(group: &Group) -> Self {
         let points = &group.abscissa.points;
         let from = points.first().copied().unwrap_or_default();
@@ -39,12 +39,12 @@ impl Bins {
         }
     }
 
-    /// Where a bin begins.
+    /// Returns the start of a bin, in the abscissa's unit.
     pub fn begin(&self, bin: usize) -> f64 {
         self.from + bin as f64 * self.width
     }
 
-    /// Windows of so many bins; none wider than the abscissa.
+    /// Returns the number of windows of `width` bins; 0 if the abscissa is shorter.
     pub const fn windows(&self, width: usize) -> usize {
         match (self.around, self.count < width) {
             (_, true) => 0,
@@ -53,7 +53,7 @@ impl Bins {
         }
     }
 
-    /// Mean over each window of so many bins, by its first.
+    /// Returns the mean over each window of `width` bins, indexed by its first bin.
     pub(crate) fn moving_mean(&self, values: &[f64], width: usize) -> Vec<f64> {
         let n = values.len();
         let mut sum: f64 = values.iter().take(width).sum();
@@ -67,7 +67,8 @@ impl Bins {
     }
 }
 
-/// Whitened entries of a channel, by its place in its group, along the abscissa, one value a bin.
+/// Returns a channel's whitened entries as values along the abscissa, one per bin; `row` is the index of the
+/// channel in its group.
 pub(crate) fn along(group: &Group, row: usize, entries: &[Complex<f64>]) -> Vec<f64> {
     match &group.basis {
         Basis::Orders(_) => turn(entries),
@@ -96,7 +97,7 @@ pub(crate) fn along(group: &Group, row: usize, entries: &[Complex<f64>]) -> Vec<
     }
 }
 
-/// The curve of a spectrum at the bins' centres, low orders only: a bin shows no more.
+/// Returns the curve of a spectrum at the bins' centres, from orders below half the number of bins.
 fn turn(spectrum: &[Complex<f64>]) -> Vec<f64> {
     let turn = std::f64::consts::TAU / (2 * BINS) as f64;
     let table: Vec<(f64, f64)> = (0..2 * BINS)

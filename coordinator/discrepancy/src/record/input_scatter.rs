@@ -1,20 +1,20 @@
-//! What the input of a measurement may be wrong by from cycle to cycle: directions that no test counts as a
-//! disagreement. Whoever reads the data sheet knows them; here they are an abscissa, or the name of an
-//! effect. What is constant over a measurement is another matter (`nuisance`).
+//! Errors of a measurement's input that differ from cycle to cycle: directions that no test counts as a
+//! disagreement. The reader of the data sheet maps each to a shift of the abscissa or to an effect of the
+//! library. Errors that are constant over a measurement belong to `nuisance`.
 
-/// One way in which cycles differ because their input did.
+/// Source of scatter between cycles that comes from their input.
 #[derive(Clone, Debug, PartialEq)]
 pub enum InputScatter {
-    /// The curves stand at other places than they seem to.
+    /// Shift of a cycle's curves along the abscissa.
     Abscissa {
-        /// Bound of the error of a cycle, in the unit of the abscissa.
+        /// Bound of the shift of a cycle, in the unit of the abscissa.
         tolerance: f64,
     },
-    /// An effect of the library acts on the input; where the library lacks it, it is left out.
+    /// Effect of the library that acts on the input; ignored where the library lacks it.
     Effect {
-        /// Its identifier.
+        /// Identifier of the effect.
         id: String,
-        /// Standard deviation of its first size from cycle to cycle, in that size's unit.
+        /// Standard deviation of the effect's first size from cycle to cycle, in that size's unit.
         deviation: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! What was measured, cycle by cycle, as the diagnosis takes it.
+//! Measured records as the diagnosis takes them, cycle by cycle.
 use crate::record::input_scatter::InputScatter;
 use crate::record::nuisance::Nuisance;
 use protocol::case::{Abscissa, Channel};
@@ -10,29 +10,29 @@ pub type Curves = Vec<Vec<f64>>;
 /// A channel of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recorded {
-    /// Which curve of an observation it is compared with: its place among the channels of its
-    /// condition.
+    /// Index of the simulated curve with which the channel is compared, among the channels of its condition.
     pub curve: usize,
-    /// Which values of that curve it has, ascending; none where it has all. A channel of which a part is held out stands
-    /// twice in a record.
+    /// Indices of the curve's values that the channel has, ascending; `None` where it has all. A channel of
+    /// which a part is held out occurs twice in a record.
     pub rows: Option<Vec<usize>>,
-    /// Whether the gap is counted on it. The others help to tell causes apart; where none is
-    /// counted on, all are.
+    /// Whether the gap is counted on this channel. Other channels only help to tell causes apart; where no
+    /// channel is marked, the gap is counted on all.
     pub scored: bool,
-    /// Whether it takes no part in any fit or test: it is compared at the end alone.
+    /// Whether the channel is held out: it takes part in no fit or test and is compared at the end only.
     pub held_out: bool,
-    /// Correlation of its noise from one value to the next, over the grid; none where it is not stated.
+    /// Correlation of the channel's noise from one value to the next, averaged over the grid; `None` where it
+    /// is not stated.
     pub correlation: Option<f64>,
-    /// What no law of the model is better than: a standard deviation in its unit that adds to the noise; none unless
-    /// stated.
+    /// Standard deviation of the model error in the channel's unit, below which no model is accurate; it adds
+    /// to the noise. `None` unless stated.
     pub model_error: Option<f64>,
-    /// Its names, unit, abscissa and noise; what was measured of it are the record's cycles.
+    /// Names, unit, abscissa and noise of the channel; the measured values are the record's cycles.
     pub channel: Channel,
 }
 
 impl Recorded {
-    /// A channel of a case, by its place among those of its condition; the gap is counted on what
-    /// scores compare.
+    /// Creates a recorded channel from a channel of a case; `curve` is its index among those of its
+    /// condition. The gap is counted on channels that have a record in the case.
     pub fn new(curve: usize, channel: &Channel) -> Self {
         Self {
             curve,
@@ -48,7 +48,7 @@ impl Recorded {
         }
     }
 
-    /// The part of it at some of its values, by their places, to be held out or not.
+    /// Returns the channel restricted to the values at the indices `rows`, held out or not.
     #[must_use]
     pub fn part(&self, rows: Vec<usize>, held_out: bool) -> Self {
         let own = &self.channel;
@@ -69,7 +69,7 @@ impl Recorded {
         }
     }
 
-    /// Its values of a curve; nothing of one that is too short.
+    /// Selects the channel's values from a curve; `None` for a curve that is too short.
     pub fn pick<T: Copy>(&self, curve: &[T]) -> Option<Vec<T>> {
         match &self.rows {
             None => Some(curve.to_vec()),
@@ -78,45 +78,46 @@ impl Recorded {
     }
 }
 
-/// The record of one working condition.
+/// Measured record of one working condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
     /// Index of the condition in the case.
     pub condition: usize,
-    /// Its channels, in the order of all curves; those that are held out stand last.
+    /// Channels, in the order of all curves; those that are held out stand last.
     pub channels: Vec<Recorded>,
-    /// Whole cycles; cycle, channel, grid.
+    /// Complete cycles, indexed by cycle, channel and sample.
     pub cycles: Vec<Curves>,
-    /// Whether the whole of it takes no part in any fit or test: it is compared at the end alone.
+    /// Whether the whole record is held out: it takes part in no fit or test and is compared at the end only.
     pub held_out: bool,
-    /// What the data sheet says of the measurement.
+    /// Statements of the data sheet about the measurement.
     pub stated: Stated,
 }
 
-/// A record in parts.
+/// Record divided into a fitted part and held-out parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Split {
-    /// What is fitted.
+    /// Part that is fitted.
     pub fitted: Record,
-    /// Cycles of the fitted channels that take no part.
+    /// Held-out cycles of the fitted channels.
     pub cycles: Record,
-    /// Channels, or parts of them, that take no part.
+    /// Held-out channels or parts of channels.
     pub channels: Record,
 }
 
-/// What a data sheet says of a measurement.
+/// Statements of a data sheet about a measurement.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stated {
-    /// What the input may be wrong by from cycle to cycle.
+    /// Errors of the input that differ from cycle to cycle.
     pub input_scatter: Vec<InputScatter>,
-    /// Variance of one cycle about the mean by channel, where more cycles than these tell it.
+    /// Variance of one cycle about the mean by channel, where it was estimated from more cycles than the
+    /// record holds; empty otherwise.
     pub cycle_variance: Vec<f64>,
-    /// What may be off by a little, constant over the measurement.
+    /// Small errors that are constant over the measurement.
     pub nuisances: Vec<Nuisance>,
 }
 
 impl Record {
-    /// Where the first channel's abscissa begins and ends, in its unit.
+    /// Returns start and end of the first channel's abscissa, in its unit.
     pub fn span(&self) -> [f64; 2] {
         let Some(abscissa) = self.channels.first().map(|own| &own.channel.abscissa) else {
             return [0.0; 2];
@@ -126,23 +127,24 @@ impl Record {
         [first, abscissa.period.map_or(last, |period| first + period)]
     }
 
-    /// Standard deviation of a value of a channel, as stated.
+    /// Returns the stated standard deviation of a value of a channel.
     pub fn noise(&self, channel: usize) -> Option<f64> {
         self.channels[channel].channel.noise
     }
 
-    /// Correlation of a channel's noise from one value to the next, over the grid; 0 where it is not stated.
+    /// Returns the correlation of a channel's noise from one value to the next, averaged over the grid; 0
+    /// where it is not stated.
     pub fn correlation(&self, channel: usize) -> f64 {
         self.channels[channel].correlation.unwrap_or(0.0)
     }
 
-    /// Samples of a turn.
+    /// Returns the number of samples of the first channel in a cycle.
     pub fn samples(&self) -> usize {
         let first = self.cycles.first().and_then(|cycle| cycle.first());
         first.map_or(0, Vec::len)
     }
 
-    /// Places of the channels on which the gap is counted: all where none is marked.
+    /// Returns the indices of the channels on which the gap is counted: all where none is marked.
     pub fn scored(&self) -> Vec<usize> {
         let all = 0..self.channels.len();
         let marked: Vec<usize> = all.clone().filter(|&c| self.channels[c].scored).collect();
@@ -153,7 +155,7 @@ impl Record {
         }
     }
 
-    /// Some of the cycles.
+    /// Returns the record restricted to a range of cycles.
     #[must_use]
     pub fn part(&self, cycles: Range<usize>) -> Self {
         let end = cycles.end.min(self.cycles.len());
@@ -164,8 +166,8 @@ impl Record {
         }
     }
 
-    /// What is fitted and what takes no part in the fit: of the cycles a quarter, at least one, none of
-    /// fewer than three; of the channels those that are marked so.
+    /// Divides the record into a fitted part and held-out parts: a quarter of the cycles, at least one, is
+    /// held out (none of fewer than three), and the channels that are marked as held out.
     pub fn split(&self) -> Split {
         let n = self.cycles.len();
         let held = if n < 3 { 0 } else { (n / 4).max(1) };
@@ -184,19 +186,20 @@ impl Record {
         }
     }
 
-    /// Whether anything of it may be fitted.
+    /// Returns whether any part of the record may be fitted.
     pub fn is_fitted(&self) -> bool {
         let free = self.channels.iter().any(|own| !own.held_out);
         free && !self.held_out && !self.cycles.is_empty()
     }
 
-    /// What may be fitted of it: all cycles of the channels that are not held out.
+    /// Returns the part that may be fitted: all cycles of the channels that are not held out.
     #[must_use]
     pub fn free(&self) -> Self {
         self.of_channels(false)
     }
 
-    /// The same with the channels that are held out behind the others, as a diagnosis numbers them.
+    /// Returns the record with the held-out channels moved behind the others, the order in which a diagnosis
+    /// numbers them.
     #[must_use]
     pub fn held_out_last(self) -> Self {
         if self.channels.iter().is_sorted_by_key(|own| own.held_out) {
@@ -211,7 +214,7 @@ impl Record {
         all
     }
 
-    /// Those of its channels that are held out, or those that are not.
+    /// Returns the record restricted to the channels that are held out, or to those that are not.
     fn of_channels(&self, held_out: bool) -> Self {
         let all = 0..self.channels.len();
         let kept: Vec<usize> = all
@@ -233,8 +236,8 @@ impl Record {
         }
     }
 
-    /// Variance of one cycle about the mean, by channel, as stated or as seen; zeros where nothing tells
-    /// it.
+    /// Returns the variance of one cycle about the mean by channel, as stated or else from the cycles; zeros
+    /// where neither is available.
     pub fn cycle_variance(&self) -> Vec<f64> {
         if self.stated.cycle_variance.is_empty() {
             self.scatter()
@@ -243,7 +246,7 @@ impl Record {
         }
     }
 
-    /// Variance of these cycles about their mean, by channel; zeros for fewer than two.
+    /// Returns the variance of the cycles about their mean by channel; zeros for fewer than two cycles.
     pub(crate) fn scatter(&self) -> Vec<f64> {
         if self.cycles.len() < 2 {
             return vec![0.0; self.channels.len()];
@@ -251,13 +254,13 @@ impl Record {
         scatter(&self.cycles)
     }
 
-    /// Mean over the cycles.
+    /// Returns the mean over the cycles.
     pub fn mean(&self) -> Curves {
         mean_of(&self.cycles.iter().collect::<Vec<_>>())
     }
 }
 
-/// Variance of cycles about their mean, by channel; at least two.
+/// Returns the variance of cycles about their mean by channel; needs at least two cycles.
 pub(crate) fn scatter(cycles: &[Curves]) -> Vec<f64> {
     let whole = mean_of(&cycles.iter().collect::<Vec<_>>());
     let of_cycle = |cycle: &Curves, c: usize| {
@@ -271,7 +274,7 @@ pub(crate) fn scatter(cycles: &[Curves]) -> Vec<f64> {
     (0..whole.len()).map(of).collect()
 }
 
-/// Curves less others, per so much of whatever has changed between them.
+/// Returns the difference of curves divided by `per`: a finite difference.
 pub(crate) fn difference(of: &Curves, from: &Curves, per: f64) -> Curves {
     let channels = of.iter().zip(from);
     channels
@@ -279,14 +282,15 @@ pub(crate) fn difference(of: &Curves, from: &Curves, per: f64) -> Curves {
         .collect()
 }
 
-/// Mean square about the mean.
+/// Returns the mean square of values about their mean.
 pub(crate) fn variance(values: &[f64]) -> f64 {
     let n = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / n;
     values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / n
 }
 
-/// Mean square, about the mean where a constant does not count. What does not move has no mean to be counted from.
+/// Returns the mean square of values, about their mean unless `absolute`. A single value is squared as it is,
+/// since it has no mean to be taken about.
 pub(crate) fn power(values: &[f64], absolute: bool) -> f64 {
     let about_zero = || values.iter().map(|x| x * x).sum::<f64>() / values.len().max(1) as f64;
     match values {
@@ -296,7 +300,7 @@ pub(crate) fn power(values: &[f64], absolute: bool) -> f64 {
     }
 }
 
-/// Mean of equally shaped curves; empty of none.
+/// Returns the mean of equally shaped curves; empty for no curves.
 pub fn mean_of(cycles: &[&Curves]) -> Curves {
     let Some(first) = cycles.first() else {
         return Vec::new();
@@ -316,7 +320,8 @@ pub(crate) mod tests {
     use super::*;
     use protocol::case::Offset;
 
-    /// A channel on which the gap is counted, by its place among the curves of an observation.
+    /// Creates a channel on which the gap is counted; `curve` is its index among the curves of an
+    /// observation.
     pub(crate) fn recorded(curve: usize) -> Recorded {
         let channel = Channel {
             name: format!("channel_{curve}"),

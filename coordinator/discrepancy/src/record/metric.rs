@@ -1,10 +1,9 @@
-//! The metric in which everything is fitted and tested: residuals in units of their own
-//! uncertainty.
+//! Metric in which curves are fitted and tested: residuals in units of their own uncertainty.
 //!
-//! The entries of all channels of a group at one place of their basis (an order of the period, a sample)
-//! are divided by the Cholesky factor of their covariance; what the measured input may be wrong by is
-//! marginalised: with nuisance columns N of standard deviations T, `(I + N T^2 N^T)^(-1/2)` is
-//! applied on top. Every entry of a residual that is noise alone then has variance 1.
+//! The entries of all channels of a group at one place of their basis (an order of the period, a sample) are
+//! divided by the Cholesky factor of their covariance. Errors of the measured input are marginalised: with
+//! nuisance columns N of standard deviations T, `(I + N T^2 N^T)^(-1/2)` is applied on top. Every entry of a
+//! residual that is noise alone then has variance 1.
 use crate::record::basis::{Group, smoothed};
 use crate::record::bins::{Bins, along};
 use crate::record::measured::Curves;
@@ -14,25 +13,25 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;
 
-/// Whitening of curves.
+/// Whitening transform of curves.
 #[derive(Clone, Debug)]
 pub struct Metric {
     blocks: Vec<Block>,
     channels: usize,
     known: Known,
-    /// Orthonormal directions and by how much each is shortened.
+    /// Orthonormal directions of the marginalised errors, and the share by which each is shortened.
     shrunk: Option<(DMatrix<f64>, DVector<f64>)>,
 }
 
-/// A group of channels and its part of a whitened vector: place, channel, real and imaginary part.
+/// Group of channels and its part of a whitened vector, ordered by place, channel, real and imaginary part.
 #[derive(Clone, Debug)]
 struct Block {
     group: Group,
-    /// Inverse Cholesky factors, place by place.
+    /// Inverse Cholesky factors of the covariances, by place.
     factors: Vec<DMatrix<C>>,
-    /// Degrees of freedom behind the variances, place by place.
+    /// Degrees of freedom of the variances, by place.
     freedoms: Vec<f64>,
-    /// Where its part begins.
+    /// Index of the group's first number in the whitened vector.
     begin: usize,
 }
 
@@ -45,7 +44,7 @@ impl Block {
         self.group.basis.parts()
     }
 
-    /// What a part of an entry of variance 1 is multiplied by to have variance 1 itself.
+    /// Returns the factor that gives each real part of an entry of variance 1 the variance 1.
     fn scale(&self) -> f64 {
         if self.parts() == 2 {
             // a circular complex variable of variance 1 has parts of variance 1/2
@@ -59,12 +58,12 @@ impl Block {
         self.parts() * self.rows() * self.factors.len()
     }
 
-    /// Where an entry begins in a whitened vector.
+    /// Returns the index at which an entry begins in a whitened vector.
     fn at(&self, place: usize, row: usize) -> usize {
         self.begin + self.parts() * (place * self.rows() + row)
     }
 
-    /// An entry of a whitened vector.
+    /// Returns an entry of a whitened vector as a complex number.
     fn entry(&self, whitened: &DVector<f64>, place: usize, row: usize) -> C {
         let at = self.at(place, row);
         let imaginary = if self.parts() == 2 {
@@ -75,7 +74,7 @@ impl Block {
         Complex::new(whitened[at], imaginary)
     }
 
-    /// All entries of a channel, by its place in the group.
+    /// Returns all entries of a channel; `row` is its index in the group.
     fn entries(&self, whitened: &DVector<f64>, row: usize) -> Vec<C> {
         let places = 0..self.factors.len();
         places
@@ -113,7 +112,7 @@ impl Block {
         }
     }
 
-    /// Standard deviations of a channel's mean entries.
+    /// Returns the standard deviations of the entries of a channel's mean.
     fn deviations(&self, row: usize) -> Vec<f64> {
         let deviation = |factor: &DMatrix<C>| {
             let lower = factor.clone().try_inverse();
@@ -125,8 +124,8 @@ impl Block {
 }
 
 impl Metric {
-    /// From the covariance of the mean entries of groups that hold all channels of a record; Hermitian.
-    /// A covariance that is not positive definite leaves its entry out.
+    /// Builds the metric from the Hermitian covariances of the mean's entries, for groups that together hold
+    /// all channels of a record. An entry whose covariance is not positive definite is left out.
     pub fn new(groups: &[Group], noise: &Noise) -> Self {
         let mut begin = 0;
         let block = |((group, covariances), freedoms): ((&Group, &Vec<DMatrix<C>>), &Vec<f64>)| {
@@ -160,13 +159,13 @@ impl Metric {
         }
     }
 
-    /// How the noise is known.
+    /// Returns how the noise is known.
     pub const fn known(&self) -> Known {
         self.known
     }
 
-    /// Degrees of freedom behind the variance of an entry, for each entry of a whitened vector; infinite where it was
-    /// not seen.
+    /// Returns the degrees of freedom of the variance of each entry of a whitened vector; infinite where the
+    /// variance was not estimated from cycles.
     pub fn freedoms(&self) -> DVector<f64> {
         let mut out = DVector::zeros(self.len());
         for block in &self.blocks {
@@ -179,8 +178,8 @@ impl Metric {
         out
     }
 
-    /// Degrees of freedom behind the variance of an entry, of the least well known one that pools several; infinite
-    /// where none was seen.
+    /// Returns the smallest number of degrees of freedom of a variance, slow curves left out; infinite where
+    /// no variance was estimated from cycles.
     pub fn freedom(&self) -> f64 {
         let pooled = self.blocks.iter().flat_map(|block| {
             let slow = block
@@ -193,8 +192,9 @@ impl Metric {
         pooled.copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// Degrees of freedom behind the variance of what is slow in the least well known channel, for intervals: an order by
-    /// itself, since those that are pooled with it are only about as strong, or the innovations of samples together.
+    /// Returns the degrees of freedom of the noise variance that intervals use, from the least well known
+    /// entry, slow curves left out: those of a single order, since neighbouring orders are only about as
+    /// strong, or of the pooled innovations of samples.
     pub fn freedom_of_intervals(&self) -> f64 {
         let each = self.blocks.iter().flat_map(|block| {
             let basis = &block.group.basis;
@@ -211,28 +211,28 @@ impl Metric {
         each.fold(f64::INFINITY, f64::min)
     }
 
-    /// Number of channels.
+    /// Returns the number of channels.
     pub const fn channels(&self) -> usize {
         self.channels
     }
 
-    /// Length of a whitened vector.
+    /// Returns the length of a whitened vector.
     pub fn len(&self) -> usize {
         self.blocks.iter().map(Block::len).sum()
     }
 
-    /// Whether there is nothing to compare.
+    /// Returns whether a whitened vector has no entries.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Whether all channels have a period, so that there are low orders and high ones.
+    /// Returns whether all channels have a period, so that orders can be divided into low and high ones.
     pub fn is_periodic(&self) -> bool {
         self.blocks.iter().all(|block| block.group.is_periodic())
     }
 
-    /// Curves in units of their uncertainty. Linear: the residual of two curves is the difference of
-    /// their images.
+    /// Returns curves in units of their uncertainty. The map is linear: the whitened residual of two curves
+    /// is the difference of their images.
     pub fn whiten(&self, curves: &Curves) -> DVector<f64> {
         let mut out = DVector::zeros(self.len());
         for block in &self.blocks {
@@ -242,7 +242,7 @@ impl Metric {
         out
     }
 
-    /// Marginalises directions, given as images under this metric times their standard deviation.
+    /// Marginalises error directions, given as images under this metric times their standard deviation.
     pub fn marginalize(&mut self, directions: &[DVector<f64>]) {
         if directions.is_empty() {
             return;
@@ -255,7 +255,8 @@ impl Metric {
         self.shrunk = Some((u, lost));
     }
 
-    /// Entries whose image a whitened vector is, by channel; what was marginalised stays shortened.
+    /// Inverts the whitening: returns the entries of a whitened vector by channel. Marginalised directions
+    /// stay shortened.
     pub fn colour(&self, whitened: &DVector<f64>) -> Spectra {
         let mut out = vec![Vec::new(); self.channels];
         for block in &self.blocks {
@@ -264,7 +265,7 @@ impl Metric {
         out
     }
 
-    /// Entries of curves, by channel.
+    /// Returns the entries of curves, by channel.
     pub fn entries(&self, curves: &Curves) -> Spectra {
         self.by_channel(|block, row| {
             let curve = &curves[block.group.channels[row]];
@@ -272,12 +273,12 @@ impl Metric {
         })
     }
 
-    /// The change of curves per unit of their abscissas.
+    /// Returns the derivatives of curves by their abscissas.
     pub(crate) fn slopes(&self, curves: &Curves) -> Curves {
         self.by_channel(|block, row| block.group.slope(&curves[block.group.channels[row]]))
     }
 
-    /// Root mean square of the curve of each channel's entries, in the channel's unit.
+    /// Returns the root mean square of the curve of each channel's entries, in the channel's unit.
     pub fn rms(&self, spectra: &Spectra) -> Vec<f64> {
         self.by_channel(|block, row| {
             block
@@ -287,34 +288,34 @@ impl Metric {
         })
     }
 
-    /// Standard error of the record's mean, root mean square along each channel, in its unit.
+    /// Returns the standard error of the record's mean, as root mean square along each channel, in its unit.
     pub fn standard_error(&self) -> Vec<f64> {
         self.by_channel(|block, row| block.group.basis.deviation(&block.deviations(row)))
     }
 
-    /// The waves of a whitened vector, by channel, lowest first: parts of variance 1 where it is noise.
-    /// Orders of the period where a channel has one, else waves of its samples.
+    /// Returns the waves of a whitened vector by channel, lowest first: orders of the period where a channel
+    /// has one, else waves of its samples. Their real and imaginary parts have variance 1 under noise.
     pub fn waves(&self, whitened: &DVector<f64>) -> Spectra {
         self.by_channel(|block, row| block.group.basis.waves(row, block.entries(whitened, row)))
     }
 
-    /// A whitened vector along each channel's abscissa, in the channel's bins.
+    /// Returns a whitened vector along each channel's abscissa, in the channel's bins.
     pub fn along(&self, whitened: &DVector<f64>) -> Vec<Vec<f64>> {
         self.by_channel(|block, row| along(&block.group, row, &block.entries(whitened, row)))
     }
 
-    /// The abscissas' bins, by channel.
+    /// Returns the bins of the abscissas, by channel.
     pub fn bins(&self) -> Vec<Bins> {
         self.by_channel(|block, _| Bins::of(&block.group))
     }
 
-    /// Parts of a whitened vector, by the places of their entries, that say little of one another where a residual is
-    /// noise with a few slow waves: stretches of samples of at least five correlation lengths each, every fifth order of
-    /// a period. At most ten; none where there are no two.
+    /// Divides the indices of a whitened vector into blocks that are nearly independent where the residual is
+    /// noise with a few slow waves: stretches of samples of at least five correlation lengths each, every
+    /// fifth order of a period. At most ten blocks; none where two are not possible.
     pub(crate) fn blocks(&self, residual: &DVector<f64>) -> Vec<Vec<usize>> {
         const MOST: usize = 10;
         const ORDERS: usize = 5;
-        /// Correlation lengths that a stretch has at least.
+        /// Least number of correlation lengths in a stretch.
         const LENGTHS: f64 = 5.0;
         let samples = self.blocks.iter().filter(|own| !own.group.is_periodic());
         let lengths = samples.map(|block| {
@@ -355,7 +356,7 @@ impl Metric {
         parts
     }
 
-    /// For each entry of a whitened vector the mean power, in variances of noise, of those about it.
+    /// Returns for each entry of a whitened vector the mean power of its neighbourhood, in noise variances.
     pub fn powers(&self, whitened: &DVector<f64>) -> DVector<f64> {
         let mut out = DVector::zeros(self.len());
         for block in &self.blocks {
@@ -375,7 +376,7 @@ impl Metric {
         out
     }
 
-    /// Something of every channel, in the record's order.
+    /// Applies a function to every channel and returns the results in the record's order.
     fn by_channel<T>(&self, of: impl Fn(&Block, usize) -> T) -> Vec<T> {
         let of = &of;
         let each = self.blocks.iter().flat_map(|block| {
@@ -395,8 +396,8 @@ impl Metric {
     }
 }
 
-/// How many neighbours of a row say what one of them does: `1 + 2 sum rho_k` up to the first correlation below 0, at
-/// least 1 (the integrated autocorrelation time; Sokal 1997).
+/// Returns the integrated autocorrelation time of a row, in values: `1 + 2 sum rho_k` up to the first
+/// correlation below 0, at least 1 (Sokal 1997).
 fn correlation_length(row: &[f64]) -> f64 {
     let power: f64 = row.iter().map(|x| x * x).sum();
     let rho = |lag: usize| {

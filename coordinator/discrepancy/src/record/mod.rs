@@ -1,5 +1,4 @@
-//! What was measured, cycle by cycle, and the units in which it counts: the noise of the record and
-//! the metric that follows from it. It knows no effect.
+//! Measured records, their noise, and the metric that follows from it. The module knows no effect.
 pub mod basis;
 pub(crate) mod bins;
 pub(crate) mod input_scatter;

@@ -1,10 +1,10 @@
-//! The noise of a record, from the scatter between its cycles.
+//! Noise of a record, estimated from the scatter between its cycles.
 //!
 //! Deviations of the cycles from their mean, with the input's known scatter regressed out, give the
-//! covariance of the channels at every entry of their basis, smoothed over neighbouring entries and
-//! shrunk towards its diagonal as far as the few cycles demand (DISCOVERY: noise model). With one cycle
-//! there is no scatter: then what the channels state, and what no smooth curve does, stand for it, and
-//! everything that follows is marked as resting on that.
+//! covariance of the channels at every entry of their basis, smoothed over neighbouring entries and shrunk
+//! towards its diagonal as far as the small number of cycles demands (DISCOVERY: noise model). With one cycle
+//! there is no scatter: the noise is then taken from the channels' statements and from the roughness of the
+//! curves, and all results are marked as resting on that assumption.
 use crate::linear::score::student;
 use crate::record::basis::{Basis, Group, smoothed};
 use crate::record::measured::Record;
@@ -15,45 +15,46 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;
 
-/// How a record's noise is known.
+/// Source of the knowledge of a record's noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
-    /// Its cycles scatter.
+    /// Estimated from the scatter of several cycles.
     Seen,
-    /// Every channel states it.
+    /// Single cycle, with the noise stated for every channel.
     Stated,
-    /// There is one cycle, and some channel states nothing: it was guessed from the roughness of the curve.
+    /// Single cycle, with no noise stated for some channel: estimated from the roughness of the curve.
     Guessed,
 }
 
 impl Known {
-    /// Whether cycles have shown it.
+    /// Returns whether the noise was estimated from cycles.
     pub const fn is_seen(self) -> bool {
         matches!(self, Self::Seen)
     }
 }
 
-/// Covariance of the mean entries.
+/// Covariance of the entries of a record's mean.
 #[derive(Clone, Debug)]
 pub struct Noise {
-    /// Group by group and entry by entry, channels x channels, of the mean over the cycles.
+    /// Covariances of the mean over the cycles, by group and entry; channels x channels.
     pub covariances: Vec<Vec<DMatrix<C>>>,
-    /// How it is known.
+    /// Source of the knowledge of the noise.
     pub known: Known,
-    /// Degrees of freedom behind a variance, group by group and entry by entry; infinite where it was not seen.
+    /// Degrees of freedom of the variances, by group and entry; infinite where they were not estimated from
+    /// cycles.
     pub freedoms: Vec<Vec<f64>>,
 }
 
 impl Noise {
-    /// From a record; `inputs` are curves by which cycles may differ because their input did (per
-    /// unit of that input), channel by channel.
+    /// Estimates the noise of a record. `inputs` are curves by which cycles may differ because their input
+    /// did (per unit of that input), channel by channel.
     pub fn estimate(record: &Record, groups: &[Group], inputs: &[Vec<Vec<f64>>]) -> Self {
         let mut noise = Self::measured(record, groups, inputs);
         noise.add_model_error(record, groups);
         noise
     }
 
-    /// The noise of the measurement alone.
+    /// Estimates the noise of the measurement alone, without the model error.
     fn measured(record: &Record, groups: &[Group], inputs: &[Vec<Vec<f64>>]) -> Self {
         if record.cycles.len() < 2 {
             let stated = |c: usize| record.noise(c).is_some();
@@ -81,8 +82,8 @@ impl Noise {
         }
     }
 
-    /// Adds what no law of a model is better than, as its channels state: alike at every entry that is compared, and
-    /// however many cycles there are.
+    /// Adds the stated model error of the channels: spread equally over all compared entries, and independent
+    /// of the number of cycles.
     fn add_model_error(&mut self, record: &Record, groups: &[Group]) {
         for (group, covariances) in groups.iter().zip(&mut self.covariances) {
             let places = covariances.len() as f64;
@@ -99,10 +100,8 @@ impl Noise {
                         // slow curves have something of every value
                         Basis::Samples(_) if place < slow => error * error * mean,
                         Basis::Samples(_) => {
-                            error * error * {
-                                let first = weights.len().saturating_sub(group.basis.places());
-                                error * error * weights[place + first].powi(2)
-                            }
+                            let first = weights.len().saturating_sub(group.basis.places());
+                            error * error * weights[place + first].powi(2)
                         }
                     };
                     covariance[(row, row)] += C::from(variance);
@@ -111,8 +110,8 @@ impl Noise {
         }
     }
 
-    /// Adds an error whose entries are known (numerical error of the model, say), by channel, smoothed over
-    /// neighbours and taken as independent between channels.
+    /// Adds an error with known entries (for example the numerical error of the model), by channel, smoothed
+    /// over neighbours and taken as independent between channels.
     pub fn add_error(&mut self, groups: &[Group], spectra: &[Vec<C>]) {
         for (group, covariances) in groups.iter().zip(&mut self.covariances) {
             for (row, &channel) in group.channels.iter().enumerate() {
@@ -126,12 +125,13 @@ impl Noise {
     }
 }
 
-/// From the scatter between cycles, with the degrees of freedom of each entry's variance.
+/// Estimates covariances from the scatter between cycles, with the degrees of freedom of each entry's
+/// variance.
 ///
-/// Slow curves of samples scatter by themselves, never by less than the samples beside them. Their few degrees of
-/// freedom `nu` widen them as Student's 95 % interval is wider than the normal one: two cycles know a mean to a
-/// factor of six. All entries of a channel together are
-/// never less than half of the variance that it states: a data sheet may be off by as much, a few cycles by more.
+/// Slow curves of samples have a variance of their own, never less than that of the neighbouring samples.
+/// Because of their few degrees of freedom `nu` it is widened by the ratio of Student's 95 % interval to the
+/// normal one: two cycles determine a mean to a factor of six. The variance of a channel over all its entries
+/// is at least half of the stated variance: a data sheet may be off by as much, a few cycles by more.
 fn seen(record: &Record, group: &Group, inputs: &[Vec<Vec<f64>>]) -> (Vec<DMatrix<C>>, Vec<f64>) {
     let basis = &group.basis;
     let of = |curves: &Vec<Vec<f64>>| group.transform(curves);
@@ -196,7 +196,7 @@ fn seen(record: &Record, group: &Group, inputs: &[Vec<Vec<f64>>]) -> (Vec<DMatri
     (covariances, freedoms)
 }
 
-/// Raises each variance to that of another covariance, correlations kept.
+/// Raises each variance to that of another covariance and keeps the correlations.
 fn at_least(covariance: &mut DMatrix<C>, least: &DMatrix<C>) {
     for k in 0..covariance.nrows() {
         let (own, least) = (covariance[(k, k)].re, least[(k, k)].re);
@@ -210,7 +210,8 @@ fn at_least(covariance: &mut DMatrix<C>, least: &DMatrix<C>) {
     }
 }
 
-/// As stated, or as the curve is rougher than anything smooth, whichever is more.
+/// Returns diagonal covariances for a single cycle: the larger of the stated noise and the roughness of the
+/// curve.
 fn assumed(record: &Record, group: &Group) -> Vec<DMatrix<C>> {
     let variance = |c: &usize| {
         let curve = record.cycles.first().map_or(&[][..], |cycle| &cycle[*c]);
@@ -248,7 +249,7 @@ fn assumed(record: &Record, group: &Group) -> Vec<DMatrix<C>> {
     (0..group.basis.places()).map(at).collect()
 }
 
-/// Towards the diagonal: hardly with many terms, wholly with few.
+/// Shrinks a covariance towards its diagonal: slightly with many terms, completely with few.
 fn shrink(mut covariance: DMatrix<C>, terms: f64) -> DMatrix<C> {
     let channels = covariance.nrows() as f64;
     let keep = 1.0 - (2.0 * (channels + 1.0) / terms).clamp(0.1, 1.0);
@@ -260,4 +261,47 @@ fn shrink(mut covariance: DMatrix<C>, terms: f64) -> DMatrix<C> {
         }
     }
     covariance
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::measured::Stated;
+    use crate::record::measured::tests::recorded;
+
+    /// A model error is in the unit of a value, so a weighted entry has its square times that of the weight.
+    #[test]
+    fn the_model_error_of_a_weighted_value_is_counted_once() {
+        let error = 0.1;
+        let mut own = recorded(0);
+        own.channel.abscissa.period = None;
+        own.channel.abscissa.points = (0..12).map(f64::from).collect();
+        own.channel.weights = (0..12).map(|k| 1.0 + f64::from(k)).collect();
+        own.channel.noise = Some(0.05);
+        let mut record = Record {
+            condition: 0,
+            channels: vec![own],
+            cycles: vec![vec![vec![0.0; 12]]],
+            held_out: false,
+            stated: Stated::default(),
+        };
+        let groups = Group::of(&record, 10, &[]);
+        let [group] = &groups[..] else {
+            panic!("one channel makes one group");
+        };
+        let measured = Noise::estimate(&record, &groups, &[]);
+        record.channels[0].model_error = Some(error);
+        let with_error = Noise::estimate(&record, &groups, &[]);
+        let weights = &record.channels[0].channel.weights;
+        let first = weights.len() - group.basis.places();
+        for place in group.basis.slow()..group.basis.places() {
+            let [before, after] =
+                [&measured, &with_error].map(|noise| noise.covariances[0][place][(0, 0)].re);
+            let expected = (error * weights[place + first]).powi(2);
+            assert!(
+                (after - before - expected).abs() < 1e-12 * expected.max(before),
+                "{place}: {after} - {before} is not {expected}"
+            );
+        }
+    }
 }

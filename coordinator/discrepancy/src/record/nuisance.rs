@@ -1,34 +1,35 @@
-//! What is never exact about a measurement, constant while it lasts: gains of instruments, marks that are a
-//! little off, a friction that everybody knows is there. How good each is is known beforehand, so each
-//! is a parameter with a prior in every fit, test and interval, and no discovery while it stays within it.
+//! Errors of a measurement that are small and constant while it lasts: gains of instruments, marks that are
+//! slightly off, friction that is known to be present. Their standard deviations are known beforehand, so
+//! each is a nuisance parameter with a prior in every fit, test and interval, and no discovery while it stays
+//! within its tolerance.
 
-/// Something that is off by a little, one standard deviation known.
+/// Constant error of a measurement with a known standard deviation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nuisance {
-    /// The effect of the library that it is, or the name of a channel's gain.
+    /// Identifier of the library's effect that the error is, or name of a channel's gain.
     pub id: String,
-    /// Which of the effect's sizes.
+    /// Name of the effect's size.
     pub parameter: String,
     /// Unit of the deviation.
     pub unit: String,
-    /// How it acts.
+    /// Way in which the error acts.
     pub acts: Acts,
-    /// One standard deviation about the absent value.
+    /// Standard deviation about the absent value.
     pub deviation: f64,
-    /// Whether it is never negative: half a normal distribution.
+    /// Whether the value is never negative: its prior is half a normal distribution.
     pub never_negative: bool,
-    /// Whether nobody stated the deviation: it is what such instruments usually have.
+    /// Whether the deviation is not stated but a usual value for such instruments.
     pub assumed: bool,
 }
 
-/// How a nuisance acts on what is compared.
+/// Way in which a nuisance parameter acts on the compared curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Acts {
-    /// As the effect of its name does; where the library lacks it, it is left out.
+    /// Effect of the library with the same identifier; ignored where the library lacks it.
     Effect,
-    /// A channel reads `(1 + x) y`, by the place of its curve among those of its condition.
+    /// Gain of a channel, which reads `(1 + x) y`.
     Gain {
-        /// That place.
+        /// Index of the channel's curve among those of its condition.
         curve: usize,
     },
 }

@@ -1,12 +1,12 @@
-//! Curves by sample: what each sample says beyond the one before it.
+//! Curves by sample: the innovation of each sample relative to the one before it.
 //!
-//! Noise that forgets what it was over a correlation length `l` (an Ornstein-Uhlenbeck process: the
-//! first-order autoregression of any grid) has `rho_i = exp(-(x_i+1 - x_i) / l)` between neighbours, and
-//! its innovations `(y_i+1 - rho_i y_i) / sqrt(1 - rho_i^2)` are independent and as strong as itself. Where a
-//! channel has no zero, a constant is turned into one entry that is left out; so of n samples n - 1 entries
-//! remain. Where it has one, the constant and the first order of the span (of eight samples and more) are turned into entries of their own
-//! (Householder reflections), the first three: cycles that drift scatter there by more than from sample to sample.
-//! Values that do not count alike are multiplied by their weights first.
+//! Noise with a correlation length `l` (an Ornstein-Uhlenbeck process, which is a first-order autoregression
+//! on any grid) has the correlation `rho_i = exp(-(x_i+1 - x_i) / l)` between neighbours. Its innovations
+//! `(y_i+1 - rho_i y_i) / sqrt(1 - rho_i^2)` are independent and as strong as the noise itself. Where a
+//! channel has no fixed zero, Householder reflections turn a constant into one entry that is left out, so
+//! that n samples give n - 1 entries. Where it has a fixed zero, the constant and the first order of the span
+//! (for eight samples and more) become the first three entries: cycles that drift scatter more in these than
+//! from sample to sample. Values with unequal weights are multiplied by their weights first.
 use crate::record::measured::power;
 use nalgebra::Complex;
 use protocol::case::Channel;
@@ -18,29 +18,30 @@ type C = Complex<f64>;
 pub struct Samples {
     /// Correlation of each sample with the one before it; 0 for the first.
     rho: Vec<f64>,
-    /// Directions of the reflections that turn slow curves into the first entries: the constant, and where it counts
-    /// the first order of the span as well.
+    /// Householder vectors of the reflections that turn slow curves into the first entries: the constant, and
+    /// where it counts the first order of the span as well.
     mirrors: Vec<Vec<f64>>,
-    /// Length of what each of those curves adds to the ones before it.
+    /// Norm of the part of each slow curve that is orthogonal to the ones before it.
     lengths: Vec<f64>,
-    /// Whether the constant counts.
+    /// Whether the constant of a curve counts.
     absolute: bool,
-    /// Weights of the values; empty where all count alike.
+    /// Weights of the values; empty where all weights are equal.
     weights: Vec<f64>,
 }
 
-/// Samples from which the first order of the span is told from the noise.
+/// Least number of samples from which the first order of the span can be told from the noise.
 const ORDER_SHOWS: usize = 8;
 
 impl Samples {
-    /// On the places of a channel, for noise of a correlation length in their unit; 0 where every sample is on
-    /// its own.
+    /// Creates the transform on the grid of a channel, for noise of a correlation length in the abscissa's
+    /// unit; 0 for independent samples.
     pub fn of(channel: &Channel, length: f64) -> Self {
         let points = &channel.abscissa.points;
         Self::new(points, &channel.weights, channel.is_absolute(), length)
     }
 
-    /// On a grid, ascending; of at least two points where the constant does not count.
+    /// Creates the transform on an ascending grid, with at least two points where the constant does not
+    /// count.
     fn new(points: &[f64], weights: &[f64], absolute: bool, length: f64) -> Self {
         let gaps = points.windows(2).map(|pair| pair[1] - pair[0]);
         let rho = gaps.map(|gap| {
@@ -76,10 +77,10 @@ impl Samples {
         samples
     }
 
-    /// For the noise of several curves about their common mean on a grid: the correlation length under
-    /// which they are likeliest, their constants left open.
+    /// Creates the transform with the correlation length of greatest restricted likelihood for the noise of
+    /// several curves about their common mean; their constants are not constrained.
     pub fn likeliest(channel: &Channel, deviations: &[Vec<f64>]) -> Self {
-        /// Correlation lengths that are tried: this many between neighbours, and the whole grid.
+        /// Number of positive correlation lengths that are tried, up to the whole grid.
         const TRIED: u32 = 60;
         let points = &channel.abscissa.points;
         let (Some(first), Some(last), 4..) = (points.first(), points.last(), points.len()) else {
@@ -101,27 +102,27 @@ impl Samples {
         least.map_or_else(|| Self::of(channel, 0.0), |(_, samples)| samples)
     }
 
-    /// Entries of a curve.
+    /// Returns the number of entries of a curve.
     pub fn len(&self) -> usize {
         self.rho.len().saturating_sub(self.left_out())
     }
 
-    /// Whether the constant counts.
+    /// Returns whether the constant of a curve counts.
     pub const fn is_absolute(&self) -> bool {
         self.absolute
     }
 
-    /// How many of the entries are slow curves instead of samples: they are the first.
+    /// Returns how many entries, from the first on, are slow curves instead of samples.
     pub const fn slow(&self) -> usize {
         if self.absolute { self.mirrors.len() } else { 0 }
     }
 
-    /// How many of the turned innovations are no entries.
+    /// Returns the number of reflected innovations that are left out of the entries.
     const fn left_out(&self) -> usize {
         if self.absolute { 0 } else { self.mirrors.len() }
     }
 
-    /// Entries sample by sample: slow curves are turned back into what they are at each.
+    /// Returns entries sample by sample: slow curves are transformed back to their values at each sample.
     pub fn by_sample(&self, entries: &[C]) -> Vec<f64> {
         let row: Vec<f64> = entries.iter().map(|e| e.re).collect();
         if self.absolute {
@@ -131,18 +132,18 @@ impl Samples {
         }
     }
 
-    /// Whether a curve has none.
+    /// Returns whether a curve has no entries.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The entries of a curve; they have no imaginary part.
+    /// Returns the entries of a curve; their imaginary part is zero.
     pub fn transform(&self, curve: &[f64]) -> Vec<C> {
         let turned = self.reflected(self.innovations(curve)).into_iter();
         turned.skip(self.left_out()).map(C::from).collect()
     }
 
-    /// The curve whose entries these are, up to a constant where that does not count.
+    /// Returns the curve with the given entries, up to a constant where the constant does not count.
     pub fn curve(&self, entries: &[C]) -> Vec<f64> {
         let left_out = std::iter::repeat_n(0.0, self.left_out());
         let all = left_out.chain(entries.iter().map(|e| e.re));
@@ -159,7 +160,8 @@ impl Samples {
         curve
     }
 
-    /// Root mean square of the curve of entries, about its mean where the constant does not count.
+    /// Returns the root mean square of the curve with the given entries, about its mean where the constant
+    /// does not count.
     pub fn rms(&self, entries: &[C]) -> f64 {
         power(&self.curve(entries), self.is_absolute()).sqrt()
     }
@@ -188,8 +190,8 @@ impl Samples {
             .fold(x, |x, mirror| reflected(x, mirror))
     }
 
-    /// Minus twice the logarithm of the restricted likelihood, slow curves left open, at the likeliest variance; up to
-    /// a constant of the curves.
+    /// Returns minus twice the log restricted likelihood, with slow curves left open and at the most likely
+    /// variance, up to a constant of the curves.
     fn surprise(&self, deviations: &[Vec<f64>]) -> f64 {
         let square = |curve: &Vec<f64>| {
             let entries = self.transform(curve).into_iter().skip(self.slow());
@@ -204,8 +206,8 @@ impl Samples {
     }
 }
 
-/// The curves that have entries of their own: the constant, and where it counts both phases of the first order of the
-/// span. A single value is its own.
+/// Returns the curves that have entries of their own: the constant, and where it counts both phases of the
+/// first order of the span. A single value with a fixed zero has none.
 fn slow_curves(points: &[f64], absolute: bool) -> Vec<Vec<f64>> {
     let n = points.len();
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
@@ -246,7 +248,7 @@ mod tests {
     use protocol::case::{Abscissa, Offset};
     use search::random::{Phase, Streams};
 
-    /// A channel on a grid, with weights where there are some.
+    /// Creates a channel on a grid, with optional weights.
     fn channel(points: &[f64], weights: &[f64], absolute: bool) -> Channel {
         Channel {
             abscissa: Abscissa {
@@ -265,7 +267,7 @@ mod tests {
         }
     }
 
-    /// A grid whose steps differ.
+    /// Returns a grid of `n` points with unequal steps.
     fn uneven(n: usize) -> Vec<f64> {
         let step = |k: usize| 0.01 * (1.0 + 0.5 * (k as f64).sin());
         (0..n)
@@ -276,7 +278,7 @@ mod tests {
             .collect()
     }
 
-    /// Noise of a correlation length on a grid, with a constant.
+    /// Returns noise of a correlation length on a grid, plus a constant.
     fn coloured(points: &[f64], length: f64, seed: u64, size: f64) -> Vec<f64> {
         let mut stream = Streams::new(seed, 11).at(0, Phase::Initial, 0);
         let mut y = stream.normal();
@@ -310,8 +312,8 @@ mod tests {
         );
     }
 
-    /// Where the constant counts every curve comes back as it was, weights or not, and of a single value there is
-    /// one entry.
+    /// Checks that, where the constant counts, every curve is recovered with and without weights, and that a
+    /// single value has one entry.
     #[test]
     fn a_constant_counts_where_a_channel_has_a_zero() {
         let points = uneven(20);
@@ -328,8 +330,8 @@ mod tests {
         assert_eq!(one.transform(&[2.5]), [C::from(10.0)]);
     }
 
-    /// Entries of coloured noise are as strong as those of the few cycles from which its length was
-    /// estimated, and have no correlation from one to the next.
+    /// Checks that entries of coloured noise have the same power as those of the few cycles from which the
+    /// correlation length was estimated, and are uncorrelated from one to the next.
     #[test]
     fn entries_of_coloured_noise_are_white() {
         let points = uneven(400);

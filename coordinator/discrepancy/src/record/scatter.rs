@@ -1,10 +1,12 @@
-//! How cycles scatter about their mean, beside what their input explains. It knows no noise model.
+//! Scatter of cycles about their mean, less the part that their input explains. The module knows no noise
+//! model.
 use crate::record::spectrum::Spectra;
 use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;
 
-/// Deviations of the cycles' entries from their mean, less what the inputs explain; cycle, channel, entry.
+/// Returns the deviations of the cycles' entries from their mean, less the part that the inputs explain, by
+/// cycle, channel and entry.
 pub(crate) fn unexplained(cycles: Vec<Spectra>, inputs: &[Spectra]) -> Vec<Spectra> {
     let n = cycles.len() as f64;
     let mean = |c: usize, k: usize| cycles.iter().map(|cycle| cycle[c][k]).sum::<C>() / C::from(n);
@@ -28,7 +30,8 @@ pub(crate) fn unexplained(cycles: Vec<Spectra>, inputs: &[Spectra]) -> Vec<Spect
         .collect()
 }
 
-/// Subtracts the best combination of the inputs, each channel weighted by its own size.
+/// Subtracts the least-squares combination of the inputs from a cycle, each channel weighted by the inverse
+/// power of its mean.
 fn regress_out(cycle: &mut [Vec<C>], inputs: &[Spectra], means: &[Vec<C>]) {
     if inputs.is_empty() {
         return;

@@ -1,14 +1,14 @@
-//! Fourier coefficients of curves over one period: its orders.
+//! Fourier coefficients of curves over one period, called orders.
 //!
-//! `F_h = (1/n) sum_i y_i exp(-i h phi_i)`, so the mean square of a curve about its mean is
-//! `2 sum_h |F_h|^2`.
+//! `F_h = (1/n) sum_i y_i exp(-i h phi_i)`, so the mean square of a curve about its mean is `2 sum_h
+//! |F_h|^2`.
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
-/// Entries of curves in their coordinates, channel by channel.
+/// Entries of curves in their basis, channel by channel.
 pub type Spectra = Vec<Vec<Complex<f64>>>;
 
-/// Sines and cosines of a grid of equally spaced phases, from 0 on, without the end of the period.
+/// Discrete Fourier transform on a grid of equally spaced phases, from 0 on, without the end of the period.
 #[derive(Clone, Debug)]
 pub struct Orders {
     highest: usize,
@@ -17,7 +17,7 @@ pub struct Orders {
 }
 
 impl Orders {
-    /// For curves of `n` samples; orders 1 to `highest`, at most half the samples.
+    /// Creates the transform for curves of `n` samples and orders 1 to `highest`, at most half the samples.
     pub fn new(n: usize, highest: usize) -> Self {
         let unit = |i: usize| {
             let (sine, cosine) = libm::sincos(TAU * i as f64 / n as f64);
@@ -29,17 +29,17 @@ impl Orders {
         }
     }
 
-    /// Number of orders, from 1 on.
+    /// Returns the highest order; orders are counted from 1.
     pub const fn highest(&self) -> usize {
         self.highest
     }
 
-    /// Samples of a curve.
+    /// Returns the number of samples of a curve.
     pub fn samples(&self) -> usize {
         self.turn.len()
     }
 
-    /// One coefficient of a curve of [`Self::samples`] values.
+    /// Computes one coefficient of a curve of [`Self::samples`] values.
     pub fn coefficient(&self, curve: &[f64], order: usize) -> Complex<f64> {
         let n = self.turn.len();
         let mut sum = Complex::new(0.0, 0.0);
@@ -54,14 +54,14 @@ impl Orders {
         sum / n as f64
     }
 
-    /// Coefficients of orders 1 to the highest.
+    /// Computes the coefficients of orders 1 to the highest.
     pub fn transform(&self, curve: &[f64]) -> Vec<Complex<f64>> {
         (1..=self.highest)
             .map(|order| self.coefficient(curve, order))
             .collect()
     }
 
-    /// The curve without its mean whose coefficients these are.
+    /// Returns the curve, without its mean, that has these coefficients.
     pub fn curve(&self, coefficients: &[Complex<f64>]) -> Vec<f64> {
         let n = self.turn.len();
         let value = |i: usize| -> f64 {

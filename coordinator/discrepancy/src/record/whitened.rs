@@ -1,4 +1,4 @@
-//! A record in the metric in which it counts: what every simulation is compared with.
+//! Record with its metric, the reference with which every simulation is compared.
 use crate::record::basis::Group;
 use crate::record::measured::{Curves, Record};
 use crate::record::metric::Metric;
@@ -6,16 +6,16 @@ use crate::record::noise::Noise;
 use nalgebra::DVector;
 use protocol::job::Numerics;
 
-/// A record under a metric.
+/// Record with the metric in which residuals are whitened.
 #[derive(Clone, Debug)]
 pub struct WhitenedRecord {
-    /// What was measured, calibration cycles only.
+    /// Measured record, calibration cycles only.
     pub record: Record,
-    /// Its metric.
+    /// Metric of the record.
     pub metric: Metric,
     /// The whitened mean of the record.
     pub measured: DVector<f64>,
-    /// How models are computed that are compared with it.
+    /// Numerical settings of the simulations that are compared with the record.
     pub numerics: Numerics,
 }
 
@@ -31,14 +31,15 @@ impl WhitenedRecord {
         }
     }
 
-    /// A record under a metric of its own noise up to an order, without errors of its inputs.
+    /// Builds the metric of a record from its own noise, with orders up to `highest`, without errors of its
+    /// input.
     pub fn under_own_noise(record: Record, highest: usize, numerics: Numerics) -> Self {
         let groups = Group::of(&record, highest, &[]);
         let metric = Metric::new(&groups, &Noise::estimate(&record, &groups, &[]));
         Self::new(record, metric, numerics)
     }
 
-    /// Residual of simulated curves: measured less simulated, whitened.
+    /// Returns the whitened residual of simulated curves: measured less simulated.
     pub fn residual(&self, curves: &Curves) -> DVector<f64> {
         &self.measured - self.metric.whiten(curves)
     }

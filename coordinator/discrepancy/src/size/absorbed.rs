@@ -1,4 +1,5 @@
-//! Effects that a record cannot show, since the unknowns take them up, and the measurement that would.
+//! Effects that a record cannot show because the unknowns absorb them, with the measurement that would reveal
+//! each.
 use crate::cause::round::Round;
 use crate::cause::suspect::Suspect;
 use crate::linear::tangent::Tangent;
@@ -7,25 +8,25 @@ use nalgebra::DMatrix;
 use search::least_squares::Variable;
 use serde::Serialize;
 
-/// An effect that recalibration takes up.
+/// Effect that recalibration absorbs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Absorbed {
-    /// Identifier.
+    /// Identifier of the effect.
     pub id: String,
-    /// Share of what it does to the record that the unknowns take up, 0 to 1.
+    /// Share of the effect's signature that the unknowns absorb, 0 to 1.
     pub share: f64,
-    /// What would show it.
+    /// Measurement that would show the effect.
     pub measurement: String,
 }
 
-/// Share from which an effect counts as taken up.
+/// Absorbed share from which an effect is reported.
 const MOST: f64 = 0.9;
-/// How many are told.
+/// Largest number of effects that are reported.
 const TOLD: usize = 8;
-/// Share that must show before a known unknown is said to show the effect.
+/// Share of the effect that must become visible before a separate test of an unknown is recommended.
 const SHOWS: f64 = 0.2;
 
-/// Effects of a round at a fit of which next to nothing shows, the largest share first.
+/// Returns the effects of a round that are almost completely absorbed at a fit, the largest share first.
 pub(crate) fn absorbed(round: &Round, fit: &Fit) -> Vec<Absorbed> {
     let tangent = fit.tangent();
     // of what is not in proportion to its size only a refit says so
@@ -51,7 +52,7 @@ pub(crate) fn absorbed(round: &Round, fit: &Fit) -> Vec<Absorbed> {
     all.into_iter().map(told).collect()
 }
 
-/// Share of a signature that a tangent space takes up.
+/// Returns the share of a signature that a tangent space absorbs.
 fn taken(signature: &DMatrix<f64>, tangent: &Tangent) -> f64 {
     let whole = signature.norm_squared();
     let left = signature.dot(&tangent.project_columns(signature));
@@ -62,7 +63,8 @@ fn taken(signature: &DMatrix<f64>, tangent: &Tangent) -> f64 {
     }
 }
 
-/// The unknown that takes most of it up, known from elsewhere, or a sensor where the effect acts.
+/// Describes the measurement that would show the effect: a separate test of the unknown that absorbs most of
+/// it, or a sensor at the place where the effect acts.
 fn measurement(suspect: &Suspect, fit: &Fit) -> String {
     let axes = fit.model.space.axes();
     let without = |k: usize| {
@@ -79,13 +81,13 @@ fn measurement(suspect: &Suspect, fit: &Fit) -> String {
         .min_by(|(a, _), (b, _)| a.total_cmp(b));
     let joint = suspect.effect.joint.replace('_', " ");
     let sensor = if joint.is_empty() {
-        "a sensor where it acts".to_owned()
+        "a sensor at the place where the effect acts".to_owned()
     } else {
         format!("a sensor at the {joint}")
     };
     match least {
         Some((share, k)) if 1.0 - share >= SHOWS => format!(
-            "{} known from a test of its own (then {:.0} % of it shows), or {sensor}",
+            "a separate test that determines {} ({:.0} % of the effect would then be visible), or {sensor}",
             axes[k].unknown.name,
             100.0 * (1.0 - share)
         ),

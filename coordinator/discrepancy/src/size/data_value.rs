@@ -1,8 +1,8 @@
-//! The value of more data: effects that this record cannot tell apart, how many more cycles of
-//! it would, and whether a record of another condition would.
+//! Value of more data: effects that this record cannot tell apart, how many more cycles of it would separate
+//! them, and whether a record of another condition would.
 //!
-//! Each effect is taken at a few times the size from which it is seen at all: below that nothing tells
-//! anything apart. Linear in the effects, at the recalibrated point; it knows no verdict.
+//! Each effect is taken at a few times its detection limit: below that nothing can be told apart. The
+//! analysis is linear in the effects, at the recalibrated point, and independent of the verdict.
 use crate::cause::round::Round;
 use crate::cause::suspect::Suspect;
 use crate::ground::session::Session;
@@ -19,29 +19,31 @@ use nalgebra::{DMatrix, DVector};
 use search::least_squares::Linearized;
 use serde::Serialize;
 
-/// Two effects that the record would not part, and what would.
+/// Pair of effects that the record cannot separate, with the data that would.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LookAlikes {
-    /// Their identifiers.
+    /// Identifiers of the two effects.
     pub effects: [String; 2],
-    /// How many times as many cycles of the same condition would part them, at least 1.
+    /// Factor, at least 1, by which the number of cycles of the same condition would have to grow to separate
+    /// the two effects.
     pub cycles: f64,
-    /// The same where the records of the other conditions are fitted too, if there are any: at most
-    /// 1 if they part the two without a further cycle.
+    /// Factor for the number of cycles when the records of the other conditions, if there are any, are fitted
+    /// too: at most 1 if these separate the effects without a further cycle.
     #[serde(rename = "cycles_with_other_conditions")]
     pub cycles_with_others: Option<f64>,
 }
 
-/// At how many times their detection limits effects are compared.
+/// Multiple of the detection limits at which effects are compared.
 const MULTIPLE: f64 = 3.0;
 
-/// A suspect that can be seen, and how much of each of its sizes is compared, in scales.
+/// Candidate effect that can be detected, with the amount of each size at which it is compared, in scales.
 struct Visible<'a> {
     suspect: &'a Suspect,
     amounts: Vec<f64>,
 }
 
-/// Weighs all pairs of suspects of a round at `fit`.
+/// Finds the pairs of a round's candidate effects that cannot be separated at `fit`, and the data that would
+/// separate them.
 pub(crate) async fn weigh<L: Laboratory>(
     session: &mut Session<'_, L>,
     fit: &Fit,
@@ -106,7 +108,8 @@ pub(crate) async fn weigh<L: Laboratory>(
         .collect())
 }
 
-/// How much of each size is compared, in scales; nothing for an effect that cannot be seen.
+/// Returns the amount of each size at which an effect is compared, in scales; `None` for an effect that
+/// cannot be detected.
 fn amounts(suspect: &Suspect, limits: &[Limit]) -> Option<Vec<f64>> {
     let each = sizes(&suspect.effect).into_iter().map(|k| {
         let parameter = &suspect.effect.parameters[k];
@@ -119,7 +122,7 @@ fn amounts(suspect: &Suspect, limits: &[Limit]) -> Option<Vec<f64>> {
     all.filter(|all| !all.is_empty() && all.len() == suspect.signature.ncols())
 }
 
-/// Columns times amounts.
+/// Multiplies the columns by amounts.
 fn scaled(signature: &DMatrix<f64>, amounts: &[f64]) -> DMatrix<f64> {
     let mut signature = signature.clone();
     for (mut column, amount) in signature.column_iter_mut().zip(amounts) {
@@ -128,14 +131,14 @@ fn scaled(signature: &DMatrix<f64>, amounts: &[f64]) -> DMatrix<f64> {
     signature
 }
 
-/// The linearised model under another condition.
+/// Linearised model under another condition.
 struct Seen {
     jacobian: DMatrix<f64>,
     signatures: Vec<DMatrix<f64>>,
 }
 
-/// Changes by the unknowns and by all visible effects on another record; nothing if one of the
-/// simulations failed.
+/// Computes the derivatives by the unknowns and the signatures of all detectable effects on another record;
+/// `None` if one of the simulations failed.
 async fn linearized<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,

@@ -1,42 +1,42 @@
-//! Effects of the answer, with their sizes and intervals.
+//! Effects of the answer, with their estimated sizes and intervals.
 use crate::cause::round::Round;
 use crate::linear::score::family_wise;
 use crate::model::fit::Fit;
 use crate::record::metric::Metric;
 use crate::size::spread::Spread;
 
-/// An effect of the answer.
+/// Estimate of an effect of the answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
-    /// Identifier.
+    /// Identifier of the effect.
     pub id: String,
-    /// In words.
+    /// Title of the effect in words.
     pub title: String,
-    /// Places in the case of the unknowns that it is, parameter by parameter, if they were off; their values are
-    /// where to start from. Empty of an effect.
+    /// Indices in the case of the unknowns that the effect stands for, parameter by parameter, if they were
+    /// off; the estimates are start values for them. Empty for an effect of the library.
     pub unknowns: Vec<usize>,
-    /// Its parameters, in the effect's order.
+    /// Estimates of the parameters, in the effect's order.
     pub parameters: Vec<ParameterEstimate>,
-    /// Family-wise p-value of its score test.
+    /// Family-wise p-value of the effect's score test.
     pub p_value: f64,
-    /// Log evidence against the model without it, over the dispersion (nats).
+    /// Log evidence against the model without the effect, over the dispersion (nats).
     pub ln_evidence: f64,
 }
 
-/// A parameter of an effect.
+/// Estimate of a parameter of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterEstimate {
-    /// Its name.
+    /// Name of the parameter.
     pub name: String,
-    /// Its unit.
+    /// Unit of the parameter.
     pub unit: String,
-    /// The likeliest value.
+    /// Most likely value.
     pub value: f64,
     /// 95 % interval.
     pub interval: [f64; 2],
 }
 
-/// The added effects with their sizes, then the other members of their sets.
+/// Returns the estimates of the added effects, then those of the other members of their ambiguity sets.
 pub(crate) fn estimates(rounds: &[Round], after: &Fit, metric: &Metric) -> Vec<Estimate> {
     let mut found: Vec<Estimate> = Vec::new();
     for added_first in [true, false] {
@@ -55,8 +55,8 @@ pub(crate) fn estimates(rounds: &[Round], after: &Fit, metric: &Metric) -> Vec<E
     found
 }
 
-/// Sizes of an added effect are those of the final model, beside everything else that was added; of
-/// a rival, those of its own refit.
+/// Estimates an effect: an added effect from the final model, together with all other added effects; a rival
+/// from its own refit.
 fn estimate(round: &Round, id: &str, (after, metric): (&Fit, &Metric)) -> Option<Estimate> {
     if after.model.added.iter().any(|own| own.id == id) {
         let refitted = round.refits.iter().find(|r| r.id == id);
@@ -67,7 +67,7 @@ fn estimate(round: &Round, id: &str, (after, metric): (&Fit, &Metric)) -> Option
     }
 }
 
-/// Sizes of a suspect by its own refit.
+/// Estimates a candidate effect from its own refit.
 pub(crate) fn refitted(round: &Round, id: &str, metric: &Metric) -> Option<Estimate> {
     let own = round.refits.iter().find(|r| r.id == id)?;
     sized(round, id, (&own.fit, metric), own.log_evidence)

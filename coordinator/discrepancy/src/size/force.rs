@@ -1,5 +1,5 @@
-//! The force without a cause that beats every name: where it acts, its form, how large it is and what
-//! it explains.
+//! Probe force (a force without a physical cause) that explains the residual better than every listed effect:
+//! where it acts, its form, its amplitude and the gap that it closes.
 use crate::cause::challenge::Challenger;
 use crate::cause::round::Round;
 use crate::model::fit::Fit;
@@ -8,32 +8,33 @@ use crate::proof::compare::Row;
 use crate::record::metric::Metric;
 use crate::size::spread::Spread;
 
-/// A force without a cause, with its size and what it explains.
+/// Probe force with its amplitude and the gap that it closes.
 #[derive(Clone, Debug)]
 pub struct Force {
-    /// Identifier of its form; of a harmonic, of the stronger phase.
+    /// Identifier of the force; for a harmonic, that of the stronger phase.
     pub id: String,
-    /// Where it acts.
+    /// Joint at which the force acts.
     pub joint: String,
-    /// Its form: the last part of the identifier; of a harmonic, with both phases.
+    /// Form of the force: the last part of the identifier, or for a harmonic, which has both phases,
+    /// `harmonic` and its order.
     pub form: String,
-    /// Its amplitude.
+    /// Amplitude of the force.
     pub amplitude: f64,
     /// Unit of the amplitude.
     pub unit: String,
     /// 95 % interval of the amplitude.
     pub interval: [f64; 2],
-    /// Of a harmonic, the phase of the harmonic at which it is largest (deg).
+    /// Phase at which a harmonic is largest (deg of the harmonic); `None` for other forms.
     pub phase_deg: Option<f64>,
-    /// Log evidence against the model without it, over the dispersion (nats).
+    /// Log evidence against the model without the force, over the dispersion (nats).
     pub ln_evidence: f64,
-    /// The model with it.
+    /// Fit of the model with the force.
     pub fit: Fit,
-    /// The gap before and after it, by record.
+    /// Gap before and after the force is added, by record.
     pub rows: Vec<Row>,
 }
 
-/// The force of a challenger that beat the model `before` it in a round; without its rows yet.
+/// Builds the force of a challenger that beat the model `before` in a round; its rows are still empty.
 pub(crate) fn force(
     challenger: Challenger,
     (before, metric): (&Fit, &Metric),

@@ -1,4 +1,4 @@
-//! Detection limits: from which size on an effect would have been seen, before any verdict.
+//! Detection limits: the size from which an effect would be detected, independent of any verdict.
 use crate::cause::round::Round;
 use crate::linear::isolability::{Hurdle, detection_limit};
 use crate::linear::score::single;
@@ -7,30 +7,30 @@ use crate::model::parameter::sizes;
 use protocol::announce::Sign;
 use serde::Serialize;
 
-/// From which size on an effect would have been seen.
+/// Detection limit of an effect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Limit {
-    /// Identifier.
+    /// Identifier of the effect.
     pub id: String,
-    /// Parameter.
+    /// Name of the parameter.
     pub parameter: String,
-    /// Its unit.
+    /// Unit of the parameter.
     pub unit: String,
-    /// The size; infinite where recalibration absorbs the effect.
+    /// Smallest size that would be detected; infinite where recalibration absorbs the effect.
     pub size: f64,
-    /// The largest size within the parameter's bounds.
+    /// Largest size within the parameter's bounds.
     #[serde(skip)]
     pub largest: f64,
 }
 
 impl Limit {
-    /// Whether some size within the parameter's bounds would be seen.
+    /// Returns whether some size within the parameter's bounds would be detected.
     pub fn is_within_bounds(&self) -> bool {
         self.size <= self.largest
     }
 }
 
-/// Detection limits of all effects of a round, at a level of the family of their tests.
+/// Computes the detection limits of all effects of a round, at a family-wise level `alpha`.
 pub(crate) fn limits(round: &Round, fit: &Fit, alpha: f64) -> Vec<Limit> {
     let tangent = fit.tangent();
     let mut limits = Vec::new();

@@ -1,5 +1,5 @@
-//! How large: sizes of the answer with their intervals, the sizes from which on effects would have
-//! been seen, and what more data would tell apart.
+//! Estimation of sizes: sizes of the answer with their intervals, detection limits, and the data that would
+//! separate effects.
 pub mod absorbed;
 pub mod data_value;
 pub mod estimate;

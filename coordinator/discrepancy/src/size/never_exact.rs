@@ -1,33 +1,33 @@
-//! What the instruments are off by, as a fit has it.
+//! Estimated nuisance parameters of a fit, such as errors of the instruments.
 use crate::model::fit::Fit;
 use crate::model::tolerated::Tolerated;
 use crate::size::spread::Spread;
 use crate::thresholds::WITHIN;
 use serde::Serialize;
 
-/// A nuisance with its likeliest value.
+/// Nuisance parameter with its most likely value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NeverExact {
-    /// The effect that it is, or the gain of a channel.
+    /// Identifier of the effect that the nuisance parameter stands for, or of the gain of a channel.
     pub id: String,
-    /// Parameter.
+    /// Name of the parameter.
     pub parameter: String,
-    /// The likeliest value, as a difference from the absent one.
+    /// Most likely value, as a difference from the absent one.
     pub value: f64,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: String,
-    /// 95 % interval, of what was known beforehand and the record together.
+    /// 95 % interval from the prior and the record together.
     #[serde(rename = "ci95")]
     pub interval: [f64; 2],
-    /// What it is good to, one standard deviation.
+    /// Prior standard deviation.
     pub tolerance: f64,
-    /// Whether it lies within three of them.
+    /// Whether the value lies within three prior standard deviations.
     pub within: bool,
-    /// Whether the tolerance is assumed.
+    /// Whether the tolerance is assumed rather than stated.
     pub assumed: bool,
 }
 
-/// Those of a fit that are no added effects.
+/// Returns the nuisance parameters of a fit that no added effect replaces.
 pub(crate) fn never_exact(fit: &Fit, spread: &Spread) -> Vec<NeverExact> {
     let one = |(place, one): (usize, &Tolerated)| {
         let own = &one.nuisance;

@@ -1,15 +1,15 @@
-//! How far a record leaves the unknowns of a fit open: their covariance, and the quantile of their intervals.
+//! Uncertainty of the unknowns of a fit: their covariance, and the quantile of their intervals.
 //!
-//! With the Jacobian `J` of the whitened residual and the precision `L` of what is known beforehand, the covariance is
-//! `(J^T J / s^2 + L)^-1`, where `s^2 = chi^2 / (n - p)` is the dispersion: the textbook's for least squares. It is at
-//! least 1 where the noise was seen or stated, for then its variance is known.
+//! With the Jacobian `J` of the whitened residual and the prior precision `L`, the covariance is `(J^T J /
+//! s^2 + L)^-1`, where `s^2 = chi^2 / (n - p)` is the dispersion, as usual for least squares. The dispersion
+//! is at least 1 where the noise was seen or stated, since its variance is then known.
 //!
-//! What is left may be coloured: a law of the wrong shape leaves slow waves, and unknowns that act slowly are known less
-//! well than as many independent entries would have it. With the power `S` of the residual, wave by wave and times
-//! `n / (n - p)`, the covariance is the sandwich `A^-1 (J^T S J / s^4 + L) A^-1`, `A = J^T J / s^2 + L` (White 1980, HC1
-//! of `MacKinnon` & White 1985; in waves a stationary error is independent, so that its autocovariance needs no estimate).
-//! No variance falls below the one for white residuals. What stands at a bound is known as well as
-//! that to all others, and has the variance that it would have if it alone were free.
+//! The residual may be coloured: a model of the wrong shape leaves slow waves, and unknowns that act slowly
+//! are then less well known than for independent entries. With the power `S` of the residual, wave by wave
+//! and times `n / (n - p)`, the covariance is the sandwich `A^-1 (J^T S J / s^4 + L) A^-1`, `A = J^T J /
+//! s^2 + L` (White 1980, HC1 of `MacKinnon` & White 1985; in waves a stationary error is independent, so that its
+//! autocovariance needs no estimate). No variance falls below the one for white residuals. An unknown on a
+//! bound counts as known for all others, and has the variance that it would have if it alone were free.
 use crate::linear::score::student;
 use crate::linear::tangent::free;
 use crate::model::fit::Fit;
@@ -21,21 +21,22 @@ use crate::record::spectrum::Spectra;
 use crate::thresholds::COLOURED;
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// How far a record leaves the unknowns of a fit open.
+/// Uncertainty of the unknowns of a fit.
 #[derive(Clone, Debug)]
 pub struct Spread {
-    /// Variance of an entry of the residual, in units of the noise's.
+    /// Variance of a residual entry, in units of the noise variance.
     pub dispersion: f64,
     /// Half-width of a 95 % interval in standard deviations.
     pub quantile: f64,
-    /// Covariance of the unknowns; none where one of them is left open.
+    /// Covariance of the unknowns; `None` where the information matrix is singular.
     pub covariance: Option<DMatrix<f64>>,
-    /// By how much each standard deviation exceeds that for white residuals; ones where they are white.
+    /// Factor by which each standard deviation exceeds that for white residuals; 1 where the residual is
+    /// white.
     pub growth: DVector<f64>,
 }
 
 impl Spread {
-    /// Of a fit to a record in a metric.
+    /// Computes the uncertainty of a fit to a record in a metric.
     pub fn of(metric: &Metric, fit: &Fit) -> Self {
         let freedom = fit.freedom();
         let per_freedom = fit.chi_squared() / freedom;
@@ -63,18 +64,20 @@ impl Spread {
         }
     }
 
-    /// Variance of an unknown; infinite where it is open.
+    /// Returns the variance of an unknown; infinite where there is no covariance.
     pub fn variance(&self, k: usize) -> f64 {
         let own = self.covariance.as_ref().map(|c| c[(k, k)]);
         own.unwrap_or(f64::INFINITY)
     }
 
-    /// By how much minus twice the log likelihood rises at the ends of an interval of an unknown where what is left is white.
+    /// Returns the rise of minus twice the log likelihood at the ends of an unknown's interval where the
+    /// residual is white.
     pub fn rise(&self) -> f64 {
         self.quantile * self.quantile * self.dispersion
     }
 
-    /// The largest growth by colour, where there is any.
+    /// Returns the largest growth of a standard deviation by coloured residuals; `None` where there is no
+    /// growth of more than 1 %.
     pub fn largest_growth(&self) -> Option<f64> {
         let largest = self.growth.iter().copied().fold(1.0, f64::max);
         // a hundredth shows in no interval that is printed
@@ -82,16 +85,15 @@ impl Spread {
     }
 }
 
-/// How much the colour of what is left widens intervals, in words.
+/// Describes in words how much a coloured residual widens intervals.
 pub fn coloured(growth: f64) -> String {
     format!(
-        "what is left is not white: it lies in slow waves, so that intervals are up to {growth:.2} times as wide as \
-         independent errors of the same size would make them"
+        "the residual is not white: it is concentrated in slow waves, so intervals are up to {growth:.2} times as wide as for independent errors of the same size"
     )
 }
 
-/// Covariance of a fit's unknowns under a dispersion, and by how much the colour of what is left widens each standard
-/// deviation; nothing where one of them is left open.
+/// Computes the covariance of a fit's unknowns under a dispersion, and the factor by which a coloured
+/// residual widens each standard deviation; `None` where the information matrix is singular.
 fn covariance(metric: &Metric, fit: &Fit, dispersion: f64) -> Option<(DMatrix<f64>, DVector<f64>)> {
     let at = fit.search.best();
     let used = free(at, fit.variables());
@@ -132,7 +134,7 @@ fn covariance(metric: &Metric, fit: &Fit, dispersion: f64) -> Option<(DMatrix<f6
     Some((whole, growths))
 }
 
-/// Precision of what is known beforehand of some of a fit's unknowns.
+/// Returns the prior precision of some of a fit's unknowns.
 fn prior(fit: &Fit, of: &[usize]) -> DMatrix<f64> {
     let deviations = of
         .iter()
@@ -142,7 +144,8 @@ fn prior(fit: &Fit, of: &[usize]) -> DMatrix<f64> {
     DMatrix::from_diagonal(&DVector::from_iterator(of.len(), precisions))
 }
 
-/// Variance of an unknown beside those that are free, if it were free too; infinite where it is open.
+/// Returns the variance that an unknown would have if it were free besides those that are; infinite where the
+/// record does not determine it.
 fn alone(fit: &Fit, used: &[usize], k: usize, dispersion: f64) -> f64 {
     let all: Vec<usize> = used.iter().copied().chain([k]).collect();
     let jacobian = fit.search.best().jacobian.select_columns(&all);
@@ -151,7 +154,8 @@ fn alone(fit: &Fit, used: &[usize], k: usize, dispersion: f64) -> f64 {
     inverse.map_or(f64::INFINITY, |own| own[(used.len(), used.len())])
 }
 
-/// `J^T S J` with the power of what a fit leaves, wave by wave, for columns of its Jacobian; none where that is white.
+/// Computes the middle factor `J^T S J` of the sandwich covariance, with the power `S` of the residual wave
+/// by wave, for columns of the Jacobian; `None` where the residual is white.
 fn meat(
     metric: &Metric,
     fit: &Fit,
@@ -191,8 +195,8 @@ fn meat(
     Some(meat)
 }
 
-/// Powers, each the mean of those about it: narrow at the slow waves, where a law of the wrong shape
-/// leaves most.
+/// Returns the powers, each averaged over a neighbourhood that is narrow at the slow waves, where a model of
+/// the wrong shape leaves most.
 fn smoothed(powers: &[f64]) -> Vec<f64> {
     let mean = |k: usize| {
         let reach = 1 + k / 4;

@@ -1,10 +1,10 @@
-//! A model in one function, as a laboratory that answers at once.
+//! Laboratory for tests that evaluates a model function immediately.
 use discrepancy::laboratory::{Laboratory, Stage};
 use discrepancy::record::Curves;
 use protocol::job::{Counters, Observation, SimulateSpec, Verdict};
 use std::convert::Infallible;
 
-/// The curves of a job; nothing where it does not run.
+/// Laboratory defined by a function from a job to its curves; `None` where the job fails.
 pub(crate) struct ByCurves(pub(crate) fn(&SimulateSpec) -> Option<Curves>);
 
 impl Laboratory for ByCurves {

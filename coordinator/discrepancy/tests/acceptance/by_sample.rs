@@ -1,5 +1,5 @@
-//! Records without a period, compared by sample: noise is white in their metric, maps of it are empty, and
-//! a bump is found where it is.
+//! Tests of records without a period, compared by sample: noise is white in their metric, its maps are empty,
+//! and a bump is located correctly.
 use crate::trial::{say, trials};
 use discrepancy::linear::score::misfit_tail;
 use discrepancy::linear::tangent::Tangent;
@@ -14,15 +14,15 @@ use protocol::case::{Abscissa, Channel, Offset};
 use search::least_squares::Linearized;
 use search::random::{Phase, Stream, Streams};
 
-/// Samples of a channel.
+/// Number of samples of a channel.
 pub(crate) const SAMPLES: usize = 300;
-/// Correlation length of the noise of each channel (s), and its size.
+/// Correlation length of the noise of each channel (s); `SIZES` holds its standard deviations.
 const LENGTHS: [f64; 2] = [0.05, 0.02];
 pub(crate) const SIZES: [f64; 2] = [0.03, 0.2];
-/// What the channels' noise has in common.
+/// Weight of the innovation that both channels' noise shares.
 const COMMON: f64 = 0.6;
 
-/// When the samples are taken (s): not evenly, and not from zero on.
+/// Returns the sampling times (s), with unequal steps and a start other than zero.
 pub(crate) fn times() -> Vec<f64> {
     let step = |k: usize| 0.01 * (1.0 + 0.4 * (0.3 * k as f64).sin());
     let next = |t: &mut f64, k: usize| {
@@ -60,7 +60,7 @@ fn channel(curve: usize, noise: Option<f64>) -> Recorded {
     }
 }
 
-/// Noise of both channels, correlated along each and between them, with a zero that nobody knows.
+/// Draws noise of both channels, correlated along each and between them, with unknown offsets.
 fn noise(stream: &mut Stream) -> Curves {
     let times = times();
     let mut state = [0.0; 2];
@@ -83,7 +83,7 @@ fn noise(stream: &mut Stream) -> Curves {
     curves
 }
 
-/// Cycles of curves with noise.
+/// Creates a record of noisy cycles about the curves `clean`.
 pub(crate) fn record(seed: u64, cycles: usize, clean: &Curves, stated: bool) -> Record {
     let mut stream = Streams::new(seed, 21).at(0, Phase::Initial, 0);
     let mut cycle = || {
@@ -112,7 +112,8 @@ fn zero() -> Curves {
     vec![vec![0.0; SAMPLES]; 2]
 }
 
-/// The metric of a record's own noise, the freedom of its variances, and the whitened mean.
+/// Returns the metric of a record's own noise, the degrees of freedom of its variances, and the whitened
+/// mean.
 fn whitened(record: &Record) -> (Metric, f64, DVector<f64>) {
     let groups = Group::of(record, 120, &[]);
     let noise = Noise::estimate(record, &groups, &[]);
@@ -122,7 +123,7 @@ fn whitened(record: &Record) -> (Metric, f64, DVector<f64>) {
     (metric, freedom, mean)
 }
 
-/// A fit of nothing.
+/// Returns the tangent space of a fit without unknowns.
 fn nothing(entries: usize) -> Tangent {
     let at = Linearized {
         x: Vec::new(),
@@ -132,7 +133,7 @@ fn nothing(entries: usize) -> Tangent {
     Tangent::new(&at, &[])
 }
 
-/// Entries have variance 1, and know nothing of each other along a channel or between channels.
+/// Checks that entries have variance 1 and are uncorrelated along a channel and between channels.
 #[test]
 fn entries_of_noise_are_white() {
     let (mut square, mut along, mut across, mut count) = (0.0, 0.0, 0.0, 0.0);
@@ -157,8 +158,8 @@ fn entries_of_noise_are_white() {
     );
 }
 
-/// Maps along the abscissa, the test of whiteness and that of the misfit reject noise at their levels, of
-/// cycles that can be flipped and of fewer.
+/// Checks that maps along the abscissa, the test of whiteness and the misfit test reject noise at their
+/// levels, with cycles enough for sign flips and with fewer.
 #[test]
 fn noise_is_rejected_as_often_as_is_said() {
     for cycles in [3, 6] {
@@ -197,7 +198,8 @@ fn noise_is_rejected_as_often_as_is_said() {
     }
 }
 
-/// What is stated is as good as what is seen, where it is true; what is neither is guessed and said to be.
+/// Checks that noise of a single cycle is taken as stated, with a whitened variance of 1, or is marked as
+/// guessed.
 #[test]
 fn noise_of_one_cycle_is_as_stated_or_guessed() {
     let ratio = |stated: bool| {
@@ -223,7 +225,8 @@ fn noise_of_one_cycle_is_as_stated_or_guessed() {
     assert!((ratio(true) - 1.0).abs() < 0.1, "{}", ratio(true));
 }
 
-/// A bump in one channel is found where it is, in the abscissa's own unit; there is no map of orders.
+/// Checks that a bump in one channel is located in the abscissa's own unit, and that the map of orders is
+/// empty.
 #[test]
 fn a_bump_is_found_where_it_is() {
     let mut clean = zero();

@@ -1,18 +1,18 @@
-//! What both sides know: the data sheet of the stand-in machine. Its cards, its unknowns, its grid; no
-//! equation of motion.
+//! Data sheet of the stand-in machine, shared by its simulation and the diagnosis: load cards, unknowns and
+//! grid, without the equation of motion.
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
 use protocol::case::{Scale, Shares, Shift, Unknown, Valley};
 use search::space::Space;
 use std::f64::consts::TAU;
 
-/// Samples of a turn.
+/// Number of samples of a turn.
 pub(crate) const SAMPLES: usize = 144;
 /// Highest order that is compared.
 pub(crate) const ORDERS: usize = 40;
 /// Speeds of the conditions, as shares of the first.
 pub(crate) const SPEED: [f64; 2] = [1.0, 0.8];
 
-/// The load card of a condition (kN) at a crank angle (rad): 14 harmonics of a pump's load, and the
+/// Returns the load card of a condition (kN) at a crank angle (rad): 14 harmonics of a pump's load, and the
 /// ripple of a rod string that each reversal sets swinging.
 pub(crate) fn card(condition: usize, angle: f64) -> f64 {
     const HARMONICS: [(f64, f64); 14] = [
@@ -47,7 +47,7 @@ pub(crate) fn card(condition: usize, angle: f64) -> f64 {
     62.0 + swing * slow + ripple
 }
 
-/// An unknown with bounds of two decades either way.
+/// Creates an unknown with bounds two decades below and above its start.
 pub(crate) fn unknown(name: &str, start: f64, trust: [f64; 2]) -> Unknown {
     let bounds = [0.01 * start, 100.0 * start];
     Unknown {
@@ -56,11 +56,12 @@ pub(crate) fn unknown(name: &str, start: f64, trust: [f64; 2]) -> Unknown {
     }
 }
 
-/// How far stiffness and loss are trusted about their recommended values (decades).
+/// Trusted range of a stiffness about its recommended value (decades); `LOSS` is that of a loss.
 pub(crate) const STIFFNESS: [f64; 2] = [-1.0, 1.5];
 pub(crate) const LOSS: [f64; 2] = [-1.0, 4.0];
 
-/// The valley of a stiffness that rings, with the loss over it and what can stand in for it.
+/// Returns the narrow valley of a resonant stiffness, with the shifts of the unknowns `loss` and `contact`
+/// that uncover it and the shifts of `contact` that can stand in for it.
 pub(crate) fn valley(loss: &str, contact: &str) -> Valley {
     let shift = |unknown: &str, by| Shift {
         unknown: unknown.to_owned(),
@@ -79,12 +80,12 @@ pub(crate) fn valley(loss: &str, contact: &str) -> Valley {
     }
 }
 
-/// Recommended values: stiffness of the rope along, across, in torsion and in bending, losses of the
-/// same, stiffness and loss of the contact.
+/// Recommended values: stiffness of the rope in tension, shear, torsion and bending, the losses in the same
+/// order, stiffness and loss of the contact.
 pub(crate) const RECOMMENDED: [f64; 10] =
     [3150.0, 345.0, 10.0, 1.0, 20.0, 2.0, 1.0, 1.0, 1500.0, 10.0];
 
-/// The space of the unknowns.
+/// Returns the search space of the unknowns.
 pub(crate) fn space() -> Space {
     let unknowns = RECOMMENDED.iter().enumerate().map(|(k, &value)| {
         let trust = if k < 4 || k == 8 { STIFFNESS } else { LOSS };
@@ -95,12 +96,12 @@ pub(crate) fn space() -> Space {
     Space::new(&unknowns).expect("positive and ordered")
 }
 
-/// Crank angles of the grid (rad).
+/// Iterates over the crank angles of the grid (rad).
 pub(crate) fn grid() -> impl Iterator<Item = f64> {
     (0..SAMPLES).map(|i| TAU * i as f64 / SAMPLES as f64)
 }
 
-/// A size that may be forty times its usual value.
+/// Creates a size with bounds at forty times its typical value.
 pub(crate) fn size(name: &str, unit: &str, typical: f64, sign: Sign) -> ParameterDescriptor {
     ParameterDescriptor {
         name: name.to_owned(),
@@ -115,7 +116,7 @@ pub(crate) fn size(name: &str, unit: &str, typical: f64, sign: Sign) -> Paramete
     }
 }
 
-/// An effect as a worker announces it.
+/// Creates an effect as a worker announces it.
 pub(crate) fn effect(
     id: &str,
     joint: &str,

@@ -1,10 +1,10 @@
-//! Two effects at once, and effects that no library has.
+//! Acceptance tests with two effects at once, and with effects that are in no library.
 use crate::strata::{OUTSIDE, named, planted};
 use crate::trial::{diagnose_usual, line, say, trials};
 use crate::truth::{Truth, Unlisted};
 use discrepancy::verdict::Verdict;
 
-/// Acceptance 9: two effects at four times their limits.
+/// Acceptance 9: checks that two effects at four times their detection limits are both found.
 #[test]
 fn two_effects_at_once_are_both_found() {
     let named = named();
@@ -42,8 +42,8 @@ fn two_effects_at_once_are_both_found() {
     assert!(one as f64 >= 0.85 * sets as f64, "{missed:#?}");
 }
 
-/// Acceptance 9: what is in no library is unlisted, mostly with the right joint and form, and with the
-/// size of the force.
+/// Acceptance 9: checks that an effect outside the library is called unlisted, mostly with the right joint
+/// and form, and with the amplitude of the force.
 #[test]
 fn what_is_in_no_library_gets_no_name() {
     let each = trials(3);
@@ -89,8 +89,8 @@ fn what_is_in_no_library_gets_no_name() {
     );
 }
 
-/// A degree of freedom that no library has, but that acts as a listed effect does: a mass that swings
-/// slowly on the beam is an inertia of the beam up to the noise, and is called so, and nothing else.
+/// Checks that a degree of freedom outside the library that acts like a listed effect is given that name
+/// only: a mass that swings slowly on the beam equals an inertia of the beam up to the noise.
 #[test]
 fn what_acts_like_a_listed_effect_takes_only_its_name() {
     for seed in 0..trials(3) {

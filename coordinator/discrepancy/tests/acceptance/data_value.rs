@@ -1,10 +1,11 @@
-//! The value of more data: the pairs that a record cannot tell apart.
+//! Acceptance test of the value of more data: the pairs of effects that a record cannot tell apart.
 use crate::trial::{diagnose_usual, say};
 use crate::truth::Truth;
 
-/// To first order a lag is a shift in time, and the stand-in machine's load has few harmonics: those
-/// two look alike, no number of cycles changes that, and no other pair does. Another speed of the crank
-/// does: a shift in time is another angle there, a lag another gain.
+/// Checks that a time shift of the card and a lag of the load cell are the only pair that cannot be told
+/// apart. To first order a lag is a shift in time, and the stand-in machine's load has few harmonics, so more
+/// cycles do not help. Another crank speed does: there a shift in time is another angle, and a lag another
+/// gain.
 #[test]
 fn a_late_card_and_a_lagging_cell_look_alike_and_nothing_else_does() {
     let answer = diagnose_usual(&Truth::healthy(7100));

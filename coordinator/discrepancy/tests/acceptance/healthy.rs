@@ -1,5 +1,5 @@
-//! Diagnoses of machines that nothing is wrong with. Every planted size is a multiple of the limits that
-//! one of them prints, so that several strata ask for the same: each is made once.
+//! Diagnoses of healthy machines, cached. Every planted size is a multiple of the detection limits of such a
+//! diagnosis, so several test groups need the same one.
 use crate::trial::{diagnose_usual, line};
 use crate::truth::Truth;
 use discrepancy::diagnose::Limit;
@@ -8,24 +8,24 @@ use discrepancy::verdict::Verdict;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// What a diagnosis says about a healthy machine.
+/// Results of the diagnosis of a healthy machine.
 pub(crate) struct Healthy {
-    /// What it would have seen.
+    /// Detection limits.
     pub(crate) limits: Vec<Limit>,
-    /// What it says.
+    /// Verdict.
     pub(crate) verdict: Verdict,
-    /// Which parameters would have to wander.
+    /// Parameters that would have to vary along the abscissa or with the condition.
     pub(crate) wander: Vec<Wander>,
-    /// All in one line.
+    /// Summary in one line.
     pub(crate) line: String,
 }
 
 type Known = BTreeMap<(u64, u64), Arc<OnceLock<Arc<Healthy>>>>;
 
-/// By seed and bits of the noise.
+/// Cached diagnoses, by seed and bits of the noise factor.
 static KNOWN: Mutex<Known> = Mutex::new(BTreeMap::new());
 
-/// The diagnosis of the healthy machine of a seed, read with so many times the usual noise.
+/// Returns the diagnosis of the healthy machine of a seed, measured with `noise` times the usual noise.
 pub(crate) fn healthy(seed: u64, noise: f64) -> Arc<Healthy> {
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     let place = Arc::clone(known.entry((seed, noise.to_bits())).or_default());

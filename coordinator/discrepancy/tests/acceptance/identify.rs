@@ -1,4 +1,5 @@
-//! What a record sees, of models whose likelihood is known in closed form.
+//! Acceptance tests of `identify` on models whose likelihood is known in closed form: which unknowns a record
+//! determines, and the coverage of the intervals and bands.
 use crate::by_curves::ByCurves;
 use crate::trial::{now, say};
 use discrepancy::diagnose::Inputs;
@@ -17,9 +18,11 @@ const SAMPLES: usize = 180;
 const NOISE: f64 = 0.5;
 const CYCLES: usize = 10;
 
-/// Waves of a turn, weighed by unknowns: the first two in the first channel, nearly alike; the third in both; the fourth in
-/// none; the fifth matters while it is small, the sixth while it is large; nothing runs where the fourth
-/// passes ten times its start.
+/// Returns two channels over a turn, as sums of sines weighted by six unknowns; `None` (failed simulation)
+/// where the fourth unknown exceeds ten times its start.
+///
+/// Unknowns 1 and 2 act on the first channel with nearly collinear shapes; unknown 3 acts on both channels;
+/// unknown 4 acts on neither; unknown 5 matters only while small, unknown 6 only while large.
 fn curves(x: &[f64]) -> Option<Curves> {
     if x[3] > 10.0 {
         return None;
@@ -76,7 +79,7 @@ fn unknowns() -> Vec<Unknown> {
     ]
 }
 
-/// A record of the first channel under the first condition.
+/// Returns a noisy record of the first channel under the first condition.
 fn record(seed: u64, truth: &[f64]) -> Record {
     let mut stream = Streams::new(seed, 33).at(0, Phase::Initial, 0);
     let clean = &curves(truth).expect("it runs")[0];
@@ -128,8 +131,9 @@ fn named<'a>(all: &'a Identified, name: &str) -> &'a UnknownEstimate {
         .expect("an unknown")
 }
 
-/// What is linear has the interval of its closed form; what does nothing is not seen, and ends where the
-/// model fails; what matters on one side has one end.
+/// Checks that linear unknowns have the interval of the closed form, that an unknown without influence is
+/// reported as not seen and its profile ends where the model fails, and that an unknown that matters on one
+/// side only has one finite end.
 #[test]
 fn intervals_are_those_of_the_closed_form() {
     let all = seen(5, unknowns());
@@ -179,8 +183,8 @@ fn intervals_are_those_of_the_closed_form() {
     assert!(last.words.contains("not seen"), "{last:?}");
 }
 
-/// Bands hold the truth of what was never measured as often as they say, and are narrow where the record sees
-/// all that matters.
+/// Checks that prediction bands cover the true curves of unmeasured channels and conditions at their nominal
+/// rate, and are narrow where the record determines all unknowns that matter.
 #[test]
 fn bands_hold_what_was_not_measured() {
     let truth = curves(&TRUTH).expect("it runs");
@@ -215,7 +219,7 @@ fn bands_hold_what_was_not_measured() {
     assert!((0.9..=1.0).contains(&share), "{share}");
 }
 
-/// A prior that the case states makes an interval of what the record does not see.
+/// Checks that a prior stated in the case gives an interval to an unknown that the record does not determine.
 #[test]
 fn what_is_known_beforehand_counts() {
     let mut unknowns = unknowns();
@@ -233,7 +237,7 @@ fn what_is_known_beforehand_counts() {
     assert!((low * factor / 2.0 - 1.0).abs() < 0.1 && (high / factor / 2.0 - 1.0).abs() < 0.1);
 }
 
-/// 95 % intervals hold the truth 90 to 99 % of the time.
+/// Checks that 95 % intervals cover the truth in 90 to 99 % of the cases.
 #[test]
 fn intervals_hold_the_truth_as_often_as_they_say() {
     let sets = 40;
@@ -253,9 +257,9 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
     assert!((0.9..=0.99).contains(&share), "{share}");
 }
 
-/// Places of a straight line, on one log without a period.
+/// Number of abscissa points of the straight line, a single log without a period.
 const PLACES: usize = 60;
-/// Constant and slope.
+/// True constant and slope of the straight line.
 const LINE: [f64; 2] = [1.0, -0.7];
 
 fn places() -> Vec<f64> {
@@ -268,8 +272,8 @@ fn line(spec: &SimulateSpec) -> Curves {
     vec![line.collect()]
 }
 
-/// What is said of a line from one log whose noise of a size is correlated from one value to the next, with as much stated;
-/// and the textbook's half-widths.
+/// Identifies a straight line from one log with AR(1) noise of the given correlation and stated noise;
+/// returns the result and the half-widths of the textbook's least-squares intervals.
 fn of_line(seed: u64, correlation: f64, stated: Option<f64>) -> (Identified, [f64; 2]) {
     let mut stream = Streams::new(seed, 34).at(0, Phase::Initial, 0);
     let mut noise = stream.normal();
@@ -329,7 +333,8 @@ fn of_line(seed: u64, correlation: f64, stated: Option<f64>) -> (Identified, [f6
     (all, half)
 }
 
-/// Half-width and whether the truth is held, of both unknowns of a line.
+/// Returns the half-width, and whether the interval contains the truth, for both unknowns of the straight
+/// line.
 fn ends_of_line(all: &Identified) -> [(f64, bool); 2] {
     let of = |k: usize| {
         let own = named(all, ["constant", "slope"][k]);
@@ -339,8 +344,9 @@ fn ends_of_line(all: &Identified) -> [(f64, bool); 2] {
     [of(0), of(1)]
 }
 
-/// The intervals of a linear model with white residuals are those of textbook least squares, whether its noise is not
-/// stated or stated as a fifth of what it is; and they hold the truth as often as they say.
+/// Checks that the intervals of a linear model with white residuals equal those of textbook least squares,
+/// whether the noise is not stated or stated at a fifth of its true size, and that they cover the truth at
+/// their nominal rate.
 #[test]
 fn intervals_of_white_residuals_are_the_textbooks() {
     let sets = 200;
@@ -364,8 +370,8 @@ fn intervals_of_white_residuals_are_the_textbooks() {
     }
 }
 
-/// Where what is left is coloured, intervals are wider, and it is said by how much; the textbook's would hold the truth half
-/// the time.
+/// Checks that intervals widen where the residual is coloured (autocorrelated), and that a note says so; the
+/// textbook's intervals would cover the truth half the time.
 #[test]
 fn intervals_of_coloured_residuals_grow_by_what_the_colour_costs() {
     let sets = 100;

@@ -1,4 +1,5 @@
-//! The maps of where: false alarms on noise that comes as cycles, not as the metric imagines it.
+//! Localisation maps of the residual: their rate of false alarms on noise generated cycle by cycle rather
+//! than from the metric's own model, and their invariance to recalibration.
 use crate::case::{ORDERS, space};
 use crate::healthy::healthy;
 use crate::strata::{named, planted};
@@ -24,7 +25,7 @@ fn simulate(point: &Point) -> Curves {
     MACHINE.observe(&spec).curves
 }
 
-/// The machine without effects.
+/// Returns the machine without effects at the given genes.
 fn plain(genes: &[f64]) -> Point {
     Point {
         model: Model::plain(space()),
@@ -32,7 +33,7 @@ fn plain(genes: &[f64]) -> Point {
     }
 }
 
-/// Change of the curves per decade of each gene.
+/// Returns the change of the curves per decade of each gene, by central differences.
 fn slopes(x: &[f64]) -> Vec<Curves> {
     const STEP: f64 = 0.01;
     let at = |k: usize, step: f64| {
@@ -53,7 +54,8 @@ fn slopes(x: &[f64]) -> Vec<Curves> {
     (0..x.len()).map(slope).collect()
 }
 
-/// Residual and tangent of a record whose model needs no further search: one Gauss-Newton step.
+/// Returns the residual and tangent of a record whose model needs no further search, after one Gauss-Newton
+/// step.
 fn linear_fit(
     record: &Record,
     metric: &Metric,
@@ -71,10 +73,11 @@ fn linear_fit(
     (tangent.project(&linearized.residual), tangent)
 }
 
-/// Acceptance 4: each map has a false alarm in 1 to 8 % of records with nothing but noise, at level
-/// 5 %; the noise is that of six cycles, correlated in time and between gauges. A joint is an alarm from
-/// odds of twenty to one on; the odds are at their best scale, so that its rate is no level, and has
-/// a bound alone.
+/// Acceptance 4: checks that each map has a false alarm in 1 to 8 % of records of pure noise, at level 5 %.
+///
+/// The noise is that of six cycles, correlated in time and between gauges. A joint counts as an alarm at odds
+/// of at least twenty to one; the odds are maximised over the scale, so that their rate is no significance
+/// level and only an upper bound is checked.
 #[test]
 fn maps_of_noise_are_empty_in_nineteen_of_twenty() {
     let sets = trials(200);
@@ -137,7 +140,7 @@ fn maps_of_noise_are_empty_in_nineteen_of_twenty() {
     assert!(share(clear) <= 4.0, "{clear} of {sets}");
 }
 
-/// The periodic forces at one joint: what each does to the curves, with its order.
+/// Periodic forces at one joint: the change of the curves and the harmonic order of each.
 struct Forces {
     joint: String,
     changes: Vec<Curves>,
@@ -156,7 +159,7 @@ impl Forces {
     }
 }
 
-/// Those of every joint, at their usual size.
+/// Returns the periodic forces of every joint, at their usual size.
 fn latents(x: &[f64], at: &Curves) -> Vec<Forces> {
     let mut all: Vec<Forces> = Vec::new();
     for effect in MACHINE.library().iter().filter(|e| e.generic) {
@@ -185,7 +188,7 @@ fn latents(x: &[f64], at: &Curves) -> Vec<Forces> {
     all
 }
 
-/// Cycles of curves with noise that nothing else moves.
+/// Returns a record of the clean curves plus fresh cycles of noise.
 fn noise_of(truth: &Truth, set: u64, clean: &Curves, template: &Record) -> Record {
     let mut noise = crate::truth::cycles_of_noise(truth.seed ^ (set + 1), template.cycles.len());
     for cycle in &mut noise {
@@ -201,8 +204,8 @@ fn noise_of(truth: &Truth, set: u64, clean: &Curves, template: &Record) -> Recor
     }
 }
 
-/// Acceptance 5: moving the data along what recalibration explains changes no score by more than
-/// 5 %, while raw statistics do change.
+/// Acceptance 5: checks that moving the data along directions that recalibration explains changes no score by
+/// more than 5 %, while raw statistics do change.
 #[test]
 fn scores_do_not_see_what_recalibration_explains() {
     let truth = Truth::healthy(9200);
@@ -244,8 +247,8 @@ fn scores_do_not_see_what_recalibration_explains() {
     assert!(raw_changes >= 1);
 }
 
-/// Parameters that would have to wander: on healthy machines hardly ever, beside a missing effect mostly,
-/// and beside the answer no more.
+/// Checks that parameters drift between parts of the data rarely on healthy machines, mostly while an effect
+/// is missing from the model, and no longer once the found effect is in the model.
 #[test]
 fn parameters_wander_with_what_is_missing_and_not_with_the_answer() {
     let least = |all: &[Wander]| {

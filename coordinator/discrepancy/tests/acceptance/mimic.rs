@@ -1,5 +1,5 @@
-//! Effects that resemble others: one that mimics the sum of two, one that another condition alone tells from its twin, and
-//! one that is there under the fitted condition and not elsewhere.
+//! Tests of effects that resemble one another: an effect that mimics the sum of two others, twins that only a
+//! second condition separates, and an effect present under the fitted condition only.
 use crate::by_curves::ByCurves;
 use crate::case::{effect, size};
 use crate::trial::{line, now};
@@ -15,9 +15,10 @@ use search::space::Space;
 
 const SAMPLES: usize = 144;
 
-/// A wave whose size is unknown with waves of other orders as effects, over a turn: the unknown, two waves, what resembles
-/// their sum, two that have nothing to do with it, and a twin of the first one, which is another wave under the second
-/// condition.
+/// Returns a sine wave of unknown size plus the effects, which are waves of other orders over a turn.
+///
+/// `one` and `other` are two waves; `sum` resembles their sum; `fourth` and `fifth` are unrelated; `twin`
+/// resembles `one` under the first condition and is a different wave under the second.
 fn curve(x: f64, amounts: &[(&str, f64)], condition: usize) -> Vec<f64> {
     let amount = |id: &str| {
         let own = amounts.iter().find(|(name, _)| *name == id);
@@ -52,7 +53,8 @@ fn waves(spec: &SimulateSpec) -> Curves {
     vec![curve(own.genes[0], &effects, own.condition)]
 }
 
-/// Diagnoses records of what each condition has, the library in an order.
+/// Diagnoses one record per condition, each generated with its own hidden effects, with the library in the
+/// given order.
 fn diagnosed(ids: &[&str], hidden: &[&[(&str, f64)]], seed: u64) -> Diagnosis {
     let point = |k: usize| 360.0 * k as f64 / SAMPLES as f64;
     let channel = Channel {
@@ -113,7 +115,7 @@ fn diagnosed(ids: &[&str], hidden: &[&[(&str, f64)]], seed: u64) -> Diagnosis {
     now(diagnose(&mut ByCurves(|spec| Some(waves(spec))), &inputs))
 }
 
-/// The effects of an answer.
+/// Returns the identifiers of the effects that a diagnosis added.
 fn added(answer: &Diagnosis) -> Vec<&str> {
     let added = answer.after.as_ref().map(|fit| &fit.model.added);
     added.into_iter().flatten().map(|e| &*e.id).collect()
@@ -137,8 +139,8 @@ fn two_effects_are_found_in_either_order_beside_one_that_resembles_their_sum() {
     }
 }
 
-/// Twins explain the fitted record alike, and one of them often a little better than the one that is there: they are one
-/// set, until another condition shows which of them it is.
+/// Checks that twins, which explain the fitted record equally well (the wrong twin often slightly better),
+/// form one ambiguity set until a second condition shows which twin is present.
 #[test]
 fn another_condition_tells_twins_apart() {
     let ids = ["one", "other", "twin", "fourth", "fifth"];
@@ -159,8 +161,8 @@ fn another_condition_tells_twins_apart() {
     }
 }
 
-/// What explains the fitted record beside another effect, and has another condition move as it does not, is taken back; the
-/// other stays.
+/// Checks that an effect is removed again if it explains the fitted record together with another effect but
+/// predicts changes under a second condition that are not observed, and that the other effect stays.
 #[test]
 fn an_effect_that_predicts_what_does_not_happen_is_taken_back() {
     let ids = ["one", "other", "sum", "fourth", "fifth"];

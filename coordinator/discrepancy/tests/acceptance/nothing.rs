@@ -1,12 +1,12 @@
-//! Where nothing can be said, nothing is: healthy machines, effects far below their limits, effects
-//! that are not in the library.
+//! Tests that nothing is claimed without grounds: healthy machines, effects far below their detection limits,
+//! effects that are not in the library.
 use crate::healthy::healthy;
 use crate::strata::{machine, named, planted};
 use crate::trial::{Setup, diagnose_usual, diagnosed, line, say, trials};
 use crate::truth::Truth;
 use discrepancy::verdict::Verdict;
 
-/// Acceptance 3: at most one healthy machine in twenty is said to have anything.
+/// Acceptance 3: checks that at most one healthy machine in twenty gets a claim.
 #[test]
 fn healthy_machines_are_left_alone() {
     let sets = trials(40);
@@ -30,8 +30,8 @@ fn healthy_machines_are_left_alone() {
     assert!(20 * unresolved <= sets, "{unresolved}");
 }
 
-/// Acceptance 8, first half: at 0.3 times its printed limit an effect is not seen, and the limit is
-/// printed.
+/// Acceptance 8, first half: checks that an effect at 0.3 times its printed limit is not detected, and that
+/// the limit is printed.
 #[test]
 fn effects_far_below_their_limits_are_not_claimed() {
     let each = trials(4);
@@ -61,8 +61,8 @@ fn effects_far_below_their_limits_are_not_claimed() {
     assert!(f64::from(quiet) >= 0.92 * all as f64, "{loud:#?}");
 }
 
-/// With every named effect disabled a disagreement has no name, and is not said to be outside the
-/// library either, whether the forces without a cause are left on or not.
+/// Checks that with every named effect disabled a disagreement gets no name and is not called unlisted
+/// either, with and without the generic forces.
 #[test]
 fn without_a_library_there_is_never_a_name() {
     for probes in [true, false] {

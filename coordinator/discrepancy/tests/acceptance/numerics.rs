@@ -1,5 +1,5 @@
-//! What the discretisation of the tool's model does must not be named, must be said, and must not turn
-//! good answers over.
+//! Tests that the discretisation error of the tool's model is reported, is never named as an effect, and does
+//! not overturn correct answers.
 use crate::machine::Roughness;
 use crate::strata::{named, planted};
 use crate::trial::{Setup, diagnosed, line};
@@ -19,8 +19,8 @@ fn says(answer: &Diagnosis, what: &str) -> bool {
     answer.notes.iter().any(|note| note.contains(what))
 }
 
-/// A ripple of the coarse model, about as large as the mean's own error: it is said, a healthy machine
-/// stays healthy, and a clear effect keeps its name.
+/// Checks a coarse model whose ripple is about as large as the standard error of the mean: the numerical
+/// error is reported, a healthy machine stays healthy, and a clear effect keeps its name.
 #[test]
 fn a_rough_model_is_said_to_be_rough_and_names_nothing() {
     let rough = with(Roughness::Ripple(0.1));
@@ -49,8 +49,11 @@ fn a_rough_model_is_said_to_be_rough_and_names_nothing() {
     assert!(!says(&fine, "numerical error"), "{:?}", fine.notes);
 }
 
-/// A ripple that nothing in the library makes, and that the coarse model makes when an effect is on: the
-/// effect explains the record perfectly, for a reason that a finer model does not know.
+/// Checks that a name is withdrawn if the effect explains the record only through the discretisation error of
+/// the coarse model.
+///
+/// The record contains a ripple that no effect of the library makes, but that the coarse model makes while
+/// the effect is on; a finer model does not make it.
 #[test]
 fn a_name_that_rests_on_a_coarse_model_is_withdrawn() {
     let id = "beam_inertia";
@@ -73,8 +76,8 @@ fn a_name_that_rests_on_a_coarse_model_is_withdrawn() {
     assert!(says(&answer, "numerical error"), "{:?}", answer.notes);
 }
 
-/// Without a finer model nothing is named; where it is only the cylinders that cannot be shorter, the
-/// rest of the check stands.
+/// Checks that nothing is named if no finer model completes; if only shorter cylinders fail, the rest of the
+/// discretisation check still counts.
 #[test]
 fn without_a_finer_model_nothing_is_named() {
     let truth = planted(Truth::healthy(8420), named()[1], 8.0);

@@ -1,5 +1,5 @@
-//! What is hidden in records without a period: cycles or one log, with noise that is seen, stated or neither, sensors that
-//! drift, levels from which an effect acts, and instruments that are off.
+//! Tests with records without a period: several cycles or one log, noise that is measured, stated or unknown,
+//! drifting sensors, effects with a threshold level, and instrument errors.
 use crate::by_curves::ByCurves;
 use crate::by_sample::{SAMPLES, SIZES, record, times};
 use crate::case::{effect, size};
@@ -15,10 +15,10 @@ use protocol::job::{Individual, Numerics, SimulateSpec};
 use search::random::{Phase, Streams};
 use search::space::Space;
 
-/// Decades of its frequency and damping from the start.
+/// True frequency and damping, in decades from the start.
 const TRUTH: [f64; 2] = [0.03, -0.1];
 
-/// Something that rings down: its deflection and its force.
+/// Returns the deflection and the force of a decaying oscillation with effects.
 fn curves(genes: &[f64], effects: &[(&str, f64)]) -> Curves {
     let amount = |id: &str| {
         let own = effects.iter().find(|(name, _)| *name == id);
@@ -79,7 +79,8 @@ fn library() -> Vec<EffectDescriptor> {
     ]
 }
 
-/// What stops the deflection from a level on: absent far out, and at its usual level still nothing is met.
+/// Returns the effect `stop`, which limits the deflection from a level on; its absent level is far out, and
+/// its usual level is still above the deflection, without influence.
 fn stop() -> EffectDescriptor {
     let mut stop = effect(
         "stop",
@@ -93,7 +94,7 @@ fn stop() -> EffectDescriptor {
     stop
 }
 
-/// Frequency and damping, and a detuning that is not there.
+/// Returns the unknowns: frequency, damping, and a detuning (`softening`) that is absent.
 fn unknowns() -> Vec<Unknown> {
     let searched = |name: &str, value: f64| {
         let bounds = [0.1 * value, 10.0 * value];
@@ -112,7 +113,7 @@ fn space() -> Space {
     Space::new(&unknowns()).expect("positive and ordered")
 }
 
-/// A record of the truth with an effect.
+/// Returns a record of the true oscillation with the given hidden effects.
 fn hidden(effects: &[(&str, f64)], cycles: usize, stated: bool) -> Record {
     record(
         77,
@@ -122,12 +123,12 @@ fn hidden(effects: &[(&str, f64)], cycles: usize, stated: bool) -> Record {
     )
 }
 
-/// Diagnoses records, from beside the truth.
+/// Diagnoses records, starting near the truth.
 fn diagnosed(records: Vec<Record>) -> Diagnosis {
     diagnosed_without(records, &[])
 }
 
-/// The same without some effects.
+/// Diagnoses records with some effects of the library disabled.
 fn diagnosed_without(records: Vec<Record>, without: &[&str]) -> Diagnosis {
     let inputs = Inputs {
         conditions: Vec::new(),
@@ -150,8 +151,8 @@ fn diagnosed_without(records: Vec<Record>, without: &[&str]) -> Diagnosis {
     now(diagnose(&mut ByCurves(|spec| Some(ringing(spec))), &inputs))
 }
 
-/// The whole way, without a period anywhere: a healthy record is left alone, each effect gets its name and its
-/// size, and one cycle carries a name where its noise is stated.
+/// Checks the whole pipeline on records without a period: a healthy record gets no claim, each effect gets
+/// its name and size, and a single cycle suffices for a name if its noise is stated.
 #[test]
 fn what_is_hidden_in_a_record_without_a_period_gets_its_name() {
     let healthy = diagnosed(vec![hidden(&[], 8, false)]);
@@ -186,7 +187,7 @@ fn what_is_hidden_in_a_record_without_a_period_gets_its_name() {
     }
 }
 
-/// What the case holds out is compared at the end and nowhere else: a channel, and a condition.
+/// Checks that a channel and a condition held out by the case are compared at the end and used nowhere else.
 #[test]
 fn what_is_held_out_is_compared_at_the_end() {
     let effects = [("hardening", 0.6)];
@@ -225,8 +226,8 @@ fn what_is_held_out_is_compared_at_the_end() {
     assert_eq!((shifts(&free), shifts(&held)), (5, 4));
 }
 
-/// An unknown of the case that stands where it does nothing is held there in every fit, and yet found: by its
-/// own name, with the value to start from.
+/// Checks that an unknown of the case whose value has no influence is held fixed in every fit, and is still
+/// found as a suspect under its own name, with a value to start from.
 #[test]
 fn an_unknown_that_is_off_is_a_suspect() {
     let mut values = space().values(&TRUTH);
@@ -250,8 +251,8 @@ fn an_unknown_that_is_off_is_a_suspect() {
     assert_eq!(answer.before.expect("a model").x().len(), 2);
 }
 
-/// One log with correlated noise of which the size alone is stated: its correlation is taken from what is left, a healthy
-/// one is left alone, and what is hidden in it gets its name.
+/// Checks a log whose noise size is stated but whose correlation is not: the correlation is estimated from
+/// the residual, healthy logs get no claim, and a hidden effect gets its name.
 #[test]
 fn a_correlation_that_is_not_stated_is_taken_from_what_is_left() {
     let without = |seed: u64, effects: &[(&str, f64)]| {
@@ -285,8 +286,8 @@ fn a_correlation_that_is_not_stated_is_taken_from_what_is_left() {
     assert_eq!(answer.effects[0].id, "hardening", "{said}");
 }
 
-/// Sensors with a zero whose cycles drift by more than they scatter from sample to sample: what two fitted cycles and a
-/// third say of a constant is what their means say, and no effect is named for it.
+/// Checks that no effect is named on sensors with a fixed zero whose cycles drift by more than they scatter
+/// between samples, with three and with six cycles.
 #[test]
 fn cycles_that_drift_name_nothing() {
     let drifting = |seed: u64, cycles: usize, effects: &[(&str, f64)]| {
@@ -333,8 +334,8 @@ fn cycles_that_drift_name_nothing() {
     assert_eq!(answer.effects[0].id, "hardening", "{said}");
 }
 
-/// What acts from a level on, and does nothing at its usual size, is found along its range; and it is never said that
-/// recalibration absorbs it where it does nothing.
+/// Checks that an effect with a threshold, without influence at its usual size, is found by trying values
+/// along its range, and is never reported as absorbed by recalibration where it has no influence.
 #[test]
 fn what_acts_from_a_level_on_is_tried_along_its_range() {
     for level in [0.25, 0.45] {
@@ -349,8 +350,9 @@ fn what_acts_from_a_level_on_is_tried_along_its_range() {
     assert!(healthy.absorbed.iter().all(|own| own.id != "stop"));
 }
 
-/// An instrument that the model would have to take far beyond what it is good to, and that is in no library, is no
-/// instrument: it is held, what is left is not nothing, and the reason says so.
+/// Checks that an instrument error far beyond its stated accuracy, which no library effect covers, does not
+/// absorb the discrepancy: the nuisance parameter is held, the residual stays significant, and the reason
+/// says so.
 #[test]
 fn instruments_do_not_swallow_what_is_missing() {
     let clean = curves(&space().values(&TRUTH), &[("gain", 0.08)]);
@@ -375,7 +377,7 @@ fn instruments_do_not_swallow_what_is_missing() {
     );
 }
 
-/// Of one log the end is held out: a name must predict that, and does.
+/// Checks that, with the end of a log held out, a named effect must predict the held-out part, and does.
 #[test]
 fn a_part_that_is_held_out_judges_the_name() {
     let whole = hidden(&[("hardening", 0.8)], 1, true);
@@ -400,7 +402,8 @@ fn a_part_that_is_held_out_judges_the_name() {
     assert!(answer.prediction[0].nats > 3.0, "{:?}", answer.prediction);
 }
 
-/// What no law is better than is no discovery, and it is said; a smaller error leaves the name.
+/// Checks that a discrepancy smaller than the stated model error is not claimed and is noted, while a smaller
+/// stated model error leaves the name.
 #[test]
 fn an_error_that_is_stated_of_any_model_hides_what_is_smaller() {
     let with_error = |shares: f64| {

@@ -1,5 +1,5 @@
-//! What must not matter: the library's order and names, lost runs; and what must be said: one cycle
-//! only, missing channels.
+//! Tests of robustness: the library's order and labels and lost runs must not matter; a single cycle and
+//! missing channels must be reported.
 use crate::strata::{named, planted};
 use crate::trial::{MACHINE, Setup, diagnose_usual, diagnosed, line, say};
 use crate::truth::{ALL, Truth};
@@ -10,7 +10,7 @@ use discrepancy::proof::compare::Portion;
 use discrepancy::record::noise::Known;
 use discrepancy::verdict::Verdict;
 
-/// A few truths of every sort.
+/// Returns healthy machines and machines with one planted effect.
 fn sample() -> Vec<Truth> {
     let named = named();
     let mut all = vec![Truth::healthy(6000), Truth::healthy(6001)];
@@ -26,7 +26,7 @@ fn sorted(ids: impl Iterator<Item = String>) -> Vec<String> {
     ids
 }
 
-/// Acceptance 13: the library's order decides nothing.
+/// Acceptance 13: checks that the library's order does not change the verdict.
 #[test]
 fn a_reversed_library_gives_the_same_verdict() {
     let mut reversed = Setup::default();
@@ -44,7 +44,7 @@ fn a_reversed_library_gives_the_same_verdict() {
     }
 }
 
-/// Acceptance 15: one run in twenty is lost; no verdict changes, and the losses are counted.
+/// Acceptance 15: checks that no verdict changes if one run in twenty is lost, and that losses are counted.
 #[test]
 fn lost_runs_change_no_verdict() {
     let lossy = Setup {
@@ -73,7 +73,8 @@ fn lost_runs_change_no_verdict() {
     }
 }
 
-/// Acceptance 14: under other names the same things are found; the names themselves carry nothing.
+/// Acceptance 14: checks that the same effects are found under permuted labels, so that labels carry no
+/// information.
 #[test]
 fn permuted_labels_fall_to_chance() {
     let named = named();
@@ -105,9 +106,11 @@ fn permuted_labels_fall_to_chance() {
     assert!(by_meaning as f64 >= 0.8 * n as f64, "{by_meaning} of {n}");
 }
 
-/// One cycle says nothing about its own noise: that is marked. Where it is stated a healthy machine is left alone, and a
-/// sick one gets its name by what it predicts elsewhere; where it is not, there is a suspect and no name, however clear
-/// the tests are.
+/// Checks diagnoses of a single cycle, which tells nothing about its own noise.
+///
+/// With stated noise a healthy machine gets no claim, and a defective machine gets a name through its
+/// prediction under another condition; without stated noise there is a suspect but no name, however clear the
+/// tests are.
 #[test]
 fn one_cycle_carries_a_name_where_its_noise_is_stated() {
     let setup = |stated: f64| Setup {
@@ -149,7 +152,8 @@ fn one_cycle_carries_a_name_where_its_noise_is_stated() {
     assert_eq!(seen.verdict, Verdict::Named, "{}", line(&seen));
 }
 
-/// Noise that a data sheet understates, or overstates, is neither nothing nor a name.
+/// Checks that a data sheet that understates or overstates the noise leads to an unresolved verdict with that
+/// reason.
 #[test]
 fn noise_that_was_wrongly_assumed_is_said() {
     for (k, stated) in [0.2, 4.0].into_iter().enumerate() {
@@ -166,7 +170,7 @@ fn noise_that_was_wrongly_assumed_is_said() {
     }
 }
 
-/// That an answer claims nothing.
+/// Asserts that an answer claims nothing.
 fn withheld(answer: &Diagnosis) {
     let quiet = [Verdict::NothingDetected, Verdict::Unresolved];
     assert!(quiet.contains(&answer.verdict), "{}", line(answer));
@@ -182,7 +186,8 @@ fn withheld(answer: &Diagnosis) {
     );
 }
 
-/// Every stage may run out: what it could not do is said, nothing is claimed that rests on it, and the stage is named.
+/// Checks that each stage may exhaust its budget of simulations: the reason is given, nothing that depends on
+/// that stage is claimed, and the stage is listed.
 #[test]
 fn every_stage_may_run_out_of_simulations() {
     let sick = planted(Truth::healthy(8400), named()[1], 8.0);
@@ -208,7 +213,8 @@ fn every_stage_may_run_out_of_simulations() {
     }
 }
 
-/// Any one channel is enough to say something, and none makes a healthy machine ill.
+/// Checks that any subset of channels gives limits for all effects, and that none causes a false claim on a
+/// healthy machine.
 #[test]
 fn missing_channels_are_no_disagreement() {
     let some: [&[usize]; 4] = [&ALL[..1], &ALL[..2], &ALL[4..5], &ALL[4..]];
@@ -230,8 +236,8 @@ fn missing_channels_are_no_disagreement() {
     }
 }
 
-/// Acceptance 12, on the stand-in: a named effect closes the gap on cycles and under a condition that
-/// took no part, and the best rejected rival stands beside it.
+/// Acceptance 12, on the stand-in: checks that a named effect closes the gap on held-out cycles and under a
+/// condition that was not fitted, and that the best rejected rival is reported too.
 #[test]
 fn a_named_effect_closes_the_gap_where_nothing_was_fitted() {
     let truth = planted(Truth::healthy(8300), named()[2], 6.0);

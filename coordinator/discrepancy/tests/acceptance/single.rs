@@ -1,4 +1,4 @@
-//! One effect at a time, at multiples of its printed limit.
+//! Tests with one planted effect at a time, at multiples of its printed detection limit.
 use crate::strata::{NOISES, limits, machine, named, planted, planted_at};
 use crate::trial::{Setup, diagnose_usual, line, say, trials};
 use crate::truth::{ALL, Truth};
@@ -10,8 +10,9 @@ use discrepancy::verdict::Verdict;
 use protocol::announce::EffectDescriptor;
 use statrs::distribution::{Binomial, DiscreteCDF};
 
-/// Acceptance 7 and 10, and the intervals, over three levels of noise: at three times its limit an
-/// effect is in the set, mostly on top; what it is confused with was predicted; its size is right.
+/// Acceptance 7 and 10, and the intervals, over three levels of noise: checks that at three times its limit
+/// an effect is in the ambiguity set, mostly first; that the other members of the set were predicted; and
+/// that its size is right.
 #[test]
 fn every_effect_is_named_at_three_times_its_limit() {
     let each = trials(3);
@@ -78,14 +79,14 @@ fn every_effect_is_named_at_three_times_its_limit() {
     assert!(median <= 0.1, "{median}");
 }
 
-/// Whether a share that was counted is no worse than an aim by more than chance: fifty trials of what
-/// comes true in 87 of 100 give fewer than 85 % in one sample of three.
+/// Returns whether a counted share is not significantly below an aim (binomial test, 5 %): fifty trials with
+/// success rate 87 % give fewer than 85 % in one sample of three.
 fn reaches(counted: u64, of: u64, aim: f64) -> bool {
     let chance = Binomial::new(aim, of).expect("a share");
     chance.cdf(counted) > 0.05
 }
 
-/// Whether the interval of the planted size holds it, and the estimate's relative error.
+/// Returns whether the interval of the planted size contains it, and the relative error of the estimate.
 fn size_of(answer: &Diagnosis, effect: &EffectDescriptor, truth: &Truth) -> (bool, f64) {
     let own = sizes(effect).into_iter();
     let planted = &truth.effects[0].1;
@@ -99,8 +100,8 @@ fn size_of(answer: &Diagnosis, effect: &EffectDescriptor, truth: &Truth) -> (boo
     (inside, (own.value / planted[k] - 1.0).abs())
 }
 
-/// Whether the isolability matrix said that this rival could not be told from the effect at three
-/// times its limit.
+/// Returns whether the isolability matrix predicted that a rival cannot be distinguished from the effect at
+/// three times its limit.
 fn expected(answer: &Diagnosis, effect: &EffectDescriptor, (rival, truth): (&str, &Truth)) -> bool {
     let Some(before) = &answer.before else {
         return false;
@@ -118,8 +119,8 @@ fn expected(answer: &Diagnosis, effect: &EffectDescriptor, (rival, truth): (&str
     size * size * distances(&signatures, &before.tangent())[(0, 1)] < APART
 }
 
-/// Acceptance 8, second half, over the levels of noise: the printed limit is within a factor 1.5 of
-/// the size that is detected in nine records of ten.
+/// Acceptance 8, second half, over the levels of noise: checks that the printed limit is within a factor 1.5
+/// of the size that is detected in nine records of ten.
 #[test]
 fn printed_limits_are_those_of_ninety_per_cent_power() {
     let each = trials(2);
@@ -143,7 +144,7 @@ fn printed_limits_are_those_of_ninety_per_cent_power() {
     assert!(below <= 0.9, "{below}");
 }
 
-/// Acceptance 9: with the gauges alone most names are still right.
+/// Acceptance 9: checks that with the gauges alone most names are still right.
 #[test]
 fn four_gauges_alone_name_most_effects() {
     let channels = ALL[..4].to_vec();

@@ -1,4 +1,4 @@
-//! The strata of truths that the pipeline is held against.
+//! Strata of true machines on which the pipeline is tested.
 use crate::healthy::healthy;
 use crate::trial::MACHINE;
 use crate::truth::{Truth, Unlisted};
@@ -7,18 +7,18 @@ use discrepancy::model::{shapes, sizes};
 use protocol::announce::{EffectDescriptor, Sign};
 use search::random::{Phase, Streams};
 
-/// Levels of noise, as factors of the usual one, through which strata go.
+/// Noise levels of the strata, as factors of the usual noise.
 pub(crate) const NOISES: [f64; 3] = [0.3, 1.0, 3.0];
 
-/// The machine of a stratum in which the `k`-th effect is planted: from one seed, and from one effect,
-/// to the next through the levels of noise. Strata that plant at other multiples share it.
+/// Returns the machine of a stratum in which the `k`-th effect is planted; the noise level cycles through
+/// [`NOISES`] with effect and seed. Strata that plant at other multiples share the machine.
 pub(crate) fn machine(k: usize, seed: u64) -> Truth {
     let level = (k + seed as usize) % NOISES.len();
     Truth::healthy(100 + 100 * k as u64 + seed).noisy(NOISES[level])
 }
 
-/// The detection limits that a diagnosis of this machine, with the same noise and nothing hidden in
-/// it, prints; those of another such machine if its recalibration does not converge.
+/// Returns the detection limits that a diagnosis of this machine prints with the same noise and no hidden
+/// effect; those of another such machine if its recalibration does not converge.
 pub(crate) fn limits(truth: &Truth) -> Vec<Limit> {
     let own = healthy(truth.seed, truth.noise);
     if own.limits.is_empty() {
@@ -27,19 +27,19 @@ pub(crate) fn limits(truth: &Truth) -> Vec<Limit> {
     own.limits.clone()
 }
 
-/// The named effects.
+/// Returns the named effects of the library.
 pub(crate) fn named() -> Vec<&'static EffectDescriptor> {
     MACHINE.library().iter().filter(|e| !e.generic).collect()
 }
 
-/// An effect of the library at a multiple of its limit: one of its sizes, its shapes where the
-/// library tries none.
+/// Plants an effect of the library at a multiple of its detection limit: one of its sizes is set, and its
+/// shape parameters take values that the library does not try.
 pub(crate) fn planted(truth: Truth, effect: &EffectDescriptor, multiple: f64) -> Truth {
     let limits = limits(&truth);
     planted_at(truth, effect, multiple, &limits)
 }
 
-/// The same at a multiple of other limits than those of all channels.
+/// Plants an effect at a multiple of the given limits, e.g. those of a subset of the channels.
 pub(crate) fn planted_at(
     truth: Truth,
     effect: &EffectDescriptor,
@@ -64,7 +64,8 @@ pub(crate) fn planted_at(
     truth.with(&effect.id, &amounts)
 }
 
-/// What is outside the library, at sizes that show: with the joints and forms that describe it.
+/// Effects outside the library, at detectable sizes, each with the joint and forms of the generic force that
+/// describes it.
 pub(crate) const OUTSIDE: [(Unlisted, &str, &[&str]); 5] = [
     (Unlisted::BeamSpring(1.2), "beam", &["d3", "cos1"]),
     (Unlisted::HeadThrice(0.4), "head", &["cos3", "sin3"]),

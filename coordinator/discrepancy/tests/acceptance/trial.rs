@@ -1,4 +1,4 @@
-//! One diagnosis of one truth, and what is asked of its answer.
+//! Diagnosis of one true machine, and helpers for checking the answer.
 use crate::case::{ORDERS, space};
 use crate::machine::{AtOnce, Machine, Roughness, finer, ripple};
 use crate::truth::{ALL, Truth, record};
@@ -11,31 +11,31 @@ use std::pin::pin;
 use std::sync::LazyLock;
 use std::task::{Context, Poll, Waker};
 
-/// The tool's machine.
+/// Stand-in machine that the tool simulates.
 pub(crate) static MACHINE: LazyLock<Machine> = LazyLock::new(Machine::new);
 
-/// How a trial differs from the usual one.
+/// Settings of a trial.
 #[derive(Clone, Debug)]
 pub(crate) struct Setup {
     /// Channels of the record.
     pub(crate) channels: Vec<usize>,
     /// Cycles of the record.
     pub(crate) cycles: usize,
-    /// Thresholds.
+    /// Thresholds of the diagnosis.
     pub(crate) thresholds: Thresholds,
-    /// The library.
+    /// Effects that the diagnosis may consider.
     pub(crate) library: Vec<EffectDescriptor>,
-    /// One run in so many is lost; none if 0.
+    /// Loss of one run in this many; 0 loses none.
     pub(crate) lost_every: u64,
-    /// Names of the library with the machine's own, where they differ.
+    /// Pairs of a library label and the machine's own identifier, where the two differ.
     pub(crate) labels: Vec<(String, String)>,
-    /// What discretisation does.
+    /// Discretisation error of the tool's machine.
     pub(crate) numerics: Roughness,
-    /// A ripple of the gauges that the record has and nothing makes (MPa).
+    /// Ripple added to the gauges of the record that no model reproduces (MPa).
     pub(crate) ripple_mpa: f64,
     /// Whether every derivative is a difference of whole simulations.
     pub(crate) differences: bool,
-    /// The noise that the data sheet states, over the true one; no number where it states none.
+    /// Ratio of the noise that the data sheet states to the true noise; NaN if no noise is stated.
     pub(crate) stated: f64,
 }
 
@@ -60,7 +60,7 @@ impl Default for Setup {
     }
 }
 
-/// Diagnoses; the number of lost runs is second.
+/// Diagnoses a true machine; returns the diagnosis and the number of lost runs.
 pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
     let mut records = vec![
         record(truth, 0, &setup.channels, setup.cycles),
@@ -110,7 +110,7 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
     (answer, lab.lost)
 }
 
-/// What comes of work in a laboratory that answers at once.
+/// Returns the result of a future that completes at the first poll.
 pub(crate) fn now<T>(work: impl Future<Output = Result<T, Infallible>>) -> T {
     let mut work = pin!(work);
     match work.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
@@ -125,7 +125,7 @@ pub(crate) fn diagnose_usual(truth: &Truth) -> Diagnosis {
     diagnosed(truth, &Setup::default()).0
 }
 
-/// In one line, for failures and surveys.
+/// Summarises a diagnosis in one line, for failure messages and surveys.
 pub(crate) fn line(diagnosis: &Diagnosis) -> String {
     let base = diagnosis.before.as_ref().map_or(f64::NAN, |fit| {
         fit.chi_squared() / fit.search.best().residual.len() as f64
@@ -163,13 +163,13 @@ pub(crate) fn line(diagnosis: &Diagnosis) -> String {
     )
 }
 
-/// How many trials a stratum has: more where `HORSEHEAD_ACCEPTANCE=full` is set.
+/// Returns the number of trials of a stratum: five times as many if `HORSEHEAD_ACCEPTANCE=full` is set.
 pub(crate) fn trials(few: u64) -> u64 {
     let full = std::env::var("HORSEHEAD_ACCEPTANCE").is_ok_and(|v| v == "full");
     if full { 5 * few } else { few }
 }
 
-/// Says what a stratum measured; shown with `--nocapture`, and when a test fails.
+/// Prints a measurement of a stratum; shown with `--nocapture` and when a test fails.
 #[expect(
     clippy::print_stdout,
     reason = "captured by the test harness, shown on request"

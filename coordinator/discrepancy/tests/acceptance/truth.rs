@@ -1,50 +1,50 @@
-//! The machine as it really is: marched through time, with other laws than the tool knows, and the
-//! sensors that read it. Shares the data sheet with the tool's machine and not one line of code.
+//! Simulation of the true machine by time stepping, with laws other than the tool's, and of the sensors that
+//! read it. Shares the data sheet with the tool's machine and not one line of code.
 use crate::case::{RECOMMENDED, SAMPLES, SPEED, card};
 use discrepancy::record::{Curves, InputScatter, Record, Recorded, Stated};
 use protocol::case::{Abscissa, Channel, Offset};
 use search::random::{Phase, Stream, Streams};
 use std::f64::consts::TAU;
 
-/// Steps of a turn.
+/// Number of time steps per turn.
 const STEPS: usize = 720;
-/// Most turns until the motion repeats.
+/// Maximum number of turns until the motion is periodic.
 const TURNS: usize = 60;
 
-/// What nobody has put into a library.
+/// Effect of the true machine that is not in the library.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Unlisted {
     /// A hardening spring under the beam (kN at full stroke).
     BeamSpring(f64),
-    /// Something that pushes the head three times a turn (kN).
+    /// A periodic force on the head, three times per turn (kN).
     HeadThrice(f64),
     /// A dashpot on the rod (kN/(m/t)).
     RodDashpot(f64),
-    /// A gear that brakes the crank four times a turn (kN m).
+    /// A gear mesh torque that brakes the crank four times per turn (kN m).
     GearMesh(f64),
-    /// A gearbox whose teeth rub (kN m).
+    /// Coulomb friction of the gearbox teeth (kN m).
     GearFriction(f64),
-    /// A mass that swings on the beam, 3.3 times a turn (1).
+    /// A mass oscillating on the beam, 3.3 times per turn (1).
     SwingingMass(f64),
 }
 
-/// A machine with all that is wrong with it.
+/// True machine with its hidden effects and its noise.
 #[derive(Clone, Debug)]
 pub(crate) struct Truth {
-    /// Decades from the recommended genes.
+    /// Genes as decades from the recommended values.
     pub(crate) genes: [f64; 10],
-    /// Effects with their amounts, parameters in the library's order.
+    /// Hidden effects with their amounts, parameters in the library's order.
     pub(crate) effects: Vec<(String, Vec<f64>)>,
-    /// What is in no library.
+    /// Hidden effect that is not in the library.
     pub(crate) unlisted: Option<Unlisted>,
-    /// Noise, as a factor.
+    /// Noise, as a factor of the usual noise.
     pub(crate) noise: f64,
     /// Seed of the noise.
     pub(crate) seed: u64,
 }
 
 impl Truth {
-    /// A healthy machine with genes that a manual does not know.
+    /// Returns a healthy machine whose genes are drawn at random around the recommended values.
     pub(crate) fn healthy(seed: u64) -> Self {
         let mut stream = Streams::new(seed, 7).at(0, Phase::Initial, 0);
         let spread = [0.10, 0.15, 0.3, 0.2, 0.25, 0.25, 0.3, 0.2, 0.12, 0.25];
@@ -57,14 +57,14 @@ impl Truth {
         }
     }
 
-    /// With more or less noise.
+    /// Scales the noise by a factor.
     #[must_use]
     pub(crate) const fn noisy(mut self, factor: f64) -> Self {
         self.noise = factor;
         self
     }
 
-    /// With an effect.
+    /// Adds an effect with its amounts.
     #[must_use]
     pub(crate) fn with(mut self, id: &str, amounts: &[f64]) -> Self {
         self.effects.push((id.to_owned(), amounts.to_vec()));
@@ -83,7 +83,8 @@ impl Truth {
     }
 }
 
-/// The drive at an angle: height, slope, bend (m).
+/// Returns height, slope and bend (first and second derivative by the angle) of the drive at a crank angle
+/// (m).
 fn drive(angle: f64) -> [f64; 3] {
     let quarter = 1.0 / 4.0;
     let height = 1.5 * (1.0 - angle.cos()) + 1.5 * quarter * quarter * (1.0 - (2.0 * angle).cos());
@@ -92,7 +93,7 @@ fn drive(angle: f64) -> [f64; 3] {
     [height, slope, bend]
 }
 
-/// The march of one cycle under one load.
+/// Time integration of one cycle under one condition, with the cycle's scale of the load.
 struct March<'a> {
     truth: &'a Truth,
     condition: usize,
@@ -100,14 +101,15 @@ struct March<'a> {
     genes: [f64; 10],
 }
 
-/// What is read at an angle: gauges, position, torque.
+/// Sensor readings at one angle: four gauges, position, torque.
 type Reading = [f64; 6];
 
 /// Lags of rod, beam, head and swinging mass, then their rates.
 type State = [f64; 8];
 
 impl March<'_> {
-    /// The rate of the crank and its derivative by the angle, in turns of the first condition.
+    /// Returns the crank's rate in turns of the first condition, and the derivative of that rate by the
+    /// angle.
     fn rate(&self, angle: f64) -> [f64; 2] {
         let ratio = SPEED[self.condition];
         let (a, b) = (
@@ -139,7 +141,7 @@ impl March<'_> {
         size * (1.0 + 0.15 * (-(v / 0.25) * (v / 0.25)).exp()) * v / v.hypot(0.03)
     }
 
-    /// Force between beam and head at a relative lag.
+    /// Returns the force between beam and head at a relative lag and its rate.
     fn pin(&self, lag: f64, rate: f64) -> f64 {
         let (stiffness, loss) = (self.genes[8], self.genes[9]);
         let (gap, at) = (
@@ -228,7 +230,7 @@ impl March<'_> {
         ]
     }
 
-    /// One turn, after those until it repeats; readings at every step.
+    /// Integrates until the motion is periodic and returns the readings of the last turn, at every step.
     fn turn(&self) -> Vec<Reading> {
         let step = TAU / STEPS as f64;
         let loads: Vec<f64> = (0..2 * STEPS)
@@ -328,7 +330,7 @@ impl March<'_> {
         out
     }
 
-    /// The amplifier's lag, marched twice around.
+    /// Applies the amplifier's lag to the gauges, passing over the turn twice to reach the periodic state.
     fn amplify(&self, readings: &mut [Reading]) {
         let lag = self.truth.amount("amplifier_lag", 0) * SPEED[self.condition];
         if lag <= 0.0 {
@@ -351,19 +353,19 @@ impl March<'_> {
     }
 }
 
-/// Standard deviations of one sample, by channel.
+/// Standard deviation of the noise of one sample, by channel.
 const NOISE: [f64; 6] = [0.25, 0.2, 0.25, 0.2, 2e-3, 0.4];
 /// Correlation of the noise from sample to sample.
 const CORRELATION: f64 = 0.5;
-/// Scatter of the load from cycle to cycle, and bound of that of the angle (deg).
+/// Relative standard deviation of the load from cycle to cycle; `ANGLE_TOLERANCE_DEG` bounds the scatter of
+/// the angle (deg).
 const LOAD_SCATTER: f64 = 0.003;
 const ANGLE_TOLERANCE_DEG: f64 = 0.1;
 
-/// Channels of a full record, as places among the curves of an observation: four gauges, position,
-/// torque.
+/// Channels of a full record, as indices of an observation's curves: four gauges, position, torque.
 pub(crate) const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
 
-/// A channel of a record, with its noise; the gap is counted on gauges.
+/// Returns a channel of a record with its stated noise; gauges (curves 0 to 3) count towards the gap.
 pub(crate) fn recorded(curve: usize, samples: usize, noise: Option<f64>) -> Recorded {
     let step = 360.0 / samples as f64;
     let channel = Channel {
@@ -394,7 +396,7 @@ pub(crate) fn recorded(curve: usize, samples: usize, noise: Option<f64>) -> Reco
     }
 }
 
-/// A record of some cycles.
+/// Returns a record of a number of cycles of a true machine.
 pub(crate) fn record(truth: &Truth, condition: usize, channels: &[usize], cycles: usize) -> Record {
     let streams = Streams::new(truth.seed, 11);
     let mut stream = streams.at(condition as u32, Phase::Initial, 0);
@@ -465,7 +467,7 @@ fn cycle(
         .collect()
 }
 
-/// Cycles with nothing but noise in them, all channels.
+/// Returns cycles of pure noise in all channels.
 pub(crate) fn cycles_of_noise(seed: u64, cycles: usize) -> Vec<Curves> {
     let streams = Streams::new(seed, 13);
     let one = |k: usize| {
@@ -483,7 +485,7 @@ pub(crate) fn cycles_of_noise(seed: u64, cycles: usize) -> Vec<Curves> {
     (0..cycles).map(one).collect()
 }
 
-/// Noise of all channels: first-order in time, with a part that the gauges share.
+/// First-order autoregressive noise of all channels, with a component common to the gauges.
 #[derive(Default)]
 struct Noise {
     last: [f64; 7],

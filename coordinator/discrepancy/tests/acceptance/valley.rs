@@ -1,8 +1,9 @@
-//! Ways into the valley of the rope's stiffness: a machine whose rope rings sixty and eighty times a
-//! turn, so that a stiffness a few hundredths of a decade off is a wave of the wrong phase, and a
-//! clock a degree off moves the valley away.
+//! Tests of the search for the narrow valley of the rope's stiffness.
 //!
-//! Each test also goes without the look: what it asserts is that the look is needed, and enough.
+//! The rope of the machine rings at orders near sixty and eighty, so that a stiffness wrong by a few
+//! hundredths of a decade gives waves of the wrong phase, and a clock error of one degree moves the valley
+//! away. Each test also runs without the valley search, to show that the search is both necessary and
+//! sufficient.
 use crate::by_curves::ByCurves;
 use crate::case;
 use crate::trial::now;
@@ -28,18 +29,19 @@ const SAMPLES: usize = 360;
 const ORDERS: usize = 120;
 /// Turns of the crank per second.
 const TURNS: f64 = 5.0 / 60.0;
-/// Orders of the two modes at the recommended stiffness, and their shares in each gauge.
+/// Orders of the two rope modes at the recommended stiffness; `SHARES` has the share of each mode in each
+/// gauge.
 const MODES: [f64; 2] = [57.0, 76.0];
 const SHARES: [[f64; 4]; 2] = [[0.09, 0.05, -0.06, 0.04], [-0.05, 0.06, 0.04, -0.07]];
 const STATIC: [f64; 4] = [0.5, -0.35, 0.45, 0.3];
-/// Stress that turns with the crank, whatever the load.
+/// Stress that rotates with the crank independently of the load, by gauge (MPa).
 const WEIGHT: [f64; 4] = [2.0, 1.5, -1.0, 2.5];
-/// Stiffness of the contact's share of the rope's compliance, over the contact's gene.
+/// Ratio of the stiffness of the contact's share of the rope's compliance to the contact gene.
 const CONTACT: f64 = 80.0;
-/// Noise of a sample (MPa).
+/// Standard deviation of the noise of a sample (MPa).
 const NOISE: f64 = 0.05;
 
-/// Genes in decades, clock of the load card (deg).
+/// True values of a machine: genes in decades, clock error of the load card (deg).
 #[derive(Clone, Copy)]
 struct Ringing {
     stiffness: f64,
@@ -69,7 +71,7 @@ fn library() -> Vec<EffectDescriptor> {
     ]
 }
 
-/// The gauges of a turn: static answer, two modes, weight.
+/// Returns the gauges over a turn: static response, two modes, rotating weight.
 fn gauges(genes: [f64; 3], clock: f64, lag: f64, gain: f64) -> Curves {
     let [rope, loss, contact] = genes;
     let stiffness = 1.0 / (1.0 / rope + 1.0 / (CONTACT * contact));
@@ -105,7 +107,7 @@ fn gauges(genes: [f64; 3], clock: f64, lag: f64, gain: f64) -> Curves {
     curves
 }
 
-/// `exp(i order phi)` at a sample.
+/// Returns `exp(i order phi)` at a sample.
 fn turn(order: usize, sample: usize) -> Complex<f64> {
     let angle = TAU * (order * sample % SAMPLES) as f64 / SAMPLES as f64;
     Complex::from_polar(1.0, angle)
@@ -143,12 +145,12 @@ fn record(truth: Ringing) -> Record {
     }
 }
 
-/// The record under a metric of its own noise.
+/// Returns the record whitened by its own noise.
 fn whole(truth: Ringing) -> WhitenedRecord {
     WhitenedRecord::under_own_noise(record(truth), ORDERS, Numerics::OF_THE_CASE)
 }
 
-/// Experiments on it.
+/// Returns experiments on a record, charged to the basin stage.
 fn basin<'a>(lab: &'a mut ByCurves, on: &'a WhitenedRecord) -> Experiments<'a, ByCurves> {
     Experiments {
         lab,
@@ -157,7 +159,7 @@ fn basin<'a>(lab: &'a mut ByCurves, on: &'a WhitenedRecord) -> Experiments<'a, B
     }
 }
 
-/// The machine without effects at some genes.
+/// Returns the machine without effects at the given genes (decades).
 fn at(genes: [f64; 3]) -> Point {
     Point {
         model: Model::plain(space()),
@@ -165,7 +167,7 @@ fn at(genes: [f64; 3]) -> Point {
     }
 }
 
-/// A diagnosis with looks for another valley from that misfit on.
+/// Diagnoses a machine; the search for another valley starts from misfit `valley` on.
 fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
     let inputs = Inputs {
         conditions: Vec::new(),
@@ -188,14 +190,15 @@ fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
     now(diagnose(&mut ByCurves(|spec| Some(ropes(spec))), &inputs))
 }
 
-/// Chi-squared of the answer's model over its noise, and the stiffness that it has (decades).
+/// Returns chi-squared per entry of the answer's model, and its stiffness (decades).
 fn end(diagnosis: &Diagnosis) -> (f64, f64) {
     let fit = diagnosis.after.as_ref().expect("a model");
     let n = fit.search.best().residual.len();
     (fit.chi_squared() / n as f64, fit.x()[0])
 }
 
-/// From beside the valley the way leads into it; from inside there is none that is better.
+/// Checks that the valley search leads from a fit outside the valley into it, and finds nothing better from
+/// inside.
 #[test]
 fn a_fit_outside_the_valley_finds_its_way_into_it() {
     let truth = Ringing {
@@ -219,7 +222,8 @@ fn a_fit_outside_the_valley_finds_its_way_into_it() {
     assert!(now(valley::enter(&mut experiments, &inside)).is_none());
 }
 
-/// A load card a degree and a half late: without that clock there is no valley to calibrate to.
+/// Checks that a load card 1.5 degrees late is named: without that effect in the model there is no valley to
+/// calibrate to.
 #[test]
 fn an_effect_that_hides_the_valley_is_named_from_inside_it() {
     let truth = Ringing {
@@ -240,8 +244,8 @@ fn an_effect_that_hides_the_valley_is_named_from_inside_it() {
     assert!((stiffness - truth.stiffness).abs() < 0.01, "{stiffness}");
 }
 
-/// From a fit that has thrown the modes out, the test of all orders sees a third of the clock; the low orders
-/// see the whole of it, and the stiffness.
+/// Checks that, from a fit that has suppressed the modes, the test over all orders sees less than half of the
+/// clock error, while the test over low orders finds its full size and the stiffness.
 #[test]
 fn low_orders_see_the_size_that_the_modes_hide() {
     let truth = Ringing {

@@ -1,15 +1,15 @@
-//! What every job of a run cost, by its number.
+//! Cost of each job of a run, by job number.
 use protocol::event::Finished;
 use std::collections::BTreeMap;
 
-/// What one job cost.
+/// Cost of one job.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JobCost {
-    /// Time in the slot \[s\].
+    /// Wall-clock time in the slot \[s\].
     pub wall_s: f64,
-    /// Processor time meanwhile \[s\]; 0 if it came to no answer.
+    /// Processor time \[s\]; 0 for a job without an answer.
     pub processor_s: f64,
-    /// Newton iterations of its simulation; 0 where nothing was simulated.
+    /// Newton iterations of the job's simulation; 0 if nothing was simulated.
     pub newton_iterations: u64,
 }
 
@@ -24,10 +24,10 @@ impl JobCost {
     }
 }
 
-/// Every job's cost.
+/// Cost of each job, by job number.
 pub type Costs = BTreeMap<u64, JobCost>;
 
-/// Adds a result.
+/// Adds the cost of a finished job.
 pub(super) fn add(costs: &mut Costs, finished: &Finished) {
     costs.insert(finished.job().0, JobCost::of(finished));
 }

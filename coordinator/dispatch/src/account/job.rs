@@ -1,4 +1,5 @@
-//! What the jobs of a run were and how long they took, by kind; which were given up and why.
+//! Statistics of a run's jobs by kind, with their durations, and the jobs that were given up with the
+//! reasons.
 use protocol::{
     event::Finished,
     job::{Outcome, Verdict},
@@ -6,26 +7,26 @@ use protocol::{
 use std::collections::BTreeMap;
 use support::quantile;
 
-/// The results of one kind.
+/// Statistics of the results of one kind of job.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JobUse {
-    /// How many there are.
+    /// Number of results.
     pub results: u64,
-    /// How many of them say that the machine failed on the way.
+    /// Number of results in which the simulated machine failed before completion.
     pub machine_failed: u64,
-    /// Time in the slot that half of them needed at most \[s\].
+    /// Median wall-clock time in the slot \[s\].
     pub median_s: f64,
-    /// What 95 % of them needed at most \[s\].
+    /// 95 % quantile of the wall-clock time in the slot \[s\].
     pub usual_s: f64,
-    /// What the longest needed \[s\].
+    /// Longest wall-clock time in the slot \[s\].
     pub longest_s: f64,
-    /// Time in the slot of all of them together \[s\].
+    /// Total wall-clock time in the slot \[s\].
     pub wall_s: f64,
-    /// Processor time of all of them together \[s\].
+    /// Total processor time \[s\].
     pub processor_s: f64,
 }
 
-/// Results while they are counted.
+/// Accumulator of job statistics.
 #[derive(Debug, Default)]
 pub(super) struct Jobs {
     kinds: BTreeMap<&'static str, Kind>,
@@ -53,7 +54,7 @@ impl Jobs {
         kind.machine_failed += u64::from(failed);
     }
 
-    /// By kind, and the jobs that were given up with the reason.
+    /// Returns the statistics by kind, and the jobs that were given up with the reason.
     pub(super) fn counted(self) -> (BTreeMap<&'static str, JobUse>, Vec<(u64, String)>) {
         let used = |(name, mut kind): (&'static str, Kind)| {
             kind.times_us.sort_unstable();

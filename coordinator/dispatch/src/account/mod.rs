@@ -1,7 +1,7 @@
-//! How the slots of a run spent their time, and why: a fold over its journal.
+//! Account of how the slots of a run spent their time, and why: a fold over the run's journal.
 //!
-//! It adds up what the core wrote down (one row per worker and coordinator process) and puts the
-//! causes into words. It decides nothing, and knows neither workers nor sockets.
+//! Sums the accounts that the coordinator core recorded (one row per worker and coordinator process) and
+//! explains the causes in words. It makes no decisions and depends neither on workers nor on sockets.
 mod cost;
 mod job;
 
@@ -15,63 +15,63 @@ use protocol::{
 };
 use std::{collections::BTreeMap, path::Path};
 
-/// Shares below this are not worth a word \[1\].
+/// Smallest share of slot time that is reported \[1\].
 const NOTABLE: f64 = 0.02;
 
-/// What the workers of one machine did.
+/// Slot use of the workers of one host.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HostUse {
-    /// Worker processes, restarted ones counted again.
+    /// Number of worker processes; a restarted worker counts again.
     pub workers: u64,
-    /// Slots of the largest of them.
+    /// Slots of the host's largest worker.
     pub slots: u32,
-    /// Results of theirs that were accepted.
+    /// Accepted results from the host's workers.
     pub done: u64,
-    /// Attempts that failed there.
+    /// Attempts that failed on the host.
     pub failed: u64,
-    /// Their slot time by use.
+    /// Slot time of the host's workers by use.
     pub spent: Spent,
 }
 
-/// What a journal says of the use of slot time.
+/// Account of a run's slot time, jobs and workers, read from its journal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunAccount {
-    /// Coordinator processes that worked on the run.
+    /// Number of coordinator processes that worked on the run.
     pub processes: u32,
-    /// Results recorded.
+    /// Number of results recorded.
     pub results: u64,
-    /// Time that those processes worked, as far as it was accounted \[s\].
+    /// Total working time of the coordinator processes, as far as accounted \[s\].
     pub wall_s: f64,
-    /// Results by kind of job.
+    /// Statistics of results by kind of job.
     pub jobs: BTreeMap<&'static str, JobUse>,
-    /// Jobs that were given up, with the reason.
+    /// Jobs that were given up, by number, with the reason.
     pub given_up: Vec<(u64, String)>,
-    /// Attempts that failed, on any worker.
+    /// Number of attempts that failed, on any worker.
     pub failed: u64,
-    /// Every worker, added up over the coordinator's processes.
+    /// Account of each worker, summed over the coordinator processes.
     pub workers: Vec<WorkerAccount>,
-    /// All of them together.
+    /// Slot time of all workers by use.
     pub spent: Spent,
-    /// Why workers went, with how often; the most frequent first.
+    /// Reasons why workers left, with their counts; the most frequent first.
     pub left: Vec<(String, u64)>,
-    /// What of the journal could not be read.
+    /// Stretches of the journal that could not be read.
     pub damage: Vec<Damage>,
 }
 
-/// Reads the account of a journal.
+/// Reads the account from a journal.
 ///
 /// # Errors
-/// [`JournalError::Io`] if it cannot be read, [`JournalError::Version`] if another version wrote it.
+/// [`JournalError::Io`] if the journal cannot be read, [`JournalError::Version`] if another version wrote it.
 pub fn read(path: &Path) -> Result<RunAccount, JournalError> {
     let mut folding = Folding::default();
     let report = journal::fold(path, |_, event| folding.apply(&event))?;
     Ok(folding.finish(report.damage))
 }
 
-/// Reads the account of a journal, and what every job cost.
+/// Reads the account and the cost of each job from a journal.
 ///
 /// # Errors
-/// [`JournalError::Io`] if it cannot be read, [`JournalError::Version`] if another version wrote it.
+/// [`JournalError::Io`] if the journal cannot be read, [`JournalError::Version`] if another version wrote it.
 pub fn read_with_costs(path: &Path) -> Result<(RunAccount, Costs), JournalError> {
     let (mut folding, mut costs) = (Folding::default(), Costs::new());
     let report = journal::fold(path, |_, event| {
@@ -83,19 +83,19 @@ pub fn read_with_costs(path: &Path) -> Result<(RunAccount, Costs), JournalError>
     Ok((folding.finish(report.damage), costs))
 }
 
-/// An account while the journal is read, for whoever reads it for other reasons too.
+/// Accumulator of a run's account, for callers that read the journal's events for other purposes too.
 #[derive(Debug, Default)]
 pub struct Folding {
     account: RunAccount,
     rows: BTreeMap<(WorkerId, u32), WorkerAccount>,
     left: BTreeMap<String, u64>,
     jobs: job::Jobs,
-    /// How long each process lasted \[ms\].
+    /// Duration of each coordinator process, by epoch \[ms\].
     lasted: BTreeMap<u32, u64>,
 }
 
 impl Folding {
-    /// Takes the next event.
+    /// Adds the next event of the journal.
     pub fn apply(&mut self, event: &Event) {
         match event {
             Event::Opened { .. } => self.account.processes += 1,
@@ -120,7 +120,7 @@ impl Folding {
         }
     }
 
-    /// The account, with what of the journal could not be read.
+    /// Returns the account, including the unreadable stretches of the journal.
     pub fn finish(self, damage: Vec<Damage>) -> RunAccount {
         let mut account = self.account;
         account.damage = damage;
@@ -147,7 +147,7 @@ impl Folding {
 }
 
 impl RunAccount {
-    /// By machine.
+    /// Sums the use of slots by host.
     pub fn hosts(&self) -> BTreeMap<&str, HostUse> {
         let mut hosts: BTreeMap<&str, HostUse> = BTreeMap::new();
         for row in &self.workers {
@@ -161,13 +161,14 @@ impl RunAccount {
         hosts
     }
 
-    /// Why slots were not useful, in words, the greatest share first.
+    /// Explains in words why slot time was not useful, greatest share first.
     pub fn reasons(&self) -> Vec<String> {
         reasons(&self.spent)
     }
 }
 
-/// Why slot time was not useful, in words, the greatest share first; one sentence if it was.
+/// Explains in words why slot time was not useful, greatest share first; returns a single sentence if nearly
+/// all of it was useful.
 pub fn reasons(spent: &Spent) -> Vec<String> {
     if spent.connected_us == 0 {
         return vec!["no worker was connected for a measurable time".to_owned()];
@@ -182,26 +183,26 @@ pub fn reasons(spent: &Spent) -> Vec<String> {
     let sentence = |(kind, share): &(&str, f64)| {
         let why = match *kind {
             "barrier" => {
-                "barrier: everything asked for was given out and the search waited for the last \
-                 results; a search without generations (--preset window) or fewer workers leave \
-                 less idle"
+                "barrier: all requested jobs were assigned and the search waited for the last results; \
+                 a search without generations (--preset window) or fewer workers reduce the \
+                 idle time"
             }
             "starved" => {
-                "starved: slots waited for the case, for the next order, for a journal that could \
-                 not be written, or the run asked for nothing; look at the network, at the \
-                 coordinator's load and at the disk"
+                "starved: slots waited for the case, for the next job, for a journal that could \
+                 not be written, or the run requested no jobs; check the network, the \
+                 coordinator's load and the disk"
             }
             "speculative" => {
                 "speculative: copies of slow jobs that were not needed in the end; some workers \
                  are slower than others"
             }
             "failed" => {
-                "failed: attempts that crashed or ran out of time; the warnings of the run name \
+                "failed: attempts that crashed or exceeded their deadline; the warnings of the run name \
                  the jobs"
             }
             _ => {
-                "lost: attempts on workers that were lost, or that nobody answered for; see why \
-                 workers left"
+                "lost: attempts on workers that were lost, or that were never answered; see the reasons \
+                 why workers left"
             }
         };
         format!("{:.0} % {why}", 100.0 * share)

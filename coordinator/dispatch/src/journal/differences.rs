@@ -1,12 +1,12 @@
-//! What differs between two runs, in words.
+//! Differences between two runs, described in words.
 use protocol::event::RunHeader;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Most differing settings that are named one by one.
+/// Maximum number of differing settings that are named individually.
 const MOST_NAMED: usize = 3;
 
-/// Command, case and settings that are not the same.
+/// Describes the differences in command, case and settings.
 pub(super) fn differences(was: &RunHeader, is: &RunHeader) -> Vec<String> {
     let mut what = Vec::new();
     if was.kind != is.kind {
@@ -45,15 +45,15 @@ fn setting_differences(was: &str, is: &str) -> Vec<String> {
     if what.len() > MOST_NAMED {
         let more = what.len() - MOST_NAMED;
         what.truncate(MOST_NAMED);
-        what.push(format!("{more} settings more"));
+        what.push(format!("{more} more settings"));
     }
     if what.is_empty() {
-        what.push("notation of its settings".to_owned());
+        what.push("format of its settings (their values are equal)".to_owned());
     }
     what
 }
 
-/// Settings by the words of their path, as `search.population`.
+/// Flattens settings to values by path, e.g. `search.population`.
 fn leaves(text: &str) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     match serde_json::from_str(text) {

@@ -1,73 +1,73 @@
-//! Why a journal cannot be used, with the remedy.
+//! Errors of opening, reading and writing a journal, with the remedy in the message.
 use protocol::wire::{VERSION, WireError};
 use std::{io, path::PathBuf};
 
-/// Why a journal cannot be used.
+/// Reason why a journal cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum JournalError {
     /// A file cannot be read or written.
     #[error("cannot {doing} {}: {source}", path.display())]
     Io {
-        /// What was tried.
+        /// Verb of the failed operation.
         doing: &'static str,
-        /// On what.
+        /// File or folder of the failed operation.
         path: PathBuf,
-        /// The system's words.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// Another coordinator writes this run.
+    /// Another coordinator holds the run's lock.
     #[error(
         "the run {} is in use by another coordinator: wait for it, stop it, or choose another run \
          folder",
         folder.display()
     )]
     Locked {
-        /// The run's folder.
+        /// Run folder.
         folder: PathBuf,
     },
-    /// The run was begun with something else.
+    /// The run was begun with another command, case or settings.
     #[error(
-        "the run {} was begun with another {}; choose another run folder, or repeat the command \
-         as it was",
+        "the run {} was begun with another {}; choose another run folder, or repeat the original \
+         command",
         folder.display(), what.join(", another ")
     )]
     Differs {
-        /// The run's folder.
+        /// Run folder.
         folder: PathBuf,
-        /// What differs, with both values.
+        /// Differences, with both values.
         what: Vec<String>,
     },
-    /// It was written by another version of this program.
+    /// The journal was written by another version of this program.
     #[error(
-        "the journal {} is of version {found}, and this build reads version {VERSION}: go on with \
+        "the journal {} is of version {found}, and this build reads version {VERSION}: continue with \
          the build that began the run, or choose another run folder",
         path.display()
     )]
     Version {
-        /// The journal.
+        /// Path of the journal.
         path: PathBuf,
-        /// Its version.
+        /// Version of the journal.
         found: u8,
     },
-    /// Every record that says what the run is, is lost, and so is the copy beside the journal.
+    /// Every record that identifies the run is lost, and so is the copy in the head file.
     #[error(
-        "nothing says any more what run the journal {} belongs to (every copy of its first record \
-         is lost), so it cannot be continued: choose another run folder",
+        "the run of the journal {} cannot be identified, because every copy of its first record is \
+         lost, so it cannot be continued: choose another run folder",
         path.display()
     )]
     Headless {
-        /// The journal.
+        /// Path of the journal.
         path: PathBuf,
     },
-    /// Somebody deleted it while the run went on.
+    /// The journal was deleted during the run.
     #[error(
-        "the journal {} was deleted while the run went on: its results cannot be kept, so the run \
+        "the journal {} was deleted during the run: its results cannot be kept, so the run \
          stops; leave run folders alone until `horsehead` has ended",
         path.display()
     )]
     Deleted {
-        /// The journal.
+        /// Path of the journal.
         path: PathBuf,
     },
     /// A record cannot be encoded or decoded.

@@ -1,7 +1,7 @@
-//! The copy of a journal's first record, in a file of its own.
+//! Copy of a journal's first record, in a separate file.
 //!
-//! A damaged block may cover every record of a short journal; the copy then still says what the
-//! run is and what it is called. It is a record like any other, in a journal of one record.
+//! A damaged block may cover every record of a short journal; the copy then still identifies the run and its
+//! settings. The file has the format of a journal with one record.
 use super::{
     error::JournalError,
     read::fold,
@@ -14,7 +14,7 @@ use protocol::{
 use std::path::Path;
 use support::atomic_file;
 
-/// The copy of a run folder; none if there is none that can be read.
+/// Reads the copy in a run folder; returns `None` if there is no readable copy.
 pub(super) fn read(folder: &Path) -> Result<Option<(RunId, RunHeader)>, JournalError> {
     let path = folder.join(HEAD);
     if !path.exists() {
@@ -33,7 +33,7 @@ pub(super) fn read(folder: &Path) -> Result<Option<(RunId, RunHeader)>, JournalE
     }
 }
 
-/// Puts a copy into a run folder, whole or not at all.
+/// Writes the copy into a run folder atomically.
 pub(super) fn write(folder: &Path, run: RunId, header: &RunHeader) -> Result<(), JournalError> {
     let header = header.clone();
     let bytes = record(&Event::Begun { run, header })?;

@@ -1,4 +1,4 @@
-//! Results of a journal by job: where each lies, and reading it again.
+//! Index of a journal's results by job, with random access to the records.
 use super::{error::JournalError, record::RECORD_HEADER};
 use protocol::{
     event::{Event, Finished},
@@ -11,7 +11,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Results that a journal held when it was read.
+/// Index of the results that a journal held when it was read.
 #[derive(Debug)]
 pub(super) struct Results {
     path: PathBuf,
@@ -20,7 +20,7 @@ pub(super) struct Results {
 }
 
 impl Results {
-    /// Of results, with the place of their bodies, in the order of the file.
+    /// Creates the index from jobs and the offsets of their results' bodies, in file order.
     pub(super) fn new(path: &Path, results: Vec<(JobId, u64)>) -> Result<Self, JournalError> {
         let file = File::open(path).map_err(|source| JournalError::Io {
             doing: "open",
@@ -34,17 +34,17 @@ impl Results {
         })
     }
 
-    /// Jobs in order.
+    /// Returns the jobs with results, in ascending order.
     pub(super) fn jobs(&self) -> impl Iterator<Item = JobId> + '_ {
         self.index.0.iter().map(|(job, _)| *job)
     }
 
-    /// How many jobs have one.
+    /// Returns the number of jobs with a result.
     pub(super) const fn len(&self) -> usize {
         self.index.0.len()
     }
 
-    /// The result of a job; `None` if there is none.
+    /// Reads the result of a job; `None` if the job has none.
     pub(super) fn recall(&self, job: JobId) -> Result<Option<Finished>, JournalError> {
         let Some(at) = self.index.find(job) else {
             return Ok(None);
@@ -75,12 +75,13 @@ impl Results {
     }
 }
 
-/// Where the body of each job's result lies: 16 bytes a result, since there may be millions.
+/// File offset of the body of each job's result, sorted by job: 16 bytes per result, since there may be
+/// millions.
 #[derive(Debug)]
 struct Index(Vec<(JobId, u64)>);
 
 impl Index {
-    /// Of results in the order of the file; should a job be there twice, the first counts.
+    /// Sorts results given in file order; of several results of one job the first counts.
     fn new(mut results: Vec<(JobId, u64)>) -> Self {
         results.sort_unstable();
         results.dedup_by_key(|(job, _)| *job);

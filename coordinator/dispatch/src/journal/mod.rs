@@ -1,16 +1,16 @@
-//! The append-only record of a run: what is in it is true, and nothing else is.
+//! Append-only journal of a run, the only source of truth about it.
 //!
 //! ```text
 //! record:  "HHJ" version | length u32 | crc32 u32 of length and body | body (an encoded Event)
 //! ```
 //!
-//! Each record carries its own mark and checksum, so that a flipped byte, a zeroed block or a
-//! torn tail costs the records it touched and no other. What the run *is* stands in the first
-//! record, in every later opening's, and in a file of its own ([`HEAD`]): no single damage makes
-//! a run impossible to continue. The version is that of the wire, since a record holds what came
-//! over it; a journal of another one is refused as such and not taken for damage. Readers are folds
-//! over the events ([`fold`]). The writer ([`Journal`]) holds a lock, so that one run has one writer;
-//! on a full disk it waits. What the events mean for a run is nobody's business here.
+//! Each record carries its own mark and checksum, so that a flipped byte, a zeroed block or a torn tail costs
+//! only the records it touched. The identity of the run stands in the first record, in every later opening's,
+//! and in a file of its own ([`HEAD`]), so that no single damage makes a run impossible to continue. The
+//! version is that of the wire protocol, since records hold wire messages; a journal of another version is
+//! refused and not treated as damaged. Readers are folds over the events ([`fold`]). The writer ([`Journal`])
+//! holds a lock, so that one run has one writer; on a full disk it waits. This module does not interpret what
+//! the events mean for a run.
 mod differences;
 mod error;
 mod head;

@@ -1,4 +1,4 @@
-//! Opening a journal, or going on with it.
+//! Opening or continuing a journal for writing.
 use super::{
     differences::differences,
     error::JournalError,
@@ -26,35 +26,36 @@ use std::{
     thread,
 };
 
-/// More unreadable bytes than this (bytes) are not just a first record cut short, but a journal of
-/// something else: it is left alone.
+/// Maximum length of an unreadable file that still counts as a truncated first record (bytes). A longer file
+/// is taken for something else and left untouched.
 const UNFINISHED: u64 = 4096;
 
-/// Least length of the record of an opening (bytes): no more of them can hide in some damage.
+/// Minimum length of the record of an opening (bytes); bounds how many openings a damaged stretch may have
+/// held.
 const OPENED: u64 = 20;
 
-/// Epochs are never advanced by more than this for what may hide in damage.
+/// Maximum number of epochs skipped for openings that may be lost in damaged stretches.
 const MOST_HIDDEN: u64 = 1000;
 
-/// A worker that did not come back in so many processes of the run is not waited for.
+/// Number of the run's coordinator processes after which an absent worker is no longer waited for.
 const REMEMBERED: u32 = 8;
 
-/// What an opened journal says of its run.
+/// State of a run as read from its journal at opening.
 #[derive(Clone, Debug)]
 pub struct Begun {
-    /// The run's name.
+    /// Identifier of the run.
     pub run: RunId,
-    /// Which coordinator process this is, from 1; more than the number of processes if records of
-    /// openings may have been lost.
+    /// Number of this coordinator process within the run, from 1; higher than the number of processes if
+    /// records of openings may have been lost.
     pub epoch: u32,
-    /// Numerics of the run's first worker.
+    /// Digest of the model (numerics) on the run's first worker.
     pub model_digest: Option<String>,
-    /// What the case's reference individual came to on the run's first worker.
+    /// Result of the case's reference individual on the run's first worker.
     pub proof: Option<Proof>,
-    /// Workers that were there when the last process ended without closing the run: they may hold
-    /// jobs and results of it.
+    /// Workers connected when the last process ended without closing the run; they may still hold jobs and
+    /// results.
     pub present: BTreeSet<WorkerId>,
-    /// What reading it was like.
+    /// Number of records read, and damage found.
     pub report: ReadReport,
 }
 
@@ -66,12 +67,12 @@ pub struct Journal {
     to_writer: Option<mpsc::Sender<Event>>,
     writer: Option<thread::JoinHandle<()>>,
     closing: Arc<AtomicBool>,
-    /// Held until the process ends.
+    /// Lock held until the process ends.
     _lock: Held,
 }
 
 impl Journal {
-    /// Opens the journal of a run folder, or begins it; `said` is called from the writing thread.
+    /// Opens or creates the journal of a run folder; `said` is called from the writing thread.
     ///
     /// # Errors
     /// [`JournalError::Locked`], [`JournalError::Differs`], [`JournalError::Headless`],
@@ -152,20 +153,20 @@ impl Journal {
         Ok((journal, begun))
     }
 
-    /// Jobs whose results the journal held when it was opened, in order.
+    /// Returns the jobs whose results the journal held when it was opened, in ascending order.
     pub fn finished(&self) -> impl Iterator<Item = JobId> + '_ {
         self.results.jobs()
     }
 
-    /// A result from before this process; `None` if there is none.
+    /// Reads a result of an earlier coordinator process; `None` if the job has none.
     ///
     /// # Errors
-    /// [`JournalError::Io`] or [`JournalError::Wire`] if the record cannot be read again.
+    /// [`JournalError::Io`] or [`JournalError::Wire`] if the record cannot be read.
     pub fn recall(&self, job: JobId) -> Result<Option<Finished>, JournalError> {
         self.results.recall(job)
     }
 
-    /// Hands an event to the writing thread.
+    /// Queues an event for the writing thread.
     ///
     /// # Errors
     /// [`JournalError::Closed`] if that thread has ended.
@@ -181,14 +182,14 @@ impl Journal {
         }
     }
 
-    /// The error of a run whose journal was deleted under it.
+    /// Returns the error for a journal that was deleted during the run.
     pub fn deleted(&self) -> JournalError {
         JournalError::Deleted {
             path: self.path.clone(),
         }
     }
 
-    /// Waits until everything is on the disk; gives up if the disk takes nothing now.
+    /// Waits until all queued events are on the disk; gives up if the disk cannot be written now.
     pub fn close(&mut self) {
         self.closing.store(true, Ordering::Relaxed);
         self.to_writer = None;
@@ -200,12 +201,12 @@ impl Journal {
         }
     }
 
-    /// Number of results it held when it was opened.
+    /// Returns the number of results that the journal held when it was opened.
     pub const fn len(&self) -> usize {
         self.results.len()
     }
 
-    /// Whether it holds no result.
+    /// Returns whether the journal held no result when it was opened.
     pub const fn is_empty(&self) -> bool {
         self.results.len() == 0
     }
@@ -217,14 +218,14 @@ impl Drop for Journal {
     }
 }
 
-/// What the past of a run says, folded.
+/// State of a run, folded from the events of its journal.
 #[derive(Default)]
 struct Past {
     begun: Option<(RunId, RunHeader)>,
     epoch: u32,
     model_digest: Option<String>,
     proof: Option<Proof>,
-    /// Workers that joined and were not seen to leave, with the epoch in which they joined.
+    /// Workers that joined and did not leave, with the epoch in which they joined.
     present: BTreeMap<WorkerId, u32>,
     results: Vec<(JobId, u64)>,
 }
@@ -257,8 +258,8 @@ impl Past {
         }
     }
 
-    /// An epoch that no process of the run has had: attempts are named after it, and workers of a
-    /// forgotten process may still hold some.
+    /// Returns an epoch that no earlier process of the run has used. Attempts are named after it, and workers
+    /// of a lost process may still hold attempts.
     fn next_epoch(&self, report: &ReadReport) -> u32 {
         let damaged = damaged_bytes(report).div_ceil(OPENED).min(MOST_HIDDEN);
         self.epoch + 1 + u32::try_from(damaged).unwrap_or(0)
@@ -269,7 +270,7 @@ fn damaged_bytes(report: &ReadReport) -> u64 {
     report.damage.iter().map(|damage| damage.bytes).sum()
 }
 
-/// The run of a journal; none if it is yet to be begun.
+/// Returns the identifier of the journal's run; `None` if the run has not begun.
 fn identify(
     folder: &Path,
     header: &RunHeader,
@@ -293,8 +294,8 @@ fn identify(
     }
 }
 
-/// A run's lock. It is given back by word: a program that is being started by another thread holds
-/// every open file for a moment, and would hold the lock with it.
+/// Lock of a run. It is released explicitly on drop: a child process being spawned by another thread briefly
+/// inherits all open files, and would keep the lock.
 #[derive(Debug)]
 struct Held(File);
 

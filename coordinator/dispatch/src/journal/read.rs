@@ -1,4 +1,4 @@
-//! Reading a journal, damaged or not.
+//! Reading a journal, with recovery from damage.
 use super::{
     error::JournalError,
     record::{MARK, RECORD_HEADER, checksum},
@@ -14,14 +14,14 @@ use std::{
     path::Path,
 };
 
-/// A stretch of a journal that could not be read.
+/// Unreadable stretch of a journal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Damage {
-    /// Where it begins (bytes).
+    /// Offset of the stretch in the file (bytes).
     pub at: u64,
-    /// How long it is (bytes).
+    /// Length of the stretch (bytes).
     pub bytes: u64,
-    /// Whether nothing readable follows: a record that was being written at a crash.
+    /// Whether nothing readable follows: a record cut short by a crash.
     pub torn: bool,
 }
 
@@ -31,21 +31,21 @@ impl fmt::Display for Damage {
         if *torn {
             write!(
                 to,
-                "the journal ends in an unfinished record ({bytes} bytes at {at}): dropped"
+                "the journal ends in an unfinished record ({bytes} bytes at offset {at}), which was dropped"
             )
         } else {
             write!(
                 to,
-                "{bytes} bytes of the journal at {at} are damaged: skipped; what they held is computed again"
+                "{bytes} bytes of the journal at offset {at} are damaged and were skipped; the results in them are computed again"
             )
         }
     }
 }
 
-/// Most stretches of damage that are named one by one.
+/// Maximum number of damaged stretches that are named individually.
 const MOST_NAMED: usize = 3;
 
-/// Damage in words: a few stretches one by one, and how much more there is.
+/// Describes damage in words: the first stretches individually, then the total of the others.
 pub fn words(damage: &[Damage]) -> Vec<String> {
     let named = damage.iter().take(MOST_NAMED).map(ToString::to_string);
     let mut words: Vec<String> = named.collect();
@@ -53,28 +53,28 @@ pub fn words(damage: &[Damage]) -> Vec<String> {
     if !more.is_empty() {
         let bytes: u64 = more.iter().map(|damage| damage.bytes).sum();
         words.push(format!(
-            "{} more stretches are damaged, {bytes} bytes together",
+            "{} more stretches of the journal are damaged, {bytes} bytes in total",
             more.len()
         ));
     }
     words
 }
 
-/// Where a record lies.
+/// Location of a record's body in the journal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Its body [bytes from the start of the file].
+    /// Offset of the body from the start of the file (bytes).
     pub at: u64,
     /// Length of the body (bytes).
     pub length: u32,
 }
 
-/// What became of a reading.
+/// Report on reading a journal: number of records, damage and end.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ReadReport {
-    /// Records read.
+    /// Number of records read.
     pub records: u64,
-    /// Stretches skipped.
+    /// Damaged stretches that were skipped.
     pub damage: Vec<Damage>,
     /// End of the last readable record (bytes).
     pub end: u64,
@@ -139,12 +139,12 @@ struct Reader {
     file: BufReader<File>,
     at: u64,
     length: u64,
-    /// Version of a sound record that is not of ours.
+    /// Version of an intact record written by another version.
     foreign: Option<u8>,
 }
 
 impl Reader {
-    /// Reads the record at the current place; `None` if there is no sound one.
+    /// Reads the record at the current offset; `None` if there is no intact record of this version.
     fn record(&mut self) -> io::Result<Option<(Entry, Event)>> {
         let left = self.length - self.at;
         let mut header = [0; RECORD_HEADER];
@@ -180,7 +180,7 @@ impl Reader {
         Ok(Some((entry, event)))
     }
 
-    /// Goes to the next mark at or behind a place, or to the end.
+    /// Moves to the next record mark at or after an offset, or to the end of the file.
     fn seek_mark(&mut self, from: u64) -> io::Result<()> {
         self.file.seek(SeekFrom::Start(from))?;
         let mut last = [0; 4];

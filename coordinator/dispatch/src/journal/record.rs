@@ -1,4 +1,4 @@
-//! The form of a journal on the disk: the names of its files, and what a record is made of.
+//! On-disk format of a journal: file names, record mark, checksum and encoding.
 use protocol::{
     event::Event,
     wire::{self, VERSION},
@@ -11,9 +11,9 @@ pub const HEAD: &str = "journal.head";
 /// Name of the lock within a run's folder.
 pub const LOCK: &str = "lock";
 
-/// What each record begins with; the last byte is the version, as a digit.
+/// Mark at the start of each record; the last byte is the version, as a digit.
 pub const MARK: [u8; 4] = [b'H', b'H', b'J', b'0' + VERSION];
-/// Bytes before a record's body.
+/// Length of the header before a record's body (bytes).
 pub(super) const RECORD_HEADER: usize = 12;
 
 /// Encodes an event as a record.
@@ -31,7 +31,7 @@ pub(super) fn record(event: &Event) -> Result<Vec<u8>, wire::WireError> {
     Ok(record)
 }
 
-/// The checksum of a record: over its length too, which would otherwise be trusted.
+/// Returns the checksum of a record, computed over the length too, so that a damaged length is detected.
 pub(super) fn checksum(length: u32, body: &[u8]) -> u32 {
     let mut hasher = crc32fast::Hasher::new();
     hasher.update(&length.to_le_bytes());

@@ -1,4 +1,4 @@
-//! A journal for reading alone: while its run goes on or after its end, and without a trace.
+//! Read-only access to a journal, during its run or after its end, without locking or changing it.
 use super::{
     error::JournalError,
     index::Results,
@@ -10,7 +10,7 @@ use protocol::{
 };
 use std::path::Path;
 
-/// What a journal held at a moment. Whatever is written to it later does not change it.
+/// Snapshot of the results in a journal; records written later are not included.
 #[derive(Debug)]
 pub struct Recording {
     results: Results,
@@ -18,7 +18,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Reads a journal; `heard` is given every event, in order.
+    /// Reads a journal; `heard` is called with every event, in order.
     ///
     /// # Errors
     /// As [`fold`].
@@ -36,32 +36,31 @@ impl Recording {
         })
     }
 
-    /// The result of a job; `None` if it was not there.
+    /// Reads the result of a job; `None` if the job had none when the journal was read.
     ///
     /// # Errors
-    /// [`JournalError::Io`] or [`JournalError::Wire`] if the record cannot be read again.
+    /// [`JournalError::Io`] or [`JournalError::Wire`] if the record cannot be read.
     pub fn recall(&self, job: JobId) -> Result<Option<Finished>, JournalError> {
         self.results.recall(job)
     }
 
-    /// How many jobs had a result.
+    /// Returns the number of jobs with a result.
     pub const fn len(&self) -> usize {
         self.results.len()
     }
 
-    /// Whether no job had one.
+    /// Returns whether no job has a result.
     pub const fn is_empty(&self) -> bool {
         self.results.len() == 0
     }
 
-    /// What reading it was like.
+    /// Returns the number of records read, and the damage found.
     pub const fn report(&self) -> &ReadReport {
         &self.report
     }
 }
 
-/// Reads the numbers of jobs and the hashes of their contents from a journal; each is given as often as the job was
-/// asked for or answered.
+/// Calls `given` with the number and content hash of a job, for each request and each result in a journal.
 ///
 /// # Errors
 /// As [`fold`].

@@ -1,4 +1,4 @@
-//! Events for tests of whatever reads or writes journals.
+//! Sample events for tests of code that reads or writes journals.
 use protocol::{
     event::{Event, Finished},
     id::{AttemptId, ContentHash, JobId},
@@ -6,7 +6,7 @@ use protocol::{
     message::{Attempt, Cost},
 };
 
-/// A result of a job, whose work is named after it.
+/// Returns the event of a job's result; the content hash is that of the job's number.
 pub(crate) fn finished(job: u64, wall_us: u64, outcome: Outcome) -> Event {
     Event::Finished(Box::new(Finished {
         attempt: Attempt {
@@ -23,7 +23,7 @@ pub(crate) fn finished(job: u64, wall_us: u64, outcome: Outcome) -> Event {
     }))
 }
 
-/// A result that differs from those of other jobs.
+/// Returns the event of a result that is different for each job.
 pub(crate) fn result(job: u64) -> Event {
     finished(
         job,

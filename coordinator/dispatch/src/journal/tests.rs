@@ -1,4 +1,4 @@
-//! A journal under torture.
+//! Tests of the journal under truncation, flipped bytes, zeroed blocks and deletion.
 use super::{differences::differences, record::RECORD_HEADER, sample::result, *};
 use protocol::{
     event::{Event, RunHeader},
@@ -24,7 +24,7 @@ fn open(folder: &Path) -> Result<(Journal, Begun), JournalError> {
     Journal::open(folder, &header(), RunId(5), 17, |_| {})
 }
 
-/// A closed journal with results 1 to `jobs`.
+/// Writes and closes a journal with results 1 to `jobs`; returns its bytes.
 fn written(folder: &Path, jobs: u64) -> Vec<u8> {
     let (journal, _) = open(folder).unwrap();
     for job in 1..=jobs {
@@ -34,7 +34,7 @@ fn written(folder: &Path, jobs: u64) -> Vec<u8> {
     fs::read(folder.join(FILE)).unwrap()
 }
 
-/// Results by job, the run's name, and the damage.
+/// Reads the results by job, the run's identifier, and the damage.
 fn read(path: &Path) -> (BTreeMap<u64, Event>, Option<RunId>, Vec<Damage>) {
     let (mut results, mut begun) = (BTreeMap::new(), None);
     let report = fold(path, |_, event| match event {
@@ -129,7 +129,7 @@ fn another_run_is_refused_and_the_difference_named() {
     assert!(!error.contains("preset"), "{error}");
 }
 
-/// However much of the tail is missing, what is whole remains, and the run goes on.
+/// Checks that every truncation loses only the records it cuts, and that the run continues.
 #[test]
 fn every_truncation_loses_only_the_cut_records() {
     let folder = tempfile::tempdir().unwrap();
@@ -168,8 +168,9 @@ fn every_truncation_loses_only_the_cut_records() {
     assert_eq!(kept, 0);
 }
 
-/// Whether the next process goes on with a damaged journal: it keeps the run's name and every
-/// result that can be read, computes the others again, and never names an attempt as before.
+/// Asserts that the next process continues a damaged journal: it keeps the run's identifier and every
+/// readable result, computes the others again, and never reuses an attempt identifier. Returns the number of
+/// results kept.
 fn goes_on(folder: &Path, bytes: &[u8], jobs: u64, what: &str) -> usize {
     fs::write(folder.join(FILE), bytes).unwrap();
     let (results, _, _) = read(&folder.join(FILE));
@@ -189,7 +190,8 @@ fn goes_on(folder: &Path, bytes: &[u8], jobs: u64, what: &str) -> usize {
     results.len()
 }
 
-/// A flipped byte costs one record; those before and behind it stay, and the run goes on.
+/// Checks that a flipped byte costs one record, that the records before and after it stay, and that the run
+/// continues.
 #[test]
 fn every_flipped_byte_loses_one_record_and_the_run_goes_on() {
     let folder = tempfile::tempdir().unwrap();
@@ -212,8 +214,8 @@ fn every_flipped_byte_loses_one_record_and_the_run_goes_on() {
     }
 }
 
-/// The copy of the first record is not needed while the journal has its own, and whatever becomes
-/// of it does no harm.
+/// Checks that damage to or loss of the copy in the head file is harmless while the journal has its own first
+/// record.
 #[test]
 fn damage_of_the_copy_does_no_harm() {
     let folder = tempfile::tempdir().unwrap();
@@ -230,7 +232,7 @@ fn damage_of_the_copy_does_no_harm() {
     assert_eq!(goes_on(folder.path(), &whole, 3, "no copy"), 3);
 }
 
-/// A block of zeros, as a file system leaves it after a crash, costs the records under it,
+/// Checks that a block of zeros, as a file system may leave after a crash, costs only the records it covers,
 /// wherever it lies.
 #[test]
 fn every_zeroed_block_loses_only_what_it_covers() {
@@ -256,7 +258,8 @@ fn every_zeroed_block_loses_only_what_it_covers() {
     }
 }
 
-/// A journal that fits into one block is lost with it, but not the run.
+/// Checks that a journal overwritten entirely by zeros loses its results, but that the run restarts under its
+/// own identifier.
 #[test]
 fn a_journal_of_zeros_is_begun_anew_under_its_own_name() {
     let folder = tempfile::tempdir().unwrap();
@@ -267,7 +270,7 @@ fn a_journal_of_zeros_is_begun_anew_under_its_own_name() {
     assert_eq!(goes_on(folder.path(), &zeros, 3, "more zeros"), 0);
 }
 
-/// Found as a run folder of an older build whose results were all taken for damage, and would have
+/// Regression test: the results in a run folder of an older version were all taken for damage and would have
 /// been computed again.
 #[test]
 fn a_journal_of_another_version_is_refused_as_such_and_left_as_it_is() {
@@ -289,7 +292,7 @@ fn a_journal_of_another_version_is_refused_as_such_and_left_as_it_is() {
     assert_eq!(fs::read(&path).unwrap(), bytes);
 }
 
-/// A file that nobody can find again must not pass for a journal.
+/// Checks that results written to a deleted journal, which cannot be found again, are not acknowledged.
 #[test]
 fn nothing_is_acknowledged_that_was_written_to_a_deleted_file() {
     let folder = tempfile::tempdir().unwrap();
@@ -311,7 +314,8 @@ fn record_length() -> usize {
     protocol::wire::encode(&result(1)).unwrap().len() + RECORD_HEADER
 }
 
-/// What is left then might be of another case: no result could be trusted.
+/// Checks that a journal without any record identifying its run is not continued: its results might belong to
+/// another case.
 #[test]
 fn a_journal_of_which_nothing_says_what_it_is_is_not_continued() {
     let folder = tempfile::tempdir().unwrap();
@@ -325,7 +329,7 @@ fn a_journal_of_which_nothing_says_what_it_is_is_not_continued() {
     ));
 }
 
-/// A copy that was left beside an empty journal binds nobody; beside results it does.
+/// Checks that a head file of another run is ignored beside an empty journal, and refused beside results.
 #[test]
 fn a_copy_of_another_run_refuses_only_if_there_is_something_to_mix() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,4 @@
-//! Writing a journal: one thread, one flush for all records that wait, and patience with a disk
-//! that is full.
+//! Writing a journal: one thread, one flush for all queued records, and retries on a full disk.
 use super::record::record;
 use protocol::{event::Event, id::JobId};
 use std::{
@@ -18,28 +17,28 @@ use std::{
 /// Pause between attempts to write to a full disk.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// What the writing thread says.
+/// Report of the writing thread.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Appended {
-    /// These results are on the disk.
+    /// Results of these jobs are on the disk.
     Stored(Vec<JobId>),
-    /// Nothing can be written now; it is tried again each second.
+    /// Writing fails for the given reason; it is retried every second.
     Paused(String),
-    /// Writing goes on.
+    /// Writing succeeds again.
     Resumed,
-    /// The file was deleted: what is written to it now is lost with this process.
+    /// The file was deleted; records written to it now are lost when this process ends.
     Deleted,
 }
 
-/// What records are written to.
+/// Storage to which records are written.
 pub(super) trait Medium {
-    /// Adds bytes at the end; after an error any part of them may be there.
+    /// Appends bytes; after an error any part of them may have been written.
     fn add(&mut self, bytes: &[u8]) -> io::Result<()>;
-    /// Makes what was added safe.
+    /// Makes appended bytes durable.
     fn flush(&mut self) -> io::Result<()>;
-    /// Shortens to a length (bytes).
+    /// Truncates the storage to a length (bytes).
     fn cut(&mut self, length: u64) -> io::Result<()>;
-    /// Whether anybody will ever find it again.
+    /// Returns whether the file still has a name in the file system, i.e. has not been deleted.
     fn is_there(&self) -> bool;
 }
 
@@ -63,12 +62,12 @@ impl Medium for File {
     }
 }
 
-/// The writing thread's state.
+/// State of the writing thread.
 pub(super) struct Writer<M, F> {
     medium: M,
-    /// End of the last record that is safe (bytes).
+    /// End of the last durable record (bytes).
     end: u64,
-    /// Something may lie behind it.
+    /// Whether bytes of a failed write may lie behind `end`.
     soiled: bool,
     said: F,
     closing: Arc<AtomicBool>,
@@ -77,7 +76,8 @@ pub(super) struct Writer<M, F> {
 }
 
 impl<M: Medium, F: FnMut(Appended)> Writer<M, F> {
-    /// Writes from `end` (bytes) on; `closing` makes it give up on a disk that takes nothing.
+    /// Creates a writer that appends from offset `end` (bytes); `closing` makes it give up on a disk that
+    /// cannot be written.
     pub(super) const fn new(medium: M, end: u64, said: F, closing: Arc<AtomicBool>) -> Self {
         Self {
             medium,
@@ -90,7 +90,7 @@ impl<M: Medium, F: FnMut(Appended)> Writer<M, F> {
         }
     }
 
-    /// Writes until the sender is gone.
+    /// Writes events in batches until the sender is dropped.
     pub(super) fn run(&mut self, events: &mpsc::Receiver<Event>) {
         let mut batch = Vec::new();
         while let Ok(first) = events.recv() {
@@ -121,8 +121,8 @@ impl<M: Medium, F: FnMut(Appended)> Writer<M, F> {
             }
             if !written {
                 tracing::error!(
-                    "{} results were not written: no worker was told to forget them, they are \
-                     computed or handed in again",
+                    "{} results were not written to the journal: workers still keep them and send them again, \
+                     otherwise they are computed again",
                     jobs.len()
                 );
                 return;
@@ -133,7 +133,7 @@ impl<M: Medium, F: FnMut(Appended)> Writer<M, F> {
         }
     }
 
-    /// Tries until it is done; `false` if the journal is being closed and it cannot be done.
+    /// Retries a write until it succeeds; returns `false` if the journal is being closed and the write fails.
     fn insist(&mut self, batch: &[u8]) -> bool {
         while let Err(error) = self.write(batch) {
             if self.closing.load(Ordering::Relaxed) {
@@ -152,7 +152,7 @@ impl<M: Medium, F: FnMut(Appended)> Writer<M, F> {
         true
     }
 
-    /// Writes all or nothing: what an attempt before left behind is cut off first.
+    /// Writes all of a batch or nothing: remains of a failed earlier write are truncated first.
     fn write(&mut self, batch: &[u8]) -> io::Result<()> {
         if self.soiled {
             self.medium.cut(self.end)?;
@@ -177,22 +177,22 @@ mod tests {
     use crate::journal::sample::result;
     use std::sync::Mutex;
 
-    /// A disk with room for so many bytes, that writes as much as fits and then complains.
+    /// Mock disk with limited capacity, which writes as much as fits and then fails.
     #[derive(Clone)]
     struct Full(Arc<Mutex<State>>);
 
     struct State {
         bytes: Vec<u8>,
         room: usize,
-        /// Flushes and cuts that fail before one succeeds.
+        /// Number of flushes and truncations that fail before one succeeds.
         bad: usize,
         attempts: usize,
-        /// Bytes that a power failure would leave.
+        /// Bytes that would survive a power failure.
         safe: usize,
     }
 
     impl State {
-        /// Takes this much, and so many mishaps happen.
+        /// Creates a disk with a capacity (bytes) and a number of failures to come.
         fn with(room: usize, bad: usize) -> Self {
             Self {
                 bytes: Vec::new(),
@@ -246,8 +246,8 @@ mod tests {
         }
     }
 
-    /// Writes results 0 to `jobs` onto a disk that is full and misbehaves; `relief` is called at
-    /// the first pause.
+    /// Writes results 0 to `jobs` onto a mock disk that fills up and fails; `relief` is called at the first
+    /// pause. Returns the bytes on the disk and the writer's reports.
     fn written(
         jobs: u64,
         state: State,
@@ -307,7 +307,7 @@ mod tests {
         }
     }
 
-    /// All bytes are taken, and then they cannot be made safe: nobody may be told that they are.
+    /// Checks that results are not reported as stored while written bytes cannot be flushed.
     #[test]
     fn what_is_written_and_not_flushed_is_not_stored() {
         for bad in 1..5 {

@@ -1,9 +1,9 @@
-//! Answers to questions about the workers of a run.
+//! Answers to control requests about the workers of a run.
 use super::control::words::{Job, Question, Reply, State, Worker};
 use crate::scheduler::{Drain, Hand};
 use protocol::{id::WorkerId, name::ANYONE};
 
-/// What a question asks to be done to whom, and the answer to it.
+/// Returns the workers to drain with the options, and the reply to the control request.
 pub(super) fn answer(
     question: &Question,
     crew: Vec<Hand>,

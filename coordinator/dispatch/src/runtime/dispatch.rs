@@ -1,4 +1,4 @@
-//! An open run, as its owner sees it.
+//! Handle of an open run, used by the caller that submits jobs.
 use super::{
     control::Control,
     engine::{Engine, Request, Summary},
@@ -25,7 +25,7 @@ use tokio::{
     task::JoinHandle,
 };
 
-/// A run that is open.
+/// Handle of an open run.
 #[derive(Debug)]
 pub struct Dispatch {
     requests: UnboundedSender<Request>,
@@ -34,17 +34,17 @@ pub struct Dispatch {
     engine: JoinHandle<Summary>,
     listening: Vec<Locator>,
     recorded: usize,
-    /// The socket for questions about workers, where the file system has sockets.
+    /// Control socket, if it could be opened.
     control: Option<Control>,
 }
 
 impl Dispatch {
-    /// Opens the journal (or goes on with it), the bus and the local workers.
+    /// Opens or continues the journal, and opens the bus and the local workers.
     ///
     /// # Errors
-    /// [`DispatchError::Journal`] if the run cannot be written or was begun with something else,
-    /// [`DispatchError::Link`] if the address cannot be listened on, [`DispatchError::Locate`] if
-    /// there is no worker program, [`DispatchError::NobodyToAsk`] without any workers.
+    /// [`DispatchError::Journal`] if the run cannot be written or was begun with other settings,
+    /// [`DispatchError::Link`] if the address cannot be listened on, [`DispatchError::Locate`] if there is no
+    /// worker program, [`DispatchError::NobodyToAsk`] without any workers.
     pub async fn open(options: DispatchOptions) -> Result<Self, DispatchError> {
         let (listen, local) = addresses(&options)?;
         allow_connections();
@@ -86,14 +86,14 @@ impl Dispatch {
         };
         open.control = Control::open(&options.run_dir, ask)
             .inspect_err(|error| {
-                tracing::warn!("`horsehead workers list` cannot ask this run: {error}");
+                tracing::warn!("the control socket cannot be opened, so `horsehead workers` commands do not work for this run: {error}");
             })
             .ok();
         Ok(open)
     }
 
-    /// Opens a run over any link, without workers of its own; `make` is given the run's name and
-    /// what workers may fetch. `options.listen`, `insecure` and `local_workers` are not used.
+    /// Opens a run over a given link, without local workers; `make` receives the run's identifier and the
+    /// data that workers may fetch. `options.listen`, `insecure` and `local_workers` are not used.
     ///
     /// # Errors
     /// [`DispatchError::Journal`] as [`Self::open`].
@@ -131,18 +131,17 @@ impl Dispatch {
         }
     }
 
-    /// How many results the journal held when the run was opened.
+    /// Returns the number of results that the journal held when the run was opened.
     pub const fn recorded(&self) -> usize {
         self.recorded
     }
 
-    /// Where workers can connect, the first one as asked for.
+    /// Returns the addresses on which workers can connect; the first is the requested one.
     pub fn listening(&self) -> Vec<String> {
         self.listening.iter().map(ToString::to_string).collect()
     }
 
-    /// Asks for a job to be done, once per process; a result that the journal holds already is
-    /// delivered again at once.
+    /// Submits a job, once per process; a result that the journal already holds is delivered at once.
     ///
     /// # Errors
     /// [`DispatchError::Closed`] once the run has been stopped.
@@ -154,10 +153,10 @@ impl Dispatch {
         self.requests.send(asked).map_err(|_| DispatchError::Closed)
     }
 
-    /// Waits for the next result, in the order of arrival; loses nothing when dropped.
+    /// Waits for the next result, in the order of arrival. Cancel safe.
     ///
     /// # Errors
-    /// The reason why the run cannot go on: nothing but [`Self::close`] is of use afterwards.
+    /// The reason why the run cannot go on; afterwards only [`Self::close`] is useful.
     pub async fn next(&mut self) -> Result<Completed, DispatchError> {
         self.completed
             .recv()
@@ -165,7 +164,7 @@ impl Dispatch {
             .unwrap_or(Err(DispatchError::Closed))
     }
 
-    /// The state of the run, some hundredths of a second old at most.
+    /// Returns the state of the run, at most some hundredths of a second old.
     pub fn snapshot(&self) -> Snapshot {
         self.snapshot
             .lock()
@@ -173,12 +172,12 @@ impl Dispatch {
             .clone()
     }
 
-    /// Ends the run: workers are told, local ones ended, the journal closed; within 3 s, unless the
-    /// disk is full: it waits for room, since workers forget their results at the end of a run. The
-    /// same run can be opened again later.
+    /// Ends the run: tells workers, ends local workers and closes the journal, within 3 s. On a full disk it
+    /// waits for room, since workers discard their results at the end of a run. The same run can be opened
+    /// again later.
     ///
     /// # Errors
-    /// [`DispatchError::Closed`] if the runtime broke down before.
+    /// [`DispatchError::Closed`] if the runtime failed before.
     pub async fn close(self) -> Result<Summary, DispatchError> {
         // an engine that has stopped needs no request
         drop(self.requests);

@@ -1,4 +1,5 @@
-//! The task of an open run: carries words between link, core and journal, and decides nothing.
+//! Task of an open run, which passes messages between link, scheduler core and journal, and makes no
+//! decisions itself.
 use super::{
     control::{
         Asked,
@@ -33,32 +34,32 @@ use tokio::{
     time::{MissedTickBehavior, interval, timeout},
 };
 
-/// How often the core looks at its clocks.
+/// Interval at which the core checks its deadlines.
 const TICK: Duration = Duration::from_millis(250);
-/// How old a snapshot may be: making one costs more than a result does.
+/// Maximum age of a snapshot; making a snapshot costs more than handling a result.
 const FRESH: Duration = Duration::from_millis(20);
-/// Most messages that are read before the core looks at its clocks.
+/// Maximum number of messages read before the core checks its deadlines.
 const MOST_WAITING: usize = 1 << 16;
-/// How long the last results may take to reach the disk at the end, if it is not full.
+/// Time limit for the last results to reach the journal at the end, if the disk is not full.
 const LAST_WRITE: Duration = Duration::from_secs(1);
 
-/// What the owner of a run asks for.
+/// Request of the run's owner to the engine.
 #[derive(Debug)]
 pub(super) enum Request {
     Submit {
         id: JobId,
         job: Box<Job>,
     },
-    /// Asked through the run's socket.
+    /// Request from the control socket.
     Ask(Asked),
 }
 
-/// How a run went, from the opening to the closing of this process.
+/// Summary of a run, from opening to closing in this process.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
-    /// The last state, with the account of slot time.
+    /// Final state, including the account of slot time.
     pub last: Snapshot,
-    /// Results taken from the journal instead of being computed.
+    /// Number of results taken from the journal instead of being computed.
     pub replayed: u64,
     /// Time between opening and closing \[s\].
     pub wall_s: f64,
@@ -66,12 +67,12 @@ pub struct Summary {
 
 type Deliver = UnboundedSender<Result<Completed, DispatchError>>;
 
-/// A journal that cannot be written.
+/// Pause of a run whose journal cannot be written.
 #[derive(Debug)]
 struct Pause {
-    /// What the system says.
+    /// Error of the operating system.
     why: String,
-    /// When the run ends if it is still so.
+    /// Time at which the run ends if the journal still cannot be written.
     ends: tokio::time::Instant,
 }
 
@@ -88,13 +89,13 @@ pub(super) struct Engine<L> {
     begun: Instant,
     sleep: Sleep,
     replayed: u64,
-    /// The journal cannot be written for now; one that was deleted is not worth waiting for.
+    /// Pause while the journal cannot be written; `None` for a deleted journal, which is not waited for.
     paused: Option<Pause>,
-    /// Longest time for which it may be so.
+    /// Maximum duration of a pause.
     pause_limit: Duration,
-    /// It was so for longer: nothing is waited for any more.
+    /// Whether a pause exceeded its limit; nothing is waited for any more.
     given_up: bool,
-    /// When the snapshot has to be renewed because something happened.
+    /// Time at which the snapshot must be renewed; `None` if nothing has changed.
     stale_at: Option<tokio::time::Instant>,
 }
 
@@ -170,13 +171,13 @@ impl<L: CoordinatorEnd> Engine<L> {
         self.close().await
     }
 
-    /// When the run has waited for long enough.
+    /// Returns the time at which the current pause exceeds its limit.
     fn pause_ends(&self) -> Option<tokio::time::Instant> {
         let pause = self.paused.as_ref().filter(|_| !self.given_up);
         pause.map(|pause| pause.ends)
     }
 
-    /// Ends the run with what it has.
+    /// Ends the run because a pause exceeded its limit.
     fn give_up(&mut self) {
         self.given_up = true;
         if let Some(pause) = &self.paused {
@@ -185,7 +186,8 @@ impl<L: CoordinatorEnd> Engine<L> {
         }
     }
 
-    /// Handles what has arrived already: nobody is silent whose words wait to be read.
+    /// Handles all messages that have already arrived, so that no worker counts as silent while its messages
+    /// are queued.
     async fn catch_up(&mut self) {
         for _ in 0..MOST_WAITING {
             let waiting = tokio::task::coop::unconstrained(self.link.receive());
@@ -198,7 +200,7 @@ impl<L: CoordinatorEnd> Engine<L> {
         }
     }
 
-    /// Tells the core if the machine has slept.
+    /// Tells the core if the machine was suspended.
     fn wake(&mut self) {
         let time = self.sleep.since_last();
         if time > TICK {
@@ -223,7 +225,7 @@ impl<L: CoordinatorEnd> Engine<L> {
         }
     }
 
-    /// Answers a question about the workers, and does to them what it asks.
+    /// Answers a control request and drains workers as requested.
     fn ask(&mut self, question: &Question) -> Reply {
         let crew = self.core.crew(self.begun.elapsed());
         let (drains, reply) = crew::answer(question, crew, |worker| self.link.owner(worker));
@@ -263,8 +265,8 @@ impl<L: CoordinatorEnd> Engine<L> {
             Appended::Paused(why) => {
                 self.handle(Input::Writable(false));
                 tracing::error!(
-                    "the journal cannot be written ({why}): the run pauses, results wait, nothing \
-                     is lost; make room on the disk and it goes on by itself. After {} s it ends with what it has",
+                    "the journal cannot be written ({why}): the run is paused and no result is lost; \
+                     free space on the disk and it continues by itself. After {} s it ends with the results it has",
                     self.pause_limit.as_secs()
                 );
                 let ends = tokio::time::Instant::now() + self.pause_limit;
@@ -277,7 +279,7 @@ impl<L: CoordinatorEnd> Engine<L> {
             Appended::Resumed => {
                 (self.paused, self.given_up) = (None, false);
                 self.handle(Input::Writable(true));
-                tracing::warn!("the journal is written again: the run goes on");
+                tracing::warn!("the journal can be written again: the run continues");
             }
         }
     }
@@ -288,7 +290,9 @@ impl<L: CoordinatorEnd> Engine<L> {
                 tracing::warn!("a local worker {how}; it is started again");
             }
             LocalEvent::GivenUp { how } => {
-                tracing::warn!("a local worker {how}, too often by now; it is not started again");
+                tracing::warn!(
+                    "a local worker {how}; it has ended too often and is not started again"
+                );
             }
             LocalEvent::AllGivenUp { how } if self.only_local => {
                 self.give(Err(DispatchError::LocalWorkers { how }));
@@ -350,8 +354,8 @@ impl<L: CoordinatorEnd> Engine<L> {
         *self.shown.lock().unwrap_or_else(PoisonError::into_inner) = snapshot;
     }
 
-    /// Waits until the last results are in the journal: up to the pause limit where the disk is full,
-    /// since a worker that is told of the end forgets what it has.
+    /// Waits until the last results are in the journal, up to the pause limit if the disk is full, since
+    /// workers discard their results when told that the run ends.
     async fn write_last(&mut self) {
         let mut ends = tokio::time::Instant::now() + LAST_WRITE;
         let mut ticks = interval(TICK);
@@ -359,9 +363,9 @@ impl<L: CoordinatorEnd> Engine<L> {
         while self.core.unstored() > 0 && !self.given_up {
             if self.paused.is_some() && !mem::replace(&mut told, true) {
                 tracing::error!(
-                    "the run ends once its last {} results are written: make room on the disk. It \
-                     can be ended without them, by asking twice; then workers keep them for the \
-                     next start of the run, and what they do not bring is computed again",
+                    "the run ends once its last {} results are written: free space on the disk. A second \
+                     interrupt ends it without them; workers then keep them for the next start of \
+                     the run, and missing ones are computed again",
                     self.core.unstored()
                 );
             }
@@ -381,7 +385,7 @@ impl<L: CoordinatorEnd> Engine<L> {
                 () = until(pause_ends) => self.give_up(),
                 () = tokio::time::sleep_until(ends), if self.paused.is_none() => {
                     tracing::warn!(
-                        "the last results did not reach the journal; they are computed again"
+                        "the last results were not written to the journal in time; they are computed again when the run is continued"
                     );
                     return;
                 }

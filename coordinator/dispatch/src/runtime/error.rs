@@ -1,11 +1,11 @@
-//! What can go wrong with a run, with the remedy where there is one.
+//! Errors of opening and running a run, with the remedy where there is one.
 use super::locate::LocateError;
 use crate::{journal::JournalError, scheduler::Stop};
 use link::LinkError;
 use protocol::{id::JobId, wire::WireError};
 use std::time::Duration;
 
-/// Why a run cannot be opened or go on.
+/// Reason why a run cannot be opened or cannot continue.
 #[derive(Debug, thiserror::Error)]
 pub enum DispatchError {
     /// The journal cannot be used.
@@ -23,49 +23,49 @@ pub enum DispatchError {
     /// A local worker cannot be started.
     #[error("local workers cannot be started: {0}")]
     Start(std::io::Error),
-    /// Neither local workers nor an address for others.
+    /// The run has neither local workers nor an address for remote ones.
     #[error(
-        "there are no workers to ask: start some with --workers N, or let others join with --listen LOCATOR"
+        "the run has no workers: start local ones with --workers N, or let others join with --listen LOCATOR"
     )]
     NobodyToAsk,
-    /// Local workers end again and again, and nobody else can join.
-    #[error("the local workers end again and again without a result (the last one {how})")]
+    /// Local workers end repeatedly without a result, and no other workers can join.
+    #[error("the local workers keep ending without a result (the last one {how})")]
     LocalWorkers {
-        /// How the last one ended.
+        /// Exit of the last local worker, in words.
         how: String,
     },
-    /// The journal holds the result of another job under this name.
+    /// The journal holds the result of a different job under this number.
     #[error(
-        "job {job} of this run was another one when its result was recorded: this build asks other questions than the one that began the run; choose another run folder"
+        "the journal of this run holds the result of a different job {job}: this build submits other jobs than the build that began the run; continue with that build, or choose another run folder"
     )]
     JobDiffers {
-        /// The job.
+        /// Number of the job.
         job: JobId,
     },
-    /// The journal could not be written for longer than the run was to wait.
+    /// The journal could not be written for longer than the pause limit.
     #[error(
-        "the journal could not be written for {} s ({why}): the run ends with what it has; make room on the disk, \
-         then the same command goes on",
+        "the journal could not be written for {} s ({why}): the run ends with the results it has; free space on the disk, \
+         then repeat the command to continue",
         limit.as_secs()
     )]
     Paused {
-        /// What the system says.
+        /// Error of the operating system.
         why: String,
-        /// How long it waited.
+        /// Pause limit.
         limit: Duration,
     },
-    /// The address to listen on is taken, or is none of this machine.
+    /// The address to listen on is in use, or is not an address of this machine.
     #[error("cannot listen on {locator}: {source}")]
     Listen {
-        /// The address.
+        /// Address as a locator.
         locator: String,
-        /// The system's words.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// The core gave up.
+    /// The scheduler core stopped the run.
     #[error("{0}")]
     Stopped(Stop),
-    /// The run has been closed or stopped before.
+    /// The run was closed or stopped before.
     #[error("the run is closed")]
     Closed,
 }

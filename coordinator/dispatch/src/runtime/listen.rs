@@ -1,4 +1,4 @@
-//! Where a run listens, with which keys, and whether that is possible.
+//! Listening addresses of a run, their key material, and checks before the run starts.
 use super::{error::DispatchError, options::DispatchOptions};
 use link::{
     LinkError,
@@ -8,11 +8,11 @@ use link::{
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::net::{TcpListener, UdpSocket};
 
-/// Open files beyond which nothing is gained: the link takes no more connections.
+/// Number of open files to request; more is useless, since the link limits its connections.
 const FILES: u64 = 16 << 10;
 
-/// Has the system allow as many open connections as it may: a shell gives a process a thousand, which
-/// a few silent peers would use up.
+/// Raises this process's limit of open files: the usual limit of about a thousand could be used up by a few
+/// silent peers.
 pub(super) fn allow_connections() {
     let Rlimit { current, maximum } = getrlimit(Resource::Nofile);
     let wanted = maximum.map_or(FILES, |maximum| maximum.min(FILES));
@@ -24,11 +24,11 @@ pub(super) fn allow_connections() {
         maximum,
     };
     if let Err(error) = setrlimit(Resource::Nofile, limit) {
-        tracing::debug!(%error, "no more files may be open than before");
+        tracing::debug!(%error, "the limit of open files cannot be raised");
     }
 }
 
-/// Whether one may and can listen there, before anything is made or started for it.
+/// Checks that listening on an address is permitted and possible, before anything is created or started.
 pub(super) fn admissible(locator: &Locator, insecure: bool) -> Result<(), DispatchError> {
     locator.permit(insecure)?;
     let at = (locator.bare_host(), locator.port);
@@ -42,7 +42,7 @@ pub(super) fn admissible(locator: &Locator, insecure: bool) -> Result<(), Dispat
     })
 }
 
-/// The key material, read and checked if an address needs it.
+/// Reads and checks the key material if an address needs it.
 pub(super) fn keys(
     options: &DispatchOptions,
     listen: &[Locator],
@@ -57,7 +57,7 @@ pub(super) fn keys(
     Ok(Some(keys))
 }
 
-/// Where to listen, and which of it local workers use.
+/// Returns the addresses to listen on, and the index of the address that local workers use.
 pub(super) fn addresses(
     options: &DispatchOptions,
 ) -> Result<(Vec<Locator>, Option<usize>), DispatchError> {

@@ -1,11 +1,11 @@
 //! Worker processes on this machine: started, restarted within limits, ended.
 //!
-//! A job may take its worker with it, and the next one too; the core gives such a job up. So a
-//! worker that ends is started again as long as the run makes progress, and given up only after
-//! several ends without a result between them.
+//! A job may crash its worker, and the next worker too; the core gives such a job up. A worker that ends is
+//! therefore restarted as long as the run makes progress, and given up only after several exits without a
+//! result in between.
 //!
-//! One thread owns them all and lives as long as they do, because the parent-death signal that
-//! ends them follows the thread that started them. They also end when their standard input does.
+//! One thread owns all workers and lives as long as they do, because the parent-death signal that ends them
+//! is bound to the thread that started them. Workers also end when their standard input does.
 use super::error::DispatchError;
 use link::locator::Locator;
 use std::{
@@ -23,27 +23,28 @@ use std::{
 };
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
-/// How often the processes are looked at.
+/// Polling interval of the worker processes.
 const LOOK: Duration = Duration::from_millis(50);
-/// Restarts of one worker without a result of the run between them: more than a job needs that
-/// kills its workers before it is given up.
+/// Maximum number of restarts of a worker without a result of the run in between; more than the number of
+/// crashes after which the core gives up a job.
 const RESTARTS: u32 = 8;
-/// After so long a worker counts as having worked.
+/// Running time after which a worker's restart count is reset.
 const WORKED: Duration = Duration::from_mins(1);
-/// Exit status of a worker that was refused, or asked to end: it would be again.
+/// Exit status of a worker that was refused or told to end; a restart would fail again.
 const REFUSED: i32 = 3;
-/// Pause before a first restart; twice as long each time, up to the longest.
+/// Pause before the first restart; doubled each time up to [`LONGEST_PAUSE`].
 const PAUSE: Duration = Duration::from_millis(100);
 /// Longest pause before a restart.
 const LONGEST_PAUSE: Duration = Duration::from_millis(800);
-/// How long they may take to end by themselves.
+/// Time limit for workers to end by themselves before they are killed.
 const PATIENCE: Duration = Duration::from_millis(1500);
-/// How long the last words of a worker that has ended are waited for: processes that it started may hold its output.
+/// Time limit for reading the last output of a worker that has ended: its child processes may still hold the
+/// pipe.
 const LAST_WORDS: Duration = Duration::from_millis(200);
-/// Most bytes of its output that are passed on as one line.
+/// Maximum length of a worker's output that is forwarded as one line (bytes).
 const LONGEST_LINE: u64 = 64 << 10;
 
-/// What happened to local workers.
+/// Event of the local workers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum LocalEvent {
     Ended { how: String },
@@ -51,11 +52,11 @@ pub(super) enum LocalEvent {
     AllGivenUp { how: String },
 }
 
-/// Local workers; dropping it ends them and waits for their end.
+/// Local workers, ended and waited for on drop.
 #[derive(Debug)]
 pub(super) struct LocalWorkers {
     events: UnboundedReceiver<LocalEvent>,
-    /// Results of the run, whoever brought them.
+    /// Number of results of the run from any worker.
     results: Arc<AtomicU64>,
     end: Option<mpsc::Sender<()>>,
     thread: Option<thread::JoinHandle<()>>,
@@ -120,12 +121,12 @@ impl LocalWorkers {
         }
     }
 
-    /// The run has another result: it makes progress.
+    /// Counts a result of the run, as a sign of progress.
     pub(super) fn note_result(&self) {
         self.results.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Waits for the next thing that happens; loses nothing when dropped.
+    /// Waits for the next event. Cancel safe.
     pub(super) async fn event(&mut self) -> Option<LocalEvent> {
         self.events.recv().await
     }
@@ -142,16 +143,16 @@ impl Drop for LocalWorkers {
     }
 }
 
-/// What is started, and where it connects to.
+/// Worker program and the address that it connects to.
 struct Program {
     path: PathBuf,
     connect: String,
 }
 
-/// Standard error of one worker: passed on line by line, the last one kept.
+/// Standard error of a worker, forwarded line by line; the last line is kept.
 struct Said {
     last: Arc<Mutex<String>>,
-    /// Disconnected at the end of the output.
+    /// Channel that is disconnected at the end of the output.
     over: mpsc::Receiver<()>,
 }
 
@@ -184,7 +185,7 @@ impl Said {
         Ok(Self { last, over })
     }
 
-    /// The last line of a worker that has ended, empty if it said nothing.
+    /// Returns the last line of output of a worker that has ended; empty if there was none.
     fn last(&self) -> String {
         // nothing is ever sent: either the output ends, or the time is up
         self.over.recv_timeout(LAST_WORDS).unwrap_or_default();
@@ -193,18 +194,17 @@ impl Said {
     }
 }
 
-/// One worker and its history.
+/// Local worker process with its restart history.
 struct Place {
     child: Option<Child>,
     said: Said,
     begun: Instant,
-    /// Results of the run when it last ended.
+    /// Number of results of the run when the worker last ended.
     results: u64,
-    /// Ends without a result between them.
+    /// Number of consecutive exits without a result in between.
     restarts: u32,
-    /// It ended because it was refused.
+    /// Whether the worker ended because it was refused.
     refused: bool,
-    /// Pause before the next restart.
     pause: Duration,
     again_at: Option<Instant>,
 }
@@ -234,7 +234,7 @@ impl Place {
         })
     }
 
-    /// How it ended, if it just did.
+    /// Returns how the worker ended, if it just did.
     fn ended(&mut self) -> Option<String> {
         let how = match self.child.as_mut()?.try_wait() {
             Ok(None) => return None,
@@ -246,7 +246,7 @@ impl Place {
                     last => format!("{how}: `{last}`"),
                 }
             }
-            Err(error) => format!("is out of sight: {error}"),
+            Err(error) => format!("could not be checked: {error}"),
         };
         self.child = None;
         if self.begun.elapsed() >= WORKED {
@@ -255,7 +255,8 @@ impl Place {
         Some(how)
     }
 
-    /// It ended: to be started again after a pause, or given up. The run has so many results now.
+    /// Schedules a restart of a worker that ended, or gives it up; `results` is the run's current number of
+    /// results.
     fn again(&mut self, how: String, results: u64) -> LocalEvent {
         if results > self.results {
             (self.results, self.restarts) = (results, 0);
@@ -269,7 +270,7 @@ impl Place {
         LocalEvent::Ended { how }
     }
 
-    /// Starts it again if it is time; what is wrong if that fails.
+    /// Restarts the worker if its pause is over; returns the error if that fails.
     fn restart_when_due(&mut self, program: &Program) -> Option<String> {
         self.again_at.filter(|at| *at <= Instant::now())?;
         self.again_at = None;
@@ -315,7 +316,7 @@ fn tend(
     }
 }
 
-/// Lets them end by themselves, then makes them.
+/// Ends workers by closing their standard input, and kills those that do not end in time.
 fn end_all(places: Vec<Place>) {
     let mut children: Vec<Child> = places.into_iter().filter_map(|place| place.child).collect();
     for child in &mut children {

@@ -1,5 +1,5 @@
-//! Finding the worker program, which is a program of its own beside this one. It is never built from
-//! here: `cargo build` makes both.
+//! Search for the worker program, a separate executable in the same folder. It is never built from here:
+//! `cargo build` makes both.
 use std::{
     env,
     ffi::OsStr,
@@ -8,10 +8,10 @@ use std::{
 
 /// Name of the worker program.
 const PROGRAM: &str = "horsehead-worker";
-/// Environment variable: path of the worker program, instead of a search.
+/// Environment variable with the path of the worker program, which replaces the search.
 pub const WORKER_PROGRAM: &str = "HORSEHEAD_WORKER";
 
-/// There is no worker program.
+/// The worker program was not found.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "{PROGRAM} is neither beside {} nor on PATH: build both programs with `cargo build --release`, \
@@ -19,15 +19,15 @@ pub const WORKER_PROGRAM: &str = "HORSEHEAD_WORKER";
     beside.display()
 )]
 pub struct LocateError {
-    /// The folder of this program.
+    /// Folder of this program.
     beside: PathBuf,
 }
 
-/// The worker program: the one named by [`WORKER_PROGRAM`]; the one beside this program, which for a
-/// test of cargo's is the folder above; the one on `PATH`.
+/// Returns the path of the worker program: that in [`WORKER_PROGRAM`], else in the folder of this program
+/// (for a cargo test, the folder above), else on `PATH`.
 ///
 /// # Errors
-/// [`LocateError`] with what to do.
+/// [`LocateError`] with the remedy.
 pub fn worker_program() -> Result<PathBuf, LocateError> {
     if let Some(path) = env::var_os(WORKER_PROGRAM).filter(|path| !path.is_empty()) {
         return Ok(path.into());
@@ -44,7 +44,7 @@ pub fn worker_program() -> Result<PathBuf, LocateError> {
     })
 }
 
-/// The program in a folder, or else in the first of a list of folders that has it.
+/// Returns the worker program in a folder, or else in the first folder of `path` that has it.
 fn nearest(folder: &Path, path: &OsStr) -> Option<PathBuf> {
     let folders = [folder.to_owned()]
         .into_iter()

@@ -1,7 +1,7 @@
-//! The asynchronous glue between link, core and journal, and the only way to have work done.
+//! Asynchronous glue between link, core and journal, and the only interface for running jobs.
 //!
-//! [`Dispatch`] is opened on a run folder, given jobs and asked for results. What it does in
-//! between runs on a task of its own, so that a caller that computes for a while holds up nobody.
+//! [`Dispatch`] is opened on a run folder, given jobs and asked for results. It runs on a task of its own, so
+//! that a caller busy with computations delays no worker.
 mod bench;
 pub mod control;
 mod crew;

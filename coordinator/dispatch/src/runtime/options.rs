@@ -1,27 +1,27 @@
-//! What a run is opened with.
+//! Options for opening a run.
 use protocol::{case::Case, event::RunHeader};
 use std::{path::PathBuf, time::Duration};
 
-/// The usual pause limit: long enough for a person who is told to make room.
+/// Default pause limit, long enough for a person to free space on the disk.
 pub const PAUSE_LIMIT: Duration = Duration::from_mins(10);
 
-/// What a run is opened with.
+/// Options for opening a run.
 #[derive(Clone, Debug)]
 pub struct DispatchOptions {
-    /// Folder of the run's journal; made if it is not there.
+    /// Run folder with the journal; created if missing.
     pub run_dir: PathBuf,
     /// Address for workers of other machines; `None` for local workers only.
     pub listen: Option<String>,
-    /// Whether that address may be unencrypted and open to the network.
+    /// Whether the listening address may be unencrypted and open to the network.
     pub insecure: bool,
     /// Folder of the coordinator's key material, for QUIC addresses.
     pub tls: Option<PathBuf>,
-    /// Worker processes to start on this machine, with one slot each.
+    /// Number of worker processes to start on this machine, with one slot each.
     pub local_workers: usize,
-    /// Longest time for which the run waits while its journal cannot be written; then it ends with what it has.
+    /// Maximum time to wait while the journal cannot be written; then the run ends with the results it has.
     pub pause_limit: Duration,
-    /// What the jobs are about.
+    /// Case that the jobs simulate.
     pub case: Case,
-    /// What decides the result of the run.
+    /// Command, case and settings that determine the result of the run.
     pub header: RunHeader,
 }

@@ -1,4 +1,5 @@
-//! What any run consists of, whatever its link: a core that knows the past, and the journal.
+//! Parts of a run that do not depend on its link: the scheduler core, initialised from the journal, and the
+//! journal.
 use super::{error::DispatchError, options::DispatchOptions};
 use crate::{
     journal::{self, Appended, Journal},
@@ -15,7 +16,7 @@ use std::{
 };
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
-/// What any run consists of, whatever its link.
+/// Parts of a run that do not depend on its link.
 pub(super) struct Parts {
     pub(super) run: RunId,
     pub(super) core: Core,
@@ -26,7 +27,7 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// Opens the journal, or begins it.
+    /// Opens or creates the journal, and initialises the core from it.
     pub(super) fn open(options: &DispatchOptions) -> Result<Self, DispatchError> {
         let now = SystemTime::now()
             .duration_since(UNIX_EPOCH)

@@ -1,21 +1,21 @@
-//! Whether the machine slept: the clock of a run stands still meanwhile, the connections of others
-//! do not.
+//! Detection of system suspend: the clock of a run stands still during suspend, but remote connections time
+//! out.
 use std::time::Duration;
 
-/// Since when the machine may have slept.
+/// Detector of system suspend.
 #[derive(Debug)]
 pub(super) struct Sleep {
-    /// Time for which it had slept, at most, when that was last asked.
+    /// Upper bound of the total time suspended, at the last query.
     known: Duration,
 }
 
 impl Sleep {
-    /// From now on.
+    /// Creates a detector that counts suspends from now on.
     pub(super) fn since_now() -> Self {
         Self { known: asleep().1 }
     }
 
-    /// For how long it has slept at least since this was last asked.
+    /// Returns a lower bound of the time suspended since the last query.
     pub(super) fn since_last(&mut self) -> Duration {
         self.note(asleep())
     }
@@ -27,8 +27,8 @@ impl Sleep {
     }
 }
 
-/// Time for which the machine has slept since it was switched on, at least and at most: reading two
-/// clocks takes a moment.
+/// Returns lower and upper bounds of the time suspended since boot; the bounds differ because reading two
+/// clocks takes time.
 #[cfg(target_os = "linux")]
 fn asleep() -> (Duration, Duration) {
     use rustix::time::{ClockId, clock_gettime};
@@ -39,7 +39,8 @@ fn asleep() -> (Duration, Duration) {
     (all.saturating_sub(after), all.saturating_sub(before))
 }
 
-/// Elsewhere the clock of a run goes on in sleep, or nobody knows.
+/// Returns zero: on other systems the clock of a run continues during suspend, or the time suspended is
+/// unknown.
 #[cfg(not(target_os = "linux"))]
 fn asleep() -> (Duration, Duration) {
     (Duration::ZERO, Duration::ZERO)
@@ -49,7 +50,7 @@ fn asleep() -> (Duration, Duration) {
 mod tests {
     use super::*;
 
-    /// However busy the machine is, time awake is no sleep.
+    /// Checks that no suspend is reported while the machine is awake, however busy it is.
     #[test]
     fn a_machine_that_is_awake_has_not_slept() {
         let mut sleep = Sleep::since_now();

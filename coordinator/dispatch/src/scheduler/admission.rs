@@ -1,8 +1,8 @@
-//! Who may take part: the same protocol, build, numerics and effects, and the same bits.
+//! Admission of workers: same protocol, build, numerics and effects, and the same results.
 //!
-//! Numerics are compared twice: by the digest of a fixed model when a worker announces itself, and
-//! by the case's own reference individual, which each worker computes once it holds the case. The
-//! first worker of a run sets what the others must come to: to the last bit, or within what the case says.
+//! Numerics are compared twice: by the digest of a fixed model when a worker announces itself, and by the
+//! case's own reference individual, which each worker computes once it holds the case. The first worker of a
+//! run sets the expected result, which others must match to the last bit or within the tolerance of the case.
 use super::{
     admission_rules::{malformed, model, objection, shown},
     drain::turn_away,
@@ -21,10 +21,10 @@ use protocol::{
 };
 use std::time::Duration;
 
-/// Refused workers that are remembered, so that each is spoken of once.
+/// Maximum number of refused workers remembered, so that each is reported once.
 const MOST_REFUSED: usize = 4096;
 
-/// A worker introduces itself.
+/// Handles the announcement of a worker: admits or refuses it.
 pub(super) fn announce(core: &mut Core, from: WorkerId, announcement: Announcement, now: Duration) {
     if let Some(reason) = malformed(&announcement).or_else(|| objection(core, &announcement)) {
         let host = shown(&announcement.host);
@@ -45,7 +45,7 @@ pub(super) fn announce(core: &mut Core, from: WorkerId, announcement: Announceme
     core.send(from, admitted);
 }
 
-/// Tells a worker why it may not take part, and people once.
+/// Sends a worker the reason for its refusal, and notifies the user once.
 fn refuse(core: &mut Core, worker: WorkerId, host: String, reason: String) {
     if core.refused.len() < MOST_REFUSED && core.refused.insert(worker) {
         core.notice(Notice::Refused {
@@ -57,8 +57,8 @@ fn refuse(core: &mut Core, worker: WorkerId, host: String, reason: String) {
     core.send(worker, ToWorker::Refused { reason });
 }
 
-/// A worker speaks another version of the wire: it is answered in ours, so that it can say why it
-/// does not work, and people are told once.
+/// Handles a worker with another version of the wire protocol: answers in this version, so that the worker
+/// can report the mismatch, and notifies the user once.
 pub(super) fn other_version(core: &mut Core, worker: WorkerId, version: u8) {
     let is_member = core.members.contains_key(&worker);
     if !is_member && core.refused.len() < MOST_REFUSED && core.refused.insert(worker) {
@@ -95,14 +95,14 @@ fn admit(core: &mut Core, worker: WorkerId, announcement: Announcement, now: Dur
     });
 }
 
-/// Whether a worker can be given jobs; none if it has just been refused.
+/// Returns whether a worker can be given jobs; `None` if it has just been refused.
 pub(super) fn is_ready(core: &mut Core, from: WorkerId, beat: &Beat) -> Option<bool> {
     let expected = core.options.case;
     match beat.case {
         None => return Some(false),
         Some(case) if case != expected => {
             let reason = format!(
-                "case is {case}, this run's is {expected}: it was told so and took another; use \
+                "case is {case}, but this run's is {expected} and the worker was told so; use \
                  the same build of horsehead-worker"
             );
             return expel(core, from, reason);
@@ -118,7 +118,7 @@ pub(super) fn is_ready(core: &mut Core, from: WorkerId, beat: &Beat) -> Option<b
     }
 }
 
-/// Whether a machine computes what the others compute; the first one says what that is.
+/// Checks a worker's proof against that of the run's first worker; the first proof becomes the reference.
 fn agreement(core: &mut Core, proof: &Proof) -> Result<(), String> {
     let tolerance = match core.options.repeats {
         Repeats::Within(tolerance) => tolerance,
@@ -129,7 +129,7 @@ fn agreement(core: &mut Core, proof: &Proof) -> Result<(), String> {
     {
         let count = values.len();
         return Err(format!(
-            "proof has {count} values, allowed are {MOST_SAMPLES}: use the same build of horsehead-worker"
+            "proof has {count} values, at most {MOST_SAMPLES} are allowed: use the same build of horsehead-worker"
         ));
     }
     let Some(expected) = &core.options.proof else {
@@ -150,13 +150,13 @@ fn agreement(core: &mut Core, proof: &Proof) -> Result<(), String> {
             }
         };
         format!(
-            "proof is {differs}: the reference individual of the case comes out differently on this \
-             machine; {remedy}, or leave this machine out"
+            "proof is {differs}: the reference individual of the case gives a different result on this \
+             machine; {remedy}, or do not use this machine"
         )
     })
 }
 
-/// Refuses a worker that takes part already.
+/// Removes and refuses a worker that has already joined.
 fn expel(core: &mut Core, worker: WorkerId, reason: String) -> Option<bool> {
     let member = dismiss(core, worker, "it was refused", core.clocks.now)?;
     refuse(core, worker, member.announcement.host, reason);

@@ -1,31 +1,32 @@
-//! What a worker must be like to take part in a run, and in which words it is told what is wrong.
+//! Rules that a worker must meet to join a run, with the messages sent to refused workers.
 use super::state::Core;
 use protocol::{
     announce::{Announcement, ModelDescriptor},
     wire,
 };
 
-/// How much of a text that cannot be trusted people are shown (characters).
+/// Maximum length of untrusted text that is displayed (characters).
 const MOST_SHOWN: usize = 200;
 
-/// More slots than any machine has: a number beyond it is a mistake.
+/// Maximum number of slots of a worker; a larger number is taken for a mistake.
 const MOST_SLOTS: u32 = 4096;
 
-/// More workers than any run has: so many are no workers.
+/// Maximum number of workers of a run, as protection against floods of announcements.
 const MOST_WORKERS: usize = 16 << 10;
 
-/// Longest name of a machine, a build or a model (bytes).
+/// Maximum length of the name of a host, build or model (bytes).
 const MOST_NAME: usize = 255;
 
-/// Longest list of kinds of job, and of models with their effects (bytes, encoded): ten times what ours have.
+/// Maximum encoded length of the list of job kinds (bytes), ten times the usual length; `MOST_MODELS` is that
+/// of the list of models with their effects.
 const MOST_KINDS: usize = 4 << 10;
 const MOST_MODELS: usize = 1 << 20;
 
-/// This program's version.
+/// Version of this program.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// What no worker of ours would say of itself; it is kept, shown and written down, so there is an
-/// end to it.
+/// Returns what is malformed in an announcement, if anything. Announcements are stored, displayed and
+/// recorded, so their sizes are bounded.
 pub(super) fn malformed(announcement: &Announcement) -> Option<String> {
     let Announcement {
         build,
@@ -44,7 +45,7 @@ pub(super) fn malformed(announcement: &Announcement) -> Option<String> {
         if text.len() > MOST_NAME {
             let bytes = text.len();
             return Some(format!(
-                "{field} has {bytes} bytes, allowed are {MOST_NAME}"
+                "{field} has {bytes} bytes, at most {MOST_NAME} are allowed"
             ));
         }
         if text.chars().any(char::is_control) {
@@ -58,13 +59,15 @@ pub(super) fn malformed(announcement: &Announcement) -> Option<String> {
         ("models", bytes(wire::encode(models)), MOST_MODELS),
     ] {
         if bytes > most {
-            return Some(format!("{field} has {bytes} bytes, allowed are {most}"));
+            return Some(format!(
+                "{field} has {bytes} bytes, at most {most} are allowed"
+            ));
         }
     }
     None
 }
 
-/// What keeps a worker from taking part in this run, with the remedy.
+/// Returns the reason why a worker may not join this run, with the remedy; `None` if it may.
 pub(super) fn objection(core: &Core, announcement: &Announcement) -> Option<String> {
     const SAME: &str = "use the same build of horsehead and horsehead-worker on every machine";
     let Announcement {
@@ -86,12 +89,12 @@ pub(super) fn objection(core: &Core, announcement: &Announcement) -> Option<Stri
     }
     if !(1..=MOST_SLOTS).contains(slots) {
         return Some(format!(
-            "slots is {slots}, allowed are 1 to {MOST_SLOTS}: set --slots"
+            "slots is {slots}, but must be 1 to {MOST_SLOTS}: set --slots"
         ));
     }
     if core.members.len() >= MOST_WORKERS {
         return Some(format!(
-            "workers are {MOST_WORKERS} already: start fewer, with more slots"
+            "the run already has {MOST_WORKERS} workers: start fewer workers with more slots each"
         ));
     }
     if core.options.model.is_empty() {
@@ -101,8 +104,8 @@ pub(super) fn objection(core: &Core, announcement: &Announcement) -> Option<Stri
         let kinds = announcement.models.iter();
         let kinds: Vec<&str> = kinds.map(|model| model.kind.as_str()).collect();
         return Some(format!(
-            "models has no `{}`, which the case of this run is of; it has {}: start a worker program \
-             that simulates it",
+            "models has no `{}`, which is the model kind of this run's case; the worker has {}: start a worker \
+             program that simulates that kind",
             core.options.model,
             shown(&kinds.join(", "))
         ));
@@ -121,8 +124,8 @@ pub(super) fn objection(core: &Core, announcement: &Announcement) -> Option<Stri
         let more = names.iter().copied().find(differs);
         let fewer = expected.iter().find(|name| !names.contains(name));
         let difference = match (more, fewer) {
-            (Some(more), _) => format!("{more} that the others do not know"),
-            (None, Some(fewer)) => format!("no {fewer}, which the others know"),
+            (Some(more), _) => format!("`{more}`, which the other workers do not have"),
+            (None, Some(fewer)) => format!("no `{fewer}`, which the other workers have"),
             (None, None) => return None,
         };
         return Some(format!("effects has {difference}: {SAME}"));
@@ -130,13 +133,14 @@ pub(super) fn objection(core: &Core, announcement: &Announcement) -> Option<Stri
     None
 }
 
-/// The beginning of a text of somebody else, without what a terminal would obey.
+/// Returns the beginning of an untrusted text without control characters.
 pub(super) fn shown(text: &str) -> String {
     let plain = text.chars().filter(|letter| !letter.is_control());
     plain.take(MOST_SHOWN).collect()
 }
 
-/// How a worker simulates the kind of model that the run's case is of; none if it does not.
+/// Returns the worker's descriptor of the model kind of the run's case; `None` if it does not simulate that
+/// kind.
 pub(super) fn model<'a>(
     core: &Core,
     announcement: &'a Announcement,

@@ -1,4 +1,4 @@
-//! Who gets which job.
+//! Assignment of queued jobs to workers.
 use super::{
     lease::lease,
     member::Member,
@@ -7,7 +7,7 @@ use super::{
 use protocol::id::{JobId, WorkerId};
 use std::time::Duration;
 
-/// Gives queued jobs, lowest id first, to the least loaded workers.
+/// Assigns queued jobs, lowest id first, to the least loaded workers.
 pub(super) fn assign(core: &mut Core, now: Duration) {
     let mut passed_over = Vec::new();
     while let Some(job) = core.queue.pop_first() {
@@ -30,7 +30,7 @@ pub(super) fn assign(core: &mut Core, now: Duration) {
     core.queue.extend(passed_over);
 }
 
-/// The least loaded worker that may have the job.
+/// Returns the least loaded worker that may have the job.
 fn pick(core: &Core, job: JobId) -> Option<WorkerId> {
     let pending = core.jobs.get(&job)?;
     let policy = &core.options.policy;
@@ -56,8 +56,8 @@ fn pick(core: &Core, job: JobId) -> Option<WorkerId> {
         .map(|(id, _)| *id)
 }
 
-/// Whether a worker may be given a job: one that refused it never, one at which it crashed or ran past its
-/// deadline only while no other worker is left to try.
+/// Returns whether a worker may be given a job: never if it refused the job; if it crashed or exceeded its
+/// deadline on the job, only while no other worker is left to try.
 pub(super) fn may_have(core: &Core, pending: &Pending, worker: WorkerId) -> bool {
     let refused = |id: &WorkerId| pending.refused_by.contains(id);
     let failed = |id: &WorkerId| pending.failed_at.contains(id);
@@ -67,7 +67,8 @@ pub(super) fn may_have(core: &Core, pending: &Pending, worker: WorkerId) -> bool
             || !others.any(|(id, member)| member.takes_jobs() && !refused(id) && !failed(id)))
 }
 
-/// While a job waits to run alone, the least loaded worker that may have it gets nothing new.
+/// Returns the worker reserved for a job that waits to run alone: the least loaded worker that may have it,
+/// which gets no new jobs meanwhile.
 fn reserved(core: &Core) -> Option<WorkerId> {
     let mut suspects = core.suspects.iter().filter_map(|job| core.jobs.get(job));
     let waiting = suspects.find(|job| job.holders.is_empty())?;

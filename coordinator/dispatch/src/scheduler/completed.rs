@@ -1,15 +1,15 @@
-//! A job with its result, as whoever asked for it gets it.
+//! Completed job with its result.
 use protocol::{id::JobId, job::Outcome, message::Cost};
 
-/// A job that is done.
+/// Completed job with its result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Completed {
-    /// The job, by the name that it was submitted with.
+    /// Identifier with which the job was submitted.
     pub id: JobId,
-    /// What it took of the slot that did it.
+    /// Slot time and processor time used by the accepted attempt.
     pub cost: Cost,
-    /// Its one accepted outcome.
+    /// Accepted outcome of the job; there is exactly one.
     pub outcome: Outcome,
-    /// Whether the result comes from the journal, of an earlier process of the run.
+    /// Whether the result was read from the journal of an earlier process of the run.
     pub replayed: bool,
 }

@@ -1,32 +1,32 @@
-//! Who works, for people that ask: more than a snapshot, and made only then.
+//! Detailed list of a run's workers, built on request for control clients.
 use super::state::Core;
 use protocol::id::{JobId, WorkerId};
 use std::time::Duration;
 
-/// A worker that takes part, at a moment.
+/// State of a connected worker at a moment.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hand {
-    /// Its id.
+    /// Identifier of the worker.
     pub id: WorkerId,
-    /// Its machine.
+    /// Host name of the worker.
     pub host: String,
-    /// Jobs it can compute at a time.
+    /// Number of simultaneous jobs.
     pub slots: u32,
-    /// Version and profile of its program.
+    /// Version and build profile of the worker program.
     pub build: String,
-    /// It has the case and has proved its numerics.
+    /// Whether the worker has the case and has proved its numerics.
     pub is_ready: bool,
-    /// It gets no new jobs.
+    /// Whether the worker is being drained and gets no new jobs.
     pub is_drained: bool,
-    /// Jobs it holds, in the order in which they were sent, and for how long.
+    /// Jobs held by the worker, in the order of sending, with the time since each was sent.
     pub jobs: Vec<(JobId, Duration)>,
-    /// Jobs it has brought results of.
+    /// Number of jobs with a result from the worker.
     pub done: u64,
-    /// Attempts that failed there.
+    /// Number of attempts that failed on the worker.
     pub failed: u64,
-    /// For how long it has taken part.
+    /// Time since the worker joined.
     pub present: Duration,
-    /// For how long it has not been heard.
+    /// Time since the worker's last message.
     pub silent: Duration,
 }
 
@@ -35,7 +35,7 @@ pub struct Hand {
     reason = "nobody below needs to know what is shown of the state"
 )]
 impl Core {
-    /// Everybody that takes part, by id.
+    /// Returns all connected workers, ordered by id.
     pub fn crew(&self, now: Duration) -> Vec<Hand> {
         let hands = self.members.iter().map(|(id, member)| {
             let leases = member.leases.iter();

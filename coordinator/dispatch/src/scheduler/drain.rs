@@ -1,5 +1,4 @@
-//! Workers that somebody takes out of the work: they get no new jobs, finish or hand back what they
-//! hold, and stay idle or end.
+//! Draining of workers: they get no new jobs, finish or return their current jobs, and stay idle or end.
 use super::{
     input::Drain, lease::release, member::Member, notice::Notice, roster::dismiss, slot_time::Use,
     state::Core,
@@ -10,7 +9,7 @@ use protocol::{
 };
 use std::time::Duration;
 
-/// Takes a worker out of the work.
+/// Drains a worker; with `how.now` its jobs are cancelled and queued again.
 pub(super) fn drain(core: &mut Core, worker: WorkerId, how: Drain, now: Duration) {
     let Some(member) = core.members.get_mut(&worker) else {
         return;
@@ -29,7 +28,7 @@ pub(super) fn drain(core: &mut Core, worker: WorkerId, how: Drain, now: Duration
     }
 }
 
-/// Ends those that were asked to and hold nothing any more.
+/// Ends drained workers that were asked to end and hold no job.
 pub(super) fn end_drained(core: &mut Core, now: Duration) {
     let ends = |(worker, how): (&WorkerId, &Drain)| how.end.then_some(*worker);
     let ending: Vec<WorkerId> = core.drained.iter().filter_map(ends).collect();
@@ -47,8 +46,8 @@ pub(super) fn end_drained(core: &mut Core, now: Duration) {
     }
 }
 
-/// Tells a worker that was asked to end to do so; whether it is one. What tells it may be lost, and then
-/// it announces itself again.
+/// Tells a worker that was asked to end to do so; returns whether it was asked. The message may be lost, in
+/// which case the worker announces itself again.
 pub(super) fn turn_away(core: &mut Core, worker: WorkerId) -> bool {
     let ends = core.drained.get(&worker).is_some_and(|how| how.end);
     if ends {

@@ -1,20 +1,20 @@
-//! How often a job has failed, and whether it is tried again.
+//! Counts of a job's failures, and the decision whether the job is retried.
 use super::policy::Policy;
 use protocol::job::Failure;
 
-/// How often a job has failed, by kind.
+/// Number of failures of a job, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Failures {
-    /// Overdue attempts.
+    /// Number of attempts that exceeded their deadline.
     pub(super) deadlines: u32,
-    /// Crashed attempts.
+    /// Number of attempts that crashed.
     pub(super) crashes: u32,
-    /// Workers lost over it.
+    /// Number of workers lost while running the job.
     pub(super) losses: u32,
 }
 
 impl Failures {
-    /// Counts a failure; `true` if the job is to be tried again.
+    /// Counts a failure; returns whether the job is to be tried again.
     pub(super) fn count(&mut self, failure: &Failure, policy: &Policy) -> bool {
         match failure {
             Failure::Deadline { .. } => {
@@ -34,7 +34,7 @@ impl Failures {
         }
     }
 
-    /// Whether workers were lost over the job so often that it must run alone.
+    /// Returns whether so many workers were lost while running the job that it must run alone.
     pub(super) const fn is_suspect(self, policy: &Policy) -> bool {
         self.losses >= policy.alone_after_losses
     }

@@ -1,4 +1,4 @@
-//! Everything that can happen to a core, and who sees to it.
+//! Dispatch of the core's inputs to the modules that handle them.
 use super::{
     admission, assign, drain,
     input::{Command, Input},
@@ -16,8 +16,8 @@ use protocol::{
 use std::{mem, time::Duration};
 
 impl Core {
-    /// Takes note of something at a time since any fixed moment; what follows from it must be
-    /// done in order.
+    /// Handles an input at time `now`, measured from any fixed moment; returns the commands to execute in
+    /// order.
     pub fn handle(&mut self, input: Input, now: Duration) -> Vec<Command> {
         self.clocks.advance(now);
         membership::forgive_stall(self, now);

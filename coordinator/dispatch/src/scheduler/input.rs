@@ -1,4 +1,4 @@
-//! What the core is told, and what it wants done.
+//! Inputs and commands of the scheduler core.
 use super::{
     completed::Completed,
     notice::{Notice, Stop},
@@ -11,94 +11,94 @@ use protocol::{
 };
 use std::time::Duration;
 
-/// How a worker is taken out of the work.
+/// Options for draining a worker.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Drain {
-    /// What it holds is handed back at once; otherwise it finishes that.
+    /// Whether the worker returns its jobs at once; otherwise it finishes them.
     pub now: bool,
-    /// It ends when it holds nothing; otherwise it stays, idle.
+    /// Whether the worker ends once it holds no job; otherwise it stays idle.
     pub end: bool,
 }
 
-/// Something that happened.
+/// Input to the scheduler core.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Input {
-    /// A job is to be done; ids of a run are never reused for other work.
+    /// A job is submitted; ids of a run are never reused for other work.
     Submit {
-        /// Its name.
+        /// Identifier of the job.
         id: JobId,
-        /// What to do.
+        /// Request to execute.
         job: Job,
     },
-    /// A worker spoke.
+    /// A message from a worker arrived.
     Heard {
-        /// The worker's name.
+        /// Identifier of the worker.
         from: WorkerId,
-        /// What it said.
+        /// Message of the worker.
         message: FromWorker,
     },
-    /// A worker spoke of another run.
+    /// A worker sent a message that belongs to another run.
     Stranger {
-        /// The worker's name.
+        /// Identifier of the worker.
         from: WorkerId,
     },
-    /// A worker spoke in words of another version of the wire.
+    /// A worker sent a message in another version of the wire protocol.
     OtherVersion {
-        /// The worker's name.
+        /// Identifier of the worker.
         from: WorkerId,
-        /// The version.
+        /// Version used by the worker.
         version: u8,
     },
-    /// The transport lost a worker.
+    /// The transport lost the connection to a worker.
     Gone {
-        /// The worker's name.
+        /// Identifier of the worker.
         worker: WorkerId,
     },
-    /// These results are safe in the journal.
+    /// Results were safely written to the journal.
     Stored {
-        /// Their jobs.
+        /// Jobs whose results are safe.
         jobs: Vec<JobId>,
     },
-    /// Whether the journal can be written; it can at the beginning.
+    /// The journal became writable or unwritable; it is writable initially.
     Writable(bool),
-    /// The machine has slept, and its clock stood still.
+    /// The machine was suspended, and its clock stood still.
     Slept {
-        /// For how long it slept.
+        /// Duration of the suspend.
         time: Duration,
     },
-    /// Somebody takes a worker out of the work.
+    /// A worker is to be drained.
     Drain {
-        /// The worker's name.
+        /// Identifier of the worker.
         worker: WorkerId,
-        /// How.
+        /// Drain options.
         how: Drain,
     },
-    /// Time has passed.
+    /// Time has passed; deadlines must be checked.
     Tick,
-    /// Nothing more is to be given out; what is accepted is still written.
+    /// No further jobs are to be assigned; accepted results are still written.
     Finish,
-    /// The run is over.
+    /// The run ends.
     Close,
 }
 
-/// Something the runtime must do.
+/// Command of the scheduler core to the runtime.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
-    /// Send a message.
+    /// Send a message to a worker.
     Send {
-        /// The worker that it is for.
+        /// Recipient.
         to: WorkerId,
-        /// What it says.
+        /// Message.
         message: ToWorker,
     },
     /// Write a result to the journal and answer [`Input::Stored`] once it is safe.
     Store(Box<Finished>),
-    /// Write to the journal when convenient.
+    /// Write an event to the journal; no answer is needed.
     Record(Event),
-    /// Hand a result to whoever submitted the job.
+    /// Deliver a result to the submitter of the job.
     Deliver(Completed),
-    /// Tell people.
+    /// Report to the user.
     Notice(Notice),
-    /// The run cannot go on.
+    /// Stop the run, which cannot continue.
     Stop(Stop),
 }

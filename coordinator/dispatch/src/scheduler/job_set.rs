@@ -1,18 +1,18 @@
-//! A set of job ids as unbroken ranges: ids are handed out one after the other, so a million of
-//! them are a handful of ranges.
+//! Set of job ids stored as contiguous ranges: ids are assigned consecutively, so a million ids take only a
+//! handful of ranges.
 use protocol::id::JobId;
 use std::collections::BTreeMap;
 
-/// A set of jobs.
+/// Set of job ids, stored as disjoint ranges.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct JobSet {
-    /// First to last of each range; ranges neither overlap nor touch.
+    /// First to last id of each range; ranges neither overlap nor touch.
     ranges: BTreeMap<u64, u64>,
     count: usize,
 }
 
 impl JobSet {
-    /// Whether a job is in it.
+    /// Returns whether the set contains a job.
     pub fn contains(&self, job: JobId) -> bool {
         self.at_or_before(job.0).is_some_and(|(_, to)| job.0 <= to)
     }
@@ -36,12 +36,12 @@ impl JobSet {
         self.ranges.insert(from, to);
     }
 
-    /// How many there are.
+    /// Returns the number of jobs in the set.
     pub const fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether there is none.
+    /// Returns whether the set is empty.
     pub const fn is_empty(&self) -> bool {
         self.count == 0
     }

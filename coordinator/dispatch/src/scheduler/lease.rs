@@ -1,4 +1,5 @@
-//! Who holds which job: given, taken back, adopted from an earlier process.
+//! Leases of jobs to workers: granting, releasing, requeueing, and adopting attempts dispatched by an earlier
+//! coordinator process.
 use super::{
     member::Lease,
     slot_time::Use,
@@ -11,22 +12,23 @@ use protocol::{
 };
 use std::time::Duration;
 
-/// The attempt of a failure that the coordinator states itself.
+/// Attempt id used for a failure that the coordinator itself records, without any dispatch to a worker.
 pub(super) const STATED: AttemptId = AttemptId(u32::MAX);
 
-/// The name of an attempt: no other process of the run gives the same one.
+/// Builds an attempt id from the epoch (coordinator process) and the attempt's number; ids of different
+/// processes of a run never coincide.
 const fn offer(epoch: u32, number: u32) -> AttemptId {
     AttemptId(epoch << 16 | (number & 0xffff))
 }
 
-/// Which process of the run offered an attempt, from 1, and how many
-/// offers of its job went before there; none for what the coordinator stated itself.
+/// Returns the coordinator process (epoch, from 1) that dispatched an attempt and the number of earlier
+/// dispatches of the job by that process; `None` for a failure that the coordinator itself recorded.
 pub fn offered(attempt: AttemptId) -> Option<(u32, u32)> {
     let AttemptId(number) = attempt;
     (attempt != STATED).then_some((number >> 16, number & 0xffff))
 }
 
-/// Gives a worker a job.
+/// Leases a job to a worker and queues the order to be sent.
 pub(super) fn lease(core: &mut Core, worker: WorkerId, job: JobId, now: Duration) {
     let Some(pending) = core.jobs.get(&job) else {
         return;
@@ -53,7 +55,7 @@ pub(super) fn lease(core: &mut Core, worker: WorkerId, job: JobId, now: Duration
     core.send(worker, order);
 }
 
-/// What tells a worker to do a job.
+/// Builds the message that orders a worker to run a job.
 pub(super) fn order(attempt: Attempt, deadline: Duration, job: &Job) -> ToWorker {
     ToWorker::Run(Box::new(Order {
         attempt,
@@ -62,7 +64,8 @@ pub(super) fn order(attempt: Attempt, deadline: Duration, job: &Job) -> ToWorker
     }))
 }
 
-/// Takes a job from a worker and puts it back into the queue, unless someone else has it too.
+/// Ends a worker's lease, books its slot time under the given use, and requeues the job unless another worker
+/// holds it.
 pub(super) fn release(core: &mut Core, worker: WorkerId, job: JobId, what: Use) {
     if let Some(member) = core.members.get_mut(&worker)
         && let Some(lease) = member.drop_lease(job, &core.clocks)
@@ -72,7 +75,7 @@ pub(super) fn release(core: &mut Core, worker: WorkerId, job: JobId, what: Use) 
     requeue(core, worker, job);
 }
 
-/// A worker no longer holds a job: if nobody else does, it waits again.
+/// Removes a worker from the holders of a job and requeues the job if no other worker holds it.
 pub(super) fn requeue(core: &mut Core, worker: WorkerId, job: JobId) {
     if let Some(pending) = core.jobs.get_mut(&job) {
         pending.holders.retain(|holder| *holder != worker);
@@ -82,8 +85,8 @@ pub(super) fn requeue(core: &mut Core, worker: WorkerId, job: JobId) {
     }
 }
 
-/// If a worker says that it holds a queued job already, it may keep it: it is one that outlived
-/// the process that gave it out.
+/// Leaves a queued job with a worker that reports holding an attempt of the job already, dispatched by an
+/// earlier coordinator process.
 pub(super) fn adopt(core: &mut Core, job: JobId, now: Duration) {
     if !core.queue.contains(&job) {
         return;

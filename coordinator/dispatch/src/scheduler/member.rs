@@ -1,4 +1,4 @@
-//! One admitted worker: what it holds, and how its slots spent their time.
+//! One admitted worker: the leases held, and the use of its slot time.
 use super::slot_time::{Clocks, SlotTime, Use, micros};
 use protocol::{
     announce::Announcement,
@@ -8,23 +8,23 @@ use protocol::{
 };
 use std::time::Duration;
 
-/// A job in the hands of a worker.
+/// Lease of one job attempt to a worker.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lease {
     pub(super) attempt: Attempt,
-    /// When it was last sent.
+    /// Time at which the order was last sent.
     pub(super) sent: Duration,
-    /// When the worker first said that it computes it.
+    /// Time at which the worker first reported that the attempt was running.
     pub(super) running: Option<Duration>,
     pub(super) deadline: Duration,
-    /// How long it has been computing, as far as the slot time of its worker is written down.
+    /// Slot time spent on the attempt, as of the worker's last settlement ([`Member::settle`]).
     pub(super) held: Duration,
-    /// It was sent to a slot that had nothing to do.
+    /// Whether the order was sent while the worker had an idle slot.
     pub(super) prompt: bool,
 }
 
 impl Lease {
-    /// A job that was just sent.
+    /// Creates the lease of an attempt that was just sent.
     pub(super) const fn new(attempt: Attempt, deadline: Duration, sent: Duration) -> Self {
         Self {
             attempt,
@@ -43,17 +43,19 @@ pub(super) struct Member {
     pub(super) announcement: Announcement,
     pub(super) since: Duration,
     pub(super) heard: Duration,
-    /// It has the case, has proved that it computes as the others do, and may be given jobs.
+    /// Whether the worker may be given jobs: it has the case and has proved that its results agree with those
+    /// of the run.
     pub(super) ready: bool,
-    /// In the order in which they were sent; about the first `slots` of them compute.
+    /// Leases in the order in which they were sent; about the first `slots` of them are running.
     pub(super) leases: Vec<Lease>,
-    /// It holds a job in quarantine and gets nothing else.
+    /// Whether the worker holds a quarantined job and gets no other job.
     pub(super) alone: bool,
-    /// Somebody has taken it out of the work: it gets nothing new.
+    /// Whether the worker is drained, that is, gets no new jobs.
     pub(super) drained: bool,
-    /// Attempts it holds of jobs that were not submitted (yet).
+    /// Attempts that the worker reports holding of jobs not (yet) submitted.
     pub(super) claims: Vec<Attempt>,
-    /// Attempts that were taken from it, and when: it may compute them until it has read so.
+    /// Attempts taken from the worker, and when; the worker may run them until it has received the
+    /// cancellation.
     pub(super) taken: Vec<(Attempt, Duration)>,
     pub(super) done: u64,
     pub(super) failed: u64,
@@ -61,7 +63,7 @@ pub(super) struct Member {
 }
 
 impl Member {
-    /// A worker that has just been admitted.
+    /// Creates a member that has just been admitted, without leases.
     pub(super) fn new(announcement: Announcement, clocks: &Clocks, now: Duration) -> Self {
         Self {
             announcement,
@@ -87,12 +89,12 @@ impl Member {
         self.leases.iter().any(|lease| lease.attempt.job == job)
     }
 
-    /// Whether it may be given a job that another may hold too.
+    /// Returns whether the worker may be given a job that needs no isolation.
     pub(super) const fn takes_jobs(&self) -> bool {
         self.ready && !self.alone && !self.drained
     }
 
-    /// How many slots have nothing to compute.
+    /// Returns the number of idle slots.
     pub(super) fn idle(&self) -> usize {
         self.slots().saturating_sub(self.leases.len())
     }
@@ -114,7 +116,7 @@ impl Member {
         Some(lease)
     }
 
-    /// From now on it can be given jobs, or cannot.
+    /// Sets whether the worker can be given jobs, after settling the slot time so far.
     pub(super) fn set_ready(&mut self, ready: bool, clocks: &Clocks) {
         if self.ready != ready {
             self.settle(clocks);
@@ -122,8 +124,8 @@ impl Member {
         }
     }
 
-    /// Writes down what happened since the last time; to be called before the number of jobs it
-    /// computes, or its readiness, changes.
+    /// Books the slot time since the last settlement; must be called before the number of running jobs or the
+    /// readiness changes.
     pub(super) fn settle(&mut self, clocks: &Clocks) {
         let (passed, slots) = (self.slot_time.unwritten(clocks), self.slots());
         self.slot_time = self.settled(clocks);
@@ -137,7 +139,7 @@ impl Member {
         self.slot_time.until(clocks, idle, self.ready)
     }
 
-    /// Names what an attempt that is over was.
+    /// Books the slot time of an ended attempt under the given use.
     pub(super) fn attribute(&mut self, lease: &Lease, what: Use) {
         let spent = what
             .said()
@@ -145,7 +147,7 @@ impl Member {
         self.slot_time.add(what, spent);
     }
 
-    /// All it computes is lost with it.
+    /// Books the slot time of all leases as lost, because the worker was lost.
     pub(super) fn lose_leases(&mut self, clocks: &Clocks) {
         self.settle(clocks);
         for lease in &mut self.leases {
@@ -154,10 +156,11 @@ impl Member {
         }
     }
 
-    /// How much of the time that the worker says it can have spent, as far as is known here.
+    /// Returns the slot time reported by the worker, limited to the time available in the books of the
+    /// coordinator.
     ///
-    /// Orders may arrive in another order than they were sent in, so that another lease was held to
-    /// be computed meanwhile; time is taken from there, never made.
+    /// Orders may arrive in another order than they were sent in, so that the time was booked on another
+    /// lease; the missing time is taken from the other leases, never created.
     fn possible(&mut self, lease: &Lease, said: Duration) -> Duration {
         let mut found = lease.held + self.slot_time.on_the_way;
         for other in &mut self.leases {
@@ -170,7 +173,7 @@ impl Member {
         spent
     }
 
-    /// How its slots spent their time until now; what they compute is held to be useful.
+    /// Returns the worker's slot time by use until now; running attempts count as useful.
     pub(super) fn spent(&self, clocks: &Clocks) -> Spent {
         let passed = self.slot_time.unwritten(clocks);
         let computing = self.leases.iter().take(self.slots());
@@ -180,7 +183,7 @@ impl Member {
         self.settled(clocks).stated(connected_us, computing)
     }
 
-    /// Its row in the account of slot time, until now.
+    /// Returns the worker's row in the slot-time account, until now.
     pub(super) fn row(&self, worker: WorkerId, clocks: &Clocks) -> WorkerAccount {
         WorkerAccount {
             worker,

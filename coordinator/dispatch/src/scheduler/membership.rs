@@ -1,4 +1,5 @@
-//! Who takes part, and who is lost.
+//! Membership of workers: return after a restart, leaving, loss by a broken connection or silence, and stalls
+//! of the coordinator.
 use super::{
     admission_rules::shown,
     lease::requeue,
@@ -14,7 +15,8 @@ use protocol::{
 };
 use std::{collections::BTreeSet, time::Duration};
 
-/// Whether everyone is there who may hold jobs and results of the last process, or was waited for.
+/// Returns whether all workers that may hold jobs or results of the previous coordinator process have
+/// returned, or the grace period for them is over.
 pub(super) fn is_complete(core: &mut Core, now: Duration) -> bool {
     if core.rejoining.is_none() && !core.options.expected.is_empty() {
         core.rejoining = Some(now + core.options.policy.rejoin_grace);
@@ -29,7 +31,7 @@ pub(super) fn is_complete(core: &mut Core, now: Duration) -> bool {
     })
 }
 
-/// One of those who were waited for is back and has said what it holds.
+/// Registers the return of an expected worker; after the last one only the delivery grace period remains.
 pub(super) fn welcome(core: &mut Core, worker: WorkerId, now: Duration) {
     if core.options.expected.remove(&worker)
         && core.options.expected.is_empty()
@@ -39,7 +41,7 @@ pub(super) fn welcome(core: &mut Core, worker: WorkerId, now: Duration) {
     }
 }
 
-/// A worker leaves in good order.
+/// Removes a worker that announced its departure.
 pub(super) fn leave(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) {
     let reason = shown(reason);
     if dismiss(core, worker, &reason, now).is_none() {
@@ -50,7 +52,8 @@ pub(super) fn leave(core: &mut Core, worker: WorkerId, reason: &str, now: Durati
     core.notice(Notice::Left { worker, reason });
 }
 
-/// The transport lost a worker: at once if its process ended, later if it merely does not answer.
+/// Handles a connection loss reported by the transport: immediate if the worker's process ended, delayed if
+/// it only stopped responding.
 pub(super) fn gone(core: &mut Core, worker: WorkerId, now: Duration) {
     let Some(member) = core.members.get(&worker) else {
         return;
@@ -62,21 +65,24 @@ pub(super) fn gone(core: &mut Core, worker: WorkerId, now: Duration) {
     let reason = if silent > core.options.policy.heartbeat_timeout / 2 {
         silence(silent)
     } else {
-        "its connection ended: it was killed, or its machine or the network went down".to_owned()
+        "its connection was closed: the worker was killed, or its machine or the network failed"
+            .to_owned()
     };
     lose(core, worker, &reason, now);
 }
 
 fn silence(time: Duration) -> String {
     let seconds = time.as_secs_f64();
-    format!("nothing was heard of it for {seconds:.0} s: it is frozen, overloaded or cut off")
+    format!(
+        "no message arrived from it for {seconds:.0} s: the worker is frozen, overloaded or disconnected"
+    )
 }
 
-/// Gives up a worker and offers what it held to others.
+/// Declares a worker lost and requeues its jobs.
 ///
-/// Whatever it held may be to blame, even what waited there when it was last heard of: the results
-/// before it may have been lost with the worker. So may what was taken from it and not yet let go.
-/// The innocent clear themselves by running alone.
+/// Every job the worker held may be the cause, including those last reported as waiting, since results of the
+/// jobs before them may have been lost with the worker; so may jobs that were taken from the worker and are
+/// not yet let go. Innocent jobs are cleared by running alone.
 fn lose(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) {
     let Some(member) = remove(core, worker, reason, now) else {
         return;
@@ -110,7 +116,7 @@ fn lose(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) {
     }
 }
 
-/// Gives up workers that have not spoken for too long.
+/// Declares workers lost that have been silent for longer than the heartbeat timeout.
 pub(super) fn check_silence(core: &mut Core, now: Duration) {
     let (timeout, excused) = (core.options.policy.heartbeat_timeout, core.excused);
     let silent: Vec<WorkerId> = core
@@ -124,7 +130,8 @@ pub(super) fn check_silence(core: &mut Core, now: Duration) {
     }
 }
 
-/// If nobody called for a while, messages wait to be read: no worker is to blame for it.
+/// Detects that the coordinator was not called for a while, so that messages are still unread, and moves all
+/// heartbeat and lease times forward by the gap.
 pub(super) fn forgive_stall(core: &mut Core, now: Duration) {
     let gap = now.saturating_sub(core.last_call);
     core.last_call = now;
@@ -141,8 +148,8 @@ pub(super) fn forgive_stall(core: &mut Core, now: Duration) {
     excuse(core, gap, now);
 }
 
-/// This process did not answer for a while: workers that gave up their connections to it are not
-/// lost, they come back.
+/// Excuses broken connections after a stall of the coordinator: workers that dropped their connections to it
+/// will reconnect and are not lost.
 pub(super) fn excuse(core: &mut Core, time: Duration, now: Duration) {
     let policy = &core.options.policy;
     if time >= policy.disconnecting_stall {
@@ -152,7 +159,7 @@ pub(super) fn excuse(core: &mut Core, time: Duration, now: Duration) {
     core.notice(Notice::Stalled { ms });
 }
 
-/// Tells people, once, that jobs wait and nobody is there.
+/// Emits a notice, once, when jobs have waited for too long without any connected worker.
 pub(super) fn check_deserted(core: &mut Core, now: Duration) {
     if !core.members.is_empty() || core.queue.is_empty() {
         core.deserted_since = None;

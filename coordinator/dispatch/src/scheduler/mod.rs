@@ -1,4 +1,4 @@
-//! The state machine that leases jobs to workers: no sockets, no files, no clock.
+//! State machine that leases jobs to workers; does no network or file access and reads no clock.
 //!
 //! ```text
 //! Submit -> queued -> leased -> result accepted -> stored -> acknowledged
@@ -6,15 +6,14 @@
 //!             +---------+
 //! ```
 //!
-//! Jobs are pure functions, so the first result of a job is *the* result, whoever brings it and
-//! however late; further ones are acknowledged and dropped. A result is delivered as soon as it
-//! is accepted but acknowledged only once it is stored: a worker forgets nothing that a crash of
-//! this process could lose.
+//! Jobs are pure functions, so the first result of a job is accepted, whichever worker delivers it and
+//! however late; later results are acknowledged and dropped. A result is delivered as soon as it is accepted
+//! but acknowledged only once it is stored, so a worker forgets nothing that a crash of this process could
+//! lose.
 //!
-//! Each file uses only what stands above it: what is remembered (`state` over `member`, `slot_time`,
-//! `policy`, `times`, `failures`); who holds which job (`lease`); `result` and `roster`; `drain`, `admission_rules`,
-//! `admission` and `reconcile`; `membership`; `assign` and `stragglers`; and at the top `inbox`, which is
-//! told what happens.
+//! Each file depends only on those listed before it: the state (`state` over `member`, `slot_time`, `policy`,
+//! `times`, `failures`); `lease`; `result` and `roster`; `drain`, `admission_rules`, `admission` and
+//! `reconcile`; `membership`; `assign` and `stragglers`; and at the top `inbox`, which receives all inputs.
 mod admission;
 mod admission_rules;
 mod assign;

@@ -1,4 +1,4 @@
-//! What people are told: each case once, with what they can do about it.
+//! Notices to the user: each situation is reported once, with the remedy.
 use protocol::{
     id::{JobId, WorkerId},
     job::Failure,
@@ -6,83 +6,83 @@ use protocol::{
 };
 use std::fmt;
 
-/// Most jobs that are named one by one.
+/// Largest number of jobs that a notice lists by id.
 const MOST_NAMED: usize = 5;
 
-/// Something worth a line.
+/// Event reported to the user in one line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Notice {
-    /// A worker takes part.
+    /// A worker joined the run.
     Joined {
         /// The worker's name.
         worker: WorkerId,
-        /// Its machine.
+        /// Host name of the worker.
         host: String,
-        /// Its slots.
+        /// Number of slots of the worker.
         slots: u32,
     },
-    /// A worker left in good order.
+    /// A worker left in an orderly way.
     Left {
         /// The worker's name.
         worker: WorkerId,
-        /// Why, in the worker's words.
+        /// Reason given by the worker.
         reason: String,
     },
     /// A worker was lost.
     Lost {
         /// The worker's name.
         worker: WorkerId,
-        /// How it showed.
+        /// Symptom by which the loss was detected.
         reason: String,
-        /// Jobs that are offered again.
+        /// Number of the worker's jobs that are requeued.
         jobs: usize,
     },
-    /// A worker may not take part.
+    /// A worker was refused admission.
     Refused {
         /// The worker's name.
         worker: WorkerId,
-        /// Its machine.
+        /// Host name of the worker.
         host: String,
-        /// Why, as it was told.
+        /// Reason, as sent to the worker.
         reason: String,
     },
-    /// A worker speaks another version of the wire.
+    /// A worker uses another version of the wire protocol.
     OtherVersion {
         /// The worker's name.
         worker: WorkerId,
-        /// The version.
+        /// Version found in the worker's message.
         version: u8,
     },
-    /// Jobs wait and nobody is there.
+    /// Jobs are waiting but no worker is connected.
     NoWorker {
-        /// How many wait.
+        /// Number of waiting jobs.
         jobs: usize,
-        /// How many workers were refused.
+        /// Number of refused workers.
         refused: usize,
     },
-    /// Jobs are kept apart from all others because workers were lost that held them.
+    /// Jobs are quarantined (run alone on a worker) because workers that held them were lost.
     Quarantined {
-        /// The jobs.
+        /// Quarantined jobs.
         jobs: Vec<JobId>,
-        /// How many workers that held each of them were lost.
+        /// Number of lost workers that held each of the jobs.
         workers: u32,
     },
-    /// A job is given up.
+    /// A job is abandoned after too many failures.
     GivenUp {
-        /// The job.
+        /// Abandoned job.
         job: JobId,
-        /// What happened last.
+        /// Last failure of the job.
         failure: Failure,
     },
-    /// The coordinator itself did not run for a while.
+    /// The coordinator process itself did not run for a while.
     Stalled {
-        /// For how long \[ms\].
+        /// Duration of the stall \[ms\].
         ms: u64,
     },
 }
 
 impl Notice {
-    /// Whether nothing needs to be done about it.
+    /// Returns whether the notice requires no action by the user.
     pub const fn is_routine(&self) -> bool {
         matches!(self, Self::Joined { .. } | Self::Left { .. })
     }
@@ -106,7 +106,7 @@ impl fmt::Display for Notice {
             } => {
                 write!(
                     to,
-                    "worker {worker} was lost ({reason}); jobs offered again: {jobs}"
+                    "worker {worker} was lost ({reason}); jobs requeued: {jobs}"
                 )
             }
             Self::Refused {
@@ -137,7 +137,7 @@ impl fmt::Display for Notice {
                 match jobs.len() {
                     0 | 1 => write!(
                         to,
-                        "{workers} workers were lost that held job {named}: from now on it runs alone"
+                        "{workers} workers that held job {named} were lost: the job now runs on a worker without other jobs"
                     ),
                     count if count <= MOST_NAMED => write!(
                         to,
@@ -151,23 +151,23 @@ impl fmt::Display for Notice {
                     ),
                 }
             }
-            Self::GivenUp { job, failure } => write!(to, "job {job} is given up: {failure}"),
+            Self::GivenUp { job, failure } => write!(to, "job {job} was abandoned: {failure}"),
             Self::Stalled { ms } => write!(
                 to,
-                "the coordinator stood still for {ms} ms; no worker is held responsible for it"
+                "the coordinator was suspended for {ms} ms; no worker is counted as lost because of this"
             ),
         }
     }
 }
 
-/// Why a run cannot go on.
+/// Reason why a run cannot continue.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// Nothing has ever succeeded.
+    /// Every job so far has failed.
     EverythingFails {
-        /// Jobs that failed.
+        /// Number of failed jobs.
         jobs: u32,
-        /// The last failure.
+        /// Last failure.
         last: Failure,
     },
 }
@@ -175,10 +175,9 @@ pub enum Stop {
 impl fmt::Display for Stop {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::EverythingFails { jobs, last } => write!(
-                to,
-                "all of the first {jobs} jobs failed and none succeeded; the last one: {last}"
-            ),
+            Self::EverythingFails { jobs, last } => {
+                write!(to, "the first {jobs} jobs all failed; last failure: {last}")
+            }
         }
     }
 }

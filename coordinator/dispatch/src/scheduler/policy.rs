@@ -1,16 +1,17 @@
-//! The numbers that decide who counts as lost, and how often what is tried again.
+//! Scheduling policy: time limits after which workers count as lost, and retry limits for each kind of
+//! failure.
 //!
-//! | what went wrong | tried again | until | then |
+//! | failure | tried again | limit | afterwards |
 //! |---|---|---|---|
 //! | the physics (a verdict) | never | | it is the job's result |
 //! | deadline | with twice the time | 2 attempts | a failed result, recorded |
 //! | crashed | on any worker | 2 attempts | a failed result, recorded |
 //! | its worker was lost | on any worker; alone on one after 2 | 4 workers | a failed result, recorded |
-//! | refused | on workers that have not refused | all have | handed on, not recorded |
-//! | misconfigured | never | | handed on, not recorded |
+//! | refused | on workers that have not refused | all have | delivered, not recorded |
+//! | misconfigured | never | | delivered, not recorded |
 //!
-//! What is recorded is part of the run and never computed again; another build or another case may
-//! do better with the last two. If the first 8 jobs all fail, the run stops.
+//! A recorded result is part of the run and never computed again; refused and misconfigured jobs are not
+//! recorded because another build or another case may succeed. If the first 8 jobs all fail, the run stops.
 use protocol::case::{Case, Repeats};
 use std::time::Duration;
 
@@ -18,80 +19,86 @@ use std::time::Duration;
 /// times more runnable threads than cores.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Policy {
-    /// A worker that is not heard for so long is lost (default 4 s; it speaks each second).
+    /// Silence after which a worker is lost (default 4 s; heartbeats come every second).
     pub heartbeat_timeout: Duration,
-    /// A job that a worker does not mention is sent again after so long (default 2 s).
+    /// Time after which an order is sent again if the worker's heartbeats do not mention the job (default 2
+    /// s).
     pub resend_after: Duration,
-    /// A process that goes on with a run waits so long for workers that outlived the last one before
-    /// it gives out what they may hold (default 3 s: they try to connect every 2 s).
+    /// Time for which a coordinator that resumes a run waits for workers of the previous process before it
+    /// dispatches the jobs they may hold (default 3 s: workers try to connect every 2 s).
     pub rejoin_grace: Duration,
-    /// After the last of them came back, it waits so long for the results they bring (default
-    /// 500 ms).
+    /// Time for which the coordinator waits for results after the last of the expected workers has returned
+    /// (default 500 ms).
     pub delivery_grace: Duration,
-    /// If the core is not called for so long, this process stood still itself (default 1 s).
+    /// Gap between two calls of the core beyond which the coordinator process itself counts as stalled
+    /// (default 1 s).
     pub stall_after: Duration,
-    /// If it stood still for so long, workers may have given up their connections to it (default 2 s:
-    /// they do after 3 s without a word).
+    /// Length of a stall of the coordinator from which on workers may have dropped their connections (default
+    /// 2 s: they do after 3 s of silence).
     pub disconnecting_stall: Duration,
-    /// Those workers may take so long to connect again before their silence counts (default 3 s: they
-    /// try every 2 s).
+    /// Time allowed for reconnecting after such a stall before a worker's silence counts again (default 3 s:
+    /// workers try every 2 s).
     pub reconnect_grace: Duration,
-    /// Jobs may wait so long without any worker before people are told (default 10 s).
+    /// Time for which jobs may wait without any worker before the user is notified (default 10 s).
     pub no_worker_notice: Duration,
-    /// A waiting job may be taken from a busy worker for an idle one after so long (default
-    /// 50 ms): less would only move short jobs about.
+    /// Time after which a waiting job may be taken from a busy worker for an idle one (default 50 ms; a
+    /// shorter time would only move short jobs about).
     pub steal_after: Duration,
-    /// Jobs a worker holds per slot at most: one computes, one waits (default 2). More would queue
+    /// Largest number of jobs a worker holds per slot: one running, one waiting (default 2). More would queue
     /// bytes towards a worker that may freeze.
     pub jobs_per_slot: usize,
-    /// A second job is sent ahead only if without it a slot would spend more than this share of its
-    /// time waiting for the next order, in percent (default 4). Where jobs are long, what waits
-    /// behind a slow one would hold up a search that needs results in order.
+    /// Share of slot time spent waiting for the next order, in percent, above which a second job is sent
+    /// ahead (default 4). Where jobs are long, a job waiting behind a slow one would hold up a search that
+    /// needs results in order.
     pub prefetch_percent: u32,
-    /// Results on their way to the disk beyond which nothing is given out (default 1024): memory is
-    /// not there to hold what a slow disk does not take.
+    /// Number of accepted but unstored results beyond which no job is dispatched (default 1024), so that a
+    /// slow disk does not fill the memory.
     pub most_unstored: usize,
     /// Deadline while fewer than [`Self::deadline_samples`] jobs are done (default 120 s).
     pub first_deadline: Duration,
-    /// The same for the reduction of a head, which is asked for once and takes as long as its mesh is
-    /// large (default 30 min).
+    /// Deadline for the reduction of a horse head, before samples exist; requested once, and its time grows
+    /// with the mesh (default 30 min).
     pub reduction_deadline: Duration,
-    /// Least deadline (default 10 s).
+    /// Lower limit of the deadline (default 10 s).
     pub least_deadline: Duration,
-    /// Deadline over the time that 95 % of recent jobs of the kind needed (default 4).
+    /// Ratio of the deadline to the 95th percentile of the time of recent jobs of the kind (default 4).
     pub deadline_factor: u32,
-    /// Deadline over the longest time that any job of the kind needed in this process (default 2):
-    /// what has worked once must not come as a surprise.
+    /// Ratio of the deadline to the longest time that any job of the kind took in this process (default 2): a
+    /// duration that succeeded once must stay allowed.
     pub longest_time_factor: u32,
-    /// Finished jobs of a kind before anything is concluded from their times (default 5).
+    /// Number of finished jobs of a kind needed before their times are used to set deadlines and start copies
+    /// (default 5).
     pub deadline_samples: usize,
-    /// When nothing is left to give out, an idle slot takes a copy of a job that has been computed
-    /// for this many times as long as 95 % of recent ones needed, in percent (default 150).
+    /// Running time after which an idle slot gets a copy of a job when the queue is empty, in percent of the
+    /// 95th percentile of recent jobs (default 150).
     pub copy_after_percent: u32,
-    /// No copy is made of a job that has been computed for less (default 200 ms).
+    /// Shortest running time after which a job may be copied (default 200 ms).
     pub least_copy_after: Duration,
-    /// Overdue attempts before a job is given up (default 2; each has twice the time).
+    /// Number of overdue attempts after which a job is given up (default 2; the time allowed doubles each
+    /// time).
     pub give_up_after_deadlines: u32,
-    /// Crashed attempts before a job is given up (default 2): a slot that crashes ran nothing
-    /// else, so the job is to blame.
+    /// Number of crashed attempts after which a job is given up (default 2): a slot runs a single job at a
+    /// time, so the job is the cause.
     pub give_up_after_crashes: u32,
-    /// Lost workers that held a job, computing it or not, before it runs alone (default 2): until
-    /// then it may be bad company.
+    /// Number of lost workers that held a job, running or not, after which the job runs alone (default 2):
+    /// until then another job on those workers may be the cause.
     pub alone_after_losses: u32,
-    /// Lost workers that held a job before it is given up (default 4): on the last two of them there
-    /// was nothing else.
+    /// Number of lost workers that held a job after which the job is given up (default 4): the last two of
+    /// them held no other job.
     pub give_up_after_losses: u32,
-    /// Time between two accounts of slot time in the journal (default 60 s).
+    /// Time between two slot-time accounts in the journal (default 60 s).
     pub account_interval: Duration,
-    /// Failed jobs without any success before the run stops (default 8).
+    /// Number of failed jobs without any success at which the run stops (default 8).
     pub stop_after_failures: u32,
 }
 
 impl Policy {
-    /// For a case's model. One that ends its own runs is left to do so, and is given up only long after; one
-    /// that does not repeat its bits is not copied, for the first result counts.
+    /// Returns the policy for a case's model. A model with a time limit of its own is left to end its runs
+    /// itself and is given up only long after; a model whose results are not bitwise repeatable is never
+    /// copied, since the first result counts.
     pub fn of(case: &Case) -> Self {
-        /// Runs that may stand before one on a machine with fewer places than slots.
+        /// Largest assumed number of runs queued before a given one on a machine that can execute fewer runs
+        /// at a time than it has slots.
         const BEFORE: f64 = 64.0;
         let (model, mut policy) = (&case.model, Self::default());
         if let Some(own) = model.deadline_s {

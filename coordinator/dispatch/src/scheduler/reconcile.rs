@@ -1,4 +1,4 @@
-//! What a worker says that it holds, against what it should hold.
+//! Reconciliation of the attempts that a worker reports in its heartbeat with the leases of the coordinator.
 use super::{
     lease::{adopt, order},
     state::Core,
@@ -9,7 +9,8 @@ use protocol::{
 };
 use std::time::Duration;
 
-/// Takes note of what a worker holds, and makes it what it should hold.
+/// Reconciles a heartbeat with the worker's leases: cancels attempts of finished jobs, adopts claims on
+/// queued jobs and resends lost orders.
 pub(super) fn reconcile(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
     mark(core, from, beat, now);
     let computing = beat.running.iter().chain(&beat.waiting);
@@ -32,7 +33,7 @@ pub(super) fn reconcile(core: &mut Core, from: WorkerId, beat: &Beat, now: Durat
     resend(core, from, beat, now);
 }
 
-/// Marks what it has begun, and forgets what it has let go.
+/// Marks leases that have started running, and drops taken attempts that the worker no longer holds.
 fn mark(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
     let resend_after = core.options.policy.resend_after;
     let Some(member) = core.members.get_mut(&from) else {
@@ -50,7 +51,7 @@ fn mark(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
     });
 }
 
-/// Sends again what it was given and does not mention.
+/// Resends orders of leases that the heartbeat does not mention.
 fn resend(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
     let resend_after = core.options.policy.resend_after;
     let Some(member) = core.members.get_mut(&from) else {

@@ -1,4 +1,4 @@
-//! What becomes of results and failures.
+//! Handling of results and failures: acceptance, delivery, acknowledgement, retry and abandonment.
 use super::{
     completed::Completed,
     input::Command,
@@ -15,13 +15,13 @@ use protocol::{
 };
 use std::{collections::BTreeMap, time::Duration};
 
-/// An attempt has this many times the deadline that its worker enforces itself, since the worker does
-/// not count the time for which a job got no processor.
+/// Factor between the coordinator's own limit on an attempt and the deadline enforced by the worker; large
+/// because the worker does not count the time for which a job got no processor.
 const PATIENCE: u32 = 8;
-/// It has this on top of that, for a worker that ended it to say so.
+/// Time allowed on top of that limit for the worker to report that it ended the attempt.
 const GRACE: Duration = Duration::from_secs(10);
 
-/// A worker brought a result.
+/// Handles a result or failure delivered by a worker.
 pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
     let job = done.attempt.job;
     if let Some(member) = core.members.get_mut(&from) {
@@ -74,7 +74,8 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
     }
 }
 
-/// Whether the job has its result already; the worker is told so once that is safe.
+/// Returns whether the job already has a result; if so, acknowledges the attempt now or once the accepted
+/// result is stored.
 fn is_duplicate(core: &mut Core, from: WorkerId, attempt: Attempt) -> bool {
     if let Some(waiting) = core.storing.get_mut(&attempt.job) {
         if !waiting.contains(&(from, attempt)) {
@@ -89,19 +90,19 @@ fn is_duplicate(core: &mut Core, from: WorkerId, attempt: Attempt) -> bool {
     true
 }
 
-/// What is wrong with a result of a job that is not the one of this name: whoever was given that job
-/// reads jobs in another way than we do.
+/// Returns a refusal if the work hash of a result differs from that of the job: the worker then decodes jobs
+/// differently from this build.
 fn mistaken(pending: &Pending, done: &Done) -> Option<Failure> {
     (pending.work != done.work).then(|| Failure::Refused {
         reason: format!(
-            "it answered for the work {} when it was given {}; use the same build of \
+            "the worker returned a result for work {} but was sent work {}; use the same build of \
              horsehead-worker on every machine",
             done.work, pending.work
         ),
     })
 }
 
-/// The one result of a job: stored, delivered, and no longer wanted from anyone else.
+/// Accepts the result of a job: stores and delivers it, and cancels the attempts of other workers.
 fn accept(core: &mut Core, from: Option<WorkerId>, done: Done) {
     let job = done.attempt.job;
     let Some(pending) = core.forget(job) else {
@@ -148,7 +149,7 @@ fn deliver(core: &mut Core, id: JobId, cost: Cost, outcome: Outcome) {
     }));
 }
 
-/// Results became safe: the workers may forget them.
+/// Marks results as stored and acknowledges them to their workers.
 pub(super) fn stored(core: &mut Core, jobs: Vec<JobId>) {
     let mut acknowledged: BTreeMap<WorkerId, Vec<Attempt>> = BTreeMap::new();
     for job in jobs {
@@ -162,7 +163,7 @@ pub(super) fn stored(core: &mut Core, jobs: Vec<JobId>) {
     }
 }
 
-/// Ends attempts that their worker should have ended itself.
+/// Ends attempts that are long past the deadline their worker should have enforced.
 pub(super) fn check_overdue(core: &mut Core, now: Duration) {
     let mut overdue = Vec::new();
     for (worker, member) in &core.members {
@@ -182,7 +183,7 @@ pub(super) fn check_overdue(core: &mut Core, now: Duration) {
     }
 }
 
-/// An attempt failed, whose worker no longer holds it: try again, or give the job up.
+/// Counts the failure of an attempt whose worker no longer holds it, and retries the job or gives it up.
 pub(super) fn failed(
     core: &mut Core,
     worker: WorkerId,

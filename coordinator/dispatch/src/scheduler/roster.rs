@@ -1,9 +1,9 @@
-//! Taking workers out of the run.
+//! Removal of workers from the run.
 use super::{lease::requeue, member::Member, state::Core};
 use protocol::{event::Event, id::WorkerId};
 use std::time::Duration;
 
-/// Takes a worker out; what it was computing is lost.
+/// Removes a worker, books its running attempts as lost and records its last account.
 pub(super) fn remove(
     core: &mut Core,
     worker: WorkerId,
@@ -20,7 +20,7 @@ pub(super) fn remove(
     Some(member)
 }
 
-/// Takes out a worker that is not to blame for anything: what it held waits for others.
+/// Removes a worker without counting a failure against its jobs, which are requeued.
 pub(super) fn dismiss(
     core: &mut Core,
     worker: WorkerId,

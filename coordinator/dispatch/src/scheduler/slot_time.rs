@@ -1,40 +1,40 @@
-//! How slots spend their time: every moment of every slot is counted once, under one kind.
+//! Accounting of slot time: every moment of every slot is counted exactly once, under one kind of use.
 //!
-//! A slot computes, or it does not. What it computed is named when the attempt ends: *useful* if
-//! its result is the job's result, *speculative* if another's was, *failed*, or *lost*. While it
-//! does not compute, either the run waits for results of others (*barrier*: everything that was
-//! asked for is given out) or it does not (*starved*: the worker still fetches the case, an order
-//! is on its way, the journal cannot be written, or nothing is asked for).
+//! A slot is either computing or not. Computing time is attributed when the attempt ends: *useful* if its
+//! result became the job's result, *speculative* if another attempt's result was accepted, *failed*, or
+//! *lost*. Idle time is *barrier* while the run waits for results of other slots (all requested jobs are
+//! dispatched), otherwise *starved* (the worker still fetches the case, an order is in transit, the journal
+//! cannot be written, or no job is requested).
 //!
-//! The core sees a slot computing from the order to the result; the worker says how long it really
-//! took. The difference is time on the way, and counts as starved. This file knows neither workers
-//! nor jobs: whoever holds them says how many slots are idle and what an attempt was.
+//! The core sees a slot computing from the order to the result; the worker reports the true duration. The
+//! difference is transit time and counts as starved. This file knows neither workers nor jobs: its callers
+//! pass the number of idle slots and the use of each attempt.
 use protocol::event::Spent;
 use std::time::Duration;
 
-/// Time without a job, by what the run was doing: one for all slots, since it is the same for all.
+/// Cumulative clocks of the run's barrier, starved and computing time, shared by all slots.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Clocks {
     pub(super) now: Duration,
-    /// For how long anybody held a job.
+    /// Cumulative time during which at least one worker held a job.
     pub(super) computing: Duration,
     barrier: Duration,
     starved: Duration,
-    /// What the run has been doing since `now`.
+    /// State of the run since `now`.
     doing: Doing,
 }
 
-/// What a run does until something else happens.
+/// State of the run that determines under which kind idle time is counted.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Doing {
-    /// Somebody holds a job.
+    /// Whether at least one worker holds a job.
     pub(super) computes: bool,
-    /// An idle slot waits for what others compute, and for nothing else.
+    /// Whether idle slots wait only for results of other slots (barrier).
     pub(super) waits_for_others: bool,
 }
 
 impl Clocks {
-    /// Time goes on.
+    /// Advances the clocks to a time, under the current state.
     pub(super) fn advance(&mut self, now: Duration) {
         let passed = now.saturating_sub(self.now);
         if self.doing.computes {
@@ -48,29 +48,29 @@ impl Clocks {
         self.now = self.now.max(now);
     }
 
-    /// What the run does from now on.
+    /// Sets the state of the run from now on.
     pub(super) const fn go_on(&mut self, doing: Doing) {
         self.doing = doing;
     }
 }
 
-/// What became of an attempt.
+/// Use of the slot time of an ended attempt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Use {
-    /// Its result is the job's result, after so long in the slot \[us\].
+    /// The attempt's result became the job's result, after the given time in the slot \[us\].
     Useful(u64),
-    /// It failed, after so long in the slot \[us\].
+    /// The attempt failed, after the given time in the slot \[us\].
     Failed(u64),
-    /// It was ended as failed by the core.
+    /// The coordinator ended the attempt because it was overdue.
     Overdue,
-    /// Another one's result came first.
+    /// The result of another attempt was accepted first.
     Speculative,
-    /// Nobody will ever answer.
+    /// The attempt was lost or taken away, and its result is not awaited.
     Lost,
 }
 
 impl Use {
-    /// How long the worker says that it was in the slot.
+    /// Returns the time in the slot as reported by the worker, if it reported one.
     pub(super) const fn said(self) -> Option<Duration> {
         match self {
             Self::Useful(us) | Self::Failed(us) => Some(Duration::from_micros(us)),
@@ -79,10 +79,10 @@ impl Use {
     }
 }
 
-/// How the slots of one worker spent their time.
+/// Slot time of one worker, by use.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SlotTime {
-    /// State of the clocks when everything was last written down.
+    /// Clocks at the last settlement.
     seen: Clocks,
     useful: Duration,
     barrier: Duration,
@@ -90,13 +90,13 @@ pub(super) struct SlotTime {
     speculative: Duration,
     failed: Duration,
     lost: Duration,
-    /// Seen as computing beyond what workers said: on the way, unless a later result turns out to
-    /// have been begun meanwhile.
+    /// Time seen as computing in excess of the times reported by the worker: transit time, unless a later
+    /// result turns out to have been started in it.
     pub(super) on_the_way: Duration,
 }
 
 impl SlotTime {
-    /// From now on.
+    /// Creates an empty account starting at the current clocks.
     pub(super) fn since(clocks: &Clocks) -> Self {
         Self {
             seen: *clocks,
@@ -104,13 +104,13 @@ impl SlotTime {
         }
     }
 
-    /// What has passed since everything was last written down.
+    /// Returns the time since the last settlement.
     pub(super) fn unwritten(&self, clocks: &Clocks) -> Duration {
         clocks.now.saturating_sub(self.seen.now)
     }
 
-    /// The same with the time since then, for which so many slots were idle, of a worker that could
-    /// be given jobs or could not.
+    /// Returns the account extended to the given clocks, with the number of slots idle since the last
+    /// settlement and whether the worker was ready; idle time of a worker that is not ready is starved.
     pub(super) fn until(mut self, clocks: &Clocks, idle: u32, ready: bool) -> Self {
         let barrier = clocks.barrier.saturating_sub(self.seen.barrier);
         let starved = clocks.starved.saturating_sub(self.seen.starved);
@@ -124,7 +124,7 @@ impl SlotTime {
         self
     }
 
-    /// Writes down an attempt that took so long.
+    /// Adds the duration of an ended attempt under its use.
     pub(super) fn add(&mut self, what: Use, spent: Duration) {
         let kind = match what {
             Use::Useful(_) => &mut self.useful,
@@ -135,8 +135,8 @@ impl SlotTime {
         *kind += spent;
     }
 
-    /// As it is written down, with the time of all slots together and what is being computed, which
-    /// is held to be useful.
+    /// Converts the account into journal form, with the connected time of all slots; the time of running
+    /// attempts counts as useful.
     pub(super) fn stated(&self, connected_us: u64, computing: Duration) -> Spent {
         Spent {
             connected_us,
@@ -150,7 +150,7 @@ impl SlotTime {
     }
 }
 
-/// As microseconds on the wire.
+/// Converts a duration to microseconds, saturating.
 pub(super) fn micros(time: Duration) -> u64 {
     u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
 }

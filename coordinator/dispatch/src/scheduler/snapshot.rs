@@ -1,54 +1,54 @@
-//! The state of a run at a moment, for progress lines and reports.
+//! Snapshot of the state of a run, for progress lines and reports.
 use super::state::Core;
 use protocol::{event::Spent, id::WorkerId};
 use std::time::Duration;
 
-/// A moment of a run.
+/// State of a run at one moment.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Snapshot {
-    /// Workers that take part, by id.
+    /// Connected workers, by id.
     pub workers: Vec<WorkerSnapshot>,
-    /// Jobs that wait for a worker.
+    /// Number of jobs waiting for a worker.
     pub queued: usize,
-    /// Jobs that a worker holds.
+    /// Number of jobs held by workers.
     pub running: usize,
-    /// Jobs with an accepted result, of this and earlier processes of the run.
+    /// Number of jobs with an accepted result, from this and earlier processes of the run.
     pub done: usize,
-    /// Workers lost by this process.
+    /// Number of workers lost by this process.
     pub lost: u32,
-    /// Jobs given up by this process.
+    /// Number of jobs given up by this process.
     pub failed: u32,
-    /// Attempts after one that was lost or failed, by this process.
+    /// Number of attempts repeated after a loss or a failure, by this process.
     pub repeated: u32,
-    /// Copies of slow jobs that idle workers were given, by this process.
+    /// Number of copies of slow jobs given to idle workers by this process.
     pub copies: u32,
-    /// Results that came after another had been accepted.
+    /// Number of results that arrived after another had been accepted.
     pub duplicates: u64,
-    /// Slot time of all workers by use, those that left included.
+    /// Slot time of all workers by use, including workers that left.
     pub spent: Spent,
-    /// For how long anybody has held a job, in this process: nobody is given one before the worker
-    /// has the case and has built the model.
+    /// Time in this process during which at least one worker held a job; excludes the time in which workers
+    /// fetch the case and build the model.
     pub computing: Duration,
-    /// Whether the journal cannot be written, so that nothing is given out.
+    /// Whether dispatch is paused because the journal cannot be written.
     pub paused: bool,
 }
 
-/// A worker at a moment.
+/// State of a worker at one moment.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorkerSnapshot {
-    /// Its id.
+    /// Identifier of the worker.
     pub id: WorkerId,
-    /// Its machine.
+    /// Host name of the worker's machine.
     pub host: String,
-    /// Jobs it can compute at a time.
+    /// Number of slots, that is, jobs computed at a time.
     pub slots: u32,
-    /// Jobs it computes.
+    /// Number of jobs being computed.
     pub busy: u32,
-    /// Jobs it has brought results of.
+    /// Number of results delivered.
     pub done: u64,
-    /// Attempts that failed there.
+    /// Number of failed attempts.
     pub failed: u64,
-    /// Its slot time by use, since it joined.
+    /// Slot time by use since the worker joined.
     pub spent: Spent,
 }
 
@@ -57,7 +57,7 @@ pub struct WorkerSnapshot {
     reason = "nobody below needs to know what is shown of the state"
 )]
 impl Core {
-    /// The state at a time.
+    /// Returns a snapshot of the state at the given time.
     pub fn snapshot(&self, now: Duration) -> Snapshot {
         let mut spent = self.counts.past;
         let mut clocks = self.clocks;

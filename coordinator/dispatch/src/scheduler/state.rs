@@ -1,4 +1,4 @@
-//! All that the core remembers, and what can be said of it without knowing how it comes about.
+//! State of the scheduler core, and queries on it that do not depend on how the state changes.
 use super::{
     failures::Failures,
     input::{Command, Drain},
@@ -24,46 +24,48 @@ use std::{
     time::Duration,
 };
 
-/// What a core is begun with.
+/// Options with which a [`Core`] is created.
 #[derive(Clone, Debug)]
 pub struct CoreOptions {
-    /// The run.
+    /// Identifier of the run.
     pub run: RunId,
-    /// Which process of the run, from 1: keeps attempts of different processes apart.
+    /// Number of the coordinator process within the run, from 1; distinguishes attempts of different
+    /// processes.
     pub epoch: u32,
-    /// The case that workers must hold.
+    /// Hash of the case that workers must hold.
     pub case: ContentHash,
-    /// Its length (bytes).
+    /// Length of the case \[bytes\].
     pub case_bytes: u64,
-    /// Kind of the case's model, which workers must simulate; empty where nothing is simulated.
+    /// Kind of the case's model, which workers must be able to simulate; empty if the run simulates nothing.
     pub model: String,
-    /// Numerics of it that all workers of this run must have; none before the first.
+    /// Digest of the model's numerics that all workers of the run must share; `None` until the first worker
+    /// joins.
     pub model_digest: Option<String>,
-    /// How equal results of equal jobs are on all machines.
+    /// Repeatability of results across machines (bitwise, within a tolerance, or unknown).
     pub repeats: Repeats,
-    /// What the case's reference individual must come to; none before the first worker.
+    /// Expected result of the case's reference individual; `None` until the first worker has proved its own.
     pub proof: Option<Proof>,
     /// Jobs whose results are in the journal.
     pub finished: JobSet,
-    /// Workers that outlived the last process and may hold jobs and results of it.
+    /// Workers that outlived the previous coordinator process and may hold jobs and results of it.
     pub expected: BTreeSet<WorkerId>,
-    /// Times and limits.
+    /// Time and retry limits.
     pub policy: Policy,
 }
 
-/// The state machine.
+/// Scheduler state machine.
 #[derive(Debug)]
 pub struct Core {
     pub(super) options: CoreOptions,
     pub(super) members: BTreeMap<WorkerId, Member>,
     pub(super) refused: BTreeSet<WorkerId>,
-    /// Whom somebody has taken out of the work, also while it is away.
+    /// Drained workers, including those currently disconnected, with the way of draining.
     pub(super) drained: BTreeMap<WorkerId, Drain>,
     pub(super) jobs: BTreeMap<JobId, Pending>,
     pub(super) queue: BTreeSet<JobId>,
     /// Pending jobs that must run alone.
     pub(super) suspects: BTreeSet<JobId>,
-    /// Accepted, not yet stored: whom to acknowledge.
+    /// Jobs with an accepted result that is not yet stored, and the attempts to acknowledge after that.
     pub(super) storing: BTreeMap<JobId, Vec<(WorkerId, Attempt)>>,
     pub(super) finished: JobSet,
     /// Results of jobs that were not submitted (yet).
@@ -71,35 +73,35 @@ pub struct Core {
     pub(super) times: Times,
     pub(super) counts: Counts,
     pub(super) last_call: Duration,
-    /// Until when a broken connection is nobody's fault but that of this process, which stood still.
+    /// Time until which a broken connection is attributed to a stall of this process.
     pub(super) excused: Duration,
-    /// Since when jobs have waited without any worker.
+    /// Time since which jobs have waited without any worker.
     pub(super) deserted_since: Option<Duration>,
     pub(super) told_deserted: bool,
-    /// Effects that all workers must know; none before the first.
+    /// Effects that all workers must support; `None` until the first worker joins.
     pub(super) effects: Option<Vec<String>>,
     pub(super) clocks: Clocks,
-    /// From an order to a slot without a job, to its result, less the time in the slot: an average
-    /// over the last few.
+    /// Moving average of the time from an order to an idle slot until its result, less the time in the slot.
     pub(super) latency: Option<Duration>,
-    /// Until when nothing is given out, because workers that outlived the last process may have it.
+    /// Time until which nothing is dispatched, because workers of the previous process may already hold the
+    /// jobs.
     pub(super) rejoining: Option<Duration>,
-    /// The journal cannot be written.
+    /// Whether dispatch is paused because the journal cannot be written.
     pub(super) paused: bool,
-    /// When the account of slot time was last written down.
+    /// Time of the last slot-time account.
     pub(super) accounted: Duration,
     pub(super) phase: Phase,
     pub(super) out: Vec<Command>,
 }
 
-/// How far a run has come in this process.
+/// Phase of the run in this process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Phase {
-    /// Jobs are given out.
+    /// Jobs are dispatched.
     Open,
-    /// Nothing more is given out; what is accepted is still written.
+    /// No more jobs are dispatched; accepted results are still written.
     Finishing,
-    /// Workers have been told of the end.
+    /// Workers have been notified of the end of the run.
     Closed,
 }
 
@@ -112,7 +114,7 @@ pub(super) struct Counts {
     pub(super) repeated: u32,
     pub(super) copies: u32,
     pub(super) duplicates: u64,
-    /// Slot time of workers that went.
+    /// Slot time of workers that have left or were lost.
     pub(super) past: Spent,
 }
 
@@ -121,9 +123,9 @@ pub(super) struct Counts {
 pub(super) struct Pending {
     pub(super) job: Job,
     pub(super) work: ContentHash,
-    /// Next attempt of this coordinator process.
+    /// Number of the next attempt within this coordinator process.
     pub(super) next: u32,
-    /// Workers that hold it now.
+    /// Workers that currently hold the job.
     pub(super) holders: Vec<WorkerId>,
     pub(super) refused_by: BTreeSet<WorkerId>,
     /// Workers at which an attempt crashed or ran past its deadline.
@@ -132,7 +134,7 @@ pub(super) struct Pending {
 }
 
 impl Pending {
-    /// A job that nobody has been given.
+    /// Creates a pending job without attempts.
     pub(super) fn new(job: Job) -> Self {
         Self {
             work: job.work_hash(),
@@ -151,7 +153,7 @@ impl Pending {
     reason = "what all files use lies here, what uses them all in the inbox"
 )]
 impl Core {
-    /// Begins without workers and jobs.
+    /// Creates a core without workers and jobs.
     pub fn new(mut options: CoreOptions) -> Self {
         let finished = mem::take(&mut options.finished);
         Self {
@@ -182,49 +184,49 @@ impl Core {
         }
     }
 
-    /// Whether the job has its result, stored or about to be.
+    /// Returns whether the job has an accepted result, stored or about to be.
     pub fn has_finished(&self, job: JobId) -> bool {
         self.finished.contains(job) || self.storing.contains_key(&job)
     }
 
-    /// Results that are not yet stored.
+    /// Returns the number of accepted results not yet stored.
     pub fn unstored(&self) -> usize {
         self.storing.len()
     }
 
-    /// Whether what comes of new orders is wanted and can be written down: a disk that is full, or
-    /// slower than the workers, must not fill the memory instead.
+    /// Returns whether jobs may be dispatched: the run is open, the journal is writable and the unstored
+    /// results are below the limit, so that a full or slow disk does not fill the memory.
     pub(super) fn may_give_out(&self) -> bool {
         !self.paused
             && self.phase == Phase::Open
             && self.storing.len() < self.options.policy.most_unstored
     }
 
-    /// Whether idle slots wait for what others compute: everything asked for is given out.
+    /// Returns whether idle slots wait only for running jobs: all requested jobs are dispatched.
     pub(super) fn waits_for_others(&self) -> bool {
         self.queue.is_empty() && !self.jobs.is_empty() && self.may_give_out()
     }
 
-    /// Whether a pending job must run alone.
+    /// Returns whether a pending job must run alone.
     pub(super) const fn must_run_alone(&self, pending: &Pending) -> bool {
         pending.failures.is_suspect(&self.options.policy)
     }
 
-    /// How long the next attempt of a pending job may take.
+    /// Returns the deadline of the next attempt of a pending job.
     pub(super) fn deadline(&self, pending: &Pending) -> Duration {
         let overdue = pending.failures.deadlines;
         let policy = &self.options.policy;
         self.times.deadline(pending.job.kind(), overdue, policy)
     }
 
-    /// Forgets a job: it has its result, or never will.
+    /// Removes a job that has its result or is given up.
     pub(super) fn forget(&mut self, job: JobId) -> Option<Pending> {
         self.queue.remove(&job);
         self.suspects.remove(&job);
         self.jobs.remove(&job)
     }
 
-    /// Writes down how the present workers spent their time.
+    /// Records the slot-time account of the connected workers.
     pub(super) fn account(&mut self, now: Duration) {
         self.accounted = now;
         let members = self.members.iter();
@@ -258,7 +260,7 @@ impl Core {
     }
 }
 
-/// As milliseconds on the wire.
+/// Converts a duration to milliseconds, saturating.
 pub(super) fn millis(time: Duration) -> u64 {
     u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
 }

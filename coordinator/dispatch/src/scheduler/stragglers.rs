@@ -1,9 +1,9 @@
-//! The tail of a generation: nothing is left to give out, and some slots have nothing to do.
+//! Straggler handling at the end of a generation, when the queue is empty and some slots are idle.
 //!
-//! First they take jobs that wait behind others. Then they take copies of jobs that have been
-//! computed for suspiciously long (see [`Policy::copy_after_percent`](super::Policy)): the first
-//! result counts, and whoever is late is told to stop. A job is copied once at a time, and never if
-//! workers were lost over it.
+//! Idle slots first take jobs that wait behind running ones, then copies of jobs that have run for
+//! suspiciously long (see [`Policy::copy_after_percent`](super::Policy)): the first result counts, and the
+//! other attempt is cancelled. A job has at most one copy at a time, and none if workers holding it were
+//! lost.
 use super::{
     assign::may_have,
     lease::{lease, release},
@@ -16,7 +16,7 @@ use protocol::{
 };
 use std::{cmp::Reverse, time::Duration};
 
-/// With nothing left to give out, a worker without enough to do takes a waiting job from another.
+/// Moves waiting jobs from busy workers to idle ones when the queue is empty.
 pub(super) fn steal(core: &mut Core, now: Duration) {
     if !core.queue.is_empty() {
         return;
@@ -43,7 +43,7 @@ pub(super) fn steal(core: &mut Core, now: Duration) {
     }
 }
 
-/// A job that has waited for long enough at another worker and that an idle one may have.
+/// Finds a job that has waited long enough at another worker and that the idle worker may run.
 fn waiting(core: &Core, idle: WorkerId, now: Duration) -> Option<(WorkerId, Attempt)> {
     let after = core.options.policy.steal_after;
     let mut others = core.members.iter().filter(|(id, _)| **id != idle);
@@ -55,7 +55,7 @@ fn waiting(core: &Core, idle: WorkerId, now: Duration) -> Option<(WorkerId, Atte
     })
 }
 
-/// Gives idle slots copies of jobs that take suspiciously long, the slowest first.
+/// Gives idle slots copies of jobs that run for suspiciously long, the slowest first.
 pub(super) fn copy_slow(core: &mut Core, now: Duration) {
     if !core.waits_for_others() || most_idle(core, |_| true).is_none() {
         return;
@@ -71,7 +71,7 @@ pub(super) fn copy_slow(core: &mut Core, now: Duration) {
     }
 }
 
-/// The worker with the largest share of idle slots among those that suit.
+/// Returns the worker with the largest share of idle slots among the suitable ones.
 fn most_idle(core: &Core, suits: impl Fn(WorkerId) -> bool) -> Option<WorkerId> {
     let all = core.members.iter().filter(|(id, _)| suits(**id));
     let free = all.filter(|(_, member)| member.takes_jobs());
@@ -80,7 +80,7 @@ fn most_idle(core: &Core, suits: impl Fn(WorkerId) -> bool) -> Option<WorkerId> 
         .map(|(id, _)| *id)
 }
 
-/// Jobs with one holder that has computed them for too long, with the holder; longest first.
+/// Returns jobs with a single holder that has run them for too long, with the holder; longest first.
 fn slow(core: &mut Core) -> Vec<(WorkerId, JobId)> {
     for member in core.members.values_mut() {
         member.settle(&core.clocks);

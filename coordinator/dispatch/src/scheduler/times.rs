@@ -1,4 +1,4 @@
-//! How long jobs of each kind take, and what follows from it: deadlines, orders ahead, copies.
+//! Statistics of job durations by kind, and the deadlines, prefetching and copying derived from them.
 use super::policy::Policy;
 use protocol::job::kind::OWN;
 use std::{
@@ -7,8 +7,8 @@ use std::{
 };
 use support::quantile;
 
-/// Times of finished jobs by kind, for deadlines and copies: a reduction of a head takes minutes
-/// where a simulation takes tenths of a second.
+/// Durations of finished jobs, by kind: the reduction of a horse head takes minutes, a simulation tenths of a
+/// second.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Times(BTreeMap<&'static str, Kind>);
 
@@ -16,21 +16,21 @@ pub(super) struct Times(BTreeMap<&'static str, Kind>);
 struct Kind {
     recent: VecDeque<u64>,
     longest: Duration,
-    /// What 95 % of the recent jobs needed at most.
+    /// 95th percentile of the duration of recent jobs.
     usual: Option<Duration>,
-    /// Jobs since that was last looked at.
+    /// Number of jobs finished since the percentile was last computed.
     since: usize,
 }
 
 impl Times {
-    /// Jobs of a kind that count as recent.
+    /// Number of recent jobs kept per kind.
     const KEPT: usize = 101;
-    /// Jobs after which the usual time is looked at anew.
+    /// Number of finished jobs after which the percentile is computed again.
     const RENEW: usize = 8;
-    /// Share of recent jobs that needed no more than the usual time [percent].
+    /// Percentile that counts as the usual duration \[percent\].
     const USUAL: usize = 95;
 
-    /// A job took so long.
+    /// Adds the duration of a finished job.
     pub(super) fn add(&mut self, kind: &'static str, wall_us: u64, policy: &Policy) {
         let kind = self.0.entry(kind).or_default();
         if kind.recent.len() == Self::KEPT {
@@ -48,7 +48,7 @@ impl Times {
         }
     }
 
-    /// Time for the next attempt of a job that was overdue `overdue` times.
+    /// Returns the deadline of the next attempt of a job that was overdue `overdue` times.
     pub(super) fn deadline(&self, kind: &'static str, overdue: u32, policy: &Policy) -> Duration {
         let known = self.0.get(kind);
         let usual = known.and_then(|kind| kind.usual.map(|usual| (usual, kind.longest)));
@@ -65,8 +65,9 @@ impl Times {
         once.saturating_mul(2_u32.saturating_pow(overdue.min(8)))
     }
 
-    /// Whether a slot would wait too long for its next order if it did not have it already, `latency`
-    /// being the time from a result to the next job's beginning; until something is known, it would.
+    /// Returns whether a slot needs its next order in advance, because waiting for it would take too large a
+    /// share of the time; `latency` is the time from a result to the start of the next job. True while
+    /// durations are unknown.
     pub(super) fn needs_prefetch(
         &self,
         kind: &'static str,
@@ -80,8 +81,8 @@ impl Times {
         })
     }
 
-    /// How long a job must have been computed before an idle slot may take a copy of it; none
-    /// before anything is known.
+    /// Returns the running time after which an idle slot may take a copy of a job; `None` while durations are
+    /// unknown.
     pub(super) fn copy_after(&self, kind: &'static str, policy: &Policy) -> Option<Duration> {
         let usual = self.0.get(kind)?.usual?;
         Some((usual.saturating_mul(policy.copy_after_percent) / 100).max(policy.least_copy_after))
@@ -124,7 +125,7 @@ mod tests {
         );
     }
 
-    /// Most runs fail early and are short: those that work must not be taken for overdue.
+    /// Checks that many short failed runs do not shorten the deadline so far that good runs become overdue.
     #[test]
     fn many_short_failures_do_not_shorten_the_deadline_of_good_runs() {
         let policy = Policy::default();

@@ -1,7 +1,7 @@
-//! Results that came before their jobs were asked for: a worker that outlived a process of the
-//! coordinator hands them in as soon as the next one is there.
+//! Results that arrived before their jobs were submitted: a worker that outlived a coordinator process
+//! delivers them as soon as the next process is running.
 //!
-//! They are held in memory and nowhere else, so there is an end to them: workers repeat the others.
+//! They are held in memory only, up to a limit; workers send the remaining results again.
 use protocol::{
     id::{JobId, WorkerId},
     message::Done,
@@ -9,12 +9,12 @@ use protocol::{
 };
 use std::collections::BTreeMap;
 
-/// Most results.
+/// Largest number of results held.
 const MOST: usize = 4096;
-/// Most bytes of all of them, encoded: four of the longest that there can be.
+/// Largest total encoded size of the results held \[bytes\]: four times the largest result possible.
 pub(super) const MOST_BYTES: usize = 64 << 20;
 
-/// Results of jobs that were not submitted (yet).
+/// Results of jobs not (yet) submitted.
 #[derive(Debug, Default)]
 pub(super) struct UnclaimedResults {
     held: BTreeMap<JobId, Held>,
@@ -45,14 +45,14 @@ impl UnclaimedResults {
         }
     }
 
-    /// The result of a job that is submitted now, and who brought it.
+    /// Removes and returns the result of a newly submitted job, with the worker that delivered it.
     pub(super) fn take(&mut self, job: JobId) -> Option<(WorkerId, Done)> {
         let Held { from, done, bytes } = self.held.remove(&job)?;
         self.bytes -= bytes;
         Some((from, done))
     }
 
-    /// How many bytes are held.
+    /// Returns the encoded size of the results held \[bytes\].
     #[cfg(test)]
     pub(super) const fn bytes(&self) -> usize {
         self.bytes

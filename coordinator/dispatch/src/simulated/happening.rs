@@ -1,25 +1,26 @@
-//! What can happen in a simulated cluster.
+//! Events of a simulated cluster.
 use protocol::{
     id::{JobId, WorkerId},
     message::{Attempt, FromWorker, ToWorker},
 };
 
-/// What happens to workers.
+/// Fault injected into a worker.
 #[derive(Clone, Copy, Debug)]
 pub enum Fault {
-    /// It dies with all it holds, the transport says so, and another one comes in its place.
+    /// Terminates the worker with all its jobs; the transport reports the loss, and a new worker takes its
+    /// place.
     Kill,
-    /// It stands still; its connection stays.
+    /// Suspends the worker while its connection stays open.
     Freeze,
-    /// It goes on.
+    /// Resumes a frozen worker.
     Thaw,
 }
 
-/// One event on the simulated clock.
+/// Event on the simulated clock.
 #[derive(Clone)]
 pub(super) enum What {
     Up(WorkerId, FromWorker),
-    /// What was said is taken in.
+    /// Message that the coordinator has finished receiving and now processes.
     Heard(WorkerId, FromWorker),
     Down(WorkerId, ToWorker),
     End(WorkerId, Attempt),

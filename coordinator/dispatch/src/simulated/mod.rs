@@ -1,8 +1,8 @@
-//! A whole cluster on a simulated clock: the real core; workers, link and time are simulated.
+//! Simulated cluster on a simulated clock: the real scheduler core with simulated workers, links and time.
 //!
-//! Every delay, speed, fault and computing time is drawn from a seed, so that a run of hours takes
-//! a fraction of a second and is the same each time. The tests of the core run on it, and so do projections of
-//! how a search scales.
+//! Every delay, speed, fault and computing time is drawn from a seed, so that a run of hours takes a fraction
+//! of a second and is reproducible. The tests of the core use it, and so do projections of how a search
+//! scales.
 mod happening;
 mod source;
 mod worker;
@@ -30,14 +30,14 @@ use std::{
     time::Duration,
 };
 
-/// Kind of the case's model.
+/// Kind of model of the simulated case.
 pub const MODEL: &str = "model";
-/// The case that every worker has.
+/// Hash of the case that every simulated worker holds.
 pub const CASE: ContentHash = ContentHash([7; 32]);
-/// What every worker computes of the proof.
+/// Proof that every simulated worker computes for the reference individual.
 pub const PROOF: Proof = Proof::Bits(ContentHash([8; 32]));
 
-/// What a worker says of itself.
+/// Builds the announcement of a simulated worker with one slot and the given model digest.
 pub fn announcement(digest: &str) -> Announcement {
     Announcement {
         protocol: wire::VERSION,
@@ -55,33 +55,33 @@ pub fn announcement(digest: &str) -> Announcement {
     }
 }
 
-/// What a cluster is like.
+/// Configuration of a simulated cluster.
 #[derive(Clone, Copy)]
 pub struct Setting {
-    /// How many workers.
+    /// Number of workers.
     pub workers: u64,
-    /// Slots of each.
+    /// Number of slots per worker.
     pub slots: usize,
-    /// Fixes every random choice.
+    /// Seed of all random choices.
     pub seed: u64,
-    /// Spread of computing times, lognormal about one second: standard deviation over mean \[1\].
+    /// Relative standard deviation of the computing times, lognormal about one second \[1\].
     pub spread: f64,
-    /// Time that the coordinator takes over each result, one after the other.
+    /// Time that the coordinator spends on each result, sequentially.
     pub handling: Duration,
-    /// One in so many workers is half as fast; 0 for none.
+    /// Number of workers per slow one, which is half as fast; 0 for no slow workers.
     pub slow_one_in: u64,
     /// Longest delay of a message.
     pub delay: Duration,
-    /// Share of messages that are lost \[1\].
+    /// Share of messages lost \[1\].
     pub loss: f64,
-    /// Share of messages that arrive twice \[1\].
+    /// Share of messages delivered twice \[1\].
     pub duplication: f64,
-    /// Jobs that take their worker with them as soon as they are begun.
+    /// Jobs that kill their worker as soon as they start.
     pub killers: &'static [u64],
 }
 
 impl Setting {
-    /// Workers of one slot that are equally fast on a good network.
+    /// Returns a configuration of equally fast workers with one slot each on a good network.
     pub const fn even(workers: u64) -> Self {
         Self {
             workers,
@@ -98,40 +98,40 @@ impl Setting {
     }
 }
 
-/// A coordinator and its workers.
+/// Simulated coordinator with its workers.
 pub struct Cluster {
-    /// The coordinator.
+    /// Scheduler core of the coordinator.
     pub core: Core,
-    /// The time.
+    /// Current simulated time.
     pub now: Duration,
     setting: Setting,
-    /// How long jobs take by their number, in place of the setting's spread.
+    /// Computing time by job number, in place of the lognormal distribution.
     pub takes: Option<Box<dyn Fn(u64) -> Duration>>,
-    /// Attempts whose results the coordinator has taken time over.
+    /// Attempts whose results have already been charged with handling time.
     charged: BTreeSet<Attempt>,
-    /// Why the run cannot go on.
+    /// Reason why the core stopped the run, if it did.
     stopped: Option<Stop>,
-    /// When the coordinator is through with the results that have arrived.
+    /// Time at which the coordinator has handled all results that have arrived.
     free_at: Duration,
     events: BTreeMap<(Duration, u64), What>,
     sequence: u64,
     workers: BTreeMap<WorkerId, Worker>,
-    /// What came of jobs, by number.
+    /// Outcomes of the jobs, by number.
     pub results: BTreeMap<u64, Outcome>,
-    /// Delivered and not yet told.
+    /// Outcomes delivered by the core but not yet passed to the source.
     fresh: Vec<(JobId, Outcome)>,
-    /// What was written down of slot time.
+    /// Slot-time accounts recorded by the core.
     pub accounts: Vec<Event>,
-    /// What people were told.
+    /// Notices emitted by the core.
     pub notices: Vec<Notice>,
-    /// Slot time that was really spent computing, whatever for.
+    /// Slot time actually spent computing, whether or not the result was used.
     pub computed: Duration,
-    /// Attempts that were begun.
+    /// Number of attempts started.
     pub begun: u64,
 }
 
 impl Cluster {
-    /// With its workers, who are about to say so.
+    /// Creates a cluster whose workers are about to announce themselves.
     pub fn new(setting: Setting) -> Self {
         let core = Core::new(CoreOptions {
             run: RunId(1),
@@ -171,7 +171,7 @@ impl Cluster {
         cluster
     }
 
-    /// Something happens to the worker of a place.
+    /// Schedules a fault of the worker at a place.
     pub fn fault(&mut self, at: Duration, place: u64, fault: Fault) {
         self.at(at, What::Fault(place, fault));
     }
@@ -187,7 +187,8 @@ impl Cluster {
         self.events.insert((self.now + delay, self.sequence), what);
     }
 
-    /// On its way for a time of its own, which puts it out of order; lost or doubled, perhaps.
+    /// Schedules the delivery of a message after a random delay, which may reorder messages; the message may
+    /// be lost or duplicated.
     fn send(&mut self, what: What) {
         let first = self.sequence;
         if self.unit(2, first) < self.setting.loss {
@@ -215,7 +216,7 @@ impl Cluster {
         self.at(Duration::from_millis(5), What::Beat(id));
     }
 
-    /// How long a job takes: a property of the job alone.
+    /// Returns the computing time of a job, which depends on the job alone.
     fn time_of(&self, job: JobId) -> Duration {
         if let Some(takes) = &self.takes {
             return takes(job.0);
@@ -226,10 +227,10 @@ impl Cluster {
         Duration::from_secs_f64(libm::exp(sigma * stream.normal() - 0.5 * sigma * sigma))
     }
 
-    /// Runs until the source is done, `limit` at most.
+    /// Runs until the source is done, up to the simulated time `limit`.
     ///
     /// # Panics
-    /// If the core has not done everything by then, or breaks its own rules.
+    /// If the source is not done by then, or the core violates an invariant.
     pub fn run(&mut self, source: &mut dyn Source, limit: Duration) {
         self.submit(source);
         while !source.is_done() {
@@ -396,7 +397,7 @@ impl Cluster {
         }
     }
 
-    /// Time that accepted results took, over all slot time.
+    /// Returns the share of all slot time that went into accepted results.
     pub fn capacity_used(&self) -> f64 {
         let slots = self.setting.workers * self.setting.slots as u64;
         let all = self.now.as_secs_f64() * slots as f64;

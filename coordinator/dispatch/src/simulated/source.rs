@@ -1,9 +1,9 @@
-//! Where the jobs of a simulated cluster come from: generations, or a search.
+//! Job sources of a simulated cluster: generations, or a search.
 use protocol::job::{Job, Outcome};
 use search::strategy::{Strategy, Told};
 use std::collections::BTreeMap;
 
-/// A job that does nothing, told from others by its number.
+/// Builds a job without work, identified by its number.
 pub fn job(n: u64) -> Job {
     Job::Nothing {
         payload: n.to_le_bytes().to_vec(),
@@ -12,17 +12,17 @@ pub fn job(n: u64) -> Job {
     }
 }
 
-/// Where jobs come from.
+/// Source of jobs for a simulated cluster.
 pub trait Source {
-    /// Jobs that can be done now.
+    /// Returns jobs that can be submitted now, with their ids.
     fn ask(&mut self) -> Vec<(u64, Job)>;
-    /// Takes what came of one.
+    /// Passes the outcome of a job to the source.
     fn tell(&mut self, id: u64, outcome: &Outcome);
-    /// Whether nothing more is wanted.
+    /// Returns whether the source needs no more results.
     fn is_done(&self) -> bool;
 }
 
-/// Generations of equal size: nothing is asked before all of the last one is there.
+/// Source of generations of equal size; the next generation starts only when the previous one is complete.
 pub struct Generations {
     size: u64,
     left: u64,
@@ -31,7 +31,7 @@ pub struct Generations {
 }
 
 impl Generations {
-    /// So many generations of so many jobs.
+    /// Creates a source of `count` generations of `size` jobs.
     pub const fn new(size: u64, count: u64) -> Self {
         Self {
             size,
@@ -63,20 +63,20 @@ impl Source for Generations {
     }
 }
 
-/// A search, with a function for the physics.
+/// Source that runs a search, with a function in place of the simulation.
 pub struct Search<'a> {
-    /// The search.
+    /// Search strategy.
     pub strategy: Box<dyn Strategy>,
-    /// The physics.
+    /// Objective evaluated in place of the simulation, for given genes.
     pub tell: &'a dyn Fn(&[f64]) -> Told,
-    /// Proposals from this number on are not evaluated.
+    /// Number of the first proposal that is not evaluated.
     pub limit: u64,
     open: BTreeMap<u64, Vec<f64>>,
     log: blake3::Hasher,
 }
 
 impl<'a> Search<'a> {
-    /// The whole of a search.
+    /// Creates a source that runs the search to its end.
     pub fn new(strategy: Box<dyn Strategy>, tell: &'a dyn Fn(&[f64]) -> Told) -> Self {
         Self {
             strategy,
@@ -87,7 +87,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The name of everything that was evaluated, in index order.
+    /// Returns a hash of all evaluations, in index order.
     pub fn digest(mut self) -> String {
         for entry in self.strategy.archive().entries() {
             self.log.update(&entry.id.to_le_bytes());

@@ -1,4 +1,4 @@
-//! One simulated worker: what it holds, and what it makes of what it hears.
+//! Simulated worker: jobs held, and reactions to messages.
 use super::happening::What;
 use protocol::{
     id::ContentHash,
@@ -11,16 +11,16 @@ use std::{
     time::Duration,
 };
 
-/// An attempt in a slot.
+/// Attempt running in a slot.
 pub struct Running {
     attempt: Attempt,
     job: Job,
-    /// When it was begun.
+    /// Time at which the attempt started.
     pub begun: Duration,
 }
 
 impl Running {
-    /// How long its job says that it takes.
+    /// Returns the duration stated in the job itself; zero for all kinds but `Nothing`.
     pub fn delay(&self) -> Duration {
         match self.job {
             Job::Nothing { delay_ms, .. } => Duration::from_millis(u64::from(delay_ms)),
@@ -29,7 +29,7 @@ impl Running {
     }
 }
 
-/// So long in the slot, all of it computing.
+/// Builds the cost of an attempt that spent all its time in the slot computing.
 pub const fn cost(wall_us: u64) -> Cost {
     Cost {
         wall_us,
@@ -37,40 +37,40 @@ pub const fn cost(wall_us: u64) -> Cost {
     }
 }
 
-/// What comes of a job that does nothing; any other is refused.
+/// Returns the outcome of a `Nothing` job; jobs of other kinds are refused.
 pub fn outcome(job: &Job) -> Outcome {
     match job {
         Job::Nothing { reply_bytes, .. } => {
             Outcome::Done(Answer::Nothing(vec![1; *reply_bytes as usize]))
         }
         Job::Simulate(_) | Job::Own { .. } | Job::Describe => Outcome::Failed(Failure::Refused {
-            reason: "a session without slots computes nothing".to_owned(),
+            reason: "a simulated worker computes only jobs of kind Nothing".to_owned(),
         }),
     }
 }
 
-/// One worker that computes nothing: its slots, and what it holds for them.
+/// Simulated worker without computation: slots, orders and unacknowledged results.
 pub struct Worker {
-    /// Place that it fills; its successor fills it too.
+    /// Index of the place that the worker fills; a replacement worker has the same place.
     pub place: u64,
-    /// Jobs at a time.
+    /// Number of slots.
     pub slots: usize,
-    /// How much longer than others it takes \[1\].
+    /// Factor on the computing time \[1\].
     pub slowness: f64,
-    /// What is in its slots.
+    /// Attempts running in the slots.
     pub running: Vec<Running>,
     waiting: VecDeque<Order>,
-    /// Results that are not known to be stored.
+    /// Results not yet acknowledged as stored.
     pub outbox: BTreeMap<Attempt, Done>,
     settled: BTreeSet<Attempt>,
-    /// Whether it stands still.
+    /// Whether the worker is frozen.
     pub frozen: bool,
-    /// What happened to it while it was frozen.
+    /// Events deferred while the worker is frozen.
     pub(super) held_back: Vec<What>,
 }
 
 impl Worker {
-    /// An idle one.
+    /// Creates an idle worker.
     pub const fn new(place: u64, slots: usize, slowness: f64) -> Self {
         Self {
             place,
@@ -85,7 +85,7 @@ impl Worker {
         }
     }
 
-    /// Takes an order, unless it has it already.
+    /// Queues an order, unless the attempt is already known.
     pub fn take(&mut self, order: Order) {
         let attempt = order.attempt;
         let known = self.settled.contains(&attempt)
@@ -97,7 +97,7 @@ impl Worker {
         }
     }
 
-    /// Begins what has waited longest, if there is a slot for it.
+    /// Starts the order that has waited longest, if a slot is free.
     pub fn begin(&mut self, now: Duration) -> Option<Attempt> {
         (self.running.len() < self.slots).then_some(())?;
         let order = self.waiting.pop_front()?;
@@ -109,7 +109,7 @@ impl Worker {
         Some(order.attempt)
     }
 
-    /// Stops an attempt; how long it was computed for nothing.
+    /// Cancels an attempt and returns the computing time wasted on it.
     pub fn cancel(&mut self, attempt: Attempt, now: Duration) -> Duration {
         self.settled.insert(attempt);
         self.outbox.remove(&attempt);
@@ -118,7 +118,7 @@ impl Worker {
         running.map_or(Duration::ZERO, |running| now.saturating_sub(running.begun))
     }
 
-    /// The result of an attempt that is still wanted.
+    /// Ends an attempt that is still running and returns its result.
     pub fn finish(&mut self, attempt: Attempt, now: Duration) -> Option<Done> {
         let running = self.take_running(attempt)?;
         let wall = now.saturating_sub(running.begun);
@@ -132,7 +132,7 @@ impl Worker {
         Some(done)
     }
 
-    /// Forgets what is stored.
+    /// Drops results that are acknowledged as stored.
     pub fn settle(&mut self, attempts: Vec<Attempt>) {
         for attempt in attempts {
             self.outbox.remove(&attempt);
@@ -140,7 +140,7 @@ impl Worker {
         }
     }
 
-    /// What it says of itself, with the case that it has and what it computed of the proof.
+    /// Builds the worker's heartbeat, with its case and its proof.
     pub fn beat(&self, case: Option<ContentHash>, proof: Proof) -> Beat {
         Beat {
             number: 0,

@@ -1,32 +1,32 @@
-//! One layer that was looked at.
+//! Result of the check of one layer.
 use serde::Serialize;
 
-/// What must hold for a worker to take part, in the order in which it is looked at.
+/// Layer that must be healthy for a worker to take part, in the order of checking.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Layer {
-    /// The case can be read.
+    /// Case file: readable.
     Case,
-    /// The program of workers is there.
+    /// Worker program: present.
     Program,
-    /// Certificates are there, fit each other, and either end takes the other's.
+    /// Certificates: present, consistent with each other, and accepted by both ends.
     Certificate,
-    /// The clock agrees with the certificates.
+    /// Clock: consistent with the validity dates of the certificates.
     Clock,
-    /// The host's name has an address.
+    /// Host name: resolves to an address.
     Name,
-    /// There is a way to the machine.
+    /// Route: the machine is reachable.
     Route,
-    /// Somebody listens on the port.
+    /// Port: a process listens on it.
     Port,
-    /// What is sent there comes back.
+    /// Firewall: packets sent to the port are answered.
     Firewall,
-    /// Both ends speak the same version.
+    /// Version: both ends use the same protocol version.
     Version,
 }
 
 impl Layer {
-    /// As it is written.
+    /// Returns the layer's name as shown in the output.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Case => "case",
@@ -42,21 +42,21 @@ impl Layer {
     }
 }
 
-/// What was found of a layer.
+/// Result of checking a layer.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Check {
-    /// Which.
+    /// Checked layer.
     pub layer: Layer,
-    /// Whether it holds.
+    /// Whether the layer is healthy.
     pub healthy: bool,
-    /// What was seen.
+    /// Observation made by the check.
     pub found: String,
-    /// What to do; empty where it holds.
+    /// Remedy; empty for a healthy layer.
     pub remedy: String,
 }
 
 impl Check {
-    /// It holds.
+    /// Creates the result of a healthy layer.
     pub fn good(layer: Layer, found: impl Into<String>) -> Self {
         Self {
             layer,
@@ -66,7 +66,7 @@ impl Check {
         }
     }
 
-    /// It does not.
+    /// Creates the result of a failed layer, with a remedy.
     pub fn bad(layer: Layer, found: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self {
             layer,

@@ -1,8 +1,8 @@
-//! Which layer an error of the link is of, and what to do about it.
+//! Assignment of link errors to layers, with a remedy for each.
 use super::check::{Check, Layer};
 use link::{LinkError, Silence};
 
-/// The layer that fails, with what the link says and the remedy.
+/// Returns the failed layer for a link error, with its message and the remedy.
 pub(super) fn classify(error: &LinkError) -> Check {
     let (layer, remedy) = match error {
         error if error.is_of_time() => (
@@ -17,7 +17,7 @@ pub(super) fn classify(error: &LinkError) -> Check {
         LinkError::Silent { how, .. } => match how {
             Silence::Closed { .. } => (
                 Layer::Port,
-                "start the coordinator with --listen, and dial the port that it names",
+                "start the coordinator with --listen, and connect to the port that it prints",
             ),
             Silence::Unreachable { .. } => (
                 Layer::Route,
@@ -47,7 +47,7 @@ pub(super) fn classify(error: &LinkError) -> Check {
         | LinkError::Piece { .. }
         | _ => (
             Layer::Version,
-            "something answers there that is no coordinator of this version: check the port, and use the same \
+            "the address is answered by a program other than a coordinator of this version: check the port, and use the same \
              build of horsehead and horsehead-worker on every machine",
         ),
     };

@@ -1,5 +1,5 @@
-//! A worker's side: the same steps as a worker takes, with the same certificates, up to the first word of a
-//! coordinator.
+//! Diagnosis from the worker's side: the same connection steps with the same certificates as a worker, up to
+//! the first message from a coordinator.
 use super::{
     check::{Check, Layer},
     classify::classify,
@@ -19,10 +19,11 @@ use protocol::{
 use std::{path::Path, time::Duration};
 use tokio::time::timeout;
 
-/// How often a coordinator is asked, a second each: the bus needs a moment to know who hears what.
+/// Number of requests sent to the coordinator, one per second: the bus needs a moment to establish its
+/// subscriptions.
 const ASKED: u32 = 8;
 
-/// What is found on the way to a coordinator, up to the first layer that fails.
+/// Checks the layers on the way to a coordinator, up to the first that fails.
 pub async fn dial(to: &Locator, tls: Option<&Path>) -> Vec<Check> {
     let mut checks = Vec::new();
     let keys = match tls
@@ -40,7 +41,7 @@ pub async fn dial(to: &Locator, tls: Option<&Path>) -> Vec<Check> {
     let mut link = match ZenohWorker::open(to, keys.as_ref(), u64::from(std::process::id())).await {
         Ok(link) => link,
         Err(error) => {
-            let found = "the error is of a later layer";
+            let found = "passed: the connection failed only at a later layer";
             checks.extend(passed(&error).map(|layer| Check::good(layer, found)));
             checks.push(classify(&error));
             return checks;
@@ -48,7 +49,7 @@ pub async fn dial(to: &Locator, tls: Option<&Path>) -> Vec<Check> {
     };
     let answers = match to.protocol {
         Protocol::Tcp => "the port is open",
-        Protocol::Quic => "either end takes the other's certificate",
+        Protocol::Quic => "both ends accept each other's certificate",
     };
     for layer in [Layer::Name, Layer::Route, Layer::Port, Layer::Firewall] {
         checks.push(Check::good(layer, answers));
@@ -58,7 +59,7 @@ pub async fn dial(to: &Locator, tls: Option<&Path>) -> Vec<Check> {
     checks
 }
 
-/// Layers that must hold where a link fails like this.
+/// Returns the layers that must be healthy, given the error with which the link failed.
 fn passed(error: &LinkError) -> impl Iterator<Item = Layer> {
     let answered = matches!(
         error,
@@ -76,14 +77,15 @@ fn passed(error: &LinkError) -> impl Iterator<Item = Layer> {
         .take(count)
 }
 
-/// Asks as a worker that nobody knows: a coordinator bids it to say who it is, and keeps no memory of it.
+/// Sends a heartbeat as an unknown worker; a coordinator replies with a request for identification and keeps
+/// no state.
 async fn version(link: &mut ZenohWorker, to: &Locator) -> Check {
     let run = RunId::default();
     let Ok(question) = wire::seal(Kind::FromWorker, run, &FromWorker::Beat(Beat::default())) else {
         return Check::bad(
             Layer::Version,
-            "a message cannot be made",
-            "install this program anew",
+            "the test message cannot be encoded",
+            "reinstall this program",
         );
     };
     for _ in 0..ASKED {
@@ -98,11 +100,11 @@ async fn version(link: &mut ZenohWorker, to: &Locator) -> Check {
 fn nobody(to: &Locator) -> Check {
     classify(&LinkError::Transport {
         doing: format!("hear a coordinator at {to}"),
-        reason: "the address answers, but nothing that the bus carries comes back".to_owned(),
+        reason: "the address accepts connections, but no reply arrives over Zenoh".to_owned(),
     })
 }
 
-/// What a coordinator's word says of its version.
+/// Checks the protocol version of a message from the coordinator.
 fn understood(frame: &[u8]) -> Check {
     const SAME: &str = "use the same build of horsehead and horsehead-worker on every machine";
     let own = wire::VERSION;
@@ -110,7 +112,7 @@ fn understood(frame: &[u8]) -> Check {
         Ok((run, _)) => Check::good(Layer::Version, format!("protocol {own}, run {run}")),
         Err(WireError::Version { found }) => Check::bad(
             Layer::Version,
-            format!("the coordinator speaks protocol {found}, this program {own}"),
+            format!("the coordinator uses protocol version {found}, this program version {own}"),
             SAME,
         ),
         Err(error) => Check::bad(Layer::Version, error.to_string(), SAME),

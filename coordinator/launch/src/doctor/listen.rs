@@ -1,4 +1,4 @@
-//! The coordinator's side: whether it could listen there.
+//! Diagnosis from the coordinator's side: whether it can listen at an address.
 use super::{
     check::{Check, Layer},
     classify::classify,
@@ -14,7 +14,7 @@ use std::{
     path::Path,
 };
 
-/// What is found at an address to listen on, up to the first layer that fails.
+/// Checks the layers of an address to listen on, up to the first that fails.
 pub fn listen(at: &Locator, tls: Option<&Path>) -> Vec<Check> {
     let mut checks = Vec::new();
     match (at.protocol, tls) {

@@ -1,6 +1,7 @@
-//! What keeps workers from a coordinator: from either side, the first layer that fails, and the remedy.
+//! Diagnosis of connection problems between workers and coordinator: from either side, the first layer that
+//! fails, with the remedy.
 //!
-//! Knows the link and one message; takes no part in a run, and a coordinator is told nothing of it.
+//! Uses only the link and one message; takes no part in a run, and leaves no trace at the coordinator.
 mod check;
 mod classify;
 mod dial;

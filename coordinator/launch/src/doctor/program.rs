@@ -1,8 +1,8 @@
-//! This machine alone: whether it has the program of workers.
+//! Diagnosis of this machine: whether the worker program is present.
 use super::check::{Check, Layer};
 use std::{fmt::Display, path::PathBuf, process::Command};
 
-/// What is found of the worker program, from where it was looked for: whether it starts and is of this version.
+/// Checks whether the located worker program starts and has the version of this program.
 pub fn program(located: Result<PathBuf, impl Display>) -> Check {
     let path = match located {
         Ok(path) => path,
@@ -10,20 +10,20 @@ pub fn program(located: Result<PathBuf, impl Display>) -> Check {
             return Check::bad(
                 Layer::Program,
                 error.to_string(),
-                "build both programs together",
+                "build horsehead and horsehead-worker from the same source",
             );
         }
     };
     let own = env!("CARGO_PKG_VERSION");
     let place = path.display();
-    let remedy = "put the program that was built with this one beside it";
+    let remedy = "copy horsehead-worker of the same build into the folder of this program";
     match Command::new(&path).arg("--version").output() {
         Ok(said) => {
             let said = String::from_utf8_lossy(&said.stdout).trim().to_owned();
             if said.split(' ').next_back() == Some(own) {
                 Check::good(Layer::Program, format!("{place}: {said}"))
             } else {
-                let found = format!("{place} says it is `{said}`, not version {own}");
+                let found = format!("{place} reports `{said}` instead of version {own}");
                 Check::bad(Layer::Program, found, remedy)
             }
         }

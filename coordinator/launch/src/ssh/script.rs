@@ -1,4 +1,4 @@
-//! What hosts are told: scripts of the POSIX shell, whole and literal.
+//! POSIX shell scripts run on hosts, literal and complete.
 use super::super::{
     program::Program,
     shell::{line, lines},
@@ -6,11 +6,12 @@ use super::super::{
 };
 use std::fmt::Write as _;
 
-/// What every script on a host begins with.
+/// Preamble of every script run on a host.
 const HOME: &str =
     "set -eu\numask 077\nhome=${XDG_CACHE_HOME:-$HOME/.cache}/horsehead\nmkdir -p \"$home\"\n";
 
-/// Sets `process` to the worker's process, if it runs: a number alone may have become another's.
+/// Script fragment that sets `process` to the worker's process id if the worker runs; the executable is
+/// checked, since the id may have been reused.
 const RUNNING: &str = r#"process=$(cat "$folder/process" 2>/dev/null || true)
 case "$(readlink "/proc/${process:-none}/exe" 2>/dev/null || true)" in
 "$home"/worker-*) ;;
@@ -18,7 +19,7 @@ case "$(readlink "/proc/${process:-none}/exe" 2>/dev/null || true)" in
 esac
 "#;
 
-/// Ends that process, by force if it does not within five seconds.
+/// Script fragment that ends that process, by force after five seconds.
 const END: &str = r#"if [ -n "$process" ]; then
   kill "$process"
   for _ in 1 2 3 4 5; do
@@ -28,7 +29,7 @@ const END: &str = r#"if [ -n "$process" ]; then
 fi
 "#;
 
-/// Answers "have" or "need MACHINE"; fails where no worker runs.
+/// Returns a script that answers "have" or "need MACHINE", and fails on hosts that cannot run a worker.
 pub(super) fn probe(programs: &[Program]) -> String {
     let mut script = format!("{HOME}system=$(uname -sm)\ncase \"$system\" in\n");
     let mut machines = Vec::new();
@@ -45,7 +46,7 @@ pub(super) fn probe(programs: &[Program]) -> String {
     let _written = write!(
         script,
         r#"*)
-  echo "it is a machine of \"$system\", and there are workers for Linux on {machines} alone" >&2
+  echo "the host runs \"$system\", but worker programs exist only for Linux on {machines}" >&2
   exit 10
   ;;
 esac
@@ -74,7 +75,8 @@ fi
     script
 }
 
-/// Takes a program from its input; half a program never lies under its name.
+/// Returns a script that receives a program on its standard input and renames it into place only when
+/// complete.
 pub(super) fn copy(program: &Program) -> String {
     let Program { hash, bytes, .. } = program;
     format!(
@@ -94,8 +96,8 @@ mv "$part" "$home/worker-{hash}"
     )
 }
 
-/// Starts the worker in a session of its own; one that runs with the same command line goes on, and so does one that
-/// a run finds and has not launched.
+/// Returns a script that starts the worker in a session of its own; a worker running with the same command
+/// line is left running, and so is one that a run finds but has not launched.
 pub(super) fn start(order: &WorkerOptions, folder: &str, programs: &[Program]) -> String {
     let mut choice = String::from("case \"$(uname -m)\" in\n");
     for Program { machine, hash, .. } in programs {
@@ -131,8 +133,8 @@ echo $! > "$folder/process"
     )
 }
 
-/// Waits until the worker says that it takes part, or has ended; in its first second it may not be
-/// there yet.
+/// Returns a script that waits until the worker's log reports admission or the worker has ended; the process
+/// may be missing during the first second.
 pub(super) fn watch(folder: &str, wait_s: u64) -> String {
     format!(
         r#"{HOME}folder=$home/{folder}
@@ -150,8 +152,8 @@ done
     )
 }
 
-/// Ends the workers in the folders of a host whose names end like `mark`, of those only what `owner` has launched; all
-/// of them if both are empty.
+/// Returns a script that ends the workers in folders whose names end with `mark`, only those launched by
+/// `owner`; all of them if both are empty.
 pub(super) fn end(mark: &str, owner: &str) -> String {
     let owner = line(&[owner.to_owned()]);
     format!(
@@ -165,12 +167,12 @@ fi
     )
 }
 
-/// Shows the end of what its workers said.
+/// Returns a script that shows the end of the worker logs.
 pub(super) fn tail() -> String {
     format!("{HOME}tail -n 100 \"$home\"/worker-*/log\n")
 }
 
-/// Takes a worker's keys, as tar writes them, from its input.
+/// Returns a script that unpacks a worker's keys from a tar archive on its standard input.
 pub(super) fn take_keys(folder: &str) -> String {
     format!(
         "{HOME}mkdir -p \"$home/{folder}\"\nchmod 700 \"$home/{folder}\"\n\

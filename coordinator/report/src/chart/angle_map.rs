@@ -1,4 +1,4 @@
-//! Abscissa x channel: where along a record the residual is no noise.
+//! Map of abscissa against channel that shows where along a record the residual is significant.
 use super::axis::Axis;
 use super::canvas::{Canvas, Pen, WIDTH, render};
 use super::panel::Panel;
@@ -10,11 +10,11 @@ use crate::words::counted;
 use discrepancy::place::along::{AlongMap, Bins, WIDTHS, Window};
 use protocol::case::Abscissa;
 
-/// The colour scale ends here at the earliest (standard deviations): noise stays pale.
+/// Least upper end of the colour scale (standard deviations), so that noise stays pale.
 const LEAST: f64 = 5.0;
 
-/// Draws the map; rows are `channels`, in the map's order, over the abscissa and the axis of the first.
-/// None of an empty map, nor where channels stand over several abscissas.
+/// Draws the map, with one row per entry of `channels`, in the map's order, over the abscissa and axis of the
+/// first channel. Returns `None` for an empty map or if the channels have different abscissas.
 pub(crate) fn angle_map(
     map: &AlongMap,
     channels: &[String],
@@ -65,7 +65,7 @@ pub(crate) fn angle_map(
     })
 }
 
-/// One channel: a cell per bin, at the centre of the window that begins there.
+/// Draws the row of one channel: a cell per bin, at the centre of the window that begins there.
 fn cells(
     canvas: &mut Canvas,
     panel: &Panel,
@@ -87,13 +87,13 @@ fn cells(
     }
 }
 
-/// Colour of a deviation, as a share of the scale to either side; none for what is no number.
+/// Returns the colour of a deviation, given as a share of the scale to either side; neutral if not finite.
 fn deviation(share: f64) -> Color {
     let share = if share.is_finite() { share } else { 0.0 };
     SIGNED.at(0.5 + 0.5 * share)
 }
 
-/// A significant window; in two parts where it runs into the next period.
+/// Outlines a significant window; in two parts if it extends into the next period.
 fn outline(canvas: &mut Canvas, panel: &Panel, bins: &Bins, window: &Window) {
     const INSET: f64 = 2.5;
     let pen = Pen::new(INK, 1.3);

@@ -1,20 +1,21 @@
-//! The horizontal axis that curves share: how far it goes, and what is counted along it.
+//! Horizontal axis shared by several curves: range and title.
 use super::scale::Scale;
 use crate::number::unit;
 use crate::words::counted;
 use protocol::case::Abscissa;
 
-/// Scale and title of an axis.
+/// Scale and title of a horizontal axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// From where to where.
+    /// Range and ticks.
     pub scale: Scale,
-    /// What is counted, with its unit.
+    /// Quantity along the axis, with its unit.
     pub title: String,
 }
 
 impl Axis {
-    /// The axis of a channel; `zero` says behind the name where it begins, and may be empty.
+    /// Creates the axis of a channel; `zero`, appended to the name, states the origin of the abscissa and may
+    /// be empty.
     pub fn of(abscissa: &Abscissa, zero: &str) -> Self {
         let ends = abscissa.points.first().zip(abscissa.points.last());
         let (first, last) = ends.map_or((0.0, 1.0), |(first, last)| (*first, *last));

@@ -1,18 +1,18 @@
-//! The sheet that a figure is drawn on: it writes SVG elements, in whole tenths of a pixel.
+//! Drawing surface of a figure: writes SVG elements in integer tenths of a pixel.
 //!
-//! Tenths keep curves smooth and are shorter in a file than decimals. Knows nothing of axes or of
-//! physics; what is not finite is not drawn.
+//! Tenths keep curves smooth and take fewer bytes than decimals. Independent of axes and physics; points that
+//! are not finite are skipped.
 use crate::color::Color;
 use maud::{Markup, PreEscaped, Render, html};
 
 /// Width of every full-width figure \[px\].
 pub const WIDTH: f64 = 960.0;
-/// Units of the SVG per pixel on screen.
+/// SVG units per pixel on screen.
 const FINENESS: f64 = 10.0;
 /// Typeface of every figure; the report's style sheet may replace it.
 const FONT: &str = "Helvetica, Arial, sans-serif";
 
-/// A pen.
+/// Stroke colour and width.
 #[derive(Clone, Copy)]
 pub struct Pen {
     color: Color,
@@ -20,28 +20,28 @@ pub struct Pen {
 }
 
 impl Pen {
-    /// A pen of a colour and a width \[px\].
+    /// Creates a pen with a colour and a width \[px\].
     pub const fn new(color: Color, width: f64) -> Self {
         Self { color, width }
     }
 }
 
-/// Where a text's anchor point lies in it, and how it looks.
+/// Style of a text, and the position of its anchor point.
 #[derive(Clone, Copy)]
 pub struct Lettering {
-    /// Size [px].
+    /// Font size [px].
     size: f64,
     color: Color,
-    /// Where along the text the anchor is, as SVG names it.
+    /// Position of the anchor along the text, as the SVG attribute `text-anchor`.
     along: &'static str,
-    /// By how much the base line lies below the anchor, over the size.
+    /// Offset of the base line below the anchor, relative to the font size.
     drop: f64,
     bold: bool,
     upwards: bool,
 }
 
 impl Lettering {
-    /// Upright text that starts at its anchor, centred vertically.
+    /// Creates horizontal text that starts at its anchor, centred vertically.
     pub const fn new(size: f64, color: Color) -> Self {
         Self {
             size,
@@ -53,42 +53,42 @@ impl Lettering {
         }
     }
 
-    /// The same, ending at its anchor.
+    /// Returns the style with the text ending at its anchor.
     #[must_use]
     pub const fn right(mut self) -> Self {
         self.along = "end";
         self
     }
 
-    /// The same with the anchor in its middle.
+    /// Returns the style with the text centred on its anchor.
     #[must_use]
     pub const fn centered(mut self) -> Self {
         self.along = "middle";
         self
     }
 
-    /// The same, standing on its anchor.
+    /// Returns the style with the text above its anchor.
     #[must_use]
     pub const fn above(mut self) -> Self {
         self.drop = -0.2;
         self
     }
 
-    /// The same, hanging from its anchor.
+    /// Returns the style with the text below its anchor.
     #[must_use]
     pub const fn below(mut self) -> Self {
         self.drop = 0.76;
         self
     }
 
-    /// The same in bold.
+    /// Returns the style in bold.
     #[must_use]
     pub const fn bold(mut self) -> Self {
         self.bold = true;
         self
     }
 
-    /// The same, reading upwards.
+    /// Returns the style rotated to read upwards.
     #[must_use]
     pub const fn upwards(mut self) -> Self {
         self.upwards = true;
@@ -96,12 +96,12 @@ impl Lettering {
     }
 }
 
-/// A sheet; all positions in pixels from its upper left corner.
+/// Drawing surface; all positions are in pixels from the upper left corner.
 pub struct Canvas {
     body: String,
 }
 
-/// Nearest unit of the SVG; points far off the sheet are brought to a distance that fits.
+/// Converts pixels to the nearest SVG unit, clamped to a representable range.
 fn unit(pixels: f64) -> i32 {
     #[expect(
         clippy::cast_possible_truncation,
@@ -115,7 +115,7 @@ fn is_finite((x, y): (f64, f64)) -> bool {
     x.is_finite() && y.is_finite()
 }
 
-/// Points as SVG lists them.
+/// Formats points as an SVG point list.
 fn list(points: &[(f64, f64)]) -> String {
     let places = points
         .iter()
@@ -129,7 +129,7 @@ impl Canvas {
         self.body.push('\n');
     }
 
-    /// A curve; broken wherever a point is not finite.
+    /// Draws a polyline, interrupted at points that are not finite.
     pub fn line(&mut self, points: &[(f64, f64)], pen: Pen) {
         for run in points.split(|&point| !is_finite(point)) {
             if run.len() > 1 {
@@ -141,7 +141,7 @@ impl Canvas {
         }
     }
 
-    /// A straight dashed line.
+    /// Draws a straight dashed line.
     pub fn dashed(&mut self, from: (f64, f64), to: (f64, f64), pen: Pen) {
         const DASH: f64 = 5.0;
         const GAP: f64 = 3.5;
@@ -154,14 +154,14 @@ impl Canvas {
         }
     }
 
-    /// A filled polygon; nothing if a corner is not finite.
+    /// Draws a filled polygon; nothing if a corner is not finite.
     pub fn fill(&mut self, points: &[(f64, f64)], color: Color) {
         if points.len() > 2 && points.iter().all(|&point| is_finite(point)) {
             self.draw(&html! { polygon fill=(color) points=(list(points)) {} });
         }
     }
 
-    /// A filled rectangle between two corners.
+    /// Draws a filled rectangle between two corners.
     pub fn rectangle(&mut self, from: (f64, f64), to: (f64, f64), color: Color) {
         if !(is_finite(from) && is_finite(to)) {
             return;
@@ -173,7 +173,7 @@ impl Canvas {
         });
     }
 
-    /// A filled disc.
+    /// Draws a filled circle.
     pub fn dot(&mut self, at: (f64, f64), radius: f64, color: Color) {
         if is_finite(at) {
             self.draw(&html! {
@@ -182,7 +182,7 @@ impl Canvas {
         }
     }
 
-    /// One line of text.
+    /// Draws one line of text.
     pub fn text(&mut self, at: (f64, f64), text: &str, lettering: Lettering) {
         if !is_finite(at) {
             return;
@@ -198,7 +198,7 @@ impl Canvas {
     }
 }
 
-/// Draws one figure and returns its SVG: an element that can stand in HTML as well as in a file.
+/// Draws one figure and returns its SVG element, usable within HTML and as a file.
 pub fn render((width, height): (f64, f64), title: &str, paint: impl FnOnce(&mut Canvas)) -> String {
     let mut canvas = Canvas {
         body: String::new(),

@@ -1,5 +1,5 @@
-//! The channels of one simulation in strips, with the measured mean and its spread where there is a
-//! record; absolute values.
+//! Channels of one simulation in stacked strips, in absolute values, with the measured mean and spread where
+//! recorded.
 use super::axis::Axis;
 use super::strip::{Strip, curve, stack, strip};
 use crate::color::{INK, VERMILLION};
@@ -9,7 +9,7 @@ use crate::number::unit;
 use crate::words::condition_name;
 use protocol::case::Channel;
 
-/// Draws all channels, one figure per kind of abscissa; `zero` as [`Axis::of`] has it.
+/// Draws all channels, one figure per abscissa name; `zero` is passed to [`Axis::of`].
 pub fn channels(of: &Shown<'_>, zero: &str) -> Vec<Figure> {
     let all = of.case.channels_of(of.condition);
     let mut kinds: Vec<&Channel> = all.map(|(_, channel)| channel).collect();
@@ -30,7 +30,7 @@ pub fn channels(of: &Shown<'_>, zero: &str) -> Vec<Figure> {
     kinds.into_iter().map(figure).collect()
 }
 
-/// A strip for every channel that is wanted.
+/// Builds a strip for every selected channel.
 pub fn strips(of: &Shown<'_>, wanted: impl Fn(&Channel) -> bool) -> Vec<Strip> {
     let all = of.case.channels_of(of.condition);
     all.filter(|(_, channel)| wanted(channel))

@@ -1,5 +1,5 @@
-//! One channel before and after: the measured mean, both simulated curves, and the residuals of
-//! before, after and the best rejected rival on one scale.
+//! Comparison of one channel before and after an effect is added: the measured mean, both simulated curves,
+//! and on one scale the residuals before, after and with the best rejected rival.
 use super::axis::Axis;
 use super::scale::Scale;
 use super::strip::{Curve, Strip, curve, stack, strip};
@@ -8,37 +8,37 @@ use crate::document::Figure;
 use crate::number::{figure, range, unit};
 use crate::words::{capitalised, headed};
 
-/// What is compared of one channel under one condition; all curves on the grid of `at`.
+/// Measured and simulated curves of one channel under one condition; all values on the grid `at`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Closing<'a> {
-    /// Condition, as `5rpm`.
+    /// Name of the condition, such as `5rpm`.
     pub condition: &'a str,
-    /// Channel, as `force`.
+    /// Name of the channel, such as `force`.
     pub channel: &'a str,
     /// Unit of its values.
     pub unit: &'a str,
-    /// Where the values stand.
+    /// Abscissa values of the points.
     pub at: &'a [f64],
-    /// The axis along which they do.
+    /// Horizontal axis of the abscissa.
     pub axis: &'a Axis,
     /// Mean of the measured cycles.
     pub measured: &'a [f64],
-    /// Standard deviation of one cycle about it; empty where there is one cycle only.
+    /// Standard deviation of a single cycle about the mean; empty if there is only one cycle.
     pub spread: &'a [f64],
-    /// Cycles in the mean.
+    /// Number of cycles in the mean.
     pub cycles: usize,
-    /// The recalibrated model without what was found.
+    /// Curve of the recalibrated baseline model, without added effects.
     pub before: &'a [f64],
-    /// The model with it, if anything was added.
+    /// Curve of the model with the added effects, if any.
     pub after: Option<&'a [f64]>,
-    /// The model with the best rejected rival instead, with that rival's name.
+    /// Name of the best rejected rival effect, and the curve of the model with it instead.
     pub rival: Option<(&'a str, &'a [f64])>,
-    /// Whether a constant between measured and simulated counts for nothing.
+    /// Whether a constant offset between measured and simulated values is ignored.
     pub free_offset: bool,
 }
 
 impl Closing<'_> {
-    /// Measured less simulated mean, where that is free.
+    /// Returns the mean of measured minus simulated if the offset is free, otherwise 0.
     pub(crate) fn shift(&self, simulated: &[f64]) -> f64 {
         let n = self.measured.len().min(simulated.len()).max(1) as f64;
         let difference = self.measured.iter().zip(simulated).map(|(m, s)| m - s);
@@ -49,14 +49,14 @@ impl Closing<'_> {
         }
     }
 
-    /// Measured less simulated, shifted.
+    /// Returns measured minus simulated, less the free offset.
     pub(crate) fn residual(&self, simulated: &[f64]) -> Vec<f64> {
         let shift = self.shift(simulated);
         let pairs = self.measured.iter().zip(simulated);
         pairs.map(|(m, s)| m - s - shift).collect()
     }
 
-    /// Root mean square of a residual.
+    /// Returns the root mean square of the residual.
     fn rms(&self, simulated: &[f64]) -> f64 {
         let residual = self.residual(simulated);
         let square: f64 = residual.iter().map(|r| r * r).sum();
@@ -64,7 +64,7 @@ impl Closing<'_> {
     }
 }
 
-/// Draws one channel. None without a curve.
+/// Draws one channel; `None` if there are no curves.
 pub(crate) fn closing(of: &Closing<'_>) -> Option<Figure> {
     if of.measured.len() < 2 || of.before.len() != of.measured.len() {
         return None;
@@ -99,7 +99,7 @@ pub(crate) fn closing(of: &Closing<'_>) -> Option<Figure> {
     ))
 }
 
-/// Strips of the residuals, on one scale, over the standard error of the measured mean.
+/// Builds the strips of the residuals, on one scale, with a band of the standard error of the measured mean.
 fn residuals(of: &Closing<'_>) -> Vec<Strip> {
     let mut all = vec![("without it", BLUE, of.before)];
     all.extend(of.after.map(|after| ("with it", VERMILLION, after)));

@@ -1,4 +1,4 @@
-//! Joints at which an unknown periodic force would explain the residual: Bayes factors as bars.
+//! Bar chart of the Bayes factors of an unknown periodic force at each joint.
 use super::canvas::{Lettering, Pen, render};
 use crate::color::{BAND, BLUE, GREY, INK};
 use crate::document::Figure;
@@ -11,8 +11,8 @@ const TOP: f64 = 30.0;
 const LEFT: f64 = 130.0;
 const BAR: f64 = 380.0;
 
-/// Draws a ranking, the best first, the first `equivalent` of which are not told apart. None of an
-/// empty one.
+/// Draws a ranking of joints, best first; the first `equivalent` are indistinguishable. Returns `None` for an
+/// empty ranking.
 pub(crate) fn joints(ranked: &[JointEvidence], equivalent: usize) -> Option<Figure> {
     let best = ranked.first()?;
     let end = best.log_bayes.max(1.0);

@@ -1,4 +1,4 @@
-//! The periodic force that would explain the residual, over its period, at the likeliest joints.
+//! Unknown periodic force that would explain the residual, over one period, at the likeliest joints.
 use super::axis::Axis;
 use super::strip::{curve, stack, strip};
 use crate::color::BLUE;
@@ -6,13 +6,13 @@ use crate::document::Figure;
 use discrepancy::place::joint::JointEvidence;
 use protocol::case::Abscissa;
 
-/// Joints that are drawn at most.
+/// Largest number of joints drawn.
 const DRAWN: usize = 3;
-/// Spacing of the curves (360 a period).
+/// Spacing of the curve points (360 per period).
 const STEP: usize = 2;
 
-/// Draws the forces at the first `equivalent` joints of a ranking, which are not told apart, over a period
-/// of the abscissa; those that explain anything. None where no force does.
+/// Draws the forces over one period of the abscissa at the first `equivalent`, indistinguishable joints of a
+/// ranking, where a force improves the fit. Returns `None` if no force does.
 pub(crate) fn latent_forces(
     ranked: &[JointEvidence],
     equivalent: usize,

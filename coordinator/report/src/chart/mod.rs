@@ -1,8 +1,8 @@
-//! Figures as SVG: what is drawn, on one quiet style for screen and print.
+//! Figures as SVG, in one plain style for screen and print.
 //!
-//! From below upwards: `canvas` writes SVG, `scale` is an axis as arithmetic, `panel` a pair of axes,
-//! `strip` and `rows` are layouts that several figures share; every other file draws one figure. Text
-//! is text. Knows the report's data; knows nothing of HTML.
+//! From the lowest layer upwards: `canvas` writes SVG, `scale` computes an axis, `panel` is a pair of axes,
+//! `strip` and `rows` are layouts shared by several figures; every other file draws one figure. Text stays
+//! text. Depends on the report's data, not on HTML.
 mod angle_map;
 mod axis;
 pub mod canvas;

@@ -1,4 +1,4 @@
-//! Channel x order of the period: which coefficients of the residual are no noise.
+//! Map of channel against order of the period that shows which coefficients of the residual are significant.
 use super::canvas::{WIDTH, render};
 use super::rows::{self, Key};
 use super::scale::Scale;
@@ -7,11 +7,11 @@ use crate::document::Figure;
 use crate::number::{figure, range};
 use discrepancy::place::order::OrderMap;
 
-/// The colour scale ends here at the earliest: noise stays pale.
+/// Least upper end of the colour scale (power ratio), so that noise stays pale.
 const LEAST: f64 = 10.0;
 
-/// Draws the map; rows are `channels`, in the map's order; orders are those of the `period`, and
-/// `hertz`, the frequency of the first, turns them into frequencies. None of an empty map.
+/// Draws the map, with one row per entry of `channels`, in the map's order. Orders are multiples of the
+/// frequency of the `period`, which is `hertz`. Returns `None` for an empty map.
 pub(crate) fn order_map(
     map: &OrderMap,
     channels: &[String],
@@ -67,7 +67,7 @@ pub(crate) fn order_map(
     })
 }
 
-/// Where a ratio lies on the colour scale: noise and less is paper.
+/// Returns the position of a power ratio on the logarithmic colour scale; 0 for ratios up to 1.
 fn share(ratio: f64, end: f64) -> f64 {
     if ratio > 1.0 {
         ratio.ln() / end.ln()
@@ -76,7 +76,7 @@ fn share(ratio: f64, end: f64) -> f64 {
     }
 }
 
-/// Colour of a dot that is seen on its cell.
+/// Returns a dot colour that contrasts with its cell.
 fn mark(share: f64) -> Color {
     if share > 0.45 {
         Color(0xff, 0xff, 0xff)

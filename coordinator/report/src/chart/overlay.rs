@@ -1,5 +1,5 @@
-//! Measured against simulated curves of one channel, recommended beside optimised on shared scales,
-//! with the residual below (paper, Figs. 7, 9 and 10).
+//! Measured against simulated curves of one channel, recommended beside optimised parameters on shared
+//! scales, with the residual below (paper, Figs. 7, 9 and 10).
 use super::axis::Axis;
 use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
 use super::panel::Panel;
@@ -21,7 +21,7 @@ const RESIDUAL_TOP: f64 = TOP + VALUES_HEIGHT + 16.0;
 const RESIDUAL_HEIGHT: f64 = 62.0;
 const HEIGHT: f64 = RESIDUAL_TOP + RESIDUAL_HEIGHT + 42.0;
 
-/// What is drawn of one parameter set.
+/// Simulated curve and residual of one parameter set.
 struct Side {
     heading: &'static str,
     remark: String,
@@ -29,7 +29,7 @@ struct Side {
     residual: Vec<(f64, f64)>,
 }
 
-/// Shift that the objective gives a simulated curve before it is compared.
+/// Returns the shift that the objective applies to a simulated curve before the comparison.
 const fn shift(offset: Offset, score: Option<&ChannelScore>) -> f64 {
     match (offset, score) {
         (Offset::Free, Some(score)) if score.offset.is_finite() => score.offset,
@@ -81,8 +81,8 @@ impl Side {
     }
 }
 
-/// Draws the overlay of one channel, by its place in the case, under its condition; none if it was
-/// not measured.
+/// Draws the overlay of the channel at index `at` of the case, under its condition; `None` if it was not
+/// measured.
 pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figure> {
     let condition = case.conditions.get(result.condition)?;
     let channel = case.channels.get(at)?;
@@ -144,7 +144,7 @@ pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figur
     })
 }
 
-/// The measured side of both columns, and the scales they share.
+/// Measured curve with band, and the scales shared by both columns.
 struct Measured {
     mean: Vec<(f64, f64)>,
     /// Rows of (abscissa, low, high).
@@ -155,7 +155,8 @@ struct Measured {
     unit: String,
 }
 
-/// One parameter set: curves above, residual below. Only the first column labels its scales.
+/// Draws the column of one parameter set: curves above, residual below. Only the first column labels its
+/// scales.
 fn column(canvas: &mut Canvas, measured: &Measured, side: &Side, first: bool) {
     let width = 0.5 * (WIDTH - LEFT - BETWEEN - 10.0);
     let left = if first { LEFT } else { LEFT + width + BETWEEN };
@@ -202,8 +203,8 @@ const MEASURED: Pen = Pen::new(INK, 1.3);
 const SIMULATED: Pen = Pen::new(VERMILLION, 1.1);
 const RESIDUAL: Pen = Pen::new(INK, 0.8);
 
-/// The key above both panels: each mark before its words, with room for the widest typeface, since the
-/// width of a text is not known here.
+/// Draws the legend above both panels: each mark before its text, with room for the widest typeface, since
+/// text widths are unknown here.
 fn key(canvas: &mut Canvas, title: &str, cycles: usize) {
     const LETTER: f64 = 6.4;
     const MARK: f64 = 22.0;
@@ -225,7 +226,7 @@ fn key(canvas: &mut Canvas, title: &str, cycles: usize) {
     canvas.line(&[(x - 6.0 - MARK, y), (x - 6.0, y)], MEASURED);
 }
 
-/// Every overlay of a condition: the objective's channels first, then the others that were measured.
+/// Draws every overlay of a condition: the channels of the objective first, then the other measured ones.
 pub fn overlays(case: &Case, result: &ConditionResult) -> Vec<Figure> {
     let mut measured: Vec<_> = case.measured(result.condition).collect();
     measured.sort_by_key(|(_, channel, _)| !case.objective.names(&channel.name));

@@ -1,16 +1,16 @@
-//! One pair of axes on a sheet: places values, draws ticks, curves and bands.
+//! Pair of axes on a canvas: places values and draws ticks, curves and bands.
 use super::canvas::{Canvas, Lettering, Pen};
 use super::scale::Scale;
 use crate::color::{AXIS, Color, GREY, GUIDE, INK, ZERO};
 
-/// Length of a labelled tick [px]; others are half as long.
+/// Length of a labelled tick [px]; unlabelled ticks are about half as long.
 const TICK: f64 = 4.0;
-/// Size of tick labels [px].
+/// Font size of tick labels [px].
 const LABEL: f64 = 10.5;
-/// Width of a digit of that size [px].
+/// Width of a digit in a tick label [px].
 const DIGIT: f64 = 5.9;
 
-/// A rectangle on the sheet with a scale along each side.
+/// Rectangle on the canvas with a scale along each side.
 pub struct Panel {
     /// Left edge \[px\].
     pub left: f64,
@@ -37,22 +37,22 @@ impl Panel {
         self.top + self.height
     }
 
-    /// Where a horizontal value lies \[px\].
+    /// Returns the horizontal position of a value \[px\].
     pub fn at_x(&self, x: f64) -> f64 {
         self.left + self.width * self.x.share(x)
     }
 
-    /// Where a vertical value lies \[px\].
+    /// Returns the vertical position of a value \[px\].
     pub fn at_y(&self, y: f64) -> f64 {
         self.bottom() - self.height * self.y.share(y)
     }
 
-    /// Where a point lies \[px\].
+    /// Returns the position of a point \[px\].
     pub fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         (self.at_x(x), self.at_y(y))
     }
 
-    /// Guide lines behind the curves, and a firmer one at zero.
+    /// Draws guide lines behind the curves, with a darker one at zero.
     pub fn guides(&self, canvas: &mut Canvas) {
         let (low, high) = self.y.ends();
         let ticks = self.y.ticks();
@@ -64,7 +64,7 @@ impl Panel {
         }
     }
 
-    /// The left axis with ticks, labels on demand and its title.
+    /// Draws the left axis with ticks, optional labels and the title.
     pub fn left_axis(&self, canvas: &mut Canvas, labels: bool, title: &str) {
         let pen = axis_pen();
         canvas.line(&[(self.left, self.top), (self.left, self.bottom())], pen);
@@ -93,7 +93,7 @@ impl Panel {
         );
     }
 
-    /// The lower axis with ticks, labels on demand and its title.
+    /// Draws the lower axis with ticks, optional labels and the title.
     pub fn lower_axis(&self, canvas: &mut Canvas, labels: bool, title: &str) {
         let pen = axis_pen();
         let y = self.bottom();
@@ -118,13 +118,13 @@ impl Panel {
         );
     }
 
-    /// A curve.
+    /// Draws a curve.
     pub fn curve(&self, canvas: &mut Canvas, points: &[(f64, f64)], pen: Pen) {
         let path: Vec<_> = points.iter().map(|&point| self.at(point)).collect();
         canvas.line(&path, pen);
     }
 
-    /// The area between two curves over the same abscissas, for every stretch that is finite.
+    /// Fills the area between two curves over the same abscissa, for every stretch of finite values.
     pub fn band(&self, canvas: &mut Canvas, rows: &[(f64, f64, f64)], color: Color) {
         for run in rows.split(|(x, low, high)| !(x + low + high).is_finite()) {
             let upper = run.iter().map(|&(x, _, high)| self.at((x, high)));
@@ -133,7 +133,7 @@ impl Panel {
         }
     }
 
-    /// A remark in the middle of the panel.
+    /// Writes a remark in the middle of the panel.
     pub fn remark(&self, canvas: &mut Canvas, text: &str) {
         let lettering = Lettering::new(11.5, GREY).centered();
         canvas.text(
@@ -148,7 +148,8 @@ const fn axis_pen() -> Pen {
     Pen::new(AXIS, 0.8)
 }
 
-/// Distance of the left axis's title [px]: beyond tick labels of so many characters, but within the margin.
+/// Returns the distance of the left axis's title from the axis [px]: beyond tick labels of `longest`
+/// characters, but within the margin.
 fn title_distance(longest: usize) -> f64 {
     (TICK + 6.0 + DIGIT * longest as f64).clamp(40.0, 50.0)
 }
@@ -157,8 +158,8 @@ const fn tick_length(label: &str) -> f64 {
     if label.is_empty() { 0.55 * TICK } else { TICK }
 }
 
-/// Heights for labels that want to stand at `wanted` \[px\] but need `gap` between them; the order
-/// of the input is kept.
+/// Returns heights of labels close to `wanted` \[px\] and at least `gap` apart, between `low` and `high`, in
+/// the order of the input.
 pub fn spread(wanted: &[f64], gap: f64, low: f64, high: f64) -> Vec<f64> {
     let mut order: Vec<usize> = (0..wanted.len()).collect();
     order.sort_by(|&a, &b| wanted[a].total_cmp(&wanted[b]));

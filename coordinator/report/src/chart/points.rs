@@ -1,6 +1,6 @@
-//! Lists of points before they are drawn: paired and thinned.
+//! Pairing and thinning of points before drawing.
 
-/// Thins a list to at most `most` entries, evenly, first and last kept.
+/// Thins a list evenly to at most `most` entries, keeping the first and the last.
 pub fn thinned<T: Copy>(values: &[T], most: usize) -> Vec<T> {
     if values.len() <= most || most < 2 {
         return values.to_vec();
@@ -10,7 +10,7 @@ pub fn thinned<T: Copy>(values: &[T], most: usize) -> Vec<T> {
         .collect()
 }
 
-/// Points of a curve; as long as the shorter list.
+/// Pairs abscissas and values; the result is as long as the shorter list.
 pub fn points(xs: &[f64], ys: &[f64]) -> Vec<(f64, f64)> {
     xs.iter().copied().zip(ys.iter().copied()).collect()
 }

@@ -1,4 +1,4 @@
-//! What maps with a row per channel share: frame, names of the rows, colour scale.
+//! Layout shared by maps with a row per channel: frame, row names, colour scale.
 use super::canvas::{Canvas, Lettering, WIDTH};
 use super::panel::Panel;
 use super::scale::Scale;
@@ -9,15 +9,15 @@ const RIGHT: f64 = 20.0;
 const TOP: f64 = 40.0;
 const ROW: f64 = 30.0;
 const FOOT: f64 = 46.0;
-/// By how much cells overlap [px]: no seams between them.
+/// Overlap of adjacent cells [px], which avoids visible seams.
 pub(super) const OVERLAP: f64 = 0.5;
 
-/// Height of a map of this many rows [px].
+/// Returns the height of a map with this many rows [px].
 pub(super) fn height(rows: usize) -> f64 {
     TOP + ROW * rows as f64 + FOOT
 }
 
-/// The frame of a map of this many rows; row `k` lies between `k` and `k + 1`.
+/// Returns the frame of a map with this many rows; row `k` lies between `k` and `k + 1`.
 pub(super) fn panel(rows: usize, x: Scale) -> Panel {
     Panel {
         left: LEFT,
@@ -29,7 +29,7 @@ pub(super) fn panel(rows: usize, x: Scale) -> Panel {
     }
 }
 
-/// Names of the rows.
+/// Draws the names of the rows.
 pub(super) fn names(canvas: &mut Canvas, panel: &Panel, channels: &[String]) {
     let lettering = Lettering::new(11.0, INK).right();
     for (row, name) in channels.iter().enumerate() {
@@ -37,17 +37,17 @@ pub(super) fn names(canvas: &mut Canvas, panel: &Panel, channels: &[String]) {
     }
 }
 
-/// What stands beside a colour scale.
+/// Labels of a colour scale.
 pub(super) struct Key<'a> {
-    /// Before it.
+    /// Label to the left of the scale.
     pub before: &'a str,
-    /// Behind it.
+    /// Label to the right of the scale.
     pub behind: &'a str,
-    /// How much room that takes [px].
+    /// Width reserved for the right label [px].
     pub room: f64,
 }
 
-/// The colour scale above the map: and what stands beside it.
+/// Draws the colour scale with its labels above the map.
 pub(super) fn key(canvas: &mut Canvas, ramp: &Ramp, key: &Key<'_>) {
     const BAR: f64 = 180.0;
     const STEPS: usize = 60;

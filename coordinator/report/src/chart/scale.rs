@@ -1,17 +1,17 @@
-//! Axes as arithmetic: a range of values, linear or logarithmic, and the ticks that suit it.
+//! Arithmetic of axes: a range of values, linear or logarithmic, and suitable ticks.
 
 use crate::number::{fixed, range, superscript};
 
-/// A mark on an axis.
+/// Tick on an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
-    /// The value that it marks.
+    /// Value at the tick.
     pub value: f64,
-    /// What is written there; empty for a minor tick.
+    /// Text of the label; empty for a minor tick.
     pub label: String,
 }
 
-/// How values are spread over an axis.
+/// Spacing of values along an axis: linear, logarithmic, or one turn in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Spacing {
     Linear { step: f64 },
@@ -19,7 +19,7 @@ enum Spacing {
     Turn,
 }
 
-/// One axis.
+/// Range and spacing of one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     low: f64,
@@ -27,7 +27,7 @@ pub struct Scale {
     spacing: Spacing,
 }
 
-/// The roundest step (1, 2 or 5 times a power of ten) that cuts a span into about `parts`.
+/// Returns the step (1, 2 or 5 times a power of ten) that divides a span into about `parts`.
 fn round_step(span: f64, parts: f64) -> f64 {
     let raw = span / parts;
     let power = 10_f64.powf(raw.log10().floor());
@@ -39,7 +39,7 @@ fn round_step(span: f64, parts: f64) -> f64 {
 }
 
 impl Scale {
-    /// A turn: 0 to 360 degrees, a label every 60, a tick every 30.
+    /// Creates the scale of one turn: 0 to 360 degrees, a label every 60, a tick every 30.
     pub const fn turn() -> Self {
         Self {
             low: 0.0,
@@ -48,8 +48,8 @@ impl Scale {
         }
     }
 
-    /// Linear over all finite values with a little air; `parts` is the number of steps aimed at.
-    /// Without any finite value: 0 to 1.
+    /// Creates a linear scale over all finite values with a small margin; `parts` is the desired number of
+    /// steps. Without any finite value: 0 to 1.
     pub fn linear(values: impl IntoIterator<Item = f64>, parts: f64) -> Self {
         let (low, high) = range(values).unwrap_or((0.0, 1.0));
         // a constant curve still needs room around it
@@ -68,8 +68,8 @@ impl Scale {
         }
     }
 
-    /// Linear and symmetric about zero, over all finite values: a tick at zero and the same one or
-    /// two on either side of it. Without any finite value: -1 to 1.
+    /// Creates a linear scale symmetric about zero over all finite values, with a tick at zero and at least
+    /// one on either side. Without any finite value: -1 to 1.
     pub fn symmetric(values: impl IntoIterator<Item = f64>) -> Self {
         let largest = range(values.into_iter().map(f64::abs)).map_or(1.0, |(_, high)| high);
         let largest = if largest > 0.0 { largest } else { 1.0 };
@@ -86,7 +86,7 @@ impl Scale {
         }
     }
 
-    /// Linear between two given ends.
+    /// Creates a linear scale between two given ends; `parts` is the desired number of steps.
     pub fn between(low: f64, high: f64, parts: f64) -> Self {
         Self {
             low,
@@ -97,7 +97,7 @@ impl Scale {
         }
     }
 
-    /// Logarithmic over all positive finite values with a little air; 1 to 10 without any.
+    /// Creates a logarithmic scale over all positive finite values with a small margin; 1 to 10 without any.
     pub fn logarithmic(values: impl IntoIterator<Item = f64>) -> Self {
         let positive = values.into_iter().filter(|&value| value > 0.0);
         let (low, high) = range(positive).unwrap_or((1.0, 10.0));
@@ -109,8 +109,8 @@ impl Scale {
         }
     }
 
-    /// Where a value lies between the ends, 0 to 1; held inside, so that a curve stays in its
-    /// frame. Not finite for values that have no place.
+    /// Returns the position of a value between the ends, 0 to 1, clamped so that curves stay in their frame.
+    /// Not a number for values without a position on the scale.
     pub fn share(&self, value: f64) -> f64 {
         let share = match self.spacing {
             Spacing::Linear { .. } | Spacing::Turn => (value - self.low) / (self.high - self.low),
@@ -122,12 +122,12 @@ impl Scale {
         share.clamp(0.0, 1.0)
     }
 
-    /// The ends.
+    /// Returns the lower and the upper end.
     pub const fn ends(&self) -> (f64, f64) {
         (self.low, self.high)
     }
 
-    /// Marks from low to high.
+    /// Returns the ticks from the lower to the upper end.
     pub fn ticks(&self) -> Vec<Tick> {
         match self.spacing {
             Spacing::Turn => (0..=12)
@@ -204,7 +204,7 @@ impl Scale {
     }
 }
 
-/// `digit * 10^exponent`: plain near 1, as a power elsewhere.
+/// Formats `digit * 10^exponent`: as a plain number near 1, as a power elsewhere.
 fn power_label(digit: i32, exponent: i32) -> String {
     match exponent {
         0..=3 => fixed(f64::from(digit) * 10_f64.powi(exponent), 0),

@@ -1,4 +1,4 @@
-//! How much faster searches are on more slots: one curve each, beside what it would be at best.
+//! Speed-up of searches over the number of slots: one curve per search, beside the ideal line.
 use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
 use super::panel::Panel;
 use super::scale::Scale;
@@ -14,7 +14,7 @@ const HEIGHT: f64 = 280.0;
 const FOOT: f64 = 52.0;
 const COLORS: [Color; 4] = [BLUE, VERMILLION, GREEN, PURPLE];
 
-/// Draws the speed-up of searches over slots.
+/// Draws the speed-up of searches over the number of slots.
 pub(crate) fn speed_up(rows: &[Row]) -> Figure {
     let mut curves: BTreeMap<String, Vec<(f64, f64)>> = BTreeMap::new();
     for row in rows {

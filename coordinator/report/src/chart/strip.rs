@@ -1,5 +1,5 @@
-//! Curves over one abscissa in strips one above the other on one axis, labelled at their right
-//! ends. What is drawn in them is not known here.
+//! Strips of curves over one shared abscissa, stacked, with labels at the right ends of the curves.
+//! Independent of the quantities drawn.
 use super::axis::Axis;
 use super::canvas::{Lettering, Pen, WIDTH, render};
 use super::panel::{Panel, spread};
@@ -14,16 +14,16 @@ const TOP: f64 = 12.0;
 const GAP: f64 = 16.0;
 const FOOT: f64 = 44.0;
 
-/// One curve with the label at its right end.
+/// Curve with a label at its right end.
 pub struct Curve {
     label: String,
     color: Color,
     points: Vec<(f64, f64)>,
 }
 
-/// One strip.
+/// Panel of one or several curves in a stack.
 pub struct Strip {
-    /// Title of its scale, with the unit.
+    /// Title of the vertical axis, with the unit.
     pub title: String,
     /// Height \[px\].
     pub height: f64,
@@ -31,11 +31,11 @@ pub struct Strip {
     pub curves: Vec<Curve>,
     /// Rows of (abscissa, low, high) behind the curves.
     pub band: Vec<(f64, f64, f64)>,
-    /// Its scale, where it is not the curves' own.
+    /// Vertical scale, if not derived from the curves.
     pub scale: Option<Scale>,
 }
 
-/// A curve, its values times a factor.
+/// Builds a curve with its values multiplied by a factor.
 pub fn curve(
     label: impl Into<String>,
     color: Color,
@@ -53,7 +53,7 @@ pub fn curve(
     }
 }
 
-/// A strip without a band.
+/// Builds a strip without a band.
 pub fn strip(title: impl Into<String>, height: f64, curves: Vec<Curve>) -> Strip {
     Strip {
         title: title.into(),
@@ -64,14 +64,14 @@ pub fn strip(title: impl Into<String>, height: f64, curves: Vec<Curve>) -> Strip
     }
 }
 
-/// Height of the whole figure [px].
+/// Returns the height of the whole figure [px].
 fn height(strips: &[Strip]) -> f64 {
     let heights: f64 = strips.iter().map(|strip| strip.height + GAP).sum();
     TOP + heights - GAP + FOOT
 }
 
-/// Left, right, upper and lower end of the axis, as shares of the figure's width and height:
-/// the place for a cursor.
+/// Returns the left, right, upper and lower ends of the axis as shares of the figure's width and height, used
+/// to place a cursor.
 pub fn span(strips: &[Strip]) -> [f64; 4] {
     let height = height(strips);
     [
@@ -82,7 +82,7 @@ pub fn span(strips: &[Strip]) -> [f64; 4] {
     ]
 }
 
-/// Draws the strips.
+/// Draws the strips one above the other on a common axis.
 pub fn stack(
     name: impl Into<String>,
     title: &str,
@@ -128,7 +128,7 @@ pub fn stack(
                 canvas.text((panel.right() + 7.0, y), &curve.label, lettering);
             }
             if strip.curves.iter().all(|curve| curve.points.len() < 2) {
-                panel.remark(canvas, "nothing was simulated");
+                panel.remark(canvas, "no simulated curve");
             }
             let last = index + 1 == strips.len();
             panel.left_axis(canvas, true, &strip.title);

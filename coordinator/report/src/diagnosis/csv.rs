@@ -1,6 +1,6 @@
-//! The data behind the figures and tables of a diagnosis as CSV.
+//! Data behind the figures and tables of a diagnosis, as CSV.
 //!
-//! An empty field is a value that does not exist; numbers are written with all their digits.
+//! An empty field is a missing value; numbers are written with all their digits.
 use super::judgement::{judge, ranked};
 use super::shown::shown;
 use super::subject::Subject;
@@ -19,8 +19,7 @@ const CURVES: [&str; 9] = [
     "rival",
 ];
 
-/// Writes the curves: one row per condition, channel and point; absolute values, in the
-/// channel's unit.
+/// Writes the curves: one row per condition, channel and point; absolute values in the channel's unit.
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.
@@ -65,7 +64,7 @@ const SUSPECTS: [&str; 11] = [
     "why",
 ];
 
-/// Writes the suspects of every round, forces without a cause included, with what became of each.
+/// Writes the candidate effects of every round, including generic forces, each with its judgement.
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.

@@ -1,18 +1,19 @@
-//! What was found, as entries of a model file.
+//! Effects found by a diagnosis, as entries of a case file.
 use super::subject::Subject;
 use case::{CaseEffect, CaseParameter, Provenance, write_effects};
 use discrepancy::diagnose::Estimate;
 use discrepancy::model::bounds;
 use protocol::announce::ParameterDescriptor;
 
-/// `[[effects]]` tables of the added effects, with intervals and where they come from, as a case file
-/// takes them; nothing if no effect was added.
+/// Returns the `[[effects]]` tables of the added effects for a case file, with intervals and provenance;
+/// `None` if no effect was added.
 pub fn effects_toml(subject: &Subject<'_>) -> Option<String> {
     let effects = effects(subject);
     (!effects.is_empty()).then(|| write_effects(&effects))
 }
 
-/// The added effects, with intervals and where they come from; an unknown of the case that was off is none.
+/// Returns the added effects with intervals and provenance; effects that switch on an unknown of the case are
+/// excluded (see [`starts`]).
 pub fn effects(subject: &Subject<'_>) -> Vec<CaseEffect> {
     let diagnosis = subject.diagnosis();
     let found = (1..).zip(&diagnosis.rounds).filter_map(|(number, round)| {
@@ -24,7 +25,8 @@ pub fn effects(subject: &Subject<'_>) -> Vec<CaseEffect> {
     found.collect()
 }
 
-/// Unknowns of the case that were off and are not any more, with the values to start from.
+/// Returns the unknowns of the case that the diagnosis switched on, with their start values for a
+/// calibration.
 pub fn starts(subject: &Subject<'_>) -> Vec<(String, f64)> {
     let found = subject.diagnosis().effects.iter();
     let each = found.flat_map(|one| one.unknowns.iter().zip(&one.parameters));
@@ -69,14 +71,14 @@ fn entry(subject: &Subject<'_>, found: &Estimate, round: u32, set: &[String]) ->
     }
 }
 
-/// How far a calibration searches from what was found: so many times the half of its 95 % interval, and
-/// at least this share of how far it lies from its absent value, since the interval holds for the
-/// diagnosis's channels and discretisation alone.
+/// Half-width of the calibration's search interval over the half-width of the 95 % interval. The search
+/// extends at least by `SHARE` of the distance from the absent value, since the 95 % interval holds only for
+/// the channels and discretisation of the diagnosis.
 const REACH: f64 = 5.0;
 const SHARE: f64 = 0.25;
 
-/// The interval that a calibration searches for a parameter; none where there is no room for one. One
-/// that the records do not size has no interval, and is left as it is.
+/// Returns the interval in which a calibration searches a parameter; `None` if the bounds leave no room.
+/// Called only for parameters whose size the records determine; others are left as they are.
 fn search(value: f64, [low, high]: [f64; 2], of: &ParameterDescriptor) -> Option<[f64; 2]> {
     let half = (high - value).max(value - low);
     let reach = (REACH * half).max(SHARE * (value - of.absent).abs());

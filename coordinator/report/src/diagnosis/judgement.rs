@@ -1,4 +1,4 @@
-//! What became of every suspect, and why: one sentence each.
+//! Judgement of every candidate effect in a round, with the reason in one sentence.
 use super::words::{equals, nats, p_value};
 use discrepancy::cause::refit::Refitted;
 use discrepancy::cause::suspect::Suspect;
@@ -7,23 +7,23 @@ use discrepancy::linear::score::{chi_squared_tail, family_wise};
 use discrepancy::thresholds::SET;
 use protocol::announce::Sign;
 
-/// Beyond this share a recalibration hides an effect for practical purposes.
+/// Share absorbed by recalibration above which an effect counts as hidden.
 const HIDDEN: f64 = 0.999;
-/// What became of a suspect.
+/// Judgement of a candidate effect.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Judgement {
-    /// Tail probability of its test over the round's dispersion, the best of several
-    /// shapes counted as such; none without a test.
+    /// Tail probability of the test statistic over the round's dispersion, corrected for trying several
+    /// shapes; `None` without a test.
     pub p_value: Option<f64>,
-    /// Nats after the refit, against the model without it and over the dispersion.
+    /// Gain in log evidence of the refit over the model without the effect, over the dispersion \[nats\].
     pub gain: Option<f64>,
-    /// Whether it is in the model or in its ambiguity set.
+    /// Whether the effect is in the model or in its ambiguity set.
     pub kept: bool,
-    /// In words.
+    /// Reason, in words.
     pub why: String,
 }
 
-/// A round's suspects with what became of them: those of the answer first, then by evidence, then by
+/// Returns a round's candidate effects with their judgements: kept effects first, then by evidence, then by
 /// the test.
 pub(super) fn ranked(round: &Round) -> Vec<(&Suspect, Judgement)> {
     let mut all: Vec<(&Suspect, Judgement)> = round
@@ -47,7 +47,8 @@ pub(super) fn ranked(round: &Round) -> Vec<(&Suspect, Judgement)> {
     all
 }
 
-/// Tail probability of a test, over the round's dispersion.
+/// Returns the tail probability of a candidate's test statistic over the round's dispersion, corrected for
+/// several tries.
 pub(super) fn tempered(round: &Round, suspect: &Suspect) -> Option<f64> {
     let score = suspect.score.as_ref()?;
     if suspect.statistic() > 0.0 {
@@ -61,13 +62,13 @@ pub(super) fn tempered(round: &Round, suspect: &Suspect) -> Option<f64> {
     }
 }
 
-/// The refit of a suspect, where there is one.
+/// Returns the refit of a candidate effect, if there is one.
 fn refit<'a>(round: &'a Round, suspect: &Suspect) -> Option<&'a Refitted> {
     let mut refits = round.refits.iter();
     refits.find(|refit| refit.id == suspect.effect.id)
 }
 
-/// What became of one suspect.
+/// Judges one candidate effect of a round.
 pub(super) fn judge(round: &Round, suspect: &Suspect) -> Judgement {
     let scale = round.dispersion;
     let refit = refit(round, suspect);
@@ -82,7 +83,7 @@ pub(super) fn judge(round: &Round, suspect: &Suspect) -> Judgement {
     }
 }
 
-/// Why a refitted suspect was kept or dropped.
+/// Returns why a refitted candidate effect was kept or dropped.
 fn after_refit(round: &Round, own: &Refitted, scale: f64) -> String {
     let gain = (own.log_evidence - round.null_evidence) / scale;
     let best = round.refits.first();
@@ -97,7 +98,7 @@ fn after_refit(round: &Round, own: &Refitted, scale: f64) -> String {
     let Some(best) = best.filter(|best| best.id != own.id) else {
         // the round's own reason stands below its table
         return format!(
-            "dropped: the likeliest name, with {} nats, but not believed",
+            "dropped: the best candidate effect, with a gain of {} nats, but the evidence is insufficient",
             nats(gain)
         );
     };
@@ -112,12 +113,13 @@ fn after_refit(round: &Round, own: &Refitted, scale: f64) -> String {
         );
     }
     if gain <= 0.0 {
-        return "dropped: with all genes free it explains nothing more".to_owned();
+        return "dropped: after recalibration of all unknowns it does not improve the fit"
+            .to_owned();
     }
     format!("dropped: beaten by {} nats by {}", nats(behind), best.id)
 }
 
-/// Why a suspect was not refitted.
+/// Returns why a candidate effect was not refitted.
 fn before_refit(round: &Round, suspect: &Suspect) -> String {
     let Some(score) = &suspect.score else {
         return "could not be simulated here: nothing is said about it".to_owned();
@@ -126,7 +128,7 @@ fn before_refit(round: &Round, suspect: &Suspect) -> String {
         return "dropped: it changes nothing at any size that was tried".to_owned();
     }
     if !suspect.linear {
-        return "dropped: it acts from a level on, and no simulations were left to refit it"
+        return "dropped: its response is nonlinear (threshold), and the simulation budget left no refit"
             .to_owned();
     }
     if score.freedom == 0 || score.absorbed > HIDDEN {
@@ -139,7 +141,7 @@ fn before_refit(round: &Round, suspect: &Suspect) -> String {
             .iter()
             .any(|p| p.sign == Sign::Positive);
         return if one_sided {
-            "dropped: the record asks for the wrong sign".to_owned()
+            "dropped: the records would require a physically impossible sign".to_owned()
         } else {
             "dropped: it explains nothing".to_owned()
         };
@@ -154,6 +156,6 @@ fn before_refit(round: &Round, suspect: &Suspect) -> String {
     if p > 0.01 {
         format!("dropped: not significant (p {})", equals(&p_value(p)))
     } else {
-        "dropped: likelier suspects filled the places for refits".to_owned()
+        "dropped: the limit on refits was reached by more significant candidate effects".to_owned()
     }
 }

@@ -1,8 +1,7 @@
-//! What people see of a diagnosis: the argument from where to which effect, and the proof.
+//! Report of a diagnosis: one page with the verdict, the localisation of the residual, the candidate effects,
+//! the added effects with their validation and certainty, and the provenance.
 //!
-//! One page that reads from top to bottom: the verdict, where the curves part, what was suspected,
-//! what is added, what that shows, how sure it is, how it was made. Everything is the diagnosis' own
-//! number: nothing is computed again here but the paper's two error measures.
+//! All numbers are those of the diagnosis; only the paper's two error measures are computed here.
 mod csv;
 mod effects;
 mod judgement;

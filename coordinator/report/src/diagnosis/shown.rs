@@ -1,18 +1,18 @@
-//! The curves of a diagnosis condition by condition: measured, before, after, best rejected rival.
+//! Curves of a diagnosis by condition: measured, before, after, and with the best rejected rival effect.
 use super::subject::Subject;
 use crate::chart::{Axis, Closing};
 use crate::kind;
 use crate::words::condition_name;
 use discrepancy::record::{Curves, Record};
 
-/// Everything about one condition, on its record's grid.
+/// Measured and simulated curves of one condition, on the grid of its record.
 #[derive(Clone, Debug)]
 pub(super) struct Shown<'a> {
     /// Name of the condition.
     pub condition: String,
-    /// What was measured.
+    /// Measured record.
     pub record: &'a Record,
-    /// The axes of the channels.
+    /// Horizontal axes, one per channel.
     pub axes: Vec<Axis>,
     /// Mean over all cycles, by channel.
     pub mean: Curves,
@@ -20,14 +20,14 @@ pub(super) struct Shown<'a> {
     pub spread: Curves,
     /// Curves of the recalibrated model.
     pub before: &'a Curves,
-    /// Curves with what was added, if anything was.
+    /// Curves of the model with the added effects, if any were added.
     pub after: Option<&'a Curves>,
-    /// The best rejected rival and the curves with it.
+    /// Identifier of the best rejected rival effect, and the curves of the model with that effect.
     pub rival: Option<(&'a str, &'a Curves)>,
 }
 
 impl Shown<'_> {
-    /// One channel of it.
+    /// Returns the curves of one channel; `None` if an index or a curve is missing.
     pub(super) fn channel(&self, c: usize) -> Option<Closing<'_>> {
         let channel = &self.record.channels.get(c)?.channel;
         Some(Closing {
@@ -48,7 +48,7 @@ impl Shown<'_> {
         })
     }
 
-    /// Indices of the channels, those that are scored first.
+    /// Returns the indices of the channels, scored channels first.
     pub(super) fn order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.record.channels.len()).collect();
         order.sort_by_key(|&c| !self.record.channels[c].scored);
@@ -56,8 +56,8 @@ impl Shown<'_> {
     }
 }
 
-/// Every condition that was compared, the calibrated one first; before a comparison, the calibrated
-/// one alone.
+/// Returns the curves of every compared condition, in the order of the comparison; only the calibrated
+/// condition if no comparison was made.
 pub(super) fn shown<'a>(subject: &Subject<'a>) -> Vec<Shown<'a>> {
     let diagnosis = subject.diagnosis();
     let found = diagnosis.rounds.iter().any(|round| round.added.is_some());
@@ -87,7 +87,7 @@ pub(super) fn shown<'a>(subject: &Subject<'a>) -> Vec<Shown<'a>> {
     all
 }
 
-/// A condition with the curves of the recalibrated model alone.
+/// Builds the curves of a condition for the recalibrated model alone.
 fn before<'a>(subject: &Subject<'a>, condition: usize, curves: &'a Curves) -> Option<Shown<'a>> {
     let record = subject.record(condition)?;
     let mean = record.mean();
@@ -105,7 +105,7 @@ fn before<'a>(subject: &Subject<'a>, condition: usize, curves: &'a Curves) -> Op
     })
 }
 
-/// Standard deviation of the cycles about their mean.
+/// Computes the standard deviation of the cycles about their mean, by channel; empty for a single cycle.
 fn spread(record: &Record, mean: &Curves) -> Curves {
     let cycles = record.cycles.len();
     if cycles < 2 {

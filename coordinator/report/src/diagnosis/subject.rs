@@ -1,4 +1,4 @@
-//! What the report of a diagnosis is about.
+//! Input data of a diagnosis report.
 use crate::data::Origin;
 use discrepancy::diagnose::{Diagnosis, Estimate};
 use discrepancy::record::Record;
@@ -6,54 +6,54 @@ use protocol::announce::{EffectDescriptor, ParameterDescriptor};
 use protocol::case::Case;
 use study::Diagnosed;
 
-/// A finished diagnosis with everything that its report names.
+/// Finished diagnosis with all data that its report refers to.
 #[derive(Clone, Debug)]
 pub struct Subject<'a> {
-    /// The case.
+    /// Case that was diagnosed.
     pub case: &'a Case,
-    /// Its records, cycle by cycle.
+    /// Measured records of the case, cycle by cycle.
     pub records: &'a [Record],
-    /// Effects that were considered, forces without a cause included.
+    /// Candidate effects that were considered, including generic forces without a physical cause.
     pub library: &'a [EffectDescriptor],
-    /// The answer, with the cost of its stages.
+    /// Result of the diagnosis, with the cost of each stage.
     pub diagnosed: &'a Diagnosed,
-    /// How it was made.
+    /// Provenance of the diagnosis (run, program, digest).
     pub origin: Origin,
-    /// Remarks about case and records.
+    /// Remarks about the case and its records.
     pub notes: &'a [String],
     /// Wall time of all sessions (s).
     pub wall_s: f64,
 }
 
 impl<'a> Subject<'a> {
-    /// The answer.
+    /// Returns the diagnosis without its cost accounts.
     pub(super) const fn diagnosis(&self) -> &'a Diagnosis {
         &self.diagnosed.diagnosis
     }
 
-    /// The record of a condition.
+    /// Returns the record of a condition; `None` if there is none with at least one cycle.
     pub(super) fn record(&self, condition: usize) -> Option<&'a Record> {
         let mut records = self.records.iter();
         records.find(|record| record.condition == condition && !record.cycles.is_empty())
     }
 
-    /// The record of the calibrated condition.
+    /// Returns the record of the calibrated condition.
     pub(super) fn calibrated(&self) -> Option<&'a Record> {
         self.record(self.case.objective.condition)
     }
 
-    /// What the workers say of an effect.
+    /// Returns the workers' description of an effect.
     pub(super) fn effect(&self, id: &str) -> Option<&'a EffectDescriptor> {
         self.library.iter().find(|effect| effect.id == id)
     }
 
-    /// What they say of one of its parameters.
+    /// Returns the workers' description of a parameter of an effect.
     pub(super) fn parameter(&self, id: &str, name: &str) -> Option<&'a ParameterDescriptor> {
         let mut parameters = self.effect(id)?.parameters.iter();
         parameters.find(|parameter| parameter.name == name)
     }
 
-    /// Effects that were added to the model.
+    /// Returns the estimates of the effects that were added to the model.
     pub(super) fn added(&self) -> Vec<&'a Estimate> {
         let (effects, rounds) = (&self.diagnosis().effects, &self.diagnosis().rounds);
         let is_added = |id: &String| rounds.iter().any(|round| round.added.as_ref() == Some(id));
@@ -64,7 +64,7 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// Names of the channels of a record.
+/// Returns the titles of the channels of a record.
 pub(super) fn channels(record: &Record) -> Vec<String> {
     let titles = record.channels.iter().map(|own| own.channel.title.clone());
     titles.collect()

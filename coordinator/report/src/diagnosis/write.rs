@@ -1,4 +1,4 @@
-//! The report of a diagnosis as a whole, and its folder.
+//! Assembly of the diagnosis report, and its output folder.
 use super::section::SECTIONS;
 use super::subject::Subject;
 use super::{csv, words};
@@ -7,7 +7,7 @@ use crate::document::Report;
 use crate::folder::{stream, write_report};
 use std::path::{Path, PathBuf};
 
-/// The report.
+/// Builds the report of a diagnosis.
 pub fn report(subject: &Subject<'_>) -> Report {
     let title = format!("Diagnosis of {}", subject.case.name);
     let sections = SECTIONS.iter().map(|section| section(subject));
@@ -17,7 +17,7 @@ pub fn report(subject: &Subject<'_>) -> Report {
     }
 }
 
-/// Writes the report into a folder, which is made if it does not exist: `report.html`, `tables.txt`,
+/// Writes the diagnosis report into a folder, creating it if needed: `report.html`, `tables.txt`,
 /// `figures/*.svg`, `curves.csv` and `suspects.csv`. Returns the paths, the HTML first.
 ///
 /// # Errors

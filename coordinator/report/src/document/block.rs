@@ -1,74 +1,74 @@
-//! The parts of a report: sections, and the blocks that they are lists of.
+//! Parts of a report: sections and the blocks that they consist of.
 use super::figure::Figure;
 use super::table::Table;
 use maud::Markup;
 
-/// A whole report.
+/// Complete report, independent of the output format.
 #[derive(Clone, Debug)]
 pub struct Report {
-    /// What it is about, as a title.
+    /// Title of the report.
     pub title: String,
     /// Name of the run.
     pub run: String,
-    /// The outcome in a word or two, first of all in plain text; empty where there is none.
+    /// Outcome in a word or two, printed first in plain text; empty where there is none.
     pub outcome: &'static str,
-    /// Sections in the order of reading; those that have nothing to say are not among them.
+    /// Sections with content, in reading order.
     pub sections: Vec<Section>,
-    /// Titles of those that have nothing to say.
+    /// Titles of the sections that were omitted because they have no blocks.
     pub silent: Vec<&'static str>,
 }
 
-/// One section.
+/// Section of a report.
 #[derive(Clone, Debug)]
 pub struct Section {
-    /// Anchor in the page.
+    /// Anchor of the section in the HTML page.
     pub id: &'static str,
-    /// Heading.
+    /// Heading of the section.
     pub title: &'static str,
-    /// What stands below it, from top to bottom; empty where it has nothing to say.
+    /// Content of the section, from top to bottom; empty where there is none.
     pub blocks: Vec<Block>,
 }
 
-/// A part of a section.
+/// Content element of a section: text, list, table, figure or markup.
 #[derive(Clone, Debug)]
 pub enum Block {
-    /// The sentence to read if only one is read.
+    /// Main sentence of the section.
     Lead(String),
-    /// Heads the blocks that follow, with a remark that may be empty.
+    /// Heading of the blocks that follow, with a remark that may be empty.
     Heading(String, &'static str),
-    /// A paragraph.
+    /// Paragraph.
     Text(String),
-    /// Sentences side by side.
+    /// Bullet list, one sentence per item.
     List(Vec<String>),
-    /// What must not be overlooked, a paragraph each.
+    /// Warning, one paragraph per item.
     Warning(Vec<String>),
-    /// Names with values.
+    /// List of names with values.
     Facts(Vec<Fact>),
-    /// Lines of a file.
+    /// Code listing, e.g. lines of a file.
     Code(String),
-    /// A table.
+    /// Table with numbers or text.
     Table(Table),
-    /// A figure: a picture in the page, and a file of its own.
+    /// Figure: an image in the page, and a separate SVG file.
     Figure(Figure),
-    /// For the page alone: what moves, or what only leads to figures.
+    /// Markup for the HTML page only, e.g. an animation or links to figures.
     Markup(Markup),
-    /// Blocks that the page shows on demand, under a title.
+    /// Collapsible blocks under a title.
     Folded(&'static str, Vec<Self>),
 }
 
-/// A name with its value.
+/// Name with its value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fact {
-    /// What it is.
+    /// Name of the quantity.
     pub name: String,
-    /// What it is here.
+    /// Value as text.
     pub value: String,
-    /// Whether the value is read by machines: a digest, a command.
+    /// Whether the value is machine-readable (a digest, a command) and set as code.
     pub is_code: bool,
 }
 
 impl Fact {
-    /// A fact in words.
+    /// Creates a fact whose value is plain text.
     pub fn new(name: impl Into<String>, value: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -77,7 +77,7 @@ impl Fact {
         }
     }
 
-    /// A digest or a command.
+    /// Creates a fact whose value is a digest or a command.
     pub fn code(name: impl Into<String>, value: impl Into<String>) -> Self {
         Self {
             is_code: true,
@@ -87,7 +87,8 @@ impl Fact {
 }
 
 impl Report {
-    /// A report from all sections that there could be: those without blocks are left out.
+    /// Creates a report from all possible sections: sections without blocks are left out, and their titles
+    /// are kept in `silent`.
     pub fn new(title: String, run: &str, sections: impl IntoIterator<Item = Section>) -> Self {
         let sections = sections.into_iter();
         let (silent, sections): (Vec<_>, Vec<_>) = sections.partition(|one| one.blocks.is_empty());
@@ -100,7 +101,7 @@ impl Report {
         }
     }
 
-    /// Every figure, in the order of the page.
+    /// Returns all figures in page order, including those in collapsible blocks.
     pub fn figures(&self) -> Vec<&Figure> {
         let mut figures = Vec::new();
         for section in &self.sections {
@@ -120,12 +121,12 @@ fn gather<'a>(blocks: &'a [Block], figures: &mut Vec<&'a Figure>) {
     }
 }
 
-/// Figures as blocks.
+/// Wraps figures as blocks.
 pub fn figures(all: impl IntoIterator<Item = Figure>) -> Vec<Block> {
     all.into_iter().map(Block::Figure).collect()
 }
 
-/// Tables as blocks.
+/// Wraps tables as blocks.
 pub fn tables(all: impl IntoIterator<Item = Table>) -> Vec<Block> {
     all.into_iter().map(Block::Table).collect()
 }

@@ -1,11 +1,11 @@
-//! A finished figure.
+//! Figure type of a report.
 
-/// A finished figure.
+/// Rendered figure with its name and caption.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Figure {
-    /// Stem of its file name, unique in a report.
+    /// Stem of the file name, unique in a report.
     pub name: String,
-    /// Plain text that says what is to be seen and how to read it.
+    /// Caption in plain text: content of the figure and how to read it.
     pub caption: String,
     /// The `svg` element.
     pub svg: String,

@@ -1,7 +1,7 @@
-//! What a report is made of, and its forms: one list of sections with their blocks, which the page,
-//! the plain text and the folder of figures are folds over.
+//! Document model of reports and its output formats: a list of sections made of blocks, rendered as an HTML
+//! page, plain text and a folder of figures.
 //!
-//! Knows neither calibrations nor diagnoses, nor what a table or a figure shows.
+//! Independent of calibrations and diagnoses, and of the content of tables and figures.
 mod block;
 mod figure;
 mod page;

@@ -1,4 +1,4 @@
-//! A report as one HTML file: everything inline, nothing fetched, readable on paper.
+//! HTML output: one self-contained, printable file without external resources.
 use super::block::{Block, Fact, Report};
 use super::figure::Figure;
 use super::table::{Label, Row, Table};
@@ -6,7 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("style.css");
 
-/// The page.
+/// Renders a report as an HTML page.
 pub fn page(report: &Report) -> String {
     let (title, run) = (&report.title, &report.run);
     let page: Markup = html! {

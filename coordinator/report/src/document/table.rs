@@ -1,46 +1,46 @@
-//! A table before it is set as text or as HTML.
+//! Table model, independent of the output format.
 use protocol::case::Unknown;
 
-/// A table.
+/// Table with a title, column heads, rows and notes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// What it shows.
+    /// Title of the table.
     pub title: String,
-    /// Heads of the columns; the first belongs to the labels.
+    /// Heads of the columns; the first is that of the row labels.
     pub head: Vec<String>,
     /// Rows from top to bottom.
     pub rows: Vec<Row>,
-    /// Definitions and remarks below it, one sentence each.
+    /// Definitions and remarks printed below the table, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// One row.
+/// Row of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Row {
-    /// Heads the rows that follow.
+    /// Subheading of the rows that follow.
     Group(String),
     /// A label and one cell per further column.
     Values(Label, Vec<String>),
 }
 
-/// What a row is about.
+/// Label of a row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Label {
-    /// In words.
+    /// Plain text.
     Text(String),
     /// An unknown of the case.
     Unknown {
-        /// Its name.
+        /// Name of the unknown.
         name: String,
-        /// What it is, in words.
+        /// Title of the unknown in words.
         title: String,
-        /// Its symbol, set where the medium can; an index behind `_`.
+        /// Symbol of the unknown, typeset in HTML; `_` separates the index.
         symbol: String,
     },
 }
 
 impl Table {
-    /// A table without notes.
+    /// Creates a table without notes.
     pub fn new<const N: usize>(title: impl Into<String>, head: [&str; N], rows: Vec<Row>) -> Self {
         Self {
             title: title.into(),
@@ -50,19 +50,19 @@ impl Table {
         }
     }
 
-    /// The same with notes behind those that it has.
+    /// Returns the table with notes appended.
     #[must_use]
     pub fn noted(mut self, notes: impl IntoIterator<Item = impl Into<String>>) -> Self {
         self.notes.extend(notes.into_iter().map(Into::into));
         self
     }
 
-    /// The table, unless it has no rows.
+    /// Returns the table, or `None` if it has no rows.
     pub(crate) fn unless_empty(self) -> Option<Self> {
         (!self.rows.is_empty()).then_some(self)
     }
 
-    /// Whether a column holds words, not numbers: those start at the left, and may be long.
+    /// Returns whether a column holds text instead of numbers; text columns are left-aligned and may wrap.
     pub(super) fn is_prose(&self, column: usize) -> bool {
         const LONGEST_NUMBER: usize = 32;
         let cells = self.rows.iter().filter_map(|row| match row {
@@ -75,12 +75,12 @@ impl Table {
 }
 
 impl Row {
-    /// A row about something in words.
+    /// Creates a row with a text label.
     pub fn new(label: impl Into<String>, cells: impl IntoIterator<Item = String>) -> Self {
         Self::Values(Label::Text(label.into()), cells.into_iter().collect())
     }
 
-    /// A row about an unknown; of a parameter of an effect the name says it all.
+    /// Creates a row for an unknown; a parameter of an effect is labelled by its name alone.
     pub(crate) fn of(unknown: &Unknown, cells: impl IntoIterator<Item = String>) -> Self {
         let label = match unknown.of_effect() {
             Some(_) => Label::Text(unknown.name.clone()),
@@ -93,7 +93,7 @@ impl Row {
         Self::Values(label, cells.into_iter().collect())
     }
 
-    /// The head of a group of rows.
+    /// Creates the subheading of a group of rows.
     pub fn group(name: impl Into<String>) -> Self {
         Self::Group(name.into())
     }

@@ -1,9 +1,9 @@
-//! A report as plain text, for a terminal and for `tables.txt`: everything but its pictures.
+//! Plain-text output for the terminal and for `tables.txt`: the whole report without its images.
 use super::block::{Block, Report, Section};
 use super::table::{Label, Row, Table};
 use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, presets};
 
-/// The whole report; `styled` where the terminal shows bold.
+/// Renders the whole report as text; `styled` if the terminal supports bold.
 pub fn text(report: &Report, styled: bool) -> String {
     let mut whole = String::from(report.outcome);
     if !whole.is_empty() {
@@ -20,12 +20,13 @@ pub fn text(report: &Report, styled: bool) -> String {
     whole
 }
 
-/// The blocks of one section, without its heading.
+/// Renders the blocks of one section, without its heading.
 pub(crate) fn section_text(section: &Section, styled: bool) -> String {
     all(&section.blocks, styled)
 }
 
-/// Blocks one below the other, with an empty line before those that stand apart.
+/// Renders blocks one below the other, with an empty line before headings, code, tables and collapsible
+/// blocks.
 fn all(blocks: &[Block], styled: bool) -> String {
     let mut text = String::new();
     for block in blocks {
@@ -61,13 +62,13 @@ fn one(block: &Block, styled: bool) -> String {
     }
 }
 
-/// Lines behind a mark.
+/// Prefixes each line with a mark.
 fn items(lines: &[String], mark: &str) -> String {
     let lines = lines.iter().map(|line| [mark, line, "\n"].concat());
     lines.collect()
 }
 
-/// Sets a table with its title and notes.
+/// Renders a table with its title and notes.
 pub fn set_table(table: &Table, styled: bool) -> String {
     let bold = |cell: Cell| {
         if styled {

@@ -1,4 +1,4 @@
-//! Profiles of the unknowns, and bands of predictions.
+//! Figures of an identification: likelihood profiles of the unknowns and prediction bands.
 use super::subject::Subject;
 use crate::chart::canvas::{Canvas, Lettering, Pen, WIDTH, render};
 use crate::chart::panel::Panel;
@@ -18,11 +18,11 @@ const BETWEEN: f64 = 28.0;
 const TOP: f64 = 8.0;
 const ROW: f64 = 150.0;
 const PLOT: f64 = 84.0;
-/// The rise at the ends of an interval, and the highest that is drawn.
+/// Rise of `-2 ln L` at the ends of a 95 % interval (3.84), and the largest rise that is drawn.
 const RISE: f64 = 3.84;
 const HIGHEST: f64 = 8.0;
 
-/// One small panel per unknown: the rise of `-2 ln L` over its value, between its bounds.
+/// Draws one small panel per unknown: the rise of `-2 ln L` over its value, between its bounds.
 pub(super) fn profiles(subject: &Subject<'_>) -> Figure {
     let all = &subject.identified.unknowns;
     let rows = all.len().div_ceil(COLUMNS).max(1);
@@ -84,7 +84,7 @@ fn one(canvas: &mut Canvas, panel: &Panel, own: &UnknownEstimate, first: bool) {
     panel.lower_axis(canvas, true, &unit(&own.unit));
 }
 
-/// Bands of all channels, one figure per condition and abscissa.
+/// Draws the prediction bands of all channels, one figure per condition and abscissa.
 pub(super) fn bands(subject: &Subject<'_>) -> Vec<Figure> {
     let case = subject.case;
     let figures = subject.identified.bands.iter().flat_map(|band| {

@@ -1,10 +1,10 @@
-//! The data behind the figures of an identification as CSV. Numbers are written with all their digits.
+//! CSV files with the data behind the figures of an identification. Numbers have full precision.
 use super::subject::Subject;
 use crate::number::field;
 use crate::words::condition_name;
 use std::io::Write;
 
-/// Writes the profiles: one row per unknown and point.
+/// Writes the likelihood profiles: one row per unknown and point.
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.
@@ -21,7 +21,7 @@ pub(super) fn profiles(to: impl Write, subject: &Subject<'_>) -> Result<(), csv:
     Ok(writer.flush()?)
 }
 
-/// Writes the bands: one row per condition, channel and point.
+/// Writes the prediction bands: one row per condition, channel and point.
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.

@@ -1,7 +1,7 @@
-//! What people see of an identification: which unknowns the record sees, which trade off, and what that
-//! leaves open in predictions.
+//! Report of an identification: which unknowns the record determines, which are correlated, and the resulting
+//! uncertainty of predictions.
 //!
-//! Everything is the identification's own number: nothing is computed again here.
+//! All numbers come from the identification; nothing is recomputed here.
 mod chart;
 mod csv;
 mod section;

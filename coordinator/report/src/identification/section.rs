@@ -1,4 +1,4 @@
-//! Sections of an identification's report, in the order of the page.
+//! Sections of the identification report, in page order.
 use super::subject::Subject;
 use crate::document::{Block, Fact, Section, figures, tables};
 use crate::identification::{chart, table, words};
@@ -6,7 +6,7 @@ use crate::number::duration;
 use crate::section::origin as shared;
 use crate::words::SYNTHETIC;
 
-/// Every section, in the order of the page.
+/// All sections of the identification report, in page order.
 pub(super) const SECTIONS: &[fn(&Subject<'_>) -> Section] =
     &[seen, apart, prediction, further, origin];
 
@@ -27,7 +27,7 @@ fn seen(subject: &Subject<'_>) -> Section {
     }
     Section {
         id: "seen",
-        title: "What the record sees",
+        title: "Unknowns that the record determines",
         blocks,
     }
 }
@@ -35,7 +35,7 @@ fn seen(subject: &Subject<'_>) -> Section {
 fn apart(subject: &Subject<'_>) -> Section {
     Section {
         id: "apart",
-        title: "What it sees apart, and what only together",
+        title: "Directions that the record determines",
         blocks: tables(table::directions(subject)),
     }
 }
@@ -45,7 +45,7 @@ fn prediction(subject: &Subject<'_>) -> Section {
     blocks.extend(figures(chart::bands(subject)));
     Section {
         id: "prediction",
-        title: "What it leaves open in predictions",
+        title: "Uncertainty of predictions",
         blocks,
     }
 }
@@ -53,7 +53,7 @@ fn prediction(subject: &Subject<'_>) -> Section {
 fn further(subject: &Subject<'_>) -> Section {
     Section {
         id: "further",
-        title: "What would tell more",
+        title: "Proposed further measurements",
         blocks: tables(table::further(subject)),
     }
 }

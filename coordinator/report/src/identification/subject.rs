@@ -1,25 +1,25 @@
-//! What the report of an identification is about.
+//! Input data of an identification report.
 use crate::data::Origin;
 use discrepancy::identify::Identified;
 use protocol::case::{Case, Unknown};
 
-/// A finished identification with everything that its report names.
+/// Finished identification with all data that its report refers to.
 #[derive(Clone, Debug)]
 pub struct Subject<'a> {
-    /// The case.
+    /// Case that was identified.
     pub case: &'a Case,
-    /// The answer.
+    /// Result of the identification.
     pub identified: &'a Identified,
-    /// How it was made.
+    /// Provenance of the identification (run, program, digest).
     pub origin: Origin,
-    /// Remarks about case and records.
+    /// Remarks about the case and its records.
     pub notes: &'a [String],
     /// Wall time of all sessions (s).
     pub wall_s: f64,
 }
 
 impl<'a> Subject<'a> {
-    /// An unknown of the case by its name.
+    /// Returns an unknown of the case by its name.
     pub(super) fn unknown(&self, name: &str) -> Option<&'a Unknown> {
         self.case
             .unknowns

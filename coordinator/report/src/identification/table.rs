@@ -1,4 +1,4 @@
-//! The tables of an identification.
+//! Tables of an identification report.
 use super::subject::Subject;
 use super::words::open_ends;
 use crate::document::{Row, Table};
@@ -6,7 +6,7 @@ use crate::number::{NONE, figure, fixed, quantity};
 use crate::words::{condition_name, seen};
 use discrepancy::identify::{Direction, Further};
 
-/// Every unknown with what the record says of it.
+/// Builds the table of the unknowns: value, 95 % interval, open ends and correlated unknowns.
 pub(super) fn unknowns(subject: &Subject<'_>) -> Table {
     let rows = subject.identified.unknowns.iter().map(|own| {
         let trades = own.correlated.iter().take(3);
@@ -30,11 +30,11 @@ pub(super) fn unknowns(subject: &Subject<'_>) -> Table {
     .noted([
         "An end is where -2 ln L, all else refitted, has risen by what a 95 % interval asks for at this dispersion (drawn as 3.84). An end where \
          simulations fail is one of the model, not of the record.",
-        "What is not seen has the value at which the fit left it, which means nothing.",
+        "The value of an unknown that the record does not determine is arbitrary: it is where the fit stopped.",
     ])
 }
 
-/// Directions by how well they are seen.
+/// Builds the table of the parameter directions with their standard deviations, best determined first.
 pub(super) fn directions(subject: &Subject<'_>) -> Option<Table> {
     let row = |direction: &Direction| {
         let parts = direction.parts.iter();
@@ -60,7 +60,7 @@ pub(super) fn directions(subject: &Subject<'_>) -> Option<Table> {
     .unless_empty()
 }
 
-/// How wide the bands are.
+/// Builds the table of the half widths of the prediction bands.
 pub(super) fn prediction(subject: &Subject<'_>) -> Option<Table> {
     let case = subject.case;
     let mut rows = Vec::new();
@@ -87,7 +87,7 @@ pub(super) fn prediction(subject: &Subject<'_>) -> Option<Table> {
     .unless_empty()
 }
 
-/// What further measurements would pin down.
+/// Builds the table of further measurements and the standard deviations that they would reduce.
 pub(super) fn further(subject: &Subject<'_>) -> Option<Table> {
     let row = |one: &Further| {
         let pins = one.pins.iter().map(|pin| {
@@ -109,8 +109,8 @@ pub(super) fn further(subject: &Subject<'_>) -> Option<Table> {
         subject.identified.further.iter().map(row).collect(),
     )
     .noted([
-        "To first order at the fit; only what would fall to half at least is told. A channel that was never \
-         recorded is given the noise of one that was and has its unit.",
+        "Linearised at the fit; only standard deviations that would at least be halved are listed. A channel that was never \
+         recorded is assigned the noise of a recorded channel with the same unit.",
     ])
     .unless_empty()
 }

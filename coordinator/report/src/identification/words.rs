@@ -1,11 +1,11 @@
-//! What a record sees, in sentences.
+//! Sentences of an identification report.
 use super::subject::Subject;
 use crate::number::fixed;
 use crate::words::listed;
 use discrepancy::identify::{End, Seen, UnknownEstimate};
 use discrepancy::record::noise::Known;
 
-/// The one sentence: how many unknowns are seen, and which are not.
+/// Returns the summary sentence: number of unknowns determined, and names of those that are not.
 pub(super) fn lead(subject: &Subject<'_>) -> String {
     let all = &subject.identified.unknowns;
     let named = |wanted: Seen| -> Vec<String> {
@@ -37,7 +37,8 @@ pub(super) fn lead(subject: &Subject<'_>) -> String {
     words
 }
 
-/// What the numbers rest on, and what comes first where the fit leaves more than noise.
+/// Lists the sentences on noise and residual, including the advice to diagnose first where the residual
+/// exceeds the noise.
 pub(super) fn grounds(subject: &Subject<'_>) -> Vec<String> {
     let identified = subject.identified;
     let left = format!(
@@ -66,14 +67,14 @@ pub(super) fn grounds(subject: &Subject<'_>) -> Vec<String> {
     all
 }
 
-/// How the sides end that are open.
+/// Describes the open ends of an unknown's interval.
 pub(super) fn open_ends(own: &UnknownEstimate) -> String {
     let sides = ["below", "above"].into_iter().zip(own.ends);
     let said = sides.filter_map(|(side, end)| match end {
         End::Rises => None,
         End::Bound => Some(format!("open {side} to the bound")),
         End::Fails => Some(format!("simulations fail {side}")),
-        End::GivenUp => Some(format!("given up {side}")),
+        End::GivenUp => Some(format!("profile abandoned {side}")),
     });
     said.collect::<Vec<_>>().join(", ")
 }

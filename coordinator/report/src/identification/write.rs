@@ -1,4 +1,4 @@
-//! The report of an identification as a whole, and its folder.
+//! Assembly of the identification report, and its output folder.
 use super::csv;
 use super::section::SECTIONS;
 use super::subject::Subject;
@@ -7,14 +7,14 @@ use crate::document::Report;
 use crate::folder::{stream, write_report};
 use std::path::{Path, PathBuf};
 
-/// The report.
+/// Builds the report of an identification.
 pub fn report(subject: &Subject<'_>) -> Report {
-    let title = format!("What the record of {} sees", subject.case.name);
+    let title = format!("Identification of {}", subject.case.name);
     let sections = SECTIONS.iter().map(|section| section(subject));
     Report::new(title, &subject.origin.run, sections)
 }
 
-/// Writes the report into a folder, which is made if it does not exist: `report.html`, `tables.txt`,
+/// Writes the identification report into a folder, creating it if needed: `report.html`, `tables.txt`,
 /// `figures/*.svg`, `profiles.csv` and `prediction.csv`. Returns the paths, the HTML first.
 ///
 /// # Errors

@@ -1,6 +1,7 @@
-//! The report of an orthogonal test: what is best, whether chance could have said the same, every run.
+//! Report of an orthogonal-array test of search settings: best levels, significance of the factors, and every
+//! run.
 //!
-//! Knows the test as plain data, not who ran it.
+//! Takes the test as plain data and does not run it.
 mod section;
 mod subject;
 mod write;

@@ -1,4 +1,4 @@
-//! Sections of the report of an orthogonal test.
+//! Sections of the report of an orthogonal-array test.
 use super::subject::Subject;
 use crate::chart::main_effects;
 use crate::document::{Block, Row, Section, Table};
@@ -8,10 +8,10 @@ use crate::words::{listed, objective_heading};
 use protocol::case::Case;
 use study::orthogonal::{Analysis, Factor, Source, Tested, Tried};
 
-/// Above this probability chance is as good a reason as the factor.
+/// Significance level: a factor with a larger p-value is not significant.
 const LIKELY: f64 = 0.05;
 
-/// Every one, in the order of the page.
+/// Builds all sections, in page order.
 pub(super) fn all(subject: &Subject<'_>) -> Vec<Section> {
     vec![
         summary(subject.tested),
@@ -58,7 +58,7 @@ fn summary(tested: &Tested) -> Section {
     }
 }
 
-/// Which factors chance alone does not explain.
+/// States which factors are significant.
 fn chance(tested: &Tested, analysis: &Analysis) -> String {
     let Some(anova) = &analysis.anova else {
         return "The design is saturated: no degree of freedom is left for the error, so nothing can be told from \
@@ -150,7 +150,7 @@ fn variance(tested: &Tested, analysis: &Analysis) -> Option<Table> {
     ]))
 }
 
-/// Searches with their levels, row by row.
+/// Builds the table of all runs with their factor levels.
 pub fn runs(case: &Case, factors: &[Factor], tried: &[Tried]) -> Table {
     let heading = format!("best {}", objective_heading(case));
     let row = |run: &Tried| {
@@ -191,7 +191,7 @@ fn all_runs(subject: &Subject<'_>) -> Section {
     }
 }
 
-/// Levels in words.
+/// Lists the factors with their levels as text.
 fn at(factors: &[Factor], levels: &[usize]) -> String {
     let one =
         |(factor, level): (&Factor, &usize)| format!("{} {}", factor.name, factor.levels[*level]);

@@ -1,14 +1,14 @@
-//! What a report of a test is about.
+//! Input data of the report of an orthogonal-array test.
 use crate::data::Origin;
 use protocol::case::Case;
 use study::orthogonal::Tested;
 
-/// What a report of a test is about.
+/// Orthogonal-array test with all data that its report refers to.
 pub struct Subject<'a> {
-    /// The case that was searched.
+    /// Case that was searched.
     pub case: &'a Case,
-    /// The test.
+    /// Result of the test.
     pub tested: &'a Tested,
-    /// How it was made.
+    /// Provenance of the test (run, program, digest).
     pub origin: Origin,
 }

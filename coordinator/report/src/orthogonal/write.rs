@@ -1,17 +1,18 @@
-//! The report as a whole, and its folder.
+//! Assembly of the orthogonal-array test report, and its output folder.
 use super::section;
 use super::subject::Subject;
 use crate::document::Report;
 use crate::folder::{ReportError, write_report};
 use std::path::{Path, PathBuf};
 
-/// The report.
+/// Builds the report of an orthogonal-array test.
 pub fn report(subject: &Subject<'_>) -> Report {
     let title = format!("Orthogonal test of a search on {}", subject.case.name);
     Report::new(title, &subject.origin.run, section::all(subject))
 }
 
-/// Writes `report.html`, `tables.txt` and `figures/*.svg` into a folder. Returns the paths, the HTML first.
+/// Writes the report into a folder: `report.html`, `tables.txt` and `figures/*.svg`. Returns the paths, the
+/// HTML first.
 ///
 /// # Errors
 /// [`ReportError`] when a file cannot be written.

@@ -1,4 +1,4 @@
-//! The dynamometer card: load at the suspension over its simulated position.
+//! Dynamometer card: load at the suspension point over its simulated position.
 use crate::chart::canvas::{Lettering, Pen, render};
 use crate::chart::panel::Panel;
 use crate::chart::scale::Scale;
@@ -13,12 +13,12 @@ use support::interpolation::periodic;
 
 const SIZE: (f64, f64) = (620.0, 330.0);
 
-/// Load of a periodic card at any crank angle \[N\].
+/// Interpolates the load of a periodic card at a crank angle \[N\].
 fn load_n(card: &LoadCard, turn_deg: f64) -> Option<f64> {
     periodic(&card.turn_deg, &card.load_n, turn_deg, 360.0)
 }
 
-/// Draws the card; none if the simulation has no position.
+/// Draws the dynamometer card; `None` if the simulation has fewer than two positions.
 pub(super) fn card(
     (case, machine): (&Case, &Machine),
     condition: usize,

@@ -1,4 +1,4 @@
-//! Contact between back rope and head: force per length over crank angle and place on the arc.
+//! Map of the contact between back rope and head: force per length over crank angle and position on the arc.
 use super::revolution;
 use crate::chart::canvas::{Canvas, Lettering, WIDTH, render};
 use crate::chart::panel::Panel;
@@ -10,13 +10,13 @@ use protocol::pumping_unit::{Machine, Motion, Simulation};
 use support::quantile;
 
 const HEIGHT: f64 = 330.0;
-/// Snapshots drawn at most: more would make the file large, not the picture better.
+/// Maximum number of snapshots drawn; more would enlarge the file without visible benefit.
 const COLUMNS: usize = 91;
 
-/// By how much cells overlap [px].
+/// Overlap of neighbouring cells [px].
 const OVERLAP: f64 = 0.5;
 
-/// Angle of a point on the back head's arc, in the beam frame \[deg\].
+/// Computes the angle of a point on the back head's arc, in the beam frame \[deg\].
 fn arc_deg(machine: &Machine, motion: &Motion, point: [f32; 2]) -> f64 {
     let beam = f64::from(motion.beam_deg).to_radians();
     let (sin, cos) = beam.sin_cos();
@@ -28,17 +28,17 @@ fn arc_deg(machine: &Machine, motion: &Motion, point: [f32; 2]) -> f64 {
     dy.atan2(dx).to_degrees().rem_euclid(360.0)
 }
 
-/// One cylinder in contact at one snapshot.
+/// Cylinder in contact at one snapshot.
 struct Cell {
-    /// First and last crank angle it stands for \[deg\].
+    /// Crank angles at the edges of the cell \[deg\].
     turn_deg: (f64, f64),
-    /// Place on the arc \[deg\].
+    /// Position on the arc \[deg\].
     psi_deg: f64,
-    /// Force per length [kN/m].
+    /// Contact force per length of rope [kN/m].
     force: f64,
 }
 
-/// Every cylinder in contact, snapshot by snapshot.
+/// Collects the cylinders in contact, snapshot by snapshot.
 fn cells(machine: &Machine, simulation: &Simulation) -> Vec<Cell> {
     let snapshots: Vec<&Motion> = simulation.motion.iter().collect();
     let snapshots = thinned(&snapshots, COLUMNS);
@@ -70,7 +70,7 @@ fn cells(machine: &Machine, simulation: &Simulation) -> Vec<Cell> {
     cells
 }
 
-/// Draws the map; none without snapshots or without any contact.
+/// Draws the contact map; `None` without snapshots or without contact.
 pub(super) fn contact(machine: &Machine, simulation: &Simulation) -> Option<Figure> {
     let half_deg =
         0.5 * (machine.ropes.cylinder_length_m / machine.back_head.radius_m).to_degrees();
@@ -118,7 +118,7 @@ pub(super) fn contact(machine: &Machine, simulation: &Simulation) -> Option<Figu
     })
 }
 
-/// The colour scale beside the map.
+/// Draws the colour scale next to the map.
 fn ramp(canvas: &mut Canvas, panel: &Panel, top: f64) {
     const STEPS: i32 = 48;
     let bar = Panel {

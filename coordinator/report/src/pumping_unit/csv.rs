@@ -1,6 +1,6 @@
-//! The data behind the figures as CSV, units in the column names.
+//! CSV files with the data behind the figures; units are part of the column names.
 //!
-//! An empty field is a value that does not exist; numbers are written with all their digits.
+//! An empty field is a missing value; numbers have full precision.
 use crate::data::Shown;
 use crate::number::field;
 use crate::words::condition_name;
@@ -35,20 +35,21 @@ const CURVE_COLUMNS: [&str; 22] = [
     "crank_torque_n_m",
 ];
 
-/// Number of modes of the back head that a case simulates.
+/// Returns the number of modes of the back head that a case simulates.
 fn modes(case: &Case) -> usize {
     Machine::of(case).map_or(0, |machine| machine.run.modes)
 }
 
-/// The columns of curves: one per simulated mode of the back head at the end, mass-normalised.
+/// Returns the column names of the curves, followed by one column per simulated, mass-normalised mode of the
+/// back head.
 fn head(modes: usize) -> impl Iterator<Item = String> {
     let modes = (1..=modes).map(|mode| format!("mode_{mode}_sqrt_kg_m"));
     CURVE_COLUMNS.map(str::to_owned).into_iter().chain(modes)
 }
 
-/// Writes the curves of named parameter sets of one case: one row per crank angle and parameter set.
-/// Measured values stand in the rows whose crank angle is on the record's grid; a failed simulation has
-/// rows as far as it got.
+/// Writes the curves of named parameter sets of one case: one row per crank angle and parameter set. Rows
+/// have measured values where the crank angle is on the record's grid; a failed simulation has rows up to the
+/// failure.
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.
@@ -110,8 +111,8 @@ fn rows(
     Ok(())
 }
 
-/// Writes where every cylinder was at each snapshot of a simulation, what pulled at it and what pressed
-/// on it, from the free ends of the ropes on.
+/// Writes position, tension and contact force of every cylinder at each snapshot of a simulation, from the
+/// free ends of the ropes on.
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.
@@ -148,7 +149,7 @@ pub fn ropes(to: impl Write, simulation: &Simulation) -> Result<(), csv::Error> 
     Ok(writer.flush()?)
 }
 
-/// Place of a value of a channel at a crank angle, if it has one there.
+/// Returns the index of the channel's grid point at a crank angle, if there is one within 1e-6 deg.
 fn on_grid(channel: &Channel, turn_deg: f64) -> Option<usize> {
     const SAME_DEG: f64 = 1e-6;
     let grid = &channel.abscissa.points;

@@ -1,4 +1,4 @@
-//! The pumping unit's part of a report, as the report asks for it.
+//! Report content of the pumping unit, as an implementation of [`Drawing`].
 use super::{animation, card::card, contact::contact, csv, revolution, single};
 use crate::data::{Shown, SingleRun};
 use crate::document::{Block, Figure, Section, Table};
@@ -9,7 +9,7 @@ use protocol::case::{Case, Unknown};
 use protocol::pumping_unit::{Coefficient, Machine, Simulation};
 use std::path::{Path, PathBuf};
 
-/// The model of a pumping unit.
+/// Report content of the pumping-unit model.
 pub struct Dhh;
 
 impl Drawing for Dhh {

@@ -1,4 +1,5 @@
-//! A reduced back head in numbers: its modes beside the case's, and what they alone would show.
+//! Tables of a reduced back head: its modes compared with those of the case, and the truncation error of the
+//! modes alone.
 use super::name::mode_family;
 use crate::document::{Row, Table};
 use crate::number::{NONE, fixed, percent};
@@ -6,13 +7,13 @@ use case::pumping_unit::HeadComparison;
 use protocol::pumping_unit::TwinHead;
 use protocol::pumping_unit::{LeftOutMode, ReducedHead};
 
-/// What the last column says.
+/// Table note that defines the coupling of a mode.
 const COUPLING: &str = "Coupling: largest share of the static energy under a load pattern that the \
      mode holds. Patterns: the rope at its shortest, middle and longest wrap of the turn, and the \
      beam's accelerations along x, along y and about the pivot. Those that couple most are taken.";
 
-/// Modes, one row each, beside the most similar ones of the case's table; then what was left out
-/// below the highest.
+/// Builds the table of the kept modes, each with the most similar mode of the case's table, and of the modes
+/// left out below the highest kept mode.
 pub fn head_modes(head: &ReducedHead, comparison: &HeadComparison) -> Table {
     let row = |label: String, family, hz, table: Option<(f64, f64)>, coupling: f64| {
         let of_table = table.map_or_else(
@@ -98,7 +99,7 @@ fn mode_notes(
     notes
 }
 
-/// What was left out below the highest mode that was kept, and above it.
+/// Returns the left-out modes below and above the highest kept mode.
 fn left_out(head: &ReducedHead) -> (&[LeftOutMode], &[LeftOutMode]) {
     let highest = head.modes.last().map_or(0.0, |mode| mode.frequency_hz);
     let below = head
@@ -107,8 +108,8 @@ fn left_out(head: &ReducedHead) -> (&[LeftOutMode], &[LeftOutMode]) {
     head.left_out.split_at(below)
 }
 
-/// Modes that a pair of ropes drives by pulling unequally, one row each: how far they move the rope at
-/// +z on the whole arc, and what the gauges read.
+/// Builds the table of the modes that a pair of ropes excites by unequal tension: largest displacement of the
+/// rope at +z over the whole arc, and gauge stresses.
 pub fn head_pair(tables: &TwinHead, offset_m: f64) -> Table {
     let most = |curve: &[f64]| curve.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let rows = (0..tables.frequencies_hz.len()).map(|k| {
@@ -141,7 +142,7 @@ pub fn head_pair(tables: &TwinHead, offset_m: f64) -> Table {
     ])
 }
 
-/// What truncation costs over a quasi-static turn.
+/// Builds the table of the modal truncation error in gauge stress over a quasi-static revolution.
 pub fn head_statics(comparison: &HeadComparison, condition: &str, modes: usize) -> Table {
     let ranges = &comparison.half_ranges;
     let rows = (0..4).map(|gauge| {

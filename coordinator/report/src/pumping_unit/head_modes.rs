@@ -1,7 +1,8 @@
-//! Modes of the back head, one small picture each: the rope arc at rest and deflected, over the
+//! Figures of the back head's modes, one small panel each: the rope arc at rest and deflected, over the
 //! outline of the head, with pins and gauges.
 //!
-//! Only the deflection along the arc is drawn, as the rope feels it; whole fields are for `ParaView`.
+//! Only the deflection along the arc is drawn, as it acts on the rope; whole fields are exported for
+//! `ParaView`.
 use super::name::mode_family;
 use crate::chart::canvas::{Canvas, Lettering, Pen, WIDTH, render};
 use crate::color::{BLUE, GREY, GUIDE, INK, VERMILLION};
@@ -11,39 +12,39 @@ use crate::number::fixed;
 use protocol::pumping_unit::{HeadGauge, HeadMode};
 use std::path::{Path, PathBuf};
 
-/// Pictures side by side.
+/// Number of panels per row.
 const COLUMNS: usize = 4;
-/// Margin around each [px].
+/// Margin around each panel [px].
 const MARGIN: f64 = 12.0;
-/// Room for the label above each [px].
+/// Height of the label above each panel [px].
 const LABEL: f64 = 22.0;
-/// Room for the largest deflection, as a share of the head's larger side.
+/// Drawn size of the largest deflection, as a share of the head's larger side.
 const DEFLECTION: f64 = 0.09;
-/// Modes that move the arc by less than this share of the liveliest one do not move the rope.
+/// Threshold of inert modes: largest deflection of the arc relative to that of the most mobile mode.
 const INERT: f64 = 1e-6;
-/// Layers from bottom to top into which the outline is sorted: coarser than a mesh.
+/// Number of horizontal layers used to extract the outline; coarser than a mesh.
 const LAYERS: usize = 40;
 
-/// What is drawn.
+/// Input data of the figure of the back head's modes.
 #[derive(Clone, Copy, Debug)]
 pub struct HeadPicture<'a> {
     /// Centre of the rope arc \[m\].
     pub center_m: [f64; 2],
-    /// Its radius \[m\].
+    /// Radius of the rope arc \[m\].
     pub radius_m: f64,
     /// Positions of the mesh's nodes \[m\].
     pub nodes_m: &'a [[f64; 3]],
     /// Nodes of each held pin hole.
     pub pins: [&'a [usize]; 2],
-    /// Where stress is read.
+    /// Strain gauges.
     pub gauges: &'a [HeadGauge],
     /// Stations of the modes along the arc \[deg\].
     pub arc_deg: &'a [f64],
-    /// The modes.
+    /// Modes to draw.
     pub modes: &'a [HeadMode],
 }
 
-/// Draws all modes; every deflection is scaled to the same size, for a mode has none of its own.
+/// Draws all modes, each scaled to the same largest deflection, since the amplitude of a mode is arbitrary.
 pub(super) fn head_modes(picture: &HeadPicture<'_>) -> Figure {
     let frame = Frame::around(picture);
     let rows = picture.modes.len().div_ceil(COLUMNS);
@@ -81,7 +82,7 @@ fn largest(mode: &HeadMode) -> f64 {
     })
 }
 
-/// The point of an arc at an angle, moved outwards and towards increasing angles \[m\].
+/// Returns a point of the arc at an angle, displaced radially and tangentially \[m\].
 fn on_arc(picture: &HeadPicture<'_>, deg: f64, [radial, tangential]: [f64; 2]) -> (f64, f64) {
     let (sin, cos) = deg.to_radians().sin_cos();
     let radius = picture.radius_m + radial;
@@ -91,8 +92,8 @@ fn on_arc(picture: &HeadPicture<'_>, deg: f64, [radial, tangential]: [f64; 2]) -
     )
 }
 
-/// The head's outline: in each of some layers, lowest first, its rightmost node, and back
-/// its leftmost.
+/// Computes the head's outline from horizontal layers: the rightmost node of each layer upwards, then the
+/// leftmost nodes downwards.
 fn outline(picture: &HeadPicture<'_>) -> Vec<(f64, f64)> {
     let ends = picture.nodes_m.iter().map(|&[x, y, _]| (x, y));
     let by_height = |a: &(f64, f64), b: &(f64, f64)| a.1.total_cmp(&b.1);
@@ -126,15 +127,15 @@ fn outline(picture: &HeadPicture<'_>) -> Vec<(f64, f64)> {
     forth.chain([highest]).chain(back).collect()
 }
 
-/// The part of the plane that every picture shows.
+/// Section of the plane shown in every panel.
 struct Frame {
-    /// Left and upper end \[m\].
+    /// Upper left corner \[m\].
     corner: (f64, f64),
-    /// Larger deflections are drawn this large \[m\].
+    /// Drawn size of the largest deflection of each mode \[m\].
     deflection: f64,
     /// Pixels per metre.
     scale: f64,
-    /// Height of a picture [px].
+    /// Height of a panel [px].
     height: f64,
 }
 
@@ -163,13 +164,13 @@ impl Frame {
         }
     }
 
-    /// From one row to the next [px].
+    /// Returns the distance between rows of panels [px].
     fn pitch(&self) -> f64 {
         LABEL + self.height + MARGIN
     }
 }
 
-/// One picture.
+/// Drawing context of one panel.
 struct Sheet<'a> {
     canvas: &'a mut Canvas,
     frame: &'a Frame,
@@ -186,7 +187,7 @@ impl Sheet<'_> {
         )
     }
 
-    /// What all pictures share.
+    /// Draws the content common to all panels: outline, pins, gauges and the arc at rest.
     fn head(&mut self, picture: &HeadPicture<'_>, outline: &[(f64, f64)]) {
         let corners: Vec<_> = outline.iter().map(|&point| self.at(point)).collect();
         self.canvas.fill(&corners, GUIDE);
@@ -241,7 +242,7 @@ impl Sheet<'_> {
     }
 }
 
-/// Writes `head_modes.svg` into a folder, which is made if it does not exist. Returns its path.
+/// Writes `head_modes.svg` into a folder, creating it if needed. Returns its path.
 ///
 /// # Errors
 /// [`ReportError`] when the file cannot be written.
@@ -285,7 +286,8 @@ mod tests {
         head_modes(&picture).svg
     }
 
-    /// A curve per mode that moves the arc, a label for each, gauges and pins in every picture.
+    /// Checks that every panel has a label, gauges and pins, and a curve for each mode that moves the arc,
+    /// independent of the mode's amplitude.
     #[test]
     fn every_mode_has_its_picture() {
         let alone = mode(ModeFamily::Symmetric, 116.24, [0.0, 0.02, -0.01]);
@@ -305,7 +307,7 @@ mod tests {
         assert_eq!(drawn(&[alone]), drawn(&[larger]));
     }
 
-    /// The largest deflection takes exactly the room that is left for it.
+    /// Checks that the largest deflection exactly fills the space reserved for it.
     #[test]
     fn a_deflected_arc_stays_on_its_sheet() {
         let outwards = drawn(&[mode(ModeFamily::Symmetric, 1.0, [1.0; 3])]);

@@ -1,7 +1,7 @@
-//! What reports show of a pumping unit beside what they show of every model: the machine in motion, its
-//! ropes, its dynamometer card, its energy, and the modes of its back head.
+//! Report content specific to the pumping unit: the machine in motion, its ropes, dynamometer card, energy,
+//! and the modes of its back head.
 //!
-//! Draws on the report's axes and tables. It does not know where in a report it stands.
+//! Uses the report's axes and tables, and does not depend on the position within a report.
 mod animation;
 mod card;
 mod contact;

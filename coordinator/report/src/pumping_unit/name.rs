@@ -1,7 +1,7 @@
-//! Names of what only this machine and its model have, as people call them.
+//! Display names of mode families and integrators.
 use protocol::pumping_unit::{Integrator, ModeFamily};
 
-/// A family of modes.
+/// Returns the display name of a mode family.
 pub const fn mode_family(family: ModeFamily) -> &'static str {
     match family {
         ModeFamily::Symmetric => "symmetric",
@@ -9,7 +9,7 @@ pub const fn mode_family(family: ModeFamily) -> &'static str {
     }
 }
 
-/// A method of integration, as people call it.
+/// Returns the display name of an integrator.
 pub const fn integrator_name(integrator: Integrator) -> &'static str {
     match integrator {
         Integrator::TrBdf2 => "TR-BDF2",

@@ -1,5 +1,5 @@
-//! The curves of one simulation over the crank angle: gauges, rope tensions, motion of the
-//! suspension, crank torque.
+//! Figures of one simulation over the crank angle: gauges, rope tensions, motion of the suspension point,
+//! crank torque.
 use crate::chart::scale::Scale;
 use crate::chart::strip::{Curve, curve, span, stack, strip};
 use crate::chart::{Axis, strips};
@@ -10,10 +10,10 @@ use crate::words::condition_name;
 use protocol::case::Case;
 use protocol::pumping_unit::{Sensor, Simulation};
 
-/// Where the crank angle begins.
+/// Origin of the crank angle, appended to the axis title.
 pub(super) const ZERO: &str = " from bottom dead centre";
 
-/// The axis of every curve: one turn of the crank.
+/// Returns the axis of all curves: one revolution of the crank.
 pub(super) fn axis() -> Axis {
     Axis {
         scale: Scale::turn(),
@@ -21,7 +21,7 @@ pub(super) fn axis() -> Axis {
     }
 }
 
-/// Stress at all four gauges, with the measured mean and its spread where there is a record.
+/// Draws the stress at all four gauges, with the measured mean and its spread where there is a record.
 pub(super) fn gauges(of: &Shown<'_>) -> Figure {
     let name = condition_name(of.case, of.condition);
     stack(
@@ -36,7 +36,7 @@ pub(super) fn gauges(of: &Shown<'_>) -> Figure {
     )
 }
 
-/// Tension of both ropes \[kN\].
+/// Returns the tension curves of both ropes \[kN\].
 fn tensions(simulation: &Simulation) -> Vec<Curve> {
     let turn = &simulation.turn_deg;
     let (back, front) = (
@@ -49,7 +49,7 @@ fn tensions(simulation: &Simulation) -> Vec<Curve> {
     ]
 }
 
-/// Axial force of both ropes at their free ends.
+/// Draws the axial force of both ropes at their free ends.
 pub(super) fn tension(simulation: &Simulation) -> Figure {
     let strips = [strip("tension [kN]", 150.0, tensions(simulation))];
     stack(
@@ -62,7 +62,7 @@ pub(super) fn tension(simulation: &Simulation) -> Figure {
     )
 }
 
-/// Motion of the suspension point.
+/// Draws position, velocity and acceleration of the suspension point.
 pub(super) fn motion(simulation: &Simulation) -> Figure {
     let turn = &simulation.turn_deg;
     let strips = [
@@ -105,7 +105,7 @@ pub(super) fn motion(simulation: &Simulation) -> Figure {
     )
 }
 
-/// Net torque at the crank shaft.
+/// Draws the net torque at the crank shaft.
 pub(super) fn torque(simulation: &Simulation) -> Figure {
     let strips = [strip(
         "torque [kN m]",
@@ -129,8 +129,8 @@ pub(super) fn torque(simulation: &Simulation) -> Figure {
     )
 }
 
-/// The strips beside the moving machine, and where their crank axis lies: left, right, upper and
-/// lower end as shares of the figure's width and height.
+/// Draws the curves next to the animated machine, and returns the extent of their crank axis: left, right,
+/// upper and lower end as shares of the figure's width and height.
 pub(super) fn player(case: &Case, simulation: &Simulation) -> (Figure, [f64; 4]) {
     let turn = &simulation.turn_deg;
     let colors = [VERMILLION, INK, GREEN, PURPLE];

@@ -1,11 +1,11 @@
-//! One simulation of the machine in numbers.
+//! Tables of one simulation of the machine.
 use crate::data::SingleRun;
 use crate::document::{Row, Table};
 use crate::number::{NONE, figure, fixed, range};
 use crate::table::{self, agreement, one, range_row, sums, work};
 use protocol::pumping_unit::{Energy, Simulation};
 
-/// Verdict, and the range of every curve.
+/// Builds the table with the verdict of a simulation and the range of every curve.
 pub fn simulation(run: &SingleRun, simulation: &Simulation) -> Table {
     let mut rows = vec![Row::group("Stress")];
     for (gauge, values) in (1..).zip(&simulation.gauge_mpa) {
@@ -46,7 +46,7 @@ pub fn simulation(run: &SingleRun, simulation: &Simulation) -> Table {
     table::simulation(run, rows)
 }
 
-/// Stroke, agreement with the record, energy balance and work of a run.
+/// Builds the table of stroke, agreement with the record, energy balance and solver work of a run.
 pub fn balance(run: &SingleRun, simulation: &Simulation) -> Table {
     let mut rows = Vec::new();
     let stroke = range(simulation.suspension_m.iter().copied())

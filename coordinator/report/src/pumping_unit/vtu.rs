@@ -1,11 +1,10 @@
-//! A mesh with fields for `ParaView`: an unstructured grid as VTK XML, in plain text.
+//! Export of a mesh with fields for `ParaView`: an unstructured grid as VTK XML, in plain text.
 //!
-//! Knows the file format and nothing of what the fields mean.
+//! Independent of the meaning of the fields.
 use protocol::pumping_unit::{ElementKind, HeadMesh};
 use std::io::{self, Write};
 
-/// An element as VTK knows it: the number of its cell, and for each of its nodes the place that it
-/// has in Gmsh's order.
+/// Returns the VTK cell type of an element, and for each VTK node its index in Gmsh's node order.
 const fn cell(kind: ElementKind) -> (u8, &'static [usize]) {
     match kind {
         ElementKind::Hexahedron => (12, &[0, 1, 2, 3, 4, 5, 6, 7]),
@@ -14,17 +13,17 @@ const fn cell(kind: ElementKind) -> (u8, &'static [usize]) {
     }
 }
 
-/// Values of one name; `values[k]` belongs to node or element k.
+/// Named field; `values[k]` belongs to node or element k.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
-    /// As it is chosen in a list.
+    /// Name of the field, as listed in `ParaView`.
     pub name: String,
-    /// One row of numbers per node or element, all of the same length.
+    /// Components of the field: one row per node or element, all rows of the same length.
     pub values: Vec<Vec<f32>>,
 }
 
 impl Field {
-    /// A field from rows of fixed length.
+    /// Creates a field from rows of fixed length.
     pub fn new<const N: usize>(name: impl Into<String>, rows: &[[f32; N]]) -> Self {
         Self {
             name: name.into(),
@@ -33,7 +32,7 @@ impl Field {
     }
 }
 
-/// Writes a mesh with fields at its nodes and at its elements.
+/// Writes a mesh with nodal and elemental fields.
 ///
 /// # Errors
 /// [`io::Error`] when the writer fails.
@@ -150,8 +149,8 @@ mod tests {
         assert_eq!(array("stress"), (vec![1.0; 6], "6".to_owned()));
     }
 
-    /// Node k of VTK's quadratic tetrahedron lies between the corners that VTK says, wherever Gmsh
-    /// lists it.
+    /// Checks that each mid-edge node of a quadratic tetrahedron, given in Gmsh's order, is written between
+    /// the corners that VTK expects.
     #[test]
     fn a_tetrahedron_is_written_in_the_other_order() {
         let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

@@ -1,6 +1,7 @@
-//! The report of how searches scale: every row, the figure, what the projection takes for granted.
+//! Report on the parallel scaling of searches: measured and projected rows, the figure, and the assumptions
+//! of the projection.
 //!
-//! Knows the rows as plain data, not who measured them.
+//! Takes the rows as plain data and does not measure them.
 use super::chart::speed_up;
 use super::data::Origin;
 use super::document::{Block, Fact, Report, Row as Cells, Section, Table};
@@ -11,17 +12,17 @@ use protocol::case::Case;
 use std::path::{Path, PathBuf};
 use study::scaling::{How, Row, Scaled};
 
-/// What a report is about.
+/// Input data of a scaling report.
 pub struct Subject<'a> {
-    /// The case that was searched.
+    /// Case that was searched.
     pub case: &'a Case,
-    /// The rows.
+    /// Measured and projected rows, with overheads and assumptions.
     pub scaled: &'a Scaled,
-    /// How it was made.
+    /// Provenance of the measurement (run, program, digest).
     pub origin: Origin,
 }
 
-/// The report.
+/// Builds the report on scaling.
 pub fn report(subject: &Subject<'_>) -> Report {
     let title = format!("How searches on {} scale", subject.case.name);
     let facts = origin::facts(&subject.origin, subject.case);
@@ -33,7 +34,8 @@ pub fn report(subject: &Subject<'_>) -> Report {
     Report::new(title, &subject.origin.run, sections)
 }
 
-/// Writes `report.html`, `tables.txt` and `figures/*.svg` into a folder. Returns the paths, the HTML first.
+/// Writes the report into a folder: `report.html`, `tables.txt` and `figures/*.svg`. Returns the paths, the
+/// HTML first.
 ///
 /// # Errors
 /// [`ReportError`] when a file cannot be written.
@@ -53,7 +55,7 @@ fn rows(scaled: &Scaled) -> Section {
     }
 }
 
-/// Rows of a table, by what slots did.
+/// Builds table rows, grouped by whether slots computed, slept or were simulated.
 fn grouped(scaled: &Scaled, cells: impl Fn(&Row) -> Vec<String>) -> Vec<Cells> {
     let groups = [
         (How::Computed, "computed: the case, on this machine"),

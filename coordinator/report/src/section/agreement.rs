@@ -1,4 +1,4 @@
-//! Measured against simulated curves, channel by channel, condition by condition.
+//! Report section with measured and simulated curves, by condition and channel.
 use crate::chart;
 use crate::data::Calibration;
 use crate::document::{Block, Section, figures};

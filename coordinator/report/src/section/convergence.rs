@@ -1,4 +1,4 @@
-//! How the search approached its optimum.
+//! Report section on the convergence of the search.
 use crate::chart::canvas::{Canvas, Lettering, Pen, WIDTH, render};
 use crate::chart::panel::{Panel, spread};
 use crate::chart::scale::Scale;
@@ -29,17 +29,17 @@ const STRIP_TOP: f64 = TOP + MAIN + 18.0;
 const STRIP: f64 = 52.0;
 const HEIGHT: f64 = STRIP_TOP + STRIP + 46.0;
 
-/// What one generation looked like.
+/// Statistics of one generation, or of several merged neighbours.
 struct Generation {
     from: f64,
     to: f64,
-    /// 10 %, 50 % and 90 % quantile of the complete individuals.
+    /// Quantiles (10 %, 50 % and 90 %) of the objective of the complete individuals.
     quantiles: Option<[f64; 3]>,
     failed_share: f64,
 }
 
-/// Cuts the history, in index order, into stretches of the same generation; at most `most`, by
-/// putting neighbours together.
+/// Divides the history, in index order, into generations; neighbours are merged so that there are at most
+/// `most`.
 fn generations(history: &[HistoryPoint], most: usize) -> Vec<Generation> {
     let mut stretches: Vec<(usize, usize)> = Vec::new();
     let mut start = 0;
@@ -77,7 +77,7 @@ fn generations(history: &[HistoryPoint], most: usize) -> Vec<Generation> {
         .collect()
 }
 
-/// Best complete fitness so far, at every evaluation that improved it.
+/// Returns the best complete objective so far as a step curve over the number of evaluations.
 fn best_so_far(history: &[HistoryPoint]) -> Vec<(f64, f64)> {
     let mut best = f64::INFINITY;
     let mut steps = Vec::new();
@@ -96,8 +96,8 @@ fn best_so_far(history: &[HistoryPoint]) -> Vec<(f64, f64)> {
     steps
 }
 
-/// Draws the convergence of a search whose starting point had the fitness `recommended` (none if
-/// it was not complete).
+/// Draws the convergence of a search whose starting point had the objective `recommended` (`None` if it did
+/// not complete).
 pub(crate) fn chart(
     Calibration { case, history, .. }: &Calibration,
     recommended: Option<f64>,
@@ -164,7 +164,7 @@ pub(crate) fn chart(
     }
 }
 
-/// Median and band as steps, one per generation.
+/// Draws median and quantile band as steps, one per generation.
 fn population(canvas: &mut Canvas, panel: &Panel, generations: &[Generation]) {
     let mut band = Vec::new();
     let mut median = Vec::new();
@@ -180,7 +180,7 @@ fn population(canvas: &mut Canvas, panel: &Panel, generations: &[Generation]) {
     panel.curve(canvas, &median, pen);
 }
 
-/// Direct labels at the right edge.
+/// Draws the labels of the curves at the right edge.
 fn labels(
     canvas: &mut Canvas,
     panel: &Panel,

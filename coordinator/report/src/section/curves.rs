@@ -1,10 +1,11 @@
-//! The curves of one simulation: its channels, and what its kind of model shows beside them.
+//! Report section with the curves of one simulation: its channels, and figures specific to its kind of model.
 use crate::data::{Calibration, SingleRun};
 use crate::document::{Block, Section, figures};
 use crate::kind;
 use maud::html;
 
-/// With the optimised parameters; their channels are in the overlays.
+/// Builds the section of a calibration: model-specific figures with the optimised parameters; the channels
+/// are shown in the overlays.
 pub(super) fn calibration(calibration: &Calibration) -> Section {
     let mut blocks = Vec::new();
     if let Some(optimum) = calibration.optimum() {

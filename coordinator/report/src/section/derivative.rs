@@ -1,4 +1,4 @@
-//! What each unknown changes: table and figures.
+//! Report section on the derivatives of the curves with respect to the unknowns: table and figures.
 use crate::chart::Axis;
 use crate::chart::strip::{Curve, Strip, curve, stack, strip};
 use crate::color::{BLUE, GREEN, INK, PURPLE, VERMILLION};
@@ -21,7 +21,8 @@ pub(super) fn simulation(run: &SingleRun) -> Section {
     }
 }
 
-/// Of every name and channel the root mean square and the largest change; none where nothing was asked for.
+/// Builds the table of the derivatives: root mean square and largest value by parameter and channel; `None`
+/// where no derivatives were requested.
 pub fn derivatives(run: &SingleRun) -> Option<Table> {
     let channels = run.case.channels_of(run.condition);
     let channels: Vec<&Channel> = channels.map(|(_, channel)| channel).collect();
@@ -58,7 +59,7 @@ fn row(name: &str, channel: &Channel, per: &Per, values: &[f32]) -> Row {
     Row::new(name, cells)
 }
 
-/// Draws what has derivatives, one figure per unit of the channels; `zero` as [`Axis::of`] has it.
+/// Draws the derivatives, one figure per unit and abscissa of the channels; `zero` is passed to [`Axis::of`].
 pub(crate) fn charts(run: &SingleRun, zero: &str) -> Vec<Figure> {
     let channels = run.case.channels_of(run.condition);
     let channels: Vec<&Channel> = channels.map(|(_, channel)| channel).collect();
@@ -88,7 +89,7 @@ pub(crate) fn charts(run: &SingleRun, zero: &str) -> Vec<Figure> {
     figures.collect()
 }
 
-/// A strip for each name that changes some channel of a kind.
+/// Builds one strip for each parameter that changes a channel with the unit and abscissa of `kind`.
 fn strips(run: &SingleRun, channels: &[&Channel], kind: &Channel) -> Vec<Strip> {
     const COLORS: [crate::color::Color; 5] = [VERMILLION, BLUE, GREEN, PURPLE, INK];
     let named = run.derived.iter().zip(&run.curves.columns);

@@ -1,4 +1,4 @@
-//! Where simulation and measurement still disagree: what the parameters leave unexplained, channel by channel.
+//! Report section on the remaining gap between simulation and measurement, by channel.
 use crate::data::{Calibration, ConditionResult};
 use crate::document::{Row, Section, Table, tables};
 use crate::number::{NONE, figure, fixed, percent, quantity};
@@ -15,8 +15,8 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
     }
 }
 
-/// The gap of both parameter sets under one condition, and where the optimised ones leave it;
-/// nothing without a record or without a complete run.
+/// Builds the table of the gap under one condition, for the recommended and the optimised parameters; `None`
+/// without a record or a complete run.
 fn gap(case: &Case, result: &ConditionResult) -> Option<Table> {
     let [before, after] =
         [&result.recommended, &result.optimised].map(|run| run.gaps(case, result.condition));
@@ -61,7 +61,7 @@ fn gap(case: &Case, result: &ConditionResult) -> Option<Table> {
         ]))
 }
 
-/// Where along its abscissa the largest share of a channel's residual lies.
+/// Describes the sector of the abscissa with the largest share of a channel's residual.
 fn sector(along: &Abscissa, gap: &Gap) -> String {
     let (number, share) = gap.worst_sector();
     let (first, last) = match along.points.as_slice() {
@@ -74,7 +74,7 @@ fn sector(along: &Abscissa, gap: &Gap) -> String {
     format!("{begin} to {end}: {}", percent(share))
 }
 
-/// In which orders the largest share of a periodic channel's residual lies.
+/// Describes the band of orders with the largest share of a periodic channel's residual.
 fn band(along: &Abscissa, gap: &Gap) -> String {
     if along.period.is_none() {
         return NONE.to_owned();

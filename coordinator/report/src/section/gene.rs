@@ -1,4 +1,4 @@
-//! Where the search looked, between the bounds of every gene.
+//! Report section with the objective over each gene, between the gene's bounds.
 use crate::chart::canvas::{Canvas, Lettering, Pen, WIDTH, render};
 use crate::chart::panel::Panel;
 use crate::chart::points::thinned;
@@ -25,15 +25,15 @@ const BETWEEN: f64 = 28.0;
 const TOP: f64 = 52.0;
 const ROW: f64 = 178.0;
 const PLOT: f64 = 104.0;
-/// Individuals drawn per gene at most; the best ones are always among them.
+/// Maximum number of individuals drawn per gene, including the best ones.
 const MOST: usize = 700;
-/// How many of the best are always drawn.
+/// Number of best individuals that are always drawn.
 const ELITE: usize = 100;
 const CLOUD: Color = Color(0x9a, 0xa3, 0xab);
 const FAILED: Color = Color(0xd8, 0xd8, 0xd4);
 
-/// The individuals to draw, as indices into the history, worst first: the best, and an even
-/// selection of the others.
+/// Selects the individuals to draw, as indices into the history, worst first: the best ones and an even
+/// selection of the rest.
 fn selection(calibration: &Calibration) -> Vec<usize> {
     let history = &calibration.history;
     let mut order: Vec<usize> = (0..history.len()).collect();
@@ -102,7 +102,7 @@ pub fn genes(calibration: &Calibration) -> Figure {
     }
 }
 
-/// One gene.
+/// Draws the panel of one gene.
 fn small(
     canvas: &mut Canvas,
     panel: &Panel,
@@ -164,7 +164,7 @@ fn small(
     panel.lower_axis(canvas, true, &title);
 }
 
-/// The key above the panels.
+/// Draws the legend above the panels.
 fn key(canvas: &mut Canvas) {
     let y = 14.0;
     let text = Lettering::new(10.5, INK);

@@ -1,7 +1,7 @@
 //! Sections of the reports of a calibration and of a simulation: one file each, one line in the list.
 //!
-//! A section turns data into blocks, or into none where the data have nothing for it. It does not know
-//! its place or its neighbours, nor in which form its blocks are read.
+//! A section turns data into blocks, or returns no blocks where there are no data for it. A section depends
+//! neither on its position, nor on other sections, nor on the output format.
 mod agreement;
 mod convergence;
 mod curves;
@@ -24,7 +24,7 @@ pub use gene::genes;
 pub(super) use parameters::calibration as parameters;
 pub use worker::{hosts, jobs, slot_time};
 
-/// Every section about a calibration, in the order of the page.
+/// Builds all sections of a calibration report, in page order.
 pub(super) fn calibration(all: &Calibration) -> Vec<Section> {
     let mut sections = vec![
         summary::calibration(all),
@@ -43,7 +43,7 @@ pub(super) fn calibration(all: &Calibration) -> Vec<Section> {
     sections
 }
 
-/// Every section about one simulation, in the order of the page.
+/// Builds all sections of a simulation report, in page order.
 pub(super) fn simulation(run: &SingleRun) -> Vec<Section> {
     let mut sections = vec![
         summary::simulation(run),

@@ -1,4 +1,4 @@
-//! Notes and warnings that the run left.
+//! Report section with the notes and warnings of the run.
 use crate::data::{Calibration, SingleRun};
 use crate::document::{Block, Section};
 

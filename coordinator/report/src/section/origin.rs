@@ -1,4 +1,4 @@
-//! How the result was made: enough to make it again and to compare it.
+//! Report section on provenance: everything needed to reproduce a result and to compare it.
 use crate::data::{Calibration, Origin, SingleRun};
 use crate::document::{Block, Fact, Section};
 use crate::number::{NONE, count, duration};
@@ -30,7 +30,7 @@ pub(super) fn simulation(run: &SingleRun) -> Section {
     section(vec![Block::Facts(facts), work(&run.curves)])
 }
 
-/// The section about it, in every report.
+/// Creates the provenance section shared by all reports.
 pub(crate) const fn section(blocks: Vec<Block>) -> Section {
     Section {
         id: "provenance",
@@ -39,7 +39,7 @@ pub(crate) const fn section(blocks: Vec<Block>) -> Section {
     }
 }
 
-/// Where any result comes from.
+/// Lists the provenance facts common to all results: program, command, run, case, digests, preset and seed.
 pub(crate) fn facts(origin: &Origin, case: &Case) -> Vec<Fact> {
     let mut facts = vec![
         Fact::new("program", &origin.program),
@@ -56,7 +56,7 @@ pub(crate) fn facts(origin: &Origin, case: &Case) -> Vec<Fact> {
     facts
 }
 
-/// What is minimised.
+/// Describes the objective: its terms, conditions and the treatment of offsets.
 fn objective(case: &Case) -> String {
     let terms = case.objective.terms.iter();
     let terms: Vec<_> = terms
@@ -86,7 +86,7 @@ fn objective(case: &Case) -> String {
     format!("{}{conditions}; offset {offset}", terms.join(" + "))
 }
 
-/// What one simulation took of the integrator.
+/// Describes the integrator's work and the wall time of one simulation.
 fn work(curves: &Curves) -> Block {
     let counters = curves.counters.named();
     let counted = counters.map(|(_, what, number)| format!("{} {what}", count(number)));

@@ -1,11 +1,11 @@
-//! The simulations that took most processor time, with how they ended: where the time of a run goes.
+//! Report section on the simulations with the largest processor time, and how they ended.
 use crate::data::{Calibration, HistoryPoint};
 use crate::document::{Block, Row, Section, Table};
 use crate::number::{count, duration, figure, fixed};
 use crate::words::objective_heading;
 use dispatch::account::JobCost;
 
-/// How many are listed.
+/// Number of simulations listed.
 const LISTED: usize = 10;
 
 pub(super) fn calibration(calibration: &Calibration) -> Section {
@@ -58,7 +58,7 @@ fn row(point: &HistoryPoint, cost: JobCost) -> Row {
     )
 }
 
-/// How the slowest compare with the others; `times` ascend.
+/// Compares the slowest simulation with the median; `times` are in ascending order.
 fn note(times: &[f64]) -> Option<String> {
     let median = *times.get(times.len() / 2)?;
     let (all, longest) = (times.iter().sum::<f64>(), *times.last()?);

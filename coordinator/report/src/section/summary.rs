@@ -1,4 +1,4 @@
-//! The outcome in words: by how much the error fell, where, and where it did not.
+//! Report section with the outcome in words: change of the error by condition and channel.
 use crate::data::{Calibration, SingleRun};
 use crate::document::{Block, Section};
 use crate::number::{count, duration, figure};
@@ -27,7 +27,7 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
     section(blocks)
 }
 
-/// What became of each channel, condition by condition.
+/// Describes the change of each channel's error, by condition.
 fn conditions(calibration: &Calibration) -> Vec<Block> {
     let case = &calibration.case;
     let mut blocks = Vec::new();

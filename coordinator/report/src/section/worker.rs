@@ -1,4 +1,4 @@
-//! Who computed, and how busy they were: tables and figure.
+//! Report section on the utilisation of the workers: tables and figure.
 use crate::chart::canvas::{Lettering, render};
 use crate::color::{BAND, BLUE, GREY, INK};
 use crate::data::{Calibration, WorkerUse};
@@ -25,7 +25,7 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
     }
 }
 
-/// What each worker did.
+/// Builds the table of the work done by each worker.
 pub(crate) fn workers(workers: &[WorkerUse]) -> Table {
     let rows = workers.iter().map(|worker| {
         Row::new(
@@ -56,7 +56,7 @@ pub(crate) fn workers(workers: &[WorkerUse]) -> Table {
     .noted(["Busy: time spent on accepted results over slots times the time attached."])
 }
 
-/// How slots spent their time, kind by kind.
+/// Builds the table of slot time by use: useful, waiting, speculative, failed and lost.
 pub fn slot_time(spent: &Spent) -> Table {
     let what = |kind: &str| match kind {
         "useful" => "computing results that were used",
@@ -88,7 +88,7 @@ pub fn slot_time(spent: &Spent) -> Table {
     )])
 }
 
-/// What the machines did.
+/// Builds the table of the results and useful slot time of each host.
 pub fn hosts(account: &RunAccount) -> Table {
     let rows = account.hosts().into_iter().map(|(host, used)| {
         let share = used.spent.useful_us as f64 / used.spent.connected_us.max(1) as f64;
@@ -113,7 +113,7 @@ pub fn hosts(account: &RunAccount) -> Table {
     )
 }
 
-/// How long jobs took, kind by kind.
+/// Builds the table of job durations by kind of job.
 pub fn jobs(account: &RunAccount) -> Table {
     let rows = account.jobs.iter().map(|(kind, used)| {
         Row::new(
@@ -150,10 +150,10 @@ const ROW: f64 = 22.0;
 const TOP: f64 = 30.0;
 const LEFT: f64 = 190.0;
 const BAR: f64 = 330.0;
-/// Workers drawn at most; the table has all of them.
+/// Maximum number of workers drawn; the table lists all.
 const MOST: usize = 40;
 
-/// Draws one bar per worker; none without workers.
+/// Draws one bar per worker; `None` if the busy share of no worker is known.
 pub(crate) fn chart(workers: &[WorkerUse]) -> Option<Figure> {
     // bars that are all empty would show nothing
     if workers.iter().all(|worker| worker.busy_share().is_none()) {

@@ -1,4 +1,4 @@
-//! Recommended against optimised parameters (paper, Tables 3 and 4).
+//! Comparison of recommended and optimised parameters (paper, Tables 3 and 4).
 use crate::data::{Calibration, ConditionResult};
 use crate::document::{Row, Table};
 use crate::kind;
@@ -7,7 +7,7 @@ use crate::words::{self, condition_name};
 use protocol::case::Case;
 use protocol::job::{ChannelScore, Verdict};
 
-/// Definitions that stand under every table with errors.
+/// Definitions of the error measures, printed below every table of errors.
 const DEFINITIONS: [&str; 3] = [
     "Relative error: mean absolute error over the mean absolute deviation of the measured curve from \
      its own mean.",
@@ -15,7 +15,7 @@ const DEFINITIONS: [&str; 3] = [
     "Offset: measured minus simulated mean; sensors have no absolute zero.",
 ];
 
-/// The channels that were scored, by their places in the case: those of the objective first.
+/// Returns the indices of the scored channels in the case, channels of the objective first.
 fn scored(case: &Case, result: &ConditionResult) -> Vec<usize> {
     let measured = case.measured(result.condition);
     let mut scored: Vec<usize> = measured.map(|(at, ..)| at).collect();
@@ -23,13 +23,14 @@ fn scored(case: &Case, result: &ConditionResult) -> Vec<usize> {
     scored
 }
 
-/// A measure of agreement, channel by channel.
+/// Error measure of a channel.
 struct Measure {
     title: &'static str,
     unit: fn(&str) -> String,
     of: fn(&ChannelScore) -> f64,
     write: fn(f64) -> String,
-    /// Whether the ratio of two of them says something: one of signed errors or of offsets does not.
+    /// Whether the ratio of optimised to recommended value is meaningful; not so for signed errors and
+    /// offsets.
     has_ratio: bool,
 }
 
@@ -79,7 +80,7 @@ const MEASURES: [Measure; 6] = [
 ];
 
 impl Measure {
-    /// Both parameter sets at one channel.
+    /// Builds the row of one channel with the measure for both parameter sets.
     fn row(&self, case: &Case, result: &ConditionResult, channel: usize) -> Row {
         let [before, after] = [&result.recommended, &result.optimised].map(|run| {
             let mut channels = run.evaluation.channels.iter();
@@ -107,7 +108,7 @@ impl Measure {
     }
 }
 
-/// Objective and agreement of every channel of a condition.
+/// Builds the rows of the objective and of all error measures under a condition.
 fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
     let scored = scored(case, result);
     let [before, after] = [&result.recommended, &result.optimised].map(|run| {
@@ -150,7 +151,7 @@ const HEAD: [&str; 5] = [
     "optimised / recommended",
 ];
 
-/// Rows of both gene vectors.
+/// Builds the rows of the recommended and optimised genes.
 fn gene_rows(calibration: &Calibration) -> Vec<Row> {
     let mut rows = Vec::new();
     let (mut group, kind) = ("", kind::of(&calibration.case));
@@ -186,7 +187,7 @@ fn gene_rows(calibration: &Calibration) -> Vec<Row> {
     rows
 }
 
-/// The paper's Table 3: genes, and agreement under the calibrated condition.
+/// Builds the paper's Table 3: genes, and agreement under the calibrated condition.
 pub fn table_3(calibration: &Calibration) -> Table {
     let case = &calibration.case;
     let title = format!(
@@ -225,7 +226,7 @@ pub fn table_3(calibration: &Calibration) -> Table {
     table
 }
 
-/// The paper's Table 4: agreement under one condition, with the same parameters.
+/// Builds the paper's Table 4: agreement under one condition, with unchanged parameters.
 pub fn table_4(case: &Case, result: &ConditionResult) -> Table {
     let role = if !case.objective.holds(result.condition) {
         "which took no part in the fit"
@@ -241,7 +242,7 @@ pub fn table_4(case: &Case, result: &ConditionResult) -> Table {
         .noted(remarks(case, result))
 }
 
-/// What got worse unseen, and which of the two runs failed, and how.
+/// Lists remarks on channels whose absolute error rose behind a free offset, and on failed runs.
 fn remarks(case: &Case, result: &ConditionResult) -> Vec<String> {
     let runs = [
         ("Recommended", &result.recommended),

@@ -1,4 +1,4 @@
-//! Tables of results, one file per subject: what a table shows, not how it is set.
+//! Tables of results, one file per subject: their content, not their layout.
 mod compare;
 mod single;
 

@@ -1,4 +1,4 @@
-//! One simulation in numbers: what every model has of it.
+//! Tables of one simulation, for models of any kind.
 use crate::data::{Shown, SingleRun};
 use crate::document::{Row, Table};
 use crate::number::{NONE, count, duration, figure, fixed, percent, range, squared, unit};
@@ -6,12 +6,12 @@ use crate::words::{channel_title, condition_name, verdict};
 use protocol::case::Channel;
 use protocol::job::Counters;
 
-/// A row with one value.
+/// Creates a row with a unit and one value.
 pub fn one(label: &str, unit: &str, value: String) -> Row {
     Row::new(label, [unit.to_owned(), value])
 }
 
-/// A row with the range of a curve: smallest, largest, half the range; its values times a factor.
+/// Creates a row with the range of a curve scaled by `factor`: smallest value, largest value, half range.
 pub fn range_row(label: &str, values: &[f64], factor: f64, unit: &str) -> Row {
     let ends = range(values.iter().map(|value| factor * value));
     let cells = ends.map_or([NONE; 3].map(str::to_owned), |(low, high)| {
@@ -20,7 +20,7 @@ pub fn range_row(label: &str, values: &[f64], factor: f64, unit: &str) -> Row {
     Row::new(label, std::iter::once(unit.to_owned()).chain(cells))
 }
 
-/// The range of every channel.
+/// Builds one row with the range of each channel.
 pub fn ranges(of: &Shown<'_>) -> Vec<Row> {
     let channels = of.case.channels_of(of.condition);
     let row = |(_, channel): (usize, &Channel)| {
@@ -30,7 +30,7 @@ pub fn ranges(of: &Shown<'_>) -> Vec<Row> {
     channels.map(row).collect()
 }
 
-/// Verdict of a simulation over rows of ranges.
+/// Builds the table of ranges, titled with condition, parameter set and verdict.
 pub fn simulation(run: &SingleRun, ranges: Vec<Row>) -> Table {
     let title = format!(
         "Condition {}, {} parameters: {}",
@@ -42,12 +42,13 @@ pub fn simulation(run: &SingleRun, ranges: Vec<Row>) -> Table {
     Table::new(title, head, ranges)
 }
 
-/// A table of rows with one value each.
+/// Builds a table of rows with one value each.
 pub fn sums(title: &str, rows: Vec<Row>) -> Table {
     Table::new(title, ["", "unit", "value"], rows)
 }
 
-/// Agreement with the record, as far as it was scored.
+/// Builds the rows of agreement with the record: objective and errors by channel; empty if nothing was
+/// scored.
 pub fn agreement(run: &SingleRun) -> Vec<Row> {
     let scored = run.evaluation.as_ref();
     let Some(evaluation) = scored.filter(|scored| !scored.channels.is_empty()) else {
@@ -70,7 +71,7 @@ pub fn agreement(run: &SingleRun) -> Vec<Row> {
     rows
 }
 
-/// What the simulation took.
+/// Builds the rows of the integrator's counters and the wall time.
 pub fn work(counters: &Counters, wall_s: f64) -> Vec<Row> {
     let counted = counters.named().into_iter();
     let mut rows = vec![Row::group("Work of the integrator")];
@@ -79,7 +80,7 @@ pub fn work(counters: &Counters, wall_s: f64) -> Vec<Row> {
     rows
 }
 
-/// The genes of one simulation beside the recommended ones.
+/// Builds the table of a simulation's parameters next to the recommended ones.
 pub(crate) fn genes(run: &SingleRun) -> Table {
     let genes = run.case.unknowns.iter().zip(&run.genes);
     Table::new(

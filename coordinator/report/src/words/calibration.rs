@@ -1,4 +1,4 @@
-//! A calibration in words: whether the error fell, where it got worse, what to be warned of.
+//! Sentences about a calibration: change of the objective, channels that got worse, warnings.
 use super::change::change;
 use super::ending::verdict;
 use super::gene::{at_bound, bound};
@@ -8,13 +8,13 @@ use crate::number::{figure, fixed, percent, quantity, ratio, squared};
 use protocol::case::{Case, Scale, Term};
 use protocol::job::{ChannelScore, Verdict};
 
-/// The objective with the recommended parameters, if their runs were complete.
+/// Returns the objective with the recommended parameters, if their runs were complete.
 pub(crate) fn complete_objective(calibration: &Calibration) -> Option<f64> {
     let (verdict, fitness) = calibration.objective(|result| &result.recommended)?;
     matches!(verdict, Verdict::Complete).then_some(fitness)
 }
 
-/// Headline of a calibration: whether the error fell, and by how much.
+/// Returns the headline of a calibration: whether the objective fell, and by how much.
 pub(crate) fn headline(calibration: &Calibration) -> String {
     let before = calibration.objective(|result| &result.recommended);
     let after = calibration.objective(|result| &result.optimised);
@@ -48,7 +48,7 @@ pub(crate) fn headline(calibration: &Calibration) -> String {
     }
 }
 
-/// The square of a unit behind a number, with the space between them.
+/// Formats the square of a unit with a leading space; empty where there is no unit.
 pub(crate) fn square_after(unit: Option<&str>) -> String {
     match squared(unit).as_str() {
         "" => String::new(),
@@ -56,7 +56,7 @@ pub(crate) fn square_after(unit: Option<&str>) -> String {
     }
 }
 
-/// The same for the unit of a channel.
+/// Formats the square of a channel's unit with a leading space.
 fn square_of(case: &Case, channel: usize) -> String {
     square_after(
         case.channels
@@ -65,7 +65,7 @@ fn square_of(case: &Case, channel: usize) -> String {
     )
 }
 
-/// What is minimised, in words.
+/// Describes the objective in words.
 fn objective(case: &Case) -> String {
     let terms = &case.objective.terms;
     let title = |term: &Term| {
@@ -85,7 +85,7 @@ fn objective(case: &Case) -> String {
     }
 }
 
-/// One sentence per channel of a condition; channels that got worse are said to be worse.
+/// Lists one sentence per channel of a condition; channels whose error rose are marked as worse.
 pub(crate) fn channels(case: &Case, result: &ConditionResult) -> Vec<String> {
     let before = &result.recommended.evaluation.channels;
     let after = &result.optimised.evaluation.channels;
@@ -119,8 +119,8 @@ pub(crate) fn channels(case: &Case, result: &ConditionResult) -> Vec<String> {
     after.iter().map(sentence).collect()
 }
 
-/// One sentence about the channels whose absolute error rose although the error without offset
-/// fell: a free offset would hide it. None where there is no such channel.
+/// Returns a sentence about the channels whose absolute error rose although their error without offset fell,
+/// which a free offset would hide; `None` if there are none.
 pub(crate) fn absolute_worse(case: &Case, result: &ConditionResult) -> Option<String> {
     let before = &result.recommended.evaluation.channels;
     let changes: Vec<String> = result
@@ -147,15 +147,17 @@ pub(crate) fn absolute_worse(case: &Case, result: &ConditionResult) -> Option<St
     })
 }
 
-/// Times the noise that a fit may leave where the model lacks nothing: records of the shipped machine that hide nothing
-/// are left at 1.1 to 1.3 times by a calibration, the shipped one at 4.9 to 6.0.
+/// Largest ratio of residual to noise at which a fit counts as free of model error: calibrations against
+/// records of the shipped machine without a hidden effect leave 1.1 to 1.3 times the noise, those against the
+/// shipped record 4.9 to 6.0 times.
 const NOISE: f64 = 1.5;
 
-/// How many times its recommended value an unknown may be before that is worth a word.
+/// Ratio of an unknown to its recommended value, or its inverse, above which the unknown is reported as far
+/// off.
 const FAR: f64 = 30.0;
 
-/// What a fit leaves that is no noise, with what stands in for it and the command that finds out; nothing where it leaves
-/// noise or the noise is unknown.
+/// Describes a residual above the noise, the unknowns that may compensate for it, and the command that finds
+/// the cause; `None` where the residual is at noise level or the noise is unknown.
 pub(crate) fn structure(calibration: &Calibration) -> Option<String> {
     let case = &calibration.case;
     let fitted = calibration.conditions.iter();
@@ -184,11 +186,11 @@ pub(crate) fn structure(calibration: &Calibration) -> Option<String> {
     } else {
         let all = listed(&far, "and");
         format!(
-            " Unknowns far from where they were expected may stand in for it: {all} of the recommended value."
+            " Unknowns far from their recommended values may compensate for it: {all} of the recommended value."
         )
     };
     Some(format!(
-        "The fit leaves {} times the noise at {}: the model lacks something that these unknowns cannot be.{far} \
+        "The fit leaves {} times the noise at {}: the model lacks an effect that these unknowns cannot represent.{far} \
          `horsehead diagnose {}` finds out what.",
         fixed(most, 1),
         channel.title,
@@ -196,7 +198,8 @@ pub(crate) fn structure(calibration: &Calibration) -> Option<String> {
     ))
 }
 
-/// Warnings that follow from the data of a calibration.
+/// Lists the warnings that follow from the data of a calibration: failed runs, worse channels, unknowns at a
+/// bound.
 pub(crate) fn warnings(calibration: &Calibration) -> Vec<String> {
     let case = &calibration.case;
     let mut warnings = Vec::new();
@@ -236,7 +239,7 @@ pub(crate) fn warnings(calibration: &Calibration) -> Vec<String> {
     warnings
 }
 
-/// Score of a channel, if the run was complete and has it.
+/// Returns the score of a channel, if there is one.
 fn score(scores: &[ChannelScore], channel: usize) -> Option<&ChannelScore> {
     scores.iter().find(|score| score.channel == channel)
 }

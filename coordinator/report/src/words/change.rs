@@ -1,7 +1,7 @@
-//! How a value changed, in words.
+//! Sentences about the change of a value.
 use crate::number::{figure, percent};
 
-/// How a value changed, as "fell from 6.8 to 0.75 (−89 %)".
+/// Describes the change of a value, as "fell from 6.8 to 0.75 (−89 %)".
 pub(crate) fn change(from: f64, to: f64, suffix: &str) -> String {
     let verb = if to < from {
         "fell"

@@ -1,12 +1,12 @@
-//! Commands that reports advise, with CASE for the folder of a case. A test of the command line parses
-//! every one.
+//! Commands that reports recommend, with CASE for the case folder. A test of the command line parses each of
+//! them.
 
-/// Simulates a case.
+/// Command that simulates a case.
 pub const SIMULATE: &str = "horsehead simulate CASE";
-/// Checks a case and its records.
+/// Command that checks a case and its records.
 pub const CHECK: &str = "horsehead case check CASE";
-/// Calibrates as thoroughly as the reference paper.
+/// Command that calibrates as thoroughly as the reference paper.
 pub const CALIBRATE: &str = "horsehead calibrate CASE --preset paper";
 
-/// All of them.
+/// All recommended commands, for tests.
 pub const ALL: [&str; 3] = [SIMULATE, CHECK, CALIBRATE];

@@ -1,13 +1,13 @@
-//! How a simulation ended, in words.
+//! Descriptions of how a simulation ended.
 use crate::{failure, number::percent};
 use protocol::job::{Reached, Verdict, Word};
 
-/// What ended a simulation, in words.
+/// Describes a failure code; a code without a description is spelled out.
 pub fn failure(word: Word) -> String {
     failure::failure(word).map_or_else(|| word.spoken(), str::to_owned)
 }
 
-/// How a simulation ended, in words, without a full stop.
+/// Describes how a simulation ended, without a full stop.
 pub fn verdict(verdict: &Verdict) -> String {
     match verdict {
         Verdict::Complete => "complete revolution".to_owned(),

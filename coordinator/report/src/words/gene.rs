@@ -1,9 +1,9 @@
-//! The bounds that unknowns touch, in words.
+//! Descriptions of an unknown's bounds and interval.
 use crate::number::quantity;
 use discrepancy::identify::UnknownEstimate;
 use protocol::case::{Scale, Unknown};
 
-/// A bound of an unknown in words, as "its upper bound 1.00e12 N/m".
+/// Describes a bound of an unknown, as "its upper bound 1.00e12 N/m".
 pub(crate) fn bound(gene: &Unknown, side: &str) -> String {
     let value = if side == "lower" {
         gene.lower
@@ -13,7 +13,7 @@ pub(crate) fn bound(gene: &Unknown, side: &str) -> String {
     format!("its {side} bound {}", quantity(value, &gene.unit))
 }
 
-/// Which bound a value touches, within half a per cent of the interval on the unknown's scale.
+/// Returns the bound that a value lies at, within half a per cent of the interval on the unknown's scale.
 pub(crate) fn at_bound(gene: &Unknown, value: f64) -> Option<&'static str> {
     let Unknown { lower, upper, .. } = *gene;
     let share = match gene.scale {
@@ -29,14 +29,14 @@ pub(crate) fn at_bound(gene: &Unknown, value: f64) -> Option<&'static str> {
     }
 }
 
-/// What the record says of an unknown, in a cell.
+/// Formats the interval of an unknown as a table cell.
 pub(crate) fn seen(own: &UnknownEstimate) -> String {
     let of = |x: f64| quantity(x, &own.unit);
     match own.interval {
         [Some(low), Some(high)] => format!("{} to {}", of(low), of(high)),
         [Some(low), None] => format!("at least {}", of(low)),
         [None, Some(high)] => format!("at most {}", of(high)),
-        [None, None] => "not seen by this record".to_owned(),
+        [None, None] => "not determined by this record".to_owned(),
     }
 }
 

@@ -1,6 +1,6 @@
-//! Results in words, from numbers: what happened, by how much, where it got worse.
+//! Results in words: changes, their sizes, and deteriorations.
 //!
-//! Says what the data say and no more; every sentence stands by itself.
+//! States only what the data show; every sentence can be read on its own.
 mod calibration;
 mod change;
 pub mod command;
@@ -19,6 +19,6 @@ pub(super) use name::{
     objective_heading,
 };
 
-/// What to know of records that come from no test.
+/// Notice for cases whose records are synthetic.
 pub(super) const SYNTHETIC: &str = "The records of this case are synthetic: they were \
     computed, not measured on a machine, and say nothing about how well a real one is met.";

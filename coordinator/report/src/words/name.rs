@@ -1,15 +1,15 @@
-//! Names of things as people call them, and lists of names as a sentence has them.
+//! Display names, and lists of names for sentences.
 use crate::number::squared;
 use protocol::case::{Abscissa, Case};
 
-/// Name of a condition; its number where the case does not have it.
+/// Returns the name of a condition; its number if the case lacks it.
 pub fn condition_name(case: &Case, condition: usize) -> String {
     case.conditions
         .get(condition)
         .map_or_else(|| format!("#{condition}"), |found| found.name.clone())
 }
 
-/// The conditions that are calibrated, as `condition 5rpm` or `conditions 5rpm and 4rpm`.
+/// Names the calibrated conditions, as `condition 5rpm` or `conditions 5rpm and 4rpm`.
 pub(crate) fn calibrated(case: &Case) -> String {
     let conditions = case.objective.conditions();
     let names: Vec<String> = conditions.map(|at| condition_name(case, at)).collect();
@@ -21,20 +21,20 @@ pub(crate) fn calibrated(case: &Case) -> String {
     format!("{noun} {}", listed(&names, "and"))
 }
 
-/// Title of a channel; its number where the case does not have it.
+/// Returns the title of a channel; its number if the case lacks it.
 pub(crate) fn channel_title(case: &Case, channel: usize) -> String {
     case.channels
         .get(channel)
         .map_or_else(|| format!("#{channel}"), |found| found.title.clone())
 }
 
-/// What is counted along an abscissa.
+/// Names the quantity along an abscissa, such as an angle or the time.
 pub(crate) fn counted(abscissa: &Abscissa) -> String {
     let angle = if abscissa.unit == "deg" { " angle" } else { "" };
     format!("{}{angle}", abscissa.name)
 }
 
-/// A quantity with its unit in brackets behind it, where it has one.
+/// Formats a quantity followed by its unit in brackets, if it has one.
 pub(crate) fn headed(what: &str, unit: &str) -> String {
     match unit {
         "" => what.to_owned(),
@@ -42,18 +42,18 @@ pub(crate) fn headed(what: &str, unit: &str) -> String {
     }
 }
 
-/// The objective as scales and columns are headed.
+/// Returns the heading of the objective for axes and columns, with its unit.
 pub(crate) fn objective_heading(case: &Case) -> String {
     headed("objective", &squared(case.objective_unit()))
 }
 
-/// Whether the objective sums a channel.
+/// Returns whether a channel is part of the objective.
 pub(crate) fn is_fitted(case: &Case, channel: usize) -> bool {
     let found = case.channels.get(channel);
     found.is_some_and(|channel| case.objective.names(&channel.name))
 }
 
-/// Items as a sentence lists them, as `a, b and c`.
+/// Joins items for a sentence, as `a, b and c` with `last` = "and".
 pub(crate) fn listed(items: &[String], last: &str) -> String {
     match items {
         [] => String::new(),
@@ -62,7 +62,7 @@ pub(crate) fn listed(items: &[String], last: &str) -> String {
     }
 }
 
-/// A text with a capital at its start.
+/// Returns a text with its first letter in upper case.
 pub(crate) fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| {
@@ -70,7 +70,7 @@ pub(crate) fn capitalised(text: &str) -> String {
     })
 }
 
-/// A title within a sentence.
+/// Returns a title with its first letter in lower case, for use within a sentence.
 pub(crate) fn lower(title: &str) -> String {
     let mut letters = title.chars();
     letters.next().map_or_else(String::new, |first| {

@@ -1,4 +1,4 @@
-//! The report of a diagnosis, for every verdict: complete, well-formed, honest.
+//! Tests of the diagnosis report for every verdict: completeness, well-formedness and correct statements.
 use crate::suspicion::{self, Made};
 use crate::{check_page, names, words};
 use case::CaseEffect;
@@ -38,17 +38,21 @@ fn every_verdict_makes_a_page_and_a_text_without_numbers_that_are_none() {
             assert_eq!(none, None, "{verdict:?}");
         }
         let sections = [
-            "Where the curves part",
-            "What was suspected",
-            "What it shows",
-            "What it rests on",
+            "Where the residual lies",
+            "Candidate effects",
+            "Validation: the gap before and after",
+            "Reliability of the verdict",
             "How it was made",
         ];
         for section in sections {
             assert!(page.contains(section), "{verdict:?} has no {section}");
         }
         let added = matches!(verdict, Verdict::Named | Verdict::Ambiguous);
-        assert_eq!(page.contains("What is added"), added, "{verdict:?}");
+        assert_eq!(
+            page.contains("Effects added to the model"),
+            added,
+            "{verdict:?}"
+        );
         assert_eq!(page.contains("[[effects]]"), added, "{verdict:?}");
     }
 }
@@ -123,7 +127,7 @@ fn every_suspect_is_told_why_it_was_kept_or_dropped() {
         ("rope_hysteresis", "dropped: not significant"),
         (
             "pivot_friction",
-            "dropped: the record asks for the wrong sign",
+            "dropped: the records would require a physically impossible sign",
         ),
         ("gauge_gain", "dropped: recalibration absorbs it"),
         ("twin_rope_inequality", "could not be simulated here"),
@@ -136,8 +140,8 @@ fn every_suspect_is_told_why_it_was_kept_or_dropped() {
     }
 }
 
-/// A parameter that must change along the turn stands with the value that it would take, before the
-/// answer; after it none does.
+/// Checks that a parameter that would have to vary along the revolution is listed with its values before the
+/// answer, and that none is listed after it.
 #[test]
 fn parameters_that_would_have_to_wander_are_shown_with_their_values() {
     let made = suspicion::diagnosis(Verdict::Named);
@@ -177,7 +181,7 @@ fn what_is_not_known_is_said() {
     let said = words(&page(&stopped));
     assert!(said.contains("The reason: there is no record of the calibrated condition."));
     assert!(said.contains("The noise was stated, not seen"));
-    assert!(!said.contains("What it shows"));
+    assert!(!said.contains("Validation: the gap before and after"));
     assert!(text(&stopped.subject()).starts_with("UNRESOLVED\n"));
 }
 

@@ -1,4 +1,4 @@
-//! Genes that are parameters of effects, in tables, figures and words.
+//! Tests of genes that are parameters of effects, in tables, figures and sentences.
 use crate::sample;
 use protocol::case::{EffectSetting, Scale, Unknown};
 use report::table;

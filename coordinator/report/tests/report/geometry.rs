@@ -1,5 +1,5 @@
-//! A double-horse-head unit in closed form: inextensible ropes on rigid arcs, so that the report's
-//! samples look like the machine without any simulation.
+//! Closed-form kinematics of a double-horse-head unit with inextensible ropes on rigid arcs, for realistic
+//! report samples without a simulation.
 use protocol::pumping_unit::{Machine, Motion};
 
 /// Length of rod and rope along the path, from the crank pin to the anchor \[m\].
@@ -14,11 +14,11 @@ pub(crate) struct Pose {
     pub turn_deg: f64,
     pub pin: [f64; 2],
     pub beam_rad: f64,
-    /// Direction of the contact normal where the rope leaves the arc, ground frame \[rad\].
+    /// Direction of the contact normal at the point where the rope leaves the arc, ground frame \[rad\].
     pub normal_rad: f64,
-    /// Distance of the rope's line from the pivot \[m\].
+    /// Distance of the straight rope's line from the pivot \[m\].
     pub arm_m: f64,
-    /// Straight rope between crossbeam and arc \[m\].
+    /// Length of the straight rope between crossbeam and arc \[m\].
     pub free_m: f64,
 }
 
@@ -36,7 +36,8 @@ fn residual(machine: &Machine, pin: [f64; 2], beam: f64, normal: f64) -> [f64; 2
     ]
 }
 
-/// Solves the loop at a crank angle, starting from the pose before it.
+/// Solves the loop closure at a crank angle by Newton's method, starting from the previous beam and normal
+/// angles.
 fn solve(machine: &Machine, turn_deg: f64, start: [f64; 2]) -> Pose {
     let crank = &machine.crank;
     let angle = (PIN_AT_BOTTOM_DEG - turn_deg).to_radians();
@@ -78,7 +79,7 @@ fn solve(machine: &Machine, turn_deg: f64, start: [f64; 2]) -> Pose {
     }
 }
 
-/// Poses over one revolution, `count` steps and the closing one left out.
+/// Returns `count` equally spaced poses over one revolution, without the closing one.
 pub(crate) fn revolution(machine: &Machine, count: usize) -> Vec<Pose> {
     let mut guess = [(-31.8_f64).to_radians(), 176.8_f64.to_radians()];
     (0..count)
@@ -91,7 +92,7 @@ pub(crate) fn revolution(machine: &Machine, count: usize) -> Vec<Pose> {
         .collect()
 }
 
-/// Height of the suspension point in the ground frame \[m\].
+/// Returns the height of the suspension point in the ground frame \[m\].
 pub(crate) fn suspension_y_m(machine: &Machine, pose: &Pose) -> f64 {
     let anchor = machine.front_head.rope_anchor_deg.to_radians();
     machine.front_head.radius_m * (anchor + pose.beam_rad) - FRONT_ROPE_M
@@ -105,7 +106,7 @@ fn short([x, y]: [f64; 2]) -> [f32; 2] {
     [x as f32, y as f32]
 }
 
-/// A snapshot with ropes under the given tensions \[N\].
+/// Builds a snapshot with ropes under the given tensions \[N\].
 #[expect(
     clippy::cast_possible_truncation,
     reason = "snapshots are stored short"

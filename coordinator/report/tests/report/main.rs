@@ -1,4 +1,4 @@
-//! The report as a whole, from synthesised results: well-formed, self-contained, honest, small.
+//! Tests of the report as a whole with synthesised results: well-formed, self-contained, truthful, small.
 mod diagnosis;
 mod effect_gene;
 mod geometry;
@@ -16,10 +16,10 @@ use roxmltree::{Document, ParsingOptions};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Elements that HTML leaves open.
+/// HTML void elements, which have no closing tag.
 const VOID: [&str; 3] = ["meta", "input", "br"];
 
-/// The page as XML: the same text with void elements closed.
+/// Converts a page to XML by closing its void elements.
 fn as_xml(page: &str) -> String {
     let mut rest = page;
     let mut xml = String::with_capacity(page.len() + 64);
@@ -45,7 +45,8 @@ fn as_xml(page: &str) -> String {
     xml
 }
 
-/// Parses a page and checks what holds for every report.
+/// Checks the properties common to all pages: well-formed, unique ids, no external resources, no NaN or
+/// infinity in attributes.
 fn check_page(page: &str) {
     let xml = as_xml(page);
     let options = ParsingOptions {
@@ -102,12 +103,12 @@ fn check_figure(figure: &Figure) {
     assert!(!figure.svg.contains("NaN"), "{}", figure.name);
 }
 
-/// The page of a calibration.
+/// Renders the page of a calibration.
 fn page_of(calibration: &Calibration) -> String {
     report::page(&report::calibration(calibration))
 }
 
-/// The words of a page.
+/// Extracts the text of a page, without scripts and styles.
 fn words(page: &str) -> String {
     let xml = as_xml(page);
     let options = ParsingOptions {
@@ -129,7 +130,7 @@ fn words(page: &str) -> String {
         .join(" ")
 }
 
-/// Replaces the recommended run under the calibrated condition by a failed one.
+/// Builds a sample calibration whose recommended run fails under the calibrated condition.
 fn with_failed_recommended(points: usize) -> Calibration {
     let mut calibration = sample::calibration(800);
     let run = &mut calibration.conditions[0].recommended;
@@ -139,7 +140,7 @@ fn with_failed_recommended(points: usize) -> Calibration {
     calibration
 }
 
-/// What was written below a folder, each file once.
+/// Returns the relative paths of the written files, and checks that each was written once.
 fn names(folder: &Path, written: &[PathBuf]) -> BTreeSet<String> {
     let names: BTreeSet<String> = written
         .iter()
@@ -267,7 +268,7 @@ fn both_columns_of_an_overlay_share_their_scales() {
     }
 }
 
-/// Points of every long curve with a pen, in the order in which they were drawn.
+/// Returns the points of every curve longer than 100 points with a given pen, in drawing order.
 fn curves(svg: &str, stroke: &str, width: &str) -> Vec<Vec<(i64, i64)>> {
     let document = Document::parse(svg).expect("well-formed SVG");
     let with_pen = document.descendants().filter(|node| {
@@ -587,7 +588,7 @@ fn computed_records_are_not_passed_off_as_measured() {
     assert!(page(&calibration).contains(said));
 }
 
-/// The slowest stand first, processor time beside wall time.
+/// Checks that the slowest simulations are listed first, with processor and wall time.
 #[test]
 fn the_slowest_simulations_are_listed_with_what_they_cost() {
     let calibration = sample::calibration(1000);
@@ -611,7 +612,7 @@ fn the_slowest_simulations_are_listed_with_what_they_cost() {
     assert!(note.contains("the slowest took 2.0 times that"), "{note}");
 }
 
-/// On a phone tables and figures scroll inside the page, and figures keep the size at which their letters can be read.
+/// Checks that on a narrow screen tables and figures scroll inside the page, with figures at a legible size.
 #[test]
 fn tables_and_figures_scroll_on_a_narrow_screen() {
     let page = page_of(&sample::calibration(100));

@@ -1,4 +1,4 @@
-//! The numbers behind the figures, as CSV.
+//! Tests of the CSV files with the data behind the figures.
 use super::{sample, with_failed_recommended};
 use protocol::pumping_unit::{Motion, Simulation};
 use report::pumping_unit::csv;
@@ -37,7 +37,7 @@ fn the_curves_are_written_with_all_their_digits() {
     }
 }
 
-/// Every cylinder of every snapshot stands in a row of its own.
+/// Checks that each cylinder of each snapshot has a row of its own.
 #[test]
 fn ropes_are_written_cylinder_by_cylinder() {
     let simulation = Simulation::of(&sample::single().curves).unwrap();

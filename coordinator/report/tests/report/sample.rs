@@ -1,4 +1,4 @@
-//! A case and its results, synthesised: the machine's geometry, curves of its shape, a search log.
+//! Synthesised case with results: machine geometry, plausible curves and a search log.
 use crate::geometry::{self, Pose};
 use dispatch::account::JobCost;
 use protocol::pumping_unit::failure;
@@ -17,9 +17,9 @@ use report::{
     Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, SingleRun, WorkerUse,
 };
 
-/// Output points per revolution.
+/// Number of output points per revolution.
 const GRID: usize = 720;
-/// Harmonics of the polished-rod load \[kN\]: cosine, sine.
+/// Harmonics of the polished-rod load \[kN\]: cosine and sine amplitude.
 const LOAD_KN: [(f64, f64); 10] = [
     (-8.017, 14.245),
     (0.473, 0.671),
@@ -33,7 +33,7 @@ const LOAD_KN: [(f64, f64); 10] = [
     (0.703, -0.560),
 ];
 
-/// Deterministic noise: a 64-bit mixer, uniform in 0..1.
+/// Deterministic pseudo-random numbers (64-bit mixer), uniform in 0..1.
 pub(crate) struct Noise(pub u64);
 
 impl Noise {
@@ -79,7 +79,7 @@ fn genes() -> Vec<Unknown> {
     ]
 }
 
-/// A machine without modes.
+/// Builds a machine whose head has no modes.
 #[expect(clippy::too_many_lines, reason = "one literal, field by field")]
 fn machine() -> Machine {
     let turn_deg: Vec<f64> = (0..GRID).map(|i| 0.5 * i as f64).collect();
@@ -170,7 +170,7 @@ fn machine() -> Machine {
     }
 }
 
-/// A case of that machine.
+/// Builds a case of the sample machine.
 pub(crate) fn case() -> Case {
     let machine = machine();
     Case {
@@ -195,12 +195,13 @@ pub(crate) fn case() -> Case {
     }
 }
 
-/// Rope tension at the crossbeam \[N\].
+/// Returns the rope tension at the crossbeam \[N\].
 fn tension_n(machine: &Machine, pose: &Pose) -> f64 {
     load_n(pose.turn_deg) * machine.front_head.radius_m / pose.arm_m
 }
 
-/// Stress of a gauge [`MPa`]: shaped like the real head's, with rope vibration of the given size.
+/// Returns the stress at a gauge [`MPa`]: similar in shape to that of the real head, with a rope vibration of
+/// amplitude `ripple` and order `order`.
 fn stress_mpa(machine: &Machine, pose: &Pose, gauge: usize, ripple: f64, order: f64) -> f64 {
     let psi = (pose.normal_rad - pose.beam_rad).to_degrees();
     let tension_kn = 1e-3 * tension_n(machine, pose);
@@ -221,7 +222,7 @@ fn term(gauge: u8) -> Term {
     }
 }
 
-/// The channels of a condition, its gauges measured.
+/// Builds the channels of a condition, with records for the gauges.
 fn channels(machine: &Machine, condition: usize) -> Vec<Channel> {
     let mut noise = Noise(17 + condition as u64);
     let poses = geometry::revolution(machine, GRID);
@@ -246,7 +247,7 @@ fn channels(machine: &Machine, condition: usize) -> Vec<Channel> {
     channels
 }
 
-/// A complete simulation whose stress differs from the record by `error` (1 is a lot).
+/// Builds a complete simulation whose stress differs from the record in proportion to `error` (1 is large).
 #[expect(clippy::too_many_lines, reason = "one literal, field by field")]
 pub(crate) fn simulation(case: &Case, error: f64, motion_step_deg: f64) -> Simulation {
     let machine = &Machine::of(case).expect("a pumping unit");
@@ -347,7 +348,7 @@ pub(crate) fn simulation(case: &Case, error: f64, motion_step_deg: f64) -> Simul
     }
 }
 
-/// Cuts a simulation off, as a failure in the revolution would.
+/// Truncates a simulation to `points` samples, as a failure during the revolution would.
 pub(crate) fn fail(simulation: &mut Simulation, points: usize) {
     simulation.verdict = Verdict::Failed {
         kind: failure::ROPE_THROUGH_HEAD,
@@ -369,7 +370,7 @@ pub(crate) fn fail(simulation: &mut Simulation, points: usize) {
     simulation.motion.retain(|motion| motion.turn_deg <= last);
 }
 
-/// Scores a simulation against the record of a condition, plainly.
+/// Scores a simulation against the record of a condition, with an unoptimised implementation.
 pub(crate) fn score(case: &Case, condition: usize, simulation: &Simulation) -> Evaluation {
     let complete = simulation.verdict == Verdict::Complete;
     let measured = case.measured(condition).filter(|_| complete);
@@ -428,7 +429,7 @@ pub(crate) fn run(case: &Case, condition: usize, error: f64) -> Run {
     }
 }
 
-/// A simulation as a worker sends it.
+/// Converts a simulation to the curves that a worker sends.
 pub(crate) fn curves(case: &Case, condition: usize, simulation: Simulation) -> Curves {
     let channels = case.channels_of(condition);
     let channels = channels.map(|(_, channel)| simulation.channel(&channel.name).to_vec());
@@ -436,7 +437,7 @@ pub(crate) fn curves(case: &Case, condition: usize, simulation: Simulation) -> C
     simulation.into_curves(channels).expect("curves that fit")
 }
 
-/// Changes what a run simulated under the calibrated condition, and scores it again.
+/// Modifies the simulation of a run under the calibrated condition, and scores the run again.
 pub(crate) fn change(case: &Case, run: &mut Run, change: impl FnOnce(&mut Simulation)) {
     let mut simulation = Simulation::of(&run.curves).expect("a pumping unit");
     change(&mut simulation);
@@ -444,7 +445,8 @@ pub(crate) fn change(case: &Case, run: &mut Run, change: impl FnOnce(&mut Simula
     run.curves = curves(case, 0, simulation);
 }
 
-/// What an individual cost: every hundredth twice as much as the others, the later the more.
+/// Returns the cost of an individual: twice as high for every hundredth, and slightly increasing with the
+/// index.
 fn cost(index: usize) -> JobCost {
     let slow = if index % 100 == 7 { 2.0 } else { 1.0 };
     let processor_s = 0.2 * slow + 1e-6 * index as f64;
@@ -455,7 +457,7 @@ fn cost(index: usize) -> JobCost {
     }
 }
 
-/// A search log: a population that closes in on `best` over the generations.
+/// Builds a search log whose population converges to `best` over the generations.
 fn history(case: &Case, best: &[f64], count: usize) -> Vec<HistoryPoint> {
     let mut noise = Noise(5);
     (0..count)
@@ -510,7 +512,7 @@ fn origin() -> Origin {
     }
 }
 
-/// A calibration that went well, with the recommended parameters far off.
+/// Builds a successful calibration whose recommended parameters are far from the optimum.
 pub(crate) fn calibration(evaluations: usize) -> Calibration {
     let case = case();
     let factors = [2.49, 1.81, 1.85, 2.25, 13.0, 10.7, 1.1, 1.4, 401.0, 20.4];
@@ -577,7 +579,7 @@ pub(crate) fn calibration(evaluations: usize) -> Calibration {
     }
 }
 
-/// One simulation with the recommended parameters.
+/// Builds one simulation with the recommended parameters.
 pub(crate) fn single() -> SingleRun {
     let case = case();
     let simulation = simulation(&case, 0.3, 2.0);

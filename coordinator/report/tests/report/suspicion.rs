@@ -1,4 +1,4 @@
-//! A finished diagnosis, synthesised: fits of a linear model, suspects with tests, the maps.
+//! Synthesised diagnosis: fits of a linear model, candidate effects with tests, and the maps of the residual.
 use crate::sample;
 use discrepancy::cause::refit::Refitted;
 use discrepancy::cause::suspect::Suspect;
@@ -30,12 +30,12 @@ use search::space::Space;
 use std::time::Duration;
 use study::{Diagnosed, StageCost};
 
-/// Whitened entries of the made-up residual.
+/// Number of whitened entries of the synthetic residual.
 const ENTRIES: usize = 40;
-/// Crank-angle grid.
+/// Number of crank-angle grid points.
 const GRID: usize = 360;
 
-/// Everything that a subject borrows.
+/// Owned data that a [`Subject`] borrows.
 pub(crate) struct Made {
     pub(crate) case: Case,
     pub(crate) records: Vec<Record>,
@@ -134,8 +134,8 @@ fn library() -> Vec<EffectDescriptor> {
     all
 }
 
-/// A finished fit of the linear model `residual = constant - A x`, with the genes and added effects
-/// as unknowns; `size` is the length of its residual.
+/// Fits the linear model `residual = constant - A x`, with the genes and the parameters of the added effects
+/// as unknowns; `size` scales the constant part of the residual.
 fn fit(case: &Case, added: &[&EffectDescriptor], size: f64, curves: Curves) -> Fit {
     let space = Space::new(&case.unknowns).expect("the sample's genes are sound");
     let mut model = Model::plain(space);
@@ -172,7 +172,7 @@ const CHANNELS: [Sensor; 4] = [
     Sensor::Torque,
 ];
 
-/// A curve of a channel, off the truth by `error`.
+/// Returns a curve of a channel that deviates from the true curve in proportion to `error`.
 fn curve(c: usize, error: f64) -> Vec<f64> {
     let size = [20.0, 15.0, 1.8, 2e4][c];
     (0..GRID)
@@ -240,7 +240,8 @@ fn rows(records: &[Record], after: f64) -> Vec<Row> {
         .collect()
 }
 
-/// A suspect whose test has this p-value; none could be simulated where it is not a number.
+/// Builds a candidate effect with the given p-value; a p-value of NaN stands for an effect that could not be
+/// simulated.
 fn suspect(effect: &EffectDescriptor, statistic: f64, p_value: f64, absorbed: f64) -> Suspect {
     let able = p_value.is_finite();
     Suspect {
@@ -307,7 +308,7 @@ fn round(case: &Case, library: &[EffectDescriptor]) -> Round {
     }
 }
 
-/// The bins of a turn.
+/// Bins of one revolution.
 const TURN: along::Bins = along::Bins {
     from: 0.0,
     width: 3.0,
@@ -426,7 +427,7 @@ fn accounts() -> Vec<(Stage, StageCost)> {
     ]
 }
 
-/// A gauge that reads a little too much.
+/// Builds the estimate of a gauge gain error within its assumed tolerance.
 fn reads_high() -> NeverExact {
     NeverExact {
         id: "gauge_gain".to_owned(),
@@ -440,7 +441,7 @@ fn reads_high() -> NeverExact {
     }
 }
 
-/// Predictive scores of an answer; none where nothing was added.
+/// Returns the predictive scores of an answer; empty if no effect was added.
 fn predicted(added: bool) -> Vec<Prediction> {
     let one = Prediction {
         condition: 1,
@@ -450,7 +451,7 @@ fn predicted(added: bool) -> Vec<Prediction> {
     added.then_some(one).into_iter().collect()
 }
 
-/// A diagnosis that ends in a verdict, with everything that such a verdict has.
+/// Builds a diagnosis with the given verdict and all data that belong to it.
 pub(crate) fn diagnosis(verdict: Verdict) -> Made {
     let case = sample::case();
     let library = library();
@@ -535,7 +536,8 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
     }
 }
 
-/// The first gene, twice as large in the second quarter of the turn and elsewhere as it is.
+/// Builds the variation of the first gene: doubled in the second quarter of the revolution, unchanged
+/// elsewhere.
 fn wander(p_value: f64) -> Wander {
     let sector = |k: usize| Part::Sector {
         from: 90.0 * k as f64,
@@ -554,7 +556,7 @@ fn wander(p_value: f64) -> Wander {
     }
 }
 
-/// An ambiguous diagnosis whose first round added one effect, and whose second one of two.
+/// Builds an ambiguous diagnosis: the first round added one effect, the second an ambiguity set of two.
 pub(crate) fn two_rounds() -> Made {
     let mut made = diagnosis(Verdict::Ambiguous);
     let ids: Vec<String> = made
@@ -576,7 +578,7 @@ pub(crate) fn two_rounds() -> Made {
     made
 }
 
-/// A diagnosis of one cycle: a suspect, and no name.
+/// Builds a diagnosis of one cycle with stated noise: a suspected effect, but no named one.
 pub(crate) fn assumed() -> Made {
     let mut made = diagnosis(Verdict::Unresolved);
     let suspect = estimate(&made.library[0], 0.8, 596.9);
@@ -586,7 +588,7 @@ pub(crate) fn assumed() -> Made {
     made
 }
 
-/// A diagnosis that stopped before it began: nothing but a reason.
+/// Builds a diagnosis that stopped at once, with a reason and no other data.
 pub(crate) fn stopped(reason: &str) -> Made {
     let mut made = diagnosis(Verdict::Unresolved);
     made.records = vec![record(0, 1)];

@@ -1,24 +1,24 @@
-//! Columns of a Jacobian by differences, those apart that are known, with a second try on the other side for a point that could
-//! not be evaluated.
+//! Finite-difference columns of a Jacobian, except those already known; a column whose points all failed is
+//! retried once on the opposite side.
 use super::problem::{Settings, Variable};
 use nalgebra::{DMatrix, DVector};
 
-/// One evaluation beside the point.
+/// Difference point of one variable: its step and its result.
 #[derive(Clone, Debug)]
 pub(super) struct Difference {
     variable: usize,
-    /// Signed step.
+    /// Signed difference step.
     step: f64,
     found: Found,
 }
 
-/// What became of a difference.
+/// Result of evaluating a difference point.
 #[derive(Clone, Debug)]
 enum Found {
     Awaited,
-    /// The residual there.
+    /// Residual at the difference point.
     Residual(DVector<f64>),
-    /// It could not be evaluated.
+    /// The point could not be evaluated.
     Failed,
 }
 
@@ -31,12 +31,12 @@ impl Found {
     }
 }
 
-/// All columns.
+/// Jacobian columns being collected at one point, known or by differences.
 #[derive(Clone, Debug)]
 pub(super) struct Columns {
     differences: Vec<Difference>,
     retried: bool,
-    /// What is known already, by variable.
+    /// Columns known without differences, indexed by variable; `None` where a column must be differenced.
     known: Vec<Option<DVector<f64>>>,
 }
 
@@ -87,7 +87,7 @@ impl Columns {
             .filter(|d| matches!(d.found, Found::Awaited))
     }
 
-    /// The points that are awaited.
+    /// Returns the points still to be evaluated.
     pub(super) fn points(&self, x: &[f64]) -> Vec<Vec<f64>> {
         let point = |d: &Difference| {
             let mut point = x.to_vec();
@@ -116,7 +116,8 @@ impl Columns {
         }
     }
 
-    /// A column without any value is tried once more on the other side, with half the step.
+    /// Adds, for every column without a single evaluated point, one more point on the opposite side with half
+    /// the step.
     fn retry(&mut self, x: &[f64], variables: &[Variable]) {
         let mut again = Vec::new();
         for (variable, v) in variables.iter().enumerate() {
@@ -142,8 +143,8 @@ impl Columns {
         self.open().next().is_none()
     }
 
-    /// The Jacobian, and by how much the largest step of each variable changed the residual; 0 for one that
-    /// took none.
+    /// Returns the Jacobian, and for each variable the largest change of the residual (norm) that a
+    /// difference step caused; 0 for a variable that was not differenced.
     pub(super) fn jacobian(
         &self,
         residual: &DVector<f64>,
@@ -177,7 +178,8 @@ impl Columns {
     }
 }
 
-/// The step that would have changed the residual as much as wanted, within its range.
+/// Returns the difference step that would have changed the residual by `settings.change`, limited to
+/// `settings.step_range` about the variable's first step.
 pub(super) fn next_step(step: f64, variable: &Variable, change: f64, settings: &Settings) -> f64 {
     let wanted = if change > 0.0 {
         step * (settings.change / change).clamp(0.1, 10.0)

@@ -1,60 +1,60 @@
-//! What is searched, how, and what is known of it.
+//! Variables, priors, settings and results of the least-squares search.
 use nalgebra::{DMatrix, DVector};
 
-/// One unknown.
+/// Unknown of the least-squares problem, with bounds, step sizes and prior.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variable {
-    /// Where the search starts.
+    /// Starting value of the search.
     pub start: f64,
-    /// Least value.
+    /// Lower bound.
     pub lower: f64,
-    /// Greatest value.
+    /// Upper bound.
     pub upper: f64,
-    /// First difference step; later ones follow what a step changes.
+    /// First difference step; later steps are adapted to the change of the residual that a step causes.
     pub step: f64,
-    /// How far one step of the search may move it: what hardly changes the residual would else go to a bound.
+    /// Longest change of the variable in one step of the search; without it a variable that hardly changes
+    /// the residual would go to a bound.
     pub longest: f64,
-    /// What is known beforehand.
+    /// Prior distribution, if any.
     pub prior: Option<Prior>,
 }
 
-/// A normal distribution of an unknown.
+/// Normal prior distribution of an unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prior {
-    /// Its mean.
+    /// Mean of the prior.
     pub mean: f64,
-    /// Its standard deviation, positive.
+    /// Standard deviation of the prior, positive.
     pub deviation: f64,
 }
 
-/// How the search goes about it.
+/// Settings of the least-squares search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Most Jacobians.
+    /// Maximum number of Jacobians.
     pub iterations: u32,
-    /// Converged when no column of the Jacobian has a larger cosine with the residual.
+    /// Convergence threshold on the largest cosine between a column of the Jacobian and the residual.
     pub gradient: f64,
-    /// Converged when a step lowers the cost by less than this share of it.
+    /// Convergence threshold on the relative decrease of the cost by a step.
     pub decrease: f64,
-    /// By how much a difference step should change the residual (in the norm of the residual).
+    /// Desired change of the residual (norm) by a difference step.
     pub change: f64,
-    /// How far the difference step may move from its first value, as a factor either way.
+    /// Largest factor by which a difference step may grow or shrink from its first value.
     pub step_range: f64,
-    /// What a step is damped by beside a variable's own curvature: this share of the mean one. Without it what
-    /// hardly changes the residual goes to its bound at any damping.
+    /// Additional damping, as a share of the mean curvature, on top of a variable's own curvature. Without it
+    /// a variable that hardly changes the residual goes to its bound at any damping.
     pub level: f64,
-    /// Whether columns are central differences: twice the points, second-order accurate.
+    /// Whether columns are central differences, second-order accurate at twice the number of points.
     pub central: bool,
-    /// Whether a search by one-sided differences that has converged goes on with central ones until it has
-    /// converged once more: their error moves the minimum no longer.
+    /// Whether a search that has converged with one-sided differences continues with central ones until it
+    /// converges again, so that the error of the differences no longer shifts the minimum.
     pub finish: bool,
-    /// Whether whoever evaluates may know columns: they are asked for, and only those that it has not are
-    /// differenced.
+    /// Whether the evaluator is asked for exact columns; only the columns it does not return are differenced.
     pub exact: bool,
 }
 
 impl Settings {
-    /// The default with at most so many Jacobians.
+    /// Returns the default settings with at most `iterations` Jacobians.
     pub fn short(iterations: u32) -> Self {
         Self {
             iterations,
@@ -79,38 +79,38 @@ impl Default for Settings {
     }
 }
 
-/// Why a search is over.
+/// Reason why a search ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
-    /// The gradient vanishes, or steps no longer pay.
+    /// The gradient vanishes, or steps no longer lower the cost noticeably.
     Converged,
     /// No step lowers the cost, though the gradient does not vanish.
     Stalled,
-    /// The iterations are used up.
+    /// The maximum number of iterations was reached.
     Iterations,
     /// The start could not be evaluated.
     StartFailed,
 }
 
-/// What is known at the best point.
+/// Best point with its residual and Jacobian.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearized {
-    /// The point.
+    /// Coordinates of the point.
     pub x: Vec<f64>,
-    /// Its residual vector, length n.
+    /// Residual vector at the point, length n.
     pub residual: DVector<f64>,
-    /// Derivatives of the residual, n x number of unknowns; a column that could not be evaluated is
-    /// zero.
+    /// Derivatives of the residual, n x number of unknowns; the column of a variable that could not be
+    /// evaluated is zero.
     pub jacobian: DMatrix<f64>,
 }
 
-/// What was evaluated at a point.
+/// Result of evaluating a point: residual and known derivatives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evaluated {
     /// The residual vector.
     pub residual: DVector<f64>,
-    /// Its derivatives by the variables where those were wanted, in their order; none for a column that
-    /// is not known. Empty where nothing is known of any.
+    /// Derivatives of the residual by the variables, in their order, if they were requested; `None` for a
+    /// column that is not known. Empty if no column is known.
     pub columns: Vec<Option<DVector<f64>>>,
 }
 

@@ -1,4 +1,4 @@
-//! The search as a sequence of batches: columns, then a fan of damped steps.
+//! Levenberg-Marquardt search as a sequence of batches: Jacobian columns, then a fan of damped steps.
 use super::{
     differences::{self, Columns},
     problem::{Ended, Evaluated, Linearized, Settings, Variable},
@@ -6,25 +6,25 @@ use super::{
 };
 use nalgebra::{DMatrix, DVector};
 
-/// The points that are planned.
+/// Kind of points that are planned next.
 #[derive(Clone, Debug)]
 enum Phase {
     Start,
-    /// The best point once more, with its columns.
+    /// Best point again, evaluated with its exact columns.
     Exact,
     Columns(Columns),
     Fan(Vec<(f64, Vec<f64>)>),
     Over(Ended),
 }
 
-/// A search as a sequence of batches.
+/// Levenberg-Marquardt search that plans batches of points and absorbs their residuals.
 #[derive(Clone, Debug)]
 pub struct LeastSquares {
     settings: Settings,
     variables: Vec<Variable>,
     steps: Vec<f64>,
     at: Linearized,
-    /// Whether the Jacobian belongs to the point.
+    /// Whether the Jacobian was computed at the current best point.
     fresh: bool,
     cost: f64,
     damping: f64,
@@ -37,7 +37,7 @@ pub struct LeastSquares {
 }
 
 impl LeastSquares {
-    /// A search from the variables' starts, clamped into their boxes.
+    /// Creates a search from the variables' starts, clamped into their boxes.
     pub fn new(variables: Vec<Variable>, settings: Settings) -> Self {
         let x = variables
             .iter()
@@ -64,7 +64,7 @@ impl LeastSquares {
         }
     }
 
-    /// A search from a point that is known already; only its Jacobian is missing.
+    /// Creates a search from a point whose residual is known already; only its Jacobian is missing.
     pub fn from_known(
         mut variables: Vec<Variable>,
         settings: Settings,
@@ -78,8 +78,8 @@ impl LeastSquares {
         search
     }
 
-    /// Points to evaluate now, in the order in which [`Self::absorb`] takes their residuals; empty
-    /// when the search is over.
+    /// Returns the points to evaluate now, in the order in which [`Self::absorb`] takes their residuals;
+    /// empty when the search is over.
     pub fn plan(&self) -> Vec<Vec<f64>> {
         match &self.phase {
             Phase::Start | Phase::Exact => vec![self.at.x.clone()],
@@ -89,13 +89,14 @@ impl LeastSquares {
         }
     }
 
-    /// Whether the residuals of the planned points are wanted with their derivatives by all variables.
+    /// Returns whether the residuals of the planned points are to come with their derivatives by all
+    /// variables.
     pub const fn wants_columns(&self) -> bool {
         self.settings.exact && matches!(self.phase, Phase::Start | Phase::Exact)
     }
 
-    /// Takes what was evaluated at the planned points; none for one that could not be. All residuals of a
-    /// search have the same length.
+    /// Absorbs the results of the planned points; `None` for a point that could not be evaluated. All
+    /// residuals of a search have the same length.
     pub fn absorb<E: Into<Evaluated>>(&mut self, found: Vec<Option<E>>) {
         let found: Vec<Option<Evaluated>> = found.into_iter().map(|e| e.map(Into::into)).collect();
         self.evaluations += found.len() as u64;
@@ -119,7 +120,7 @@ impl LeastSquares {
         }
     }
 
-    /// Why the search is over, if it is.
+    /// Returns why the search ended; `None` while it is running.
     pub const fn ended(&self) -> Option<Ended> {
         match self.phase {
             Phase::Over(ended) => Some(ended),
@@ -127,40 +128,40 @@ impl LeastSquares {
         }
     }
 
-    /// The best point with its residual and Jacobian. When the search is over the Jacobian belongs
-    /// to the point.
+    /// Returns the best point with its residual and Jacobian. When the search is over, the Jacobian is that
+    /// at this point.
     pub const fn best(&self) -> &Linearized {
         &self.at
     }
 
-    /// The unknowns.
+    /// Returns the unknowns of the search.
     pub fn variables(&self) -> &[Variable] {
         &self.variables
     }
 
-    /// `|r|^2` plus the priors' part at the best point.
+    /// Returns the cost at the best point: `|r|^2` plus the contribution of the priors.
     pub const fn cost(&self) -> f64 {
         self.cost
     }
 
-    /// Points evaluated, and how many of them could not be.
+    /// Returns the number of points evaluated, and how many of these evaluations failed.
     pub const fn work(&self) -> (u64, u64) {
         (self.evaluations, self.failures)
     }
 
-    /// The largest cosine between a column of the Jacobian, with its prior, and the residual; 0 at
-    /// an exact minimum. Columns pressed against a bound do not count.
+    /// Returns the largest cosine between a column of the Jacobian, with its prior, and the residual; 0 at an
+    /// exact minimum. Variables pressed against a bound do not count.
     pub fn gradient_ratio(&self) -> f64 {
         step::gradient_ratio(&self.at, &self.variables, self.cost)
     }
 
-    /// The residual at the minimum of the linearised problem: the residual itself where the search
-    /// has converged, to first order what it would have become where it has not.
+    /// Returns the residual at the minimum of the linearised problem: the residual itself if the search has
+    /// converged, otherwise a first-order prediction of the residual at convergence.
     pub fn settled_residual(&self) -> DVector<f64> {
         step::settled(&self.at, &self.variables)
     }
 
-    /// By which share of the cost one more step would lower it, by the linearised problem.
+    /// Returns the relative decrease of the cost that the linearised problem predicts for one more step.
     pub fn promised_decrease(&self) -> f64 {
         let settled = self.settled_residual().norm_squared();
         ((self.at.residual.norm_squared() - settled) / self.cost).max(0.0)
@@ -172,7 +173,7 @@ impl LeastSquares {
         self.fresh = false;
     }
 
-    /// At a point whose residual alone is known.
+    /// Moves to the current point, given its residual, and plans its Jacobian.
     fn arrive(&mut self, residual: DVector<f64>) {
         self.place(residual);
         if self.settings.exact {
@@ -182,7 +183,7 @@ impl LeastSquares {
         }
     }
 
-    /// Differences what is not known.
+    /// Plans difference points for the columns that are not in `known`.
     fn plan_columns(&mut self, known: Vec<Option<DVector<f64>>>) {
         // who knows no column at all is not asked again
         self.settings.exact &= known.iter().any(Option::is_some);
@@ -196,7 +197,8 @@ impl LeastSquares {
         self.seen(columns);
     }
 
-    /// Goes on once all columns are there.
+    /// Stores the columns; once all are complete, computes the Jacobian and either ends the search or plans
+    /// the next fan.
     fn seen(&mut self, columns: Columns) {
         if !columns.is_complete() {
             self.phase = Phase::Columns(columns);

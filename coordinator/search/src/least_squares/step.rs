@@ -2,13 +2,13 @@
 use super::problem::{Linearized, Variable};
 use nalgebra::{DMatrix, DVector};
 
-/// Dampings that are tried at once, relative to the last one that was taken.
+/// Damping factors tried in one fan, relative to the last accepted damping.
 const FAN: [f64; 5] = [1e-3, 0.03, 0.3, 3.0, 30.0];
 
-/// Factor on the damping after a whole fan was refused.
+/// Factor on the damping after no step of a fan lowered the cost.
 pub(super) const REFUSED: f64 = 1e3;
 
-/// The priors' part of the cost: `sum ((x_k - mean_k) / deviation_k)^2`.
+/// Returns the contribution of the priors to the cost: `sum ((x_k - mean_k) / deviation_k)^2`.
 pub fn prior_cost(x: &[f64], variables: &[Variable]) -> f64 {
     let part = |(x, v): (&f64, &Variable)| {
         v.prior.map_or(0.0, |prior| {
@@ -19,7 +19,7 @@ pub fn prior_cost(x: &[f64], variables: &[Variable]) -> f64 {
     x.iter().zip(variables).map(part).sum()
 }
 
-/// Gradient and curvature of half the cost: `J^T r + L (x - mean)`, `J^T J + L`.
+/// Returns gradient and curvature of half the cost: `J^T r + L (x - mean)`, `J^T J + L`.
 fn normal(at: &Linearized, variables: &[Variable]) -> (DVector<f64>, DMatrix<f64>) {
     let mut gradient = at.jacobian.tr_mul(&at.residual);
     let mut curvature = at.jacobian.tr_mul(&at.jacobian);
@@ -33,7 +33,7 @@ fn normal(at: &Linearized, variables: &[Variable]) -> (DVector<f64>, DMatrix<f64
     (gradient, curvature)
 }
 
-/// Whether a variable lies on a bound and the cost falls towards the outside.
+/// Returns whether a variable lies on a bound and the cost decreases towards the outside.
 fn pressed(x: f64, variable: &Variable, gradient: f64) -> bool {
     (x <= variable.lower && gradient > 0.0) || (x >= variable.upper && gradient < 0.0)
 }
@@ -51,7 +51,7 @@ pub(super) fn gradient_ratio(at: &Linearized, variables: &[Variable], cost: f64)
     worst
 }
 
-/// Residual after an undamped step inside the box.
+/// Returns the residual predicted after an undamped step inside the box.
 pub(super) fn settled(at: &Linearized, variables: &[Variable]) -> DVector<f64> {
     // twelve digits below the diagonal: decides nothing, keeps the factor
     let step = step(at, variables, [1e-12, 0.0], false);
@@ -61,16 +61,17 @@ pub(super) fn settled(at: &Linearized, variables: &[Variable]) -> DVector<f64> {
     )
 }
 
-/// The step to the minimum of the linearised problem inside the box, hardly damped, and none of it longer than
-/// a variable's longest; nothing where the curvature has no factor, or nothing may move.
+/// Returns the slightly damped step to the minimum of the linearised problem inside the box, no component
+/// longer than its variable's `longest`; `None` if the curvature has no Cholesky factor or no variable is
+/// free.
 pub fn undamped(at: &Linearized, variables: &[Variable]) -> Option<DVector<f64>> {
     step(at, variables, [1e-4, 1e-3], true)
 }
 
-/// A damped step that stays in the box: what would leave it goes to its bound, and the others go where
-/// that is best for them. Each is damped by its own curvature, and by a share `level` of the mean one.
-/// `limited` steps are none of them longer than a variable's longest. Nothing where the curvature has no
-/// factor, or nothing may move.
+/// Returns a damped step that stays in the box: a component that would leave the box ends at its bound, and
+/// the remaining components are solved for again. Each is damped by its own curvature, and by a share `level`
+/// of the mean one. If `limited`, no component is longer than its variable's `longest`. `None` if the
+/// curvature has no Cholesky factor or no variable is free.
 fn step(
     at: &Linearized,
     variables: &[Variable],
@@ -119,8 +120,8 @@ fn step(
     }
 }
 
-/// Variables that a step may move: not those that press against a bound, nor those that change
-/// nothing.
+/// Returns the variables that a step may move: those neither pressed against a bound nor without any effect
+/// on the cost.
 fn free(
     at: &Linearized,
     variables: &[Variable],
@@ -132,8 +133,8 @@ fn free(
         .collect()
 }
 
-/// The damped steps from a linearised point: dampings with the points they lead to. Variables that
-/// press against a bound stay; a variable that changes nothing stays.
+/// Returns the fan of damped steps from a linearised point: dampings with the points they lead to. Variables
+/// pressed against a bound, or without any effect, stay fixed.
 pub(super) fn fan(
     at: &Linearized,
     variables: &[Variable],

@@ -1,4 +1,5 @@
-//! The search on functions whose minimum is known, with failures and bounds in the way.
+//! Tests of the least-squares search on functions with a known minimum, including failed points and active
+//! bounds.
 use super::*;
 use nalgebra::{DMatrix, DVector};
 
@@ -165,7 +166,8 @@ fn a_known_start_is_not_evaluated_again_and_the_last_jacobian_is_fresh() {
     );
 }
 
-/// Evaluates with those columns of which `knows` says so.
+/// Runs a search on the Rosenbrock function, returning exact columns for those variables for which `knows` is
+/// true.
 fn run_knowing(search: &mut LeastSquares, knows: impl Fn(usize) -> bool) -> Ended {
     loop {
         if let Some(ended) = search.ended() {

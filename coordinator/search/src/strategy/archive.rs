@@ -1,31 +1,32 @@
-//! Everything a run has evaluated, in id order.
+//! Archive of everything a run has evaluated, in id order.
 use super::told::Told;
 use protocol::job::Derivative;
 use std::collections::BTreeMap;
 
-/// One evaluated individual.
+/// Evaluated individual: genes, result and, if requested, residual vector.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evaluated {
-    /// Id of its proposal.
+    /// Id of the proposal.
     pub id: u64,
     /// Gene values in declared units.
     pub genes: Vec<f64>,
-    /// What came back.
+    /// Result of the evaluation.
     pub told: Told,
-    /// The residual vector, for a piece that wanted it.
+    /// Residual vector, if the search requested it.
     pub residual: Option<Residual>,
 }
 
-/// The residual vector of an individual.
+/// Residual vector of an individual, with its derivatives.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Residual {
-    /// In units in which its squared length is the fitness.
+    /// Residual values, in units in which their squared norm is the fitness.
     pub values: Vec<f64>,
-    /// Its derivatives by name, one curve each, where they were wanted and the model gives them.
+    /// Derivatives of the residual by name, one curve each; empty if they were not requested or the model
+    /// does not give them.
     pub by: BTreeMap<String, Derivative>,
 }
 
-/// All results of a run, found again by the exact bits of their genes.
+/// Archive of all results of a run, searchable by the exact bits of the genes.
 #[derive(Clone, Debug, Default)]
 pub struct Archive {
     entries: Vec<Evaluated>,
@@ -34,23 +35,23 @@ pub struct Archive {
 }
 
 impl Archive {
-    /// In id order.
+    /// Returns all results in id order.
     pub fn entries(&self) -> &[Evaluated] {
         &self.entries
     }
 
-    /// The best individual: complete before failed, then by fitness, then by id.
+    /// Returns the best individual: complete before failed, then by fitness, then by id.
     pub fn best(&self) -> Option<&Evaluated> {
         self.best.and_then(|index| self.entries.get(index))
     }
 
-    /// The result of exactly these genes.
+    /// Returns the result for exactly these genes.
     pub fn find(&self, genes: &[f64]) -> Option<&Evaluated> {
         let index = self.by_genes.get(&key(genes))?;
         self.entries.get(*index)
     }
 
-    /// The individuals that survived, best first; ties by id.
+    /// Returns the individuals that survived, best first; ties by id.
     pub fn ranked(&self) -> Vec<&Evaluated> {
         let mut ranked: Vec<_> = self.entries.iter().filter(|e| e.told.survived()).collect();
         ranked.sort_by(|a, b| a.told.order(b.told));
@@ -67,7 +68,7 @@ impl Archive {
     }
 }
 
-/// The bits of a gene vector.
+/// Returns the bits of a gene vector, as a map key.
 pub(super) fn key(genes: &[f64]) -> Vec<u64> {
     genes.iter().map(|gene| gene.to_bits()).collect()
 }

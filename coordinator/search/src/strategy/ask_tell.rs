@@ -1,4 +1,4 @@
-//! The contract of every search.
+//! Interface of every search strategy: ask for proposals, tell their results.
 use super::{
     archive::{Archive, Residual},
     outcome::{Best, Finish, Progress},
@@ -6,29 +6,30 @@ use super::{
     told::Told,
 };
 
-/// A search for the individual of smallest fitness.
+/// Search for the individual of smallest fitness, in ask/tell form.
 pub trait Strategy {
-    /// Everything that can be evaluated now and has not been handed out before; ids are
+    /// Returns all proposals that can be evaluated now and have not been handed out before; ids are
     /// consecutive from 0 over the whole run. Empty while results are awaited, and at the end.
     fn ask(&mut self) -> Vec<Proposal>;
 
-    /// Takes the result of a proposal. Results may come in any order: they are buffered and
-    /// consumed in id order, so nothing ever depends on arrival. A result told twice is ignored.
+    /// Takes the result of a proposal. Results may come in any order: they are buffered and consumed in id
+    /// order, so the search does not depend on the order of arrival. A second result for the same id is
+    /// ignored.
     fn tell(&mut self, id: u64, result: Told);
 
-    /// Takes the residual vector of a proposal whose purpose wants one, before its result.
-    /// A strategy that wants none ignores it.
+    /// Takes the residual vector of a proposal whose purpose requires one, before its result. A strategy that
+    /// needs no residuals ignores it.
     fn tell_residual(&mut self, _id: u64, _residual: Residual) {}
 
-    /// Why the search is over, if it is.
+    /// Returns why the search is over; `None` while it is running.
     fn finished(&self) -> Option<Finish>;
 
-    /// How far it has come.
+    /// Returns the progress of the search.
     fn progress(&self) -> Progress;
 
-    /// The best individual so far: complete before failed, then by fitness, then by id.
+    /// Returns the best individual so far: complete before failed, then by fitness, then by id.
     fn best(&self) -> Option<Best>;
 
-    /// Every result that was consumed, in id order.
+    /// Returns every consumed result, in id order.
     fn archive(&self) -> &Archive;
 }

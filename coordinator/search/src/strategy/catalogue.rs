@@ -1,4 +1,4 @@
-//! The catalogue of presets.
+//! Catalogue of presets.
 use super::{
     ask_tell::Strategy,
     cma_es, l_shade,
@@ -10,7 +10,7 @@ use super::{
 };
 use crate::space::Space;
 
-/// Every preset, in the order in which help lists them.
+/// All presets, in the order in which help lists them.
 pub const CATALOGUE: &[Preset] = &[
     quick::QUICK,
     quick::MEMETIC_AND_SCANS,
@@ -27,12 +27,12 @@ pub const CATALOGUE: &[Preset] = &[
     random::SOBOL,
 ];
 
-/// The preset of a name.
+/// Returns the preset of a name.
 pub fn preset(name: &str) -> Option<&'static Preset> {
     CATALOGUE.iter().find(|preset| preset.name == name)
 }
 
-/// The search that settings make over a space, from a seed.
+/// Builds the search strategy that settings describe, over a space, from a seed.
 ///
 /// # Errors
 /// If the strategy is unknown, or a setting lies outside its range.

@@ -1,10 +1,10 @@
-//! Covariance matrix adaptation over the whole box, begun anew with twice the population where it has
-//! converged.
+//! Covariance matrix adaptation over the whole box, restarted with a doubled population after convergence.
 //!
 //! The distribution is `covariance.rs` with active updates; restarts are those of Auger and Hansen, "A
-//! restart CMA evolution strategy with increasing population size" (CEC 2005). Points are bent
-//! to the box as by pycma's `BoxConstraintsLinQuadTransformation` (N. Hansen, github.com/CMA-ES/pycma): where an
-//! optimum lies at a wall, steps towards it keep their size. Only the order of results counts, so failures are merely last.
+//! restart CMA evolution strategy with increasing population size" (CEC 2005). Points are mapped into the box
+//! as by pycma's `BoxConstraintsLinQuadTransformation` (N. Hansen, github.com/CMA-ES/pycma): for an optimum
+//! at a bound, steps towards it keep their size. Only the order of results counts, so failures are merely
+//! ranked last.
 use super::{
     archive::{Archive, Evaluated},
     ask_tell::Strategy,
@@ -24,7 +24,7 @@ use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// The preset.
+/// Preset of CMA-ES with restarts.
 pub const CMA_ES: Preset = Preset {
     name: "cma-es",
     summary: "covariance matrix adaptation over the whole box, with restarts",
@@ -42,7 +42,7 @@ pub const CMA_ES: Preset = Preset {
     build: build_as::<CmaEsSettings>,
 };
 
-/// What can be set by name.
+/// Settings that can be set by name.
 const SETTINGS: &[Setting] = &[
     Setting::new(
         "population",
@@ -62,26 +62,27 @@ const SETTINGS: &[Setting] = &[
     Setting::new(
         "evaluations",
         Values::Whole(4, 100_000_000),
-        "points in all",
+        "total number of evaluations",
     ),
 ];
 
-/// Settings of the search.
+/// Settings of CMA-ES with restarts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CmaEsSettings {
-    /// Points of a generation, at least 4.
+    /// Points per generation, at least 4.
     pub population: usize,
-    /// First standard deviation (share of each trust interval).
+    /// Initial standard deviation (share of each trust interval).
     pub spread: f64,
-    /// Factor on the population of every restart.
+    /// Factor on the population at every restart.
     pub growth: usize,
-    /// Points in all.
+    /// Total number of evaluations.
     pub evaluations: usize,
 }
 
 impl CmaEsSettings {
-    /// The tutorial's population, `4 + 3 ln n`, and a thousand points.
+    /// Returns the settings for `n` unknowns: the tutorial's population, `4 + 3 ln n`, and a thousand
+    /// evaluations.
     pub fn for_dimension(n: usize) -> Self {
         #[expect(
             clippy::cast_possible_truncation,
@@ -117,38 +118,38 @@ impl Recipe for CmaEsSettings {
     }
 }
 
-/// Restarts with growing populations, as a piece of a strategy.
+/// CMA-ES with growing populations at restarts, as a piece of a strategy.
 struct CmaEs {
     settings: CmaEsSettings,
     space: Space,
     streams: Streams,
-    /// Points that were asked for.
+    /// Number of points proposed so far.
     planned: usize,
     generation: u32,
     restarts: u32,
     course: Option<Course>,
-    /// The normal numbers behind the running batch.
+    /// Standard normal vectors from which the points of the running batch were drawn.
     running: Vec<DVector<f64>>,
 }
 
-/// From one start to its convergence.
+/// One CMA-ES run from a start to its convergence, between two restarts.
 struct Course {
     distribution: Distribution,
     population: usize,
     rounds: u32,
-    /// The best of late rounds, the last one at the back.
+    /// Best fitness of recent generations, the last one at the back.
     late: VecDeque<f64>,
 }
 
-/// A course has converged when it reaches no farther than this (coordinate).
+/// Convergence threshold on the largest standard deviation (coordinate).
 const REACH: f64 = 1e-12;
-/// Share of an interval next to each wall in which points are bent to it.
+/// Share of an interval next to each bound in which points are mapped quadratically.
 const BEND: f64 = 0.03;
-/// And when the best of late rounds differ by less, relative to their size or absolutely.
+/// Convergence thresholds on the range of the best fitness of recent generations: relative and absolute.
 const FLAT: [f64; 2] = [1e-12, 1e-14];
 
 impl Course {
-    /// From a point, as wide as its spread.
+    /// Creates a run with its mean at `start` and standard deviations `spread`.
     fn new(start: Vec<f64>, spread: &DVector<f64>, population: usize) -> Self {
         Self {
             distribution: Distribution::new(DVector::from_vec(start), spread),
@@ -158,7 +159,7 @@ impl Course {
         }
     }
 
-    /// Moves on with a whole generation; whether it has come to its end.
+    /// Updates the distribution with a whole generation; returns whether the run has converged.
     fn absorb(&mut self, drawn: &[DVector<f64>], results: &[Evaluated]) -> bool {
         self.rounds += 1;
         if !results.iter().any(|result| result.told.survived()) {
@@ -186,7 +187,8 @@ impl Course {
 }
 
 impl CmaEs {
-    /// The next course: the first from where the case begins, others from anywhere in the trust intervals.
+    /// Creates the next run: the first from the start of the case, later ones from random points of the trust
+    /// intervals.
     fn begin(&self) -> Course {
         let axes = self.space.axes().iter();
         let spread = axes.map(|axis| self.settings.spread * axis.trust.length());
@@ -267,8 +269,8 @@ impl Piece for CmaEs {
     }
 }
 
-/// A point of the search as one in the box: bent near a wall so that the wall itself lies at the bottom of a
-/// parabola, mirrored beyond it.
+/// Maps an unbounded search coordinate into the box: quadratic near a bound, so that the bound is the vertex
+/// of a parabola, and mirrored beyond it.
 fn bent(interval: Interval, y: f64) -> f64 {
     let length = interval.length();
     if length <= 0.0 || !y.is_finite() {
@@ -289,7 +291,7 @@ fn bent(interval: Interval, y: f64) -> f64 {
     })
 }
 
-/// The point of the search that is bent to one in the box.
+/// Inverse of [`bent`]: returns the search coordinate that is mapped to `x` in the box.
 fn unbent(interval: Interval, x: f64) -> f64 {
     let bend = BEND * interval.length();
     let (low, high) = (x - interval.from, interval.to - x);

@@ -1,7 +1,8 @@
-//! Runs pieces one after the other: gives ids, restores the order of results, reuses clones.
+//! Sequential execution of the pieces of a strategy: assigns ids, restores the order of results, reuses
+//! results of clones.
 //!
-//! It knows batches, not algorithms. The state is a function of the longest unbroken run of
-//! results from id 0; later ones wait in a buffer.
+//! The conductor knows batches, not algorithms. Its state is a function of the longest unbroken run of
+//! results from id 0; later results wait in a buffer.
 use super::{
     archive::{Archive, Evaluated, Residual, key},
     ask_tell::Strategy,
@@ -13,26 +14,26 @@ use super::{
 };
 use std::collections::{BTreeMap, VecDeque};
 
-/// A sequence of pieces, as a strategy.
+/// Strategy that executes a sequence of pieces.
 pub struct Conductor {
     pieces: VecDeque<Box<dyn Piece>>,
-    /// Whether an individual met before takes its known result instead of being evaluated again.
+    /// Whether a repeated individual takes its known result instead of being evaluated again.
     reuse_clones: bool,
     intake: Intake,
     /// One id per draft of the running batch; clones share an id.
     slots: Vec<u64>,
     outbox: Vec<Proposal>,
-    /// Residual vectors of proposals that wanted one.
+    /// Residual vectors by proposal id, for proposals that required one.
     residuals: BTreeMap<u64, Residual>,
     next_id: u64,
     generation: u32,
-    /// Generations of the pieces that are done.
+    /// Number of generations of the completed pieces.
     generations_done: u32,
     finish: Option<Finish>,
 }
 
 impl Conductor {
-    /// A strategy of these pieces. `reuse_clones` saves evaluations where pieces propose an
+    /// Creates a strategy of these pieces. `reuse_clones` saves evaluations where pieces propose an
     /// individual again; as evaluations are pure, it changes no result.
     pub fn new(pieces: Vec<Box<dyn Piece>>, reuse_clones: bool) -> Self {
         let mut conductor = Self {
@@ -70,7 +71,7 @@ impl Conductor {
         }
     }
 
-    /// Hands the finished batch to its piece, if there is one.
+    /// Passes the results of the finished batch, if any, to the current piece.
     fn close_batch(&mut self) {
         if self.slots.is_empty() {
             return;

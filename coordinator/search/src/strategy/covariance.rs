@@ -1,25 +1,26 @@
-//! A normal distribution that follows a search: covariance matrix adaptation.
+//! Adaptive normal distribution of a search: covariance matrix adaptation.
 //!
-//! Points are `x = m + s L z` with `C = L L^T`; mean, covariance and step follow the better half of a batch
-//! (Hansen, "The CMA Evolution Strategy: A Tutorial", arXiv 1604.00772, equations 38 to 53; the whitened step
-//! of the mean is the weighted mean of the `z`, so no inverse is needed). It learns which unknowns make up for
-//! each other, which no search along the axes does. It knows neither bounds nor when to end.
+//! Points are `x = m + s L z` with `C = L L^T`; mean, covariance and step size follow the better half of a
+//! batch (Hansen, "The CMA Evolution Strategy: A Tutorial", arXiv 1604.00772, equations 38 to 53; the
+//! whitened step of the mean is the weighted mean of the `z`, so no inverse is needed). It learns
+//! correlations between the unknowns, which a search along the axes does not. It handles neither bounds nor
+//! termination.
 use super::archive::Evaluated;
 use crate::random::Stream;
 use nalgebra::{DMatrix, DVector};
 
-/// The distribution.
+/// Normal search distribution: mean, covariance, step size and evolution paths.
 pub(super) struct Distribution {
     pub(super) mean: DVector<f64>,
     covariance: DMatrix<f64>,
     factor: DMatrix<f64>,
-    /// The step.
+    /// Step size.
     pub(super) sigma: f64,
     sigma_path: DVector<f64>,
     covariance_path: DVector<f64>,
 }
 
-/// Independent standard normal numbers.
+/// Draws `count` independent standard normal numbers.
 pub(super) fn normal(count: usize, stream: &mut Stream) -> DVector<f64> {
     DVector::from_iterator(
         count,
@@ -27,15 +28,15 @@ pub(super) fn normal(count: usize, stream: &mut Stream) -> DVector<f64> {
     )
 }
 
-/// The normal numbers behind a batch, those of the best result first.
+/// Returns the standard normal vectors of a batch, sorted by result, best first.
 pub(super) fn ranked(drawn: &[DVector<f64>], results: &[Evaluated]) -> Vec<DVector<f64>> {
     let mut order: Vec<usize> = (0..results.len()).collect();
     order.sort_by(|a, b| results[*a].told.order(results[*b].told));
     order.iter().map(|i| drawn[*i].clone()).collect()
 }
 
-/// Sizes of the negative weights of the worse part of a batch; `bound` are the largest sums of them by
-/// equation 50 and 52.
+/// Returns the magnitudes of the negative weights of the worse half of a batch; the array holds the upper
+/// bounds on their sum by equations 50 and 52.
 fn repelling(count: usize, [one, definite]: [f64; 2]) -> Vec<f64> {
     let parents = count / 2;
     let raw = |rank: usize| libm::log(0.5 * (count as f64 + 1.0)) - libm::log(rank as f64);
@@ -50,7 +51,7 @@ fn repelling(count: usize, [one, definite]: [f64; 2]) -> Vec<f64> {
 }
 
 impl Distribution {
-    /// About a mean, with a standard deviation for each unknown and a step of 1.
+    /// Creates a distribution with this mean, a standard deviation for each unknown and a step size of 1.
     pub(super) fn new(mean: DVector<f64>, spread: &DVector<f64>) -> Self {
         let factor = DMatrix::from_diagonal(spread);
         let n = mean.len();
@@ -64,18 +65,19 @@ impl Distribution {
         }
     }
 
-    /// The point of standard normal numbers.
+    /// Returns the point for a vector of standard normal numbers.
     pub(super) fn point(&self, z: &DVector<f64>) -> DVector<f64> {
         &self.mean + self.sigma * (&self.factor * z)
     }
 
-    /// The largest standard deviation of any unknown.
+    /// Returns the largest standard deviation of any unknown.
     pub(super) fn reach(&self) -> f64 {
         self.sigma * libm::sqrt(self.covariance.diagonal().max())
     }
 
-    /// One generation of adaptation from the normal numbers, best first; rounds count from 1. `active`
-    /// moves the covariance away from the worse half as well (equations 49 to 53), with pycma's rate of the step.
+    /// Updates the distribution by one generation from the standard normal vectors, best first; rounds count
+    /// from 1. `active` also moves the covariance away from the worse half (equations 49 to 53), with pycma's
+    /// rate of the step size.
     pub(super) fn update(&mut self, ranked: &[DVector<f64>], round: u32, active: bool) {
         let n = self.mean.len() as f64;
         let parents = ranked.len() / 2;

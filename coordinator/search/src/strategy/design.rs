@@ -1,4 +1,4 @@
-//! Initial designs: where to look first, before anything is known.
+//! Initial designs: the first points of a search, before any result.
 use super::{
     archive::{Archive, Evaluated},
     piece::{Batch, Draft, Piece},
@@ -9,13 +9,13 @@ use crate::{
     space::{Interval, Space},
 };
 
-/// A Latin hypercube: along every axis each of the `count` equal parts of its interval holds
-/// exactly one point. Returns `count` points (coordinate); the same seed gives the same ones.
+/// Returns a Latin hypercube of `count` points (coordinate): along every axis each of the `count` equal parts
+/// of its interval holds exactly one point. The same seed gives the same points.
 pub fn latin_hypercube(intervals: &[Interval], count: usize, seed: u64) -> Vec<Vec<f64>> {
     hypercube(intervals, count, Streams::new(seed, 0))
 }
 
-/// The same from streams of a run.
+/// Returns a Latin hypercube of `count` points (coordinate), drawn from the streams of a run.
 pub(super) fn hypercube(intervals: &[Interval], count: usize, streams: Streams) -> Vec<Vec<f64>> {
     let mut points = vec![Vec::with_capacity(intervals.len()); count];
     for (axis, interval) in intervals.iter().enumerate() {
@@ -30,8 +30,8 @@ pub(super) fn hypercube(intervals: &[Interval], count: usize, streams: Streams) 
     points
 }
 
-/// The start and these points; where a space has starts of its own they stand in their first places, none is
-/// left out.
+/// Returns the starting points followed by the other points; each starting point after the first replaces one
+/// of `others`, and all starting points are kept.
 pub(super) fn led(space: &Space, others: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let starts = match space.starts() {
         [] => vec![space.origin()],
@@ -44,16 +44,16 @@ pub(super) fn led(space: &Space, others: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Points as a piece of a strategy: one batch.
+/// Fixed set of points as a piece of a strategy: one batch.
 pub(super) struct Points {
-    /// Those that have not been asked for.
+    /// Points that have not been proposed yet.
     drafts: Vec<Draft>,
-    /// How many are being evaluated.
+    /// Number of points being evaluated.
     running: usize,
 }
 
 impl Points {
-    /// Those of these coordinates.
+    /// Creates a piece that evaluates the points at these coordinates.
     pub(super) fn new(space: &Space, points: &[Vec<f64>]) -> Self {
         let drafts = points.iter().map(|point| Draft {
             genes: space.values(point),

@@ -1,44 +1,45 @@
-//! Results that arrive in any order, taken in by the order of their ids: what a search does is a function of the
-//! longest unbroken run of results from id 0, and later ones wait.
+//! Intake of results in id order: a search is a function of the longest unbroken run of results from id 0;
+//! results that arrive early wait in a buffer.
 use super::{
     archive::{Archive, Evaluated},
     told::Told,
 };
 use std::collections::BTreeMap;
 
-/// What was asked for, what has come early, and what was taken in.
+/// Open proposals, early results, and the archive of consumed results.
 #[derive(Default)]
 pub(super) struct Intake {
-    /// Genes of the proposals that have not been taken in, by id.
+    /// Genes of the proposals whose results have not been consumed, by id.
     open: BTreeMap<u64, Vec<f64>>,
     early: BTreeMap<u64, Told>,
     archive: Archive,
 }
 
 impl Intake {
-    /// Awaits the result of a proposal.
+    /// Registers a proposal whose result is awaited.
     pub(super) fn expect(&mut self, id: u64, genes: Vec<f64>) {
         self.open.insert(id, genes);
     }
 
-    /// Whether a proposal has not been taken in.
+    /// Returns whether the result of a proposal is still to be consumed.
     pub(super) fn awaits(&self, id: u64) -> bool {
         self.open.contains_key(&id)
     }
 
-    /// How many proposals have not been taken in.
+    /// Returns the number of proposals whose results are still to be consumed.
     pub(super) fn awaited(&self) -> u64 {
         self.open.len() as u64
     }
 
-    /// Keeps a result until its turn; the first counts, and one that nobody awaits does not.
+    /// Buffers a result until its turn; a second result for an id, or one for an id that is not open, is
+    /// ignored.
     pub(super) fn keep(&mut self, id: u64, result: Told) {
         if self.awaits(id) {
             self.early.entry(id).or_insert(result);
         }
     }
 
-    /// Takes in the result whose turn it is, if it is there: its id, and what it is.
+    /// Consumes the result that is next in id order, if it has arrived, and returns its id and value.
     pub(super) fn take(&mut self) -> Option<(u64, Told)> {
         let id = self.archive.entries().len() as u64;
         let told = self.early.remove(&id)?;
@@ -52,7 +53,7 @@ impl Intake {
         Some((id, told))
     }
 
-    /// What was taken in.
+    /// Returns the consumed results.
     pub(super) const fn archive(&self) -> &Archive {
         &self.archive
     }

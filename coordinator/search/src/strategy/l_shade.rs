@@ -1,9 +1,10 @@
-//! Differential evolution that learns its own factors from what succeeded, with a population that shrinks.
+//! L-SHADE: differential evolution that adapts its factors to successful trials, with a shrinking population.
 //!
 //! Tanabe and Fukunaga, "Improving the search performance of SHADE using linear population size reduction"
 //! (CEC 2014): `v = x + F (x_pbest - x) + F (x_r1 - x_r2)` with `x_r2` from population and archive, binomial
-//! crossover, memories of `F` and `CR` by weighted Lehmer and arithmetic means, `N` falling evenly with the
-//! evaluations. Only the order of results and the sizes of gains count; failures are last and gain nothing.
+//! crossover, memories of `F` and `CR` by weighted Lehmer and arithmetic means, `N` decreasing linearly with
+//! the evaluations. Only the order of results and the sizes of gains count; failures are ranked last and gain
+//! nothing.
 use super::{
     archive::{Archive, Evaluated},
     ask_tell::Strategy,
@@ -22,10 +23,10 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// The preset.
+/// Preset of L-SHADE.
 pub const L_SHADE: Preset = Preset {
     name: "l-shade",
-    summary: "differential evolution with learned factors and a shrinking population",
+    summary: "L-SHADE: differential evolution with adaptive factors and a shrinking population",
     strategy: LShadeSettings::STRATEGY,
     settings: |plan| Settings::of(&LShadeSettings::for_dimension(plan.space.dimension())),
     groups: &[Group::whole(SETTINGS)],
@@ -40,7 +41,7 @@ pub const L_SHADE: Preset = Preset {
     build: build_as::<LShadeSettings>,
 };
 
-/// What can be set by name.
+/// Settings that can be set by name.
 const SETTINGS: &[Setting] = &[
     Setting::new(
         "population",
@@ -50,12 +51,12 @@ const SETTINGS: &[Setting] = &[
     Setting::new(
         "memory",
         Values::Whole(1, 1000),
-        "generations whose successful factors are remembered",
+        "number of memory entries for successful factors",
     ),
     Setting::new(
         "best",
         Values::Real(0.01, 1.0),
-        "share of the population that individuals move towards",
+        "share of the population, best first, from which the attractor of a mutation is drawn",
     ),
     Setting::new(
         "archive",
@@ -65,28 +66,29 @@ const SETTINGS: &[Setting] = &[
     Setting::new(
         "evaluations",
         Values::Whole(4, 100_000_000),
-        "points in all",
+        "total number of evaluations",
     ),
 ];
 
-/// Settings of the search.
+/// Settings of L-SHADE.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LShadeSettings {
     /// Individuals of the first generation, at least 4.
     pub population: usize,
-    /// Generations whose successful factors are remembered.
+    /// Number of memory slots for successful factors, one written per generation.
     pub memory: usize,
-    /// Share of the population that individuals move towards.
+    /// Share of the population, best first, from which the `pbest` individual is drawn.
     pub best: f64,
-    /// Replaced individuals that are kept, over the population.
+    /// Size of the archive of replaced individuals, relative to the population.
     pub archive: f64,
-    /// Points in all.
+    /// Total number of evaluations.
     pub evaluations: usize,
 }
 
 impl LShadeSettings {
-    /// The published numbers, but for fewer individuals: a thousand points are few.
+    /// Returns the settings for `n` unknowns: the published numbers except for a smaller population, as a
+    /// thousand evaluations are few.
     pub const fn for_dimension(n: usize) -> Self {
         let population = if n < 5 { 20 } else { 4 * n };
         Self {
@@ -120,25 +122,25 @@ impl Recipe for LShadeSettings {
     }
 }
 
-/// Fewest individuals: a mutant needs three others.
+/// Minimum population: a mutant needs three other individuals.
 const FEWEST: usize = 4;
 
-/// The population, as a piece of a strategy.
+/// L-SHADE as a piece of a strategy.
 struct LShade {
     settings: LShadeSettings,
     space: Space,
     streams: Streams,
-    /// Coordinates with their results, the best first.
+    /// Coordinates of the individuals with their results, best first.
     population: Vec<(Vec<f64>, Told)>,
-    /// Coordinates of individuals that lost their place.
+    /// Archive: coordinates of individuals that were replaced.
     replaced: Vec<Vec<f64>>,
-    /// Means of the factors that succeeded: `F` and `CR`.
+    /// Memory of the means of successful factors: `F` and `CR`.
     memories: Vec<[f64; 2]>,
     oldest: usize,
-    /// Points that were asked for.
+    /// Number of points proposed so far.
     planned: usize,
     generation: u32,
-    /// Coordinates of the running batch, with the factors they were made with.
+    /// Coordinates of the running batch, with the factors `F` and `CR` that produced them.
     trials: Vec<(Vec<f64>, [f64; 2])>,
 }
 
@@ -151,7 +153,7 @@ impl LShade {
         points.map(|x| (x, [0.0; 2])).collect()
     }
 
-    /// A trial for the individual at a place.
+    /// Creates the trial for the individual at index `place`.
     fn trial(&self, place: usize) -> (Vec<f64>, [f64; 2]) {
         let stream = &mut self.streams.at(self.generation, Phase::Mutation, place);
         let factors = self.factors(stream);
@@ -179,7 +181,7 @@ impl LShade {
         (x.collect(), factors)
     }
 
-    /// `F` about a remembered one by Cauchy's distribution, `CR` by the normal one.
+    /// Draws `F` from a Cauchy distribution and `CR` from a normal one, both about a random memory entry.
     fn factors(&self, stream: &mut Stream) -> [f64; 2] {
         let [f, crossover] = self.memories[stream.index(self.memories.len())];
         let cauchy =
@@ -192,7 +194,7 @@ impl LShade {
         [drawn.min(1.0), crossover]
     }
 
-    /// Remembers what succeeded, weighted by its gains.
+    /// Updates the oldest memory entry with the factors of successful trials, weighted by their gains.
     fn learn(&mut self, gains: &[(f64, [f64; 2])]) {
         let total: f64 = gains.iter().map(|(gain, _)| gain).sum();
         if total <= 0.0 || !total.is_finite() {
@@ -209,7 +211,7 @@ impl LShade {
         self.oldest = (self.oldest + 1) % self.memories.len();
     }
 
-    /// How many individuals there shall be now.
+    /// Returns the current population size, reduced linearly with the evaluations.
     fn wanted(&self) -> usize {
         let first = self.settings.population;
         let spent = self.planned as f64 / self.settings.evaluations as f64;
@@ -218,7 +220,7 @@ impl LShade {
     }
 }
 
-/// A share of a count, rounded.
+/// Returns a share of a count, rounded.
 fn share(share: f64, count: usize) -> usize {
     #[expect(
         clippy::cast_possible_truncation,
@@ -229,7 +231,7 @@ fn share(share: f64, count: usize) -> usize {
     part
 }
 
-/// One of so many that is none of these; at least one more than these must be there.
+/// Draws an index below `count` that is not in `taken`. Loops forever if every index is taken.
 fn other(stream: &mut Stream, count: usize, taken: &[usize]) -> usize {
     loop {
         let one = stream.index(count);
@@ -239,7 +241,7 @@ fn other(stream: &mut Stream, count: usize, taken: &[usize]) -> usize {
     }
 }
 
-/// A mutant beyond a wall stands halfway between its parent and the wall.
+/// Repairs a mutant coordinate outside the bounds: halfway between its parent and the bound.
 fn halfway(axis: &Axis, own: f64, mutant: f64) -> f64 {
     let interval = axis.interval();
     if mutant < interval.from {

@@ -1,8 +1,8 @@
-//! Least squares as a piece of a strategy: from the best points so far, down the residual vector.
+//! Least squares as a piece of a strategy: descents of the residual vector from the best points so far.
 //!
-//! The residual of an individual, in units in which its squared length is the fitness, says for
-//! every sample which way to go; a step of this piece costs one point per gene and a fan of damped
-//! tries, and near a minimum gains more than any search that sees the fitness alone.
+//! The residual of an individual, in units in which its squared norm is the fitness, gives a direction for
+//! every sample; a step of this piece costs one point per gene and a fan of damped tries, and near a minimum
+//! gains more than any search that uses the fitness alone.
 use super::{
     archive::{Archive, Evaluated, Residual},
     piece::{Batch, Draft, Piece},
@@ -17,69 +17,70 @@ use crate::{
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
-/// A descent of the residual vector.
+/// Settings of the least-squares descents.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LevenbergSettings {
-    /// Descents side by side, from the best points that lie apart.
+    /// Number of concurrent descents, from the best points that are far enough apart.
     pub starts: usize,
-    /// Most Jacobians of each.
+    /// Maximum number of Jacobians per descent.
     pub iterations: u32,
-    /// How far two starts must lie apart (coordinate): in the gene with a narrow valley, where there is one, or half of
-    /// a stand-in's shift in that stand-in; else in some gene.
+    /// Minimum distance between two starts (coordinate): in the gene with a narrow valley, if there is one,
+    /// or half of a stand-in's shift in that stand-in; otherwise in some gene.
     pub apart: f64,
-    /// First difference step (coordinate), where the case states none of its own.
+    /// First difference step (coordinate), for unknowns whose step the case does not state.
     pub step: f64,
-    /// How far one step moves a gene (coordinate).
+    /// Longest change of a gene in one step (coordinate).
     pub longest: f64,
-    /// What a step is damped by beside a gene's own curvature, as a share of the mean one.
+    /// Additional damping beyond a gene's own curvature, as a share of the mean curvature.
     pub level: f64,
-    /// Rounds after which the worse half of the descents is given up.
+    /// Number of rounds after which the worse half of the descents is abandoned.
     pub heat: u32,
-    /// Descents that are never given up: two that are nearly alike may have different floors.
+    /// Number of descents that are never abandoned: two with nearly equal fitness may converge to different
+    /// minima.
     pub keep: usize,
-    /// How columns come about.
+    /// Source of the Jacobian columns.
     pub derivatives: Derivatives,
-    /// How near its floor a descent ends.
+    /// Convergence tolerance of a descent.
     pub finish: Finish,
 }
 
-/// How near its floor a descent ends.
+/// Convergence tolerance of a descent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Finish {
-    /// Where a step no longer lowers the fitness by 3 parts in 10,000.
+    /// Ends when a step no longer lowers the fitness by 3 parts in 10,000.
     Usual,
-    /// Within a hundredth of a standard deviation of the unknowns: differences become central ones at the end.
+    /// Ends within a hundredth of a standard deviation of the unknowns, with central differences at the end.
     Exact,
 }
 
-/// How the columns of a Jacobian come about.
+/// Source of the columns of a Jacobian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Derivatives {
-    /// One simulation with all of them; differences for what the model does not give.
+    /// One simulation for all columns; differences for columns that the model does not give.
     Exact,
-    /// A simulation for each.
+    /// One simulation per column.
     Differences,
 }
 
-/// What can be set by name.
+/// Settings that can be set by name.
 pub(super) const SETTINGS: &[Setting] = &[
     Setting::new(
         "starts",
         Values::Whole(1, 1000),
-        "descents of the residual side by side",
+        "number of concurrent least-squares descents",
     ),
     Setting::new(
         "iterations",
         Values::Whole(1, 1000),
-        "most Jacobians of each descent",
+        "maximum number of Jacobians per descent",
     ),
     Setting::new(
         "apart",
         Values::Real(0.0, 10.0),
-        "how far two starts lie apart in some gene [decade]",
+        "minimum distance between two starts in some gene [decade]",
     ),
     Setting::new(
         "step",
@@ -89,56 +90,59 @@ pub(super) const SETTINGS: &[Setting] = &[
     Setting::new(
         "longest",
         Values::Real(1e-3, 100.0),
-        "how far one step may move a gene [decade]",
+        "maximum change of a gene in one step [decade]",
     ),
     Setting::new(
         "level",
         Values::Real(0.0, 1.0),
-        "share of the mean curvature that holds genes of next to none where they are",
+        "additional damping as a share of the mean curvature, which keeps insensitive genes in place",
     ),
     Setting::new(
         "heat",
         Values::Whole(1, 1000),
-        "rounds after which the worse half of the descents is given up",
+        "rounds after which the worse half of the descents is abandoned",
     ),
     Setting::new(
         "keep",
         Values::Whole(1, 1000),
-        "descents that are never given up",
+        "number of descents that are never abandoned",
     ),
     Setting::new(
         "derivatives",
         Values::Words(&["exact", "differences"]),
-        "columns from one simulation where the model gives them, or from one each",
+        "Jacobian columns: all from one simulation where the model gives them, or by finite differences",
     ),
 ];
 
-/// Gradient ratio and share of the fitness from which a descent ends as usual. At 1e-2 and 1e-3 descents of the
-/// shipped records stopped up to 5 % above their floor, along combinations of contact and stiffness.
+/// Default convergence threshold on the gradient ratio ([`DECREASE`] is that on the relative decrease of the
+/// fitness). At 1e-2 and 1e-3 descents of the shipped records stopped up to 5 % above their minimum, along
+/// combinations of contact and stiffness.
 const GRADIENT: f64 = 2e-3;
 const DECREASE: f64 = 3e-4;
 
-/// Rounds after which most descents are at their floor.
+/// Number of rounds after which most descents have converged.
 const USUAL: u32 = 10;
 
-/// Descents as a piece of a strategy.
+/// Least-squares descents as a piece of a strategy.
 pub struct Levenberg {
     settings: LevenbergSettings,
     space: Space,
-    /// The descents with the number of points that each awaits; none before the first batch.
+    /// Descents, each with the number of points it awaits; `None` before the first batch.
     searches: Option<Vec<(LeastSquares, usize)>>,
     round: u32,
 }
 
-/// How far apart the starts of descents lie: along the narrow axis and those that can stand in for it, else along all.
+/// Minimum distance between the starts of descents: along the axis with a narrow valley and its stand-ins, or
+/// along all axes if there is none.
 #[derive(Clone, Debug)]
 pub struct Apart {
-    /// An axis, and the least distance along it (coordinate).
+    /// Axis indices, each with the minimum distance along the axis (coordinate).
     axes: Vec<(usize, f64)>,
 }
 
 impl Apart {
-    /// A distance along the narrow axis, and half of each stand-in's shift along its own.
+    /// Creates the rule from a distance along the narrow axis, and half of each stand-in's shift along the
+    /// stand-in's own axis.
     pub fn new(space: &Space, distance: f64) -> Self {
         let mut axes = Vec::new();
         for (k, axis) in space.axes().iter().enumerate() {
@@ -158,7 +162,8 @@ impl Apart {
         Self { axes }
     }
 
-    /// The first `count` points that lie apart from those before them; `x` is a point's coordinates.
+    /// Returns the first `count` points that are far enough from all points kept before them; `x` returns a
+    /// point's coordinates.
     pub fn first<P>(
         &self,
         count: usize,
@@ -177,7 +182,7 @@ impl Apart {
         kept
     }
 
-    /// Whether one of two points is too near the other to begin a descent of its own.
+    /// Returns whether two points are too near each other to start separate descents.
     fn near(&self, a: &[f64], b: &[f64]) -> bool {
         let near = |&(k, distance): &(usize, f64)| (a[k] - b[k]).abs() < distance;
         self.axes.iter().all(near)
@@ -185,6 +190,8 @@ impl Apart {
 }
 
 impl Levenberg {
+    /// Creates the piece from its settings.
+    ///
     /// # Errors
     /// If a setting lies outside its range.
     pub fn new(settings: LevenbergSettings, space: &Space) -> Result<Self, SettingsError> {
@@ -197,7 +204,7 @@ impl Levenberg {
         })
     }
 
-    /// Descents from the best points that lie apart.
+    /// Creates descents from the best archived points that are far enough apart.
     fn begin(&self, archive: &Archive) -> Vec<(LeastSquares, usize)> {
         let ranked = archive.ranked().into_iter();
         let ranked = ranked.map(|one| (self.space.point(&one.genes), one.told.fitness));
@@ -229,12 +236,12 @@ impl Levenberg {
         starts.into_iter().map(search).collect()
     }
 
-    /// Descents that are left of so many after a heat.
+    /// Returns how many of `descents` remain after a round of elimination.
     fn left(&self, descents: usize) -> usize {
         descents.div_ceil(2).max(self.settings.keep.min(descents))
     }
 
-    /// Gives up the worse half of the descents after every heat, as far as they are not to be kept.
+    /// Abandons the worse half of the descents after every `heat` rounds, down to the number always kept.
     fn select(&mut self) {
         let heat_over = self.round > 0 && self.round.is_multiple_of(self.settings.heat);
         let left = self.left(self.searches.as_ref().map_or(0, Vec::len));
@@ -244,7 +251,8 @@ impl Levenberg {
         }
     }
 
-    /// Two rounds per Jacobian, its columns and the fan; most descents end long before the last.
+    /// Returns the expected number of rounds: two per Jacobian, for its columns and the fan, capped because
+    /// most descents end long before the last.
     fn expected_rounds(&self) -> u32 {
         (1 + 2 * self.settings.iterations).min(USUAL)
     }
@@ -266,7 +274,7 @@ impl Levenberg {
     }
 }
 
-/// Derivatives of a residual by the axes; none by one of which a part is not known.
+/// Returns the derivatives of a residual by the axes; `None` for an axis of which a term is not known.
 fn columns(space: &Space, genes: &[f64], residual: &Residual) -> Vec<Option<DVector<f64>>> {
     let x = space.point(genes);
     let column = |axis: usize| {

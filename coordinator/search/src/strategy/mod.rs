@@ -1,22 +1,22 @@
-//! The strategies there are, and what they have in common.
+//! Search strategies, and their common interface.
 //!
-//! A strategy is a sequence of *pieces* (an initial design, a memetic search, a line scan, a
-//! refinement), each of which plans one batch of points at a time; the [`Conductor`] gives the
-//! points their ids, waits for the results in any order and hands them on in id order. One needs no
-//! batches: [`memetic::window`].
+//! A strategy is a sequence of *pieces* (an initial design, a memetic search, a line scan, a refinement),
+//! each of which plans one batch of points at a time; the [`Conductor`] assigns ids to the points, accepts
+//! the results in any order and passes them on in id order. One strategy needs no batches:
+//! [`memetic::window`].
 //!
-//! # A new strategy
-//! It costs one file here and one line in [`CATALOGUE`] (beside its `mod` line); [`random`] is the
-//! smallest example. The file has the settings as a struct that implements [`Recipe`], the table of
-//! those that can be set by name, and the [`Preset`] with what tests may demand of it. From then on
-//! `calibrate --preset NAME --set KEY=VALUE`, its help, resuming, `report` and `export` know it, and
-//! the tests of the catalogue hold it to the laws of every search:
-//! * what it asks depends on the space, the settings, the seed and the results in id order, never on
-//!   the order of arrival: draw from [`crate::random::Streams`], whose numbers have addresses;
+//! # Adding a strategy
+//! A new strategy takes one file here and one line in [`CATALOGUE`] (beside its `mod` line); [`random`] is
+//! the smallest example. The file has the settings as a struct that implements [`Recipe`], the table of the
+//! settings that can be set by name, and the [`Preset`] with the accuracy that tests may demand. `calibrate
+//! --preset NAME --set KEY=VALUE`, its help, resuming, `report` and `export` then support it, and the tests
+//! of the catalogue check the requirements on every search:
+//! * its proposals depend on the space, the settings, the seed and the results in id order, never on the
+//!   order of arrival: draw from [`crate::random::Streams`], whose numbers have addresses;
 //! * it stays inside the bounds, and ends even if everything fails;
-//! * before its end it says how many evaluations to expect, within a third or so.
+//! * before its end it estimates the total number of evaluations, within about a third.
 //!
-//! Pieces run by the conductor obey the first by construction.
+//! Pieces run by the conductor obey the first requirement by construction.
 pub mod archive;
 pub mod ask_tell;
 mod catalogue;

@@ -1,4 +1,4 @@
-//! A named choice of strategy and settings: what the command line offers, sets and lists.
+//! Presets: named choices of strategy and settings, as the command line lists and modifies them.
 use super::{
     ask_tell::Strategy,
     setting::{Setting, SettingsError},
@@ -6,51 +6,51 @@ use super::{
 };
 use crate::space::Space;
 
-/// A named choice of strategy and settings.
+/// Named choice of strategy and settings.
 pub struct Preset {
-    /// As given on the command line.
+    /// Name on the command line.
     pub name: &'static str,
-    /// One line for help texts.
+    /// Summary for help texts, one line.
     pub summary: &'static str,
-    /// The strategy: [`super::settings::Recipe::STRATEGY`].
+    /// Name of the strategy: [`super::settings::Recipe::STRATEGY`].
     pub strategy: &'static str,
-    /// The settings for a plan.
+    /// Function that returns the settings for a plan.
     pub settings: fn(&Plan<'_>) -> Settings,
-    /// What of them can be set by name.
+    /// Groups of settings that can be set by name.
     pub groups: &'static [Group],
-    /// What tests may demand of it.
+    /// Accuracy and properties that tests may demand of the preset.
     pub promise: Promise,
-    /// Makes the search: [`super::settings::build_as`] of the strategy's settings.
+    /// Function that builds the search: [`super::settings::build_as`] of the strategy's settings.
     pub build: Build,
 }
 
-/// Makes a search of settings over a space, from a seed.
+/// Function that builds a search from settings, a space and a seed.
 pub type Build = fn(&Settings, &Space, u64) -> Result<Box<dyn Strategy>, SettingsError>;
 
-/// What settings may depend on.
+/// Circumstances of a run on which default settings may depend.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan<'a> {
-    /// The space that is searched.
+    /// Search space.
     pub space: &'a Space,
-    /// How many workers are planned.
+    /// Planned number of workers.
     pub workers: usize,
 }
 
-/// A part of the settings with a table of its own.
+/// Part of the settings with its own table of keys.
 #[derive(Clone, Copy, Debug)]
 pub struct Group {
-    /// What stands before each key.
+    /// Prefix of each key.
     pub named: &'static str,
-    /// Where the part stands in the settings, as a JSON pointer.
+    /// Position of the part in the settings, as a JSON pointer.
     pub place: &'static str,
-    /// Its table.
+    /// Table of the part's settings.
     pub table: &'static [Setting],
-    /// Fields of the table that mean nothing here.
+    /// Fields of the table that have no effect in this preset.
     pub without: &'static [&'static str],
 }
 
 impl Group {
-    /// All settings of a strategy that has no parts.
+    /// Creates the group of all settings of a strategy without parts.
     pub const fn whole(table: &'static [Setting]) -> Self {
         Self {
             named: "",
@@ -61,37 +61,38 @@ impl Group {
     }
 }
 
-/// A setting of a preset.
+/// Setting of a preset, with its key on the command line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Named {
-    /// As given on the command line.
+    /// Key on the command line.
     pub key: String,
-    /// What it may be, and what it means.
+    /// Allowed values and meaning.
     pub setting: Setting,
-    /// Where it stands in the settings, as a JSON pointer.
+    /// Position in the settings, as a JSON pointer.
     place: String,
 }
 
-/// What tests may demand of a preset beside the laws that all of them obey; the functions are those
-/// of [`crate::test_function`].
+/// Accuracy and properties that tests may demand of a preset, in addition to the requirements on all presets;
+/// measured on the functions of [`crate::test_function`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Promise {
-    /// Fitness below which it ends on functions of one basin.
+    /// Upper bound on the final fitness for functions with one basin of attraction.
     pub one_basin: f64,
-    /// Fitness below which it ends on a function of many.
+    /// Upper bound on the final fitness for a function with many basins of attraction.
     pub many_basins: f64,
-    /// How near it comes to a minimum in every gene (coordinate).
+    /// Upper bound on the distance from the minimum in every gene (coordinate).
     pub distance: f64,
-    /// Whether its first individual is the recommended one.
+    /// Whether the first individual is the recommended one.
     pub opens_at_recommended: bool,
-    /// Evaluations within which it finds a narrow valley on a plateau, if it does.
+    /// Maximum number of evaluations to find a narrow valley on a plateau; `None` if the preset does not find
+    /// such valleys.
     pub valley: Option<usize>,
-    /// Whether the seed decides where it goes.
+    /// Whether the result depends on the seed.
     pub chance: bool,
 }
 
 impl Preset {
-    /// Everything that can be set by name, in order.
+    /// Returns all settings that can be set by name, in order.
     pub fn named(&self) -> Vec<Named> {
         let of = |group: &Group, setting: &Setting| Named {
             key: format!("{}{}", group.named, setting.field),
@@ -107,10 +108,10 @@ impl Preset {
         all.collect()
     }
 
-    /// Sets one by name; what it is now, in words.
+    /// Sets a setting by name; returns the new value as text.
     ///
     /// # Errors
-    /// If there is none of that name, or it may not be that.
+    /// If there is no setting of that name, or the value is not allowed.
     pub fn set(
         &self,
         settings: &mut Settings,
@@ -137,7 +138,7 @@ impl Preset {
 }
 
 impl Named {
-    /// Its value in settings of its preset, in words.
+    /// Returns the value of the setting in settings of its preset, as text.
     pub fn value(&self, settings: &Settings) -> Option<String> {
         let value = settings.at(&self.place)?;
         Some(self.setting.show(value))

@@ -1,42 +1,42 @@
-//! How far a search has come, what it found, and why it ended.
+//! Progress, result and end of a search.
 use super::archive::Evaluated;
 use serde::{Deserialize, Serialize};
 
-/// Why a search ended.
+/// Reason why a search ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Finish {
-    /// Everything that was planned has been evaluated.
+    /// All planned evaluations are done.
     Planned,
     /// The fitness threshold was reached.
     Threshold,
 }
 
-/// How far a search has come.
+/// Progress of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
-    /// The current generation; 0 is the initial one.
+    /// Current generation; 0 is the initial one.
     pub generation: u32,
-    /// How many generations are planned.
+    /// Planned number of generations.
     pub generations: u32,
-    /// Results consumed, in id order.
+    /// Number of results consumed, in id order.
     pub evaluations: u64,
-    /// How many evaluations to expect in all: those so far and those still planned.
+    /// Expected total number of evaluations: those so far and those still planned.
     pub expected_evaluations: u64,
     /// Fitness of the best complete individual.
     pub best_fitness: Option<f64>,
 }
 
-/// The best individual of a search.
+/// Best individual of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Best {
-    /// Id of its proposal.
+    /// Id of the individual's proposal.
     pub id: u64,
     /// Gene values in declared units.
     pub genes: Vec<f64>,
-    /// Its fitness.
+    /// Fitness of the individual.
     pub fitness: f64,
-    /// False only if every individual failed.
+    /// Whether the individual's simulation completed; false only if every individual failed.
     pub complete: bool,
 }
 

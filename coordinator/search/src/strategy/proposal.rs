@@ -1,20 +1,20 @@
-//! What a search asks for.
+//! Proposals: the individuals that a search asks to be evaluated.
 use serde::{Deserialize, Serialize};
 
-/// An individual to evaluate.
+/// Individual to evaluate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proposal {
-    /// Consecutive from 0.
+    /// Id, consecutive from 0 over the run.
     pub id: u64,
     /// Gene values in declared units, in the case's order.
     pub genes: Vec<f64>,
-    /// The generation it belongs to; 0 is the initial one.
+    /// Generation of the individual; 0 is the initial one.
     pub generation: u32,
-    /// What it is for.
+    /// Purpose of the evaluation.
     pub purpose: Purpose,
 }
 
-/// What a proposal is for.
+/// Purpose of a proposal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Purpose {
@@ -30,14 +30,14 @@ pub enum Purpose {
     Scan,
     /// Step of a local refinement.
     Refinement,
-    /// Column or step of a descent of the residual vector.
+    /// Jacobian column or step of a least-squares descent.
     LeastSquares,
-    /// A point of such a descent with its derivatives.
+    /// Point of a least-squares descent, evaluated with its derivatives.
     Derivatives,
 }
 
 impl Purpose {
-    /// As written in tables and files.
+    /// Returns the name as written in tables and files.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Initial => "initial",
@@ -51,12 +51,12 @@ impl Purpose {
         }
     }
 
-    /// Whether the residual vector is wanted beside the fitness.
+    /// Returns whether the residual vector is required in addition to the fitness.
     pub const fn wants_residual(self) -> bool {
         matches!(self, Self::LeastSquares | Self::Derivatives)
     }
 
-    /// Whether its derivatives are wanted, too.
+    /// Returns whether the derivatives of the residual vector are required.
     pub const fn wants_derivatives(self) -> bool {
         matches!(self, Self::Derivatives)
     }

@@ -1,14 +1,14 @@
-//! Searches that fit a laptop, as sequences of parts: first points, line scans of the one unknown whose valley
-//! is narrow, races of descents, a short memetic search, refinement.
+//! Searches that fit a laptop, as sequences of parts: first points, line scans of the unknown with a narrow
+//! valley, races of descents, a short memetic search, refinement.
 //!
-//! A fitness with resonances has a valley in a stiffness that is a hundred times narrower than the
-//! box, so a population finds the plateau around it but not the valley; and on the plateau more
-//! damping always looks better, because it removes the oscillation whose phase does not fit. `quick` therefore
-//! races descents of the residual vector from scattered points, which finds what the other unknowns are about,
-//! scans the narrow unknown around the best of them, on lines on which nothing hides the valley, and races descents
+//! A fitness with resonances has a valley in a stiffness that is a hundred times narrower than the box, so a
+//! population finds the plateau around it but not the valley; and on the plateau more damping always looks
+//! better, because it removes the oscillation whose phase does not fit. `quick` therefore races descents of
+//! the residual vector from scattered points, which finds approximate values of the other unknowns, scans the
+//! narrow unknown around the best of them, on lines along which the valley is visible, and races descents
 //! again from the best stations. `memetic` needs the fitness alone: population, scan, refinement, fine scan,
-//! refinement. Which unknown has such a valley, and what hides it, the case says; where it says nothing, nothing
-//! is scanned.
+//! refinement. The case states which unknown has a narrow valley and what hides it; if it states none, there
+//! is no scan.
 use super::{
     ask_tell::Strategy,
     conductor::Conductor,
@@ -32,10 +32,10 @@ use crate::{
 use protocol::case::Valley;
 use serde::{Deserialize, Serialize};
 
-/// Races of descents about a scan.
+/// Preset with races of descents before and after a line scan.
 pub const QUICK: Preset = Preset {
     name: "quick",
-    summary: "a race of descents of the residual, a line scan of a narrow valley, another race",
+    summary: "least-squares descents from scattered points, a line scan of a narrow valley, more descents",
     strategy: QuickSettings::STRATEGY,
     settings: |plan| Settings::of(&QuickSettings::quick(plan.space)),
     groups: &[
@@ -59,7 +59,7 @@ pub const QUICK: Preset = Preset {
     build: build_as::<QuickSettings>,
 };
 
-/// The search by the fitness alone.
+/// Preset that uses the fitness alone: memetic search, line scans, refinement.
 pub const MEMETIC_AND_SCANS: Preset = Preset {
     name: "memetic",
     summary: "a short memetic search, line scans, refinement: by the objective alone",
@@ -80,7 +80,7 @@ pub const MEMETIC_AND_SCANS: Preset = Preset {
     ..QUICK
 };
 
-/// One race of descents.
+/// Preset with one race of descents after a line scan.
 pub const LEAST_SQUARES: Preset = Preset {
     name: "least-squares",
     summary: "a few points and a line scan, then Levenberg-Marquardt on the residual",
@@ -93,7 +93,7 @@ pub const LEAST_SQUARES: Preset = Preset {
     ..QUICK
 };
 
-/// One descent from the start: what calibrators of other programs do.
+/// Preset with one descent from the start, as in common calibration programs.
 pub const DESCENT: Preset = Preset {
     name: "descent",
     summary: "one Levenberg-Marquardt descent of the residual from the start",
@@ -114,7 +114,7 @@ pub const DESCENT: Preset = Preset {
     ..QUICK
 };
 
-/// A global search first, then descents of the residual vector.
+/// Preset with a global search first, then descents of the residual vector.
 pub const HYBRID: Preset = Preset {
     name: "hybrid",
     summary: "a short memetic search and line scans, then several descents of the residual",
@@ -130,17 +130,17 @@ pub const HYBRID: Preset = Preset {
     ..LEAST_SQUARES
 };
 
-/// What can be set of the first points by name.
+/// Settings of the first points that can be set by name.
 const POINTS: &[Setting] = &[Setting::new(
     "points",
     Values::Whole(1, 1_000_000),
     "first points: the start and a Latin hypercube",
 )];
 
-/// The memetic part's table.
+/// Group of the settings of the memetic part.
 const MEMETIC: Group = part("", "/parts/0/memetic", memetic_settings::SETTINGS);
 
-/// A part's table.
+/// Creates the group of settings of one part.
 const fn part(named: &'static str, place: &'static str, table: &'static [Setting]) -> Group {
     Group {
         named,
@@ -150,24 +150,24 @@ const fn part(named: &'static str, place: &'static str, table: &'static [Setting
     }
 }
 
-/// One part of the search, in order.
+/// Part of a search; parts are executed in order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Part {
-    /// The memetic algorithm in the trust box, from the start and a Latin hypercube.
+    /// Memetic algorithm in the trust box, from the start and a Latin hypercube.
     Memetic(MemeticSettings),
-    /// The start and a Latin hypercube in the trust box.
+    /// Initial points: the start and a Latin hypercube in the trust box.
     Points {
-        /// How many in all.
+        /// Total number of points.
         points: usize,
     },
-    /// A line scan around the best points.
+    /// Line scan around the best points.
     Scan(ScanSettings),
-    /// No scan, where no unknown has a narrow valley.
+    /// Placeholder for a scan if no unknown has a narrow valley.
     NoScan,
-    /// A refinement around the best point.
+    /// Refinement around the best point.
     Refine(RefineSettings),
-    /// A descent of the residual vector from the best points.
+    /// Descents of the residual vector from the best points.
     LeastSquares(LevenbergSettings),
 }
 
@@ -175,15 +175,16 @@ pub enum Part {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct QuickSettings {
-    /// Where the memetic part searches, axis by axis, from the start (coordinate).
+    /// Interval of each axis about the start (coordinate) in which initial points and the memetic part
+    /// search.
     pub trust: Vec<Interval>,
-    /// What is done, in order.
+    /// Parts of the search, in order.
     pub parts: Vec<Part>,
 }
 
 impl QuickSettings {
-    /// About 900 evaluations. The first axis with a valley is scanned, at the best point and with every
-    /// set of shifts that may uncover it.
+    /// Returns the settings of a search by fitness alone, about 900 evaluations. The first axis with a narrow
+    /// valley is scanned, at the best point and with every set of shifts that may uncover the valley.
     pub fn memetic(space: &Space) -> Self {
         let trust: Vec<Interval> = space.axes().iter().map(|axis| axis.trust).collect();
         let scanned = narrow(space);
@@ -226,8 +227,8 @@ impl QuickSettings {
         }
     }
 
-    /// A global stage of some 300 evaluations, a coarse scan, and eight descents, half of which are given up
-    /// after every heat.
+    /// Returns the settings of a global stage of some 300 evaluations, a coarse scan, and eight descents,
+    /// half of which are abandoned after every round of elimination.
     pub fn hybrid(space: &Space) -> Self {
         let Self { trust, parts } = Self::memetic(space);
         let Self {
@@ -247,7 +248,7 @@ impl QuickSettings {
         }
     }
 
-    /// From the start alone, to the floor.
+    /// Returns the settings of one descent from the start to full convergence.
     pub fn descent(space: &Space) -> Self {
         let Self { trust, mut parts } = Self::least_squares(space);
         if let Some(Part::LeastSquares(descent)) = parts.last_mut() {
@@ -261,9 +262,9 @@ impl QuickSettings {
         Self { trust, parts }
     }
 
-    /// A race of ten descents from scattered points, a scan about the best, and a race of eight from its
-    /// stations, two of which go to their floor: some 400 evaluations, 60 of them with columns. What these numbers
-    /// find stands in `tests/truth/README.md`.
+    /// Returns the settings of a race of ten descents from scattered points, a scan about the best, and a
+    /// race of eight from the stations of the scan, two of which run to convergence: some 400 evaluations, 60
+    /// of them with columns. Results with these numbers are in `tests/truth/README.md`.
     pub fn quick(space: &Space) -> Self {
         let Self { trust, mut parts } = Self::least_squares(space);
         parts[0] = Part::Points { points: 16 };
@@ -288,8 +289,8 @@ impl QuickSettings {
         Self { trust, parts }
     }
 
-    /// A few points and a scan from which descents of the residual vector begin: about 300 evaluations,
-    /// some 40 of them with columns.
+    /// Returns the settings of a few points and a scan followed by descents of the residual vector: about 300
+    /// evaluations, some 40 of them with columns.
     pub fn least_squares(space: &Space) -> Self {
         let Self { trust, mut parts } = Self::memetic(space);
         parts.truncate(2);
@@ -311,20 +312,20 @@ impl QuickSettings {
     }
 }
 
-/// How descents race that begin at stations of a scan.
+/// Settings of a race of descents that start at stations of a scan.
 #[derive(Debug)]
 pub struct Race {
-    /// Stations from which descents begin.
+    /// Number of stations from which descents start.
     pub starts: usize,
-    /// How far apart they are along the scanned unknown (coordinate).
+    /// Minimum distance between the starts along the scanned unknown (coordinate).
     pub apart: f64,
-    /// Jacobians of a descent until the worse half of the race is given up.
+    /// Number of Jacobians per descent before the worse half of the race is abandoned.
     pub heat: u32,
-    /// Descents that are left at last.
+    /// Number of descents that are never abandoned.
     pub keep: usize,
 }
 
-/// The race from the stations of a [`coarse_scan`].
+/// Settings of the race from the stations of a [`coarse_scan`].
 pub const RACE: Race = Race {
     starts: 8,
     // half of what the machine's stations lie apart
@@ -333,14 +334,15 @@ pub const RACE: Race = Race {
     keep: 2,
 };
 
-/// The first unknown that has a narrow valley: its axis, and what the case says of the valley.
+/// Returns the axis of the first unknown with a narrow valley, and the case's description of the valley.
 fn narrow(space: &Space) -> Option<(usize, &Valley)> {
     let mut axes = space.axes().iter().enumerate();
     axes.find_map(|(axis, own)| Some((axis, own.unknown.valley.as_ref()?)))
 }
 
-/// The scan between races of descents: stations so far apart that a descent enters the valley from one of them, on
-/// lines on which nothing hides it. None where no unknown has a narrow valley.
+/// Returns the scan between two races of descents: its stations are spaced so that a descent enters the
+/// valley from at least one of them, on lines along which the valley is visible. `None` if no unknown has a
+/// narrow valley.
 pub fn coarse_scan(space: &Space) -> Option<ScanSettings> {
     let (axis, valley) = narrow(space)?;
     let [mut scan, _] = scans(space, axis, valley);
@@ -352,7 +354,7 @@ pub fn coarse_scan(space: &Space) -> Option<ScanSettings> {
     Some(scan)
 }
 
-/// The scan of an axis for its valley, and a fine one on the floor that the first has found.
+/// Returns the coarse scan of an axis for its valley, and the fine scan of the minimum found by the first.
 fn scans(space: &Space, axis: usize, valley: &Valley) -> [ScanSettings; 2] {
     let coarse = ScanSettings {
         axis,
@@ -373,7 +375,7 @@ fn scans(space: &Space, axis: usize, valley: &Valley) -> [ScanSettings; 2] {
     [coarse, fine]
 }
 
-/// Shifts of what is searched.
+/// Returns the shifts of searched unknowns, with axes in place of names.
 fn shifts(space: &Space, of: &[protocol::case::Shift]) -> Vec<Shift> {
     let known = of.iter().filter_map(|shift| {
         let axis = space.position(&shift.unknown)?;
@@ -382,7 +384,7 @@ fn shifts(space: &Space, of: &[protocol::case::Shift]) -> Vec<Shift> {
     known.collect()
 }
 
-/// Lines through and beside a point, with every set of shifts that uncover a valley.
+/// Returns the lines through and beside a point, one for every subset of the shifts that uncover a valley.
 fn uncovered(space: &Space, valley: &Valley) -> Vec<Line> {
     let mut lines = vec![Line::default()];
     for shift in shifts(space, &valley.uncovered_by) {
@@ -396,8 +398,8 @@ fn uncovered(space: &Space, valley: &Valley) -> Vec<Line> {
     lines
 }
 
-/// Lines through a point and at each stand-in's shift, with what hides a valley held at shares of the scanned unknown;
-/// none where the case states no shares.
+/// Returns the lines through a point and at each stand-in's shift, with the unknown that hides a valley held
+/// at given ratios to the scanned unknown; `None` if the case states no ratios.
 fn held(space: &Space, valley: &Valley) -> Option<Vec<Line>> {
     let shares = valley.shares.as_ref()?;
     let axis = space.position(&shares.unknown)?;

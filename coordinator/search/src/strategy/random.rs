@@ -1,8 +1,7 @@
-//! Individuals drawn evenly from the box of genes, and nothing else: what every other search must
-//! beat, and a first look at a case.
+//! Uniform sampling of the box of genes: the baseline for every other search, and a first look at a case.
 //!
-//! One batch over the trust intervals or over the whole box: by chance alone, as a Latin hypercube, in which
-//! every part of every gene's interval is met, or along Sobol's sequence.
+//! One batch over the trust intervals or over the whole box: independent random points, a Latin hypercube
+//! (exactly one point in every part of every gene's interval), or a Sobol sequence.
 use super::{
     ask_tell::Strategy,
     conductor::Conductor,
@@ -18,10 +17,10 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// The preset.
+/// Preset of independent random points.
 pub const RANDOM: Preset = Preset {
     name: "random",
-    summary: "individuals drawn from the box of genes by chance: what a search must beat",
+    summary: "individuals drawn at random from the box of genes: a baseline for other searches",
     strategy: RandomSettings::STRATEGY,
     settings: |_| Settings::of(&RandomSettings::thousand(Design::Chance)),
     groups: &[Group::whole(SETTINGS)],
@@ -36,52 +35,52 @@ pub const RANDOM: Preset = Preset {
     build: build_as::<RandomSettings>,
 };
 
-/// The same as a Latin hypercube.
+/// Preset of a Latin hypercube.
 pub const LATIN_HYPERCUBE: Preset = Preset {
     name: "latin-hypercube",
-    summary: "the same, every part of every gene's interval met once",
+    summary: "Latin hypercube: one individual in every part of every gene's interval",
     settings: |_| Settings::of(&RandomSettings::thousand(Design::Hypercube)),
     ..RANDOM
 };
 
-/// The same along Sobol's sequence.
+/// Preset of a Sobol sequence.
 pub const SOBOL: Preset = Preset {
     name: "sobol",
-    summary: "the same along Sobol's sequence, even in all genes together",
+    summary: "Sobol sequence: individuals spread evenly over all genes together",
     settings: |_| Settings::of(&RandomSettings::thousand(Design::Sobol)),
     ..RANDOM
 };
 
-/// What can be set by name.
+/// Settings that can be set by name.
 const SETTINGS: &[Setting] = &[
     Setting::new("points", Values::Whole(1, 1_000_000), "individuals"),
     Setting::new(
         "within",
         Values::Words(&["trust", "bounds"]),
-        "where they are drawn: where models usually survive, or the whole box",
+        "region of the draw: where simulations usually succeed, or the whole box",
     ),
     Setting::new(
         "design",
         Values::Words(&["chance", "hypercube", "sobol"]),
-        "how they are drawn",
+        "sampling design",
     ),
 ];
 
-/// Settings of the search.
+/// Settings of the sampling.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RandomSettings {
-    /// How many individuals.
+    /// Number of individuals.
     pub points: usize,
-    /// Where they are drawn.
+    /// Part of the box that is sampled.
     pub within: Within,
-    /// How they are drawn.
+    /// Sampling design.
     #[serde(default)]
     pub design: Design,
 }
 
 impl RandomSettings {
-    /// A thousand individuals where models usually survive.
+    /// Returns settings for a thousand individuals in the trust intervals.
     const fn thousand(design: Design) -> Self {
         Self {
             points: 1000,
@@ -91,24 +90,24 @@ impl RandomSettings {
     }
 }
 
-/// How points fill a box.
+/// Sampling design of points in a box.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Design {
-    /// Each by chance.
+    /// Independent uniform random points.
     Chance,
-    /// Every part of every interval is met once.
+    /// Latin hypercube: exactly one point in every part of every interval.
     #[default]
     Hypercube,
-    /// Sobol's sequence, shifted by chance.
+    /// Sobol sequence with a random digital shift.
     Sobol,
 }
 
-/// A part of the box of genes.
+/// Part of the box of genes that is sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Within {
-    /// The intervals in which models usually survive.
+    /// Trust intervals, in which simulations usually succeed.
     Trust,
     /// The whole box.
     Bounds,
@@ -151,7 +150,7 @@ impl Recipe for RandomSettings {
     }
 }
 
-/// Points of the unit cube in a box.
+/// Maps points of the unit cube into a box.
 fn placed(intervals: &[Interval], units: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
     let inside = |unit: Vec<f64>| {
         let axes = intervals.iter().zip(unit);

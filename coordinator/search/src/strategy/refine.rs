@@ -1,7 +1,7 @@
 //! Local refinement around the best point: an evolution strategy with covariance adaptation.
 //!
-//! Each round draws a batch and moves the distribution towards the better half (`covariance.rs`). It uses
-//! only the order of the results, so failures are merely last.
+//! Each round draws a batch and moves the distribution towards the better half (`covariance.rs`). Only the
+//! order of the results counts, so failures are merely ranked last.
 use super::{
     archive::{Archive, Evaluated},
     covariance::{Distribution, normal, ranked},
@@ -16,7 +16,7 @@ use crate::{
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
-/// A local refinement.
+/// Settings of a local refinement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RefineSettings {
@@ -24,11 +24,13 @@ pub struct RefineSettings {
     pub batch: usize,
     /// Number of rounds.
     pub rounds: u32,
-    /// First standard deviation, gene by gene (coordinate); 0 keeps a gene as it is.
+    /// Initial standard deviation of each gene (coordinate); 0 keeps a gene fixed.
     pub spread: Vec<f64>,
 }
 
 impl RefineSettings {
+    /// Checks the settings against their ranges and the dimension of the space.
+    ///
     /// # Errors
     /// If a setting lies outside its range.
     pub(super) fn check(&self, space: &Space) -> Result<(), SettingsError> {
@@ -41,7 +43,7 @@ impl RefineSettings {
     }
 }
 
-/// What can be set by name.
+/// Settings that can be set by name.
 pub(super) const SETTINGS: &[Setting] = &[
     Setting::new(
         "batch",
@@ -55,27 +57,29 @@ pub(super) const SETTINGS: &[Setting] = &[
     ),
 ];
 
-/// A local refinement as a piece of a strategy.
+/// Local refinement as a piece of a strategy.
 pub struct Refine {
     settings: RefineSettings,
     space: Space,
     streams: Streams,
-    /// Positions of the genes that move.
+    /// Positions of the genes that are varied.
     moving: Vec<usize>,
     round: u32,
     state: Option<State>,
 }
 
-/// The distribution, in moving genes only.
+/// State of the refinement: the distribution, over the varied genes only.
 struct State {
-    /// The point the refinement started from, all genes (coordinate).
+    /// Starting point of the refinement, all genes (coordinate).
     base: Vec<f64>,
     distribution: Distribution,
-    /// The normal numbers behind the running batch.
+    /// Standard normal vectors from which the points of the running batch were drawn.
     drawn: Vec<DVector<f64>>,
 }
 
 impl Refine {
+    /// Creates a refinement from its settings.
+    ///
     /// # Errors
     /// If a setting lies outside its range.
     pub fn new(

@@ -1,7 +1,7 @@
-//! Line scans: one unknown is moved over a grid, everything else stays.
+//! Line scans: one unknown is varied over a grid while the others stay fixed or follow a rule of the line.
 //!
-//! A narrow valley that no random step meets is found by brute force along the one axis that is
-//! known to be narrow. All stations are independent, so any number of workers is busy at once.
+//! A narrow valley that random steps miss is found by brute force along the one axis that is known to be
+//! narrow. All stations are independent, so any number of workers is busy at once.
 use super::{
     archive::{Archive, Evaluated},
     piece::{Batch, Draft, Piece},
@@ -11,70 +11,70 @@ use super::{
 use crate::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// What the grid is laid around.
+/// Centre of the scan's grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Center {
-    /// Where the scanned unknown starts.
+    /// Start value of the scanned unknown.
     Start,
-    /// The value that the point has.
+    /// Value of the scanned unknown at the point.
     Point,
 }
 
-/// An unknown that is moved away from the point's value, for a whole line.
+/// Constant offset of an unknown from the point's value along a whole line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Shift {
-    /// Its axis.
+    /// Axis of the shifted unknown.
     pub axis: usize,
     /// Offset from the point's value (coordinate).
     pub by: f64,
 }
 
-/// An unknown that is a share of the scanned one along a whole line.
+/// Unknown held at a constant ratio to the scanned unknown along a whole line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Share {
-    /// Its axis.
+    /// Axis of the unknown that follows the scanned one.
     pub axis: usize,
-    /// Its value over that of the scanned unknown.
+    /// Ratio of the unknown's value to that of the scanned unknown.
     pub of_scanned: f64,
 }
 
-/// A line of stations through or beside a point.
+/// Line of stations through or beside a point.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Line {
-    /// Unknowns that are moved away from the point's values.
+    /// Unknowns that are offset from the point's values.
     pub shifts: Vec<Shift>,
-    /// The unknown that follows the scanned one.
+    /// Unknown that follows the scanned one at a constant ratio, if any.
     pub share: Option<Share>,
 }
 
-/// A line scan.
+/// Settings of a line scan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScanSettings {
-    /// The scanned axis.
+    /// Index of the scanned axis.
     pub axis: usize,
-    /// What the grid is laid around.
+    /// Centre of the grid.
     pub center: Center,
-    /// How far below the centre it begins (coordinate).
+    /// Distance from the centre down to the first station (coordinate).
     pub below: f64,
-    /// How far above the centre it ends (coordinate).
+    /// Distance from the centre up to the last station (coordinate).
     pub above: f64,
-    /// Spacing (coordinate); a valley narrower than twice this may be missed.
+    /// Spacing of the stations (coordinate); a valley narrower than twice the spacing may be missed.
     pub step: f64,
-    /// How many of the best points are scanned.
+    /// Number of best points about which lines are scanned.
     pub points: usize,
-    /// How far apart those points are at least, along any axis but the scanned one (coordinate).
+    /// Minimum distance between these points along some axis other than the scanned one (coordinate).
     pub apart: f64,
-    /// The lines through and beside each point; at least one.
+    /// Lines through and beside each point; at least one.
     pub lines: Vec<Line>,
 }
 
 impl ScanSettings {
-    /// Stations per line.
+    /// Returns the number of stations per line.
     fn stations(&self) -> usize {
         #[expect(
             clippy::cast_possible_truncation,
@@ -85,7 +85,7 @@ impl ScanSettings {
         intervals + 1
     }
 
-    /// Points of the scan through and beside one point, line by line (coordinates).
+    /// Returns the points of the scan through and beside one point, line by line (coordinates).
     pub fn points_around(&self, space: &Space, base: &[f64]) -> Vec<Vec<f64>> {
         let middle = match self.center {
             Center::Start => 0.0,
@@ -109,6 +109,8 @@ impl ScanSettings {
         self.lines.iter().flat_map(along).collect()
     }
 
+    /// Checks the settings against their ranges and the axes of the space.
+    ///
     /// # Errors
     /// If a setting lies outside its range.
     pub(super) fn check(&self, space: &Space) -> Result<(), SettingsError> {
@@ -132,7 +134,7 @@ impl ScanSettings {
     }
 }
 
-/// What can be set by name.
+/// Settings that can be set by name.
 pub(super) const SETTINGS: &[Setting] = &[
     Setting::new(
         "below",
@@ -156,16 +158,18 @@ pub(super) const SETTINGS: &[Setting] = &[
     ),
 ];
 
-/// A line scan as a piece of a strategy.
+/// Line scan as a piece of a strategy.
 pub struct Scan {
     settings: ScanSettings,
     space: Space,
     done: bool,
-    /// Stations that are being evaluated.
+    /// Number of stations being evaluated.
     running: usize,
 }
 
 impl Scan {
+    /// Creates a scan from its settings.
+    ///
     /// # Errors
     /// If a setting lies outside its range.
     pub fn new(settings: ScanSettings, space: &Space) -> Result<Self, SettingsError> {
@@ -178,7 +182,7 @@ impl Scan {
         })
     }
 
-    /// The best points that differ enough from each other (coordinate).
+    /// Returns the best points that are far enough apart (coordinate).
     fn bases(&self, archive: &Archive) -> Vec<Vec<f64>> {
         let mut bases: Vec<Vec<f64>> = Vec::new();
         for entry in archive.ranked() {

@@ -1,81 +1,82 @@
-//! Settings as people name them: a table of keys with what each may be.
+//! Tables of settings: keys with allowed values and meanings.
 //!
-//! A strategy's settings are a plain struct with serde's derives; a table says which of its fields
-//! can be set by name, what they may be and what they mean. The same table parses, prints, checks
-//! and lists them.
+//! A strategy's settings are a plain struct with serde's derives; a table says which of its fields can be set
+//! by name, their allowed values and their meaning. The same table parses, prints, checks and lists the
+//! settings.
 use serde::Serialize;
 use serde_json::Value;
 
-/// Settings that no search can be made of.
+/// Error in the settings of a search.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingsError {
     /// A setting lies outside its range.
     #[error("{setting} is {value}, but must be {allowed}")]
     Range {
-        /// Name of the setting.
+        /// Key of the setting.
         setting: String,
-        /// Its value.
+        /// Rejected value, as text.
         value: String,
-        /// What it may be.
+        /// Allowed values, in words.
         allowed: String,
     },
-    /// There is no setting of this name.
+    /// No setting has this key.
     #[error("there is no setting `{key}`")]
     Unknown {
-        /// What was named.
+        /// Key given by the user.
         key: String,
-        /// What there is.
+        /// Keys that exist.
         known: Vec<String>,
     },
-    /// The setting is one of a part that the search leaves out for this case.
+    /// The setting belongs to a part that the search omits for this case.
     #[error(
-        "`{key}` sets nothing: no unknown of the case has a `valley`, so this search does not scan"
+        "`{key}` has no effect: no unknown of the case has a `valley`, so this search has no scan; remove the setting, or add `valley` to an unknown in case.toml"
     )]
     Absent {
-        /// What was named.
+        /// Key given by the user.
         key: String,
     },
-    /// The settings are of a strategy that is not there, or not of the form that it has.
+    /// The settings name an unknown or different strategy, or do not have the form of the strategy's
+    /// settings.
     #[error("the settings of the strategy `{strategy}` cannot be used: {problem}")]
     Form {
-        /// The strategy that they name.
+        /// Strategy that the settings name.
         strategy: String,
-        /// What is wrong.
+        /// Reason why the settings are rejected.
         problem: String,
     },
 }
 
-/// What a setting may be.
+/// Allowed values of a setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Values {
-    /// One of some words.
+    /// One of a list of words.
     Words(&'static [&'static str]),
-    /// A whole number, from the first to the last.
+    /// Integer within an inclusive range.
     Whole(u64, u64),
-    /// A number, from the first to the last.
+    /// Real number within an inclusive range.
     Real(f64, f64),
-    /// `true` or `false`.
+    /// Boolean, `true` or `false`.
     Switch,
 }
 
-/// One setting of a strategy.
+/// Setting of a strategy, with its allowed values and meaning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
-    /// Its field in the strategy's settings.
+    /// Field name in the strategy's settings.
     pub field: &'static str,
-    /// What it may be.
+    /// Allowed values.
     pub values: Values,
-    /// The word for no value, where it may have none.
+    /// Word that stands for no value, if the setting is optional.
     pub none: Option<&'static str>,
-    /// What it means, in one line.
+    /// Meaning of the setting, one line.
     pub meaning: &'static str,
-    /// Whether its default follows the number of workers that are planned.
+    /// Whether the default depends on the planned number of workers.
     pub follows_workers: bool,
 }
 
 impl Setting {
-    /// A setting that always has a value.
+    /// Creates a setting that always has a value.
     pub const fn new(field: &'static str, values: Values, meaning: &'static str) -> Self {
         Self {
             field,
@@ -86,7 +87,7 @@ impl Setting {
         }
     }
 
-    /// The same, with a word for no value.
+    /// Makes the setting optional, with a word for no value.
     #[must_use]
     pub const fn or(self, none: &'static str) -> Self {
         Self {
@@ -95,7 +96,7 @@ impl Setting {
         }
     }
 
-    /// The same, with a default that follows the number of workers that are planned.
+    /// Marks the default of the setting as dependent on the planned number of workers.
     #[must_use]
     pub const fn following_workers(self) -> Self {
         Self {
@@ -104,7 +105,7 @@ impl Setting {
         }
     }
 
-    /// What it may be, in words.
+    /// Returns the allowed values, in words.
     pub fn allowed(&self) -> String {
         let values = match self.values {
             Values::Words(words) => words.join(", "),
@@ -118,7 +119,7 @@ impl Setting {
             .map_or(values.clone(), |none| format!("{values}, or {none}"))
     }
 
-    /// The value of some words, if it may be that.
+    /// Parses a value; `None` if it is not allowed.
     pub fn parse(&self, text: &str) -> Option<Value> {
         if self.none == Some(text) {
             return Some(Value::Null);
@@ -135,7 +136,7 @@ impl Setting {
         self.holds(&value).then_some(value)
     }
 
-    /// A value in words: those that [`Setting::parse`] takes.
+    /// Formats a value as text that [`Setting::parse`] accepts.
     pub fn show(&self, value: &Value) -> String {
         match value {
             Value::Null => self.none.unwrap_or("none").to_owned(),
@@ -150,7 +151,7 @@ impl Setting {
         }
     }
 
-    /// Whether it may be this.
+    /// Returns whether a value is allowed.
     fn holds(&self, value: &Value) -> bool {
         match (self.values, value) {
             (_, Value::Null) => self.none.is_some(),
@@ -166,7 +167,7 @@ impl Setting {
         }
     }
 
-    /// The error of a value that it may not be.
+    /// Creates the error for a value that is not allowed.
     pub(super) fn refusal(&self, setting: &str, value: &str) -> SettingsError {
         SettingsError::Range {
             setting: setting.to_owned(),
@@ -179,7 +180,7 @@ impl Setting {
 /// Checks settings against their table.
 ///
 /// # Errors
-/// If one is not what it may be.
+/// If a setting has a value that is not allowed.
 pub fn check(settings: &impl Serialize, table: &[Setting]) -> Result<(), SettingsError> {
     let values = serde_json::to_value(settings).unwrap_or_default();
     for setting in table {
@@ -194,7 +195,7 @@ pub fn check(settings: &impl Serialize, table: &[Setting]) -> Result<(), Setting
 /// Checks one number against a condition that no table can state.
 ///
 /// # Errors
-/// If it does not hold.
+/// If the condition does not hold.
 pub(super) fn require(
     holds: bool,
     setting: &str,

@@ -1,32 +1,32 @@
-//! The settings of a search as data, whichever strategy it is.
+//! Settings of a search as JSON data, independent of the strategy.
 use super::{ask_tell::Strategy, setting::SettingsError};
 use crate::space::Space;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
 
-/// Where the name of the strategy stands.
+/// Key of the strategy's name in the settings.
 const STRATEGY: &str = "strategy";
 
-/// The settings of one strategy, and the search that they make.
+/// Settings of one strategy that can build the search.
 pub trait Recipe: Serialize + DeserializeOwned {
-    /// Name of the strategy, as run folders keep it.
+    /// Name of the strategy, as stored in run folders.
     const STRATEGY: &'static str;
 
-    /// The search over a space, from a seed.
+    /// Builds the search over a space, from a seed.
     ///
     /// # Errors
     /// If a setting lies outside its range.
     fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError>;
 }
 
-/// The settings of a search, the name of its strategy among them: with the space and a seed they
-/// decide it to the last bit.
+/// Settings of a search, including the name of its strategy; together with the space and a seed they
+/// determine the search to the last bit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Settings(Value);
 
 impl Settings {
-    /// Those of a strategy.
+    /// Creates the settings from those of a strategy.
     pub fn of<R: Recipe>(recipe: &R) -> Self {
         // plain data: numbers, words, lists
         let mut values = serde_json::to_value(recipe).unwrap_or_default();
@@ -34,22 +34,25 @@ impl Settings {
         Self(values)
     }
 
-    /// The strategy that they are of.
+    /// Returns the name of the strategy.
     pub fn strategy(&self) -> &str {
         self.0[STRATEGY].as_str().unwrap_or_default()
     }
 
-    /// As the strategy's own settings.
+    /// Returns the settings as the strategy's own type.
     ///
     /// # Errors
-    /// If they are of another strategy, or not of the form that it has.
+    /// If the settings belong to another strategy, or do not have the form of its settings.
     pub fn read<R: Recipe>(&self) -> Result<R, SettingsError> {
         let problem = |problem: String| SettingsError::Form {
             strategy: self.strategy().to_owned(),
             problem,
         };
         if self.strategy() != R::STRATEGY {
-            return Err(problem(format!("they are not of `{}`", R::STRATEGY)));
+            return Err(problem(format!(
+                "they belong to another strategy, not to `{}`",
+                R::STRATEGY
+            )));
         }
         let mut values = self.0.clone();
         if let Some(fields) = values.as_object_mut() {
@@ -58,21 +61,21 @@ impl Settings {
         serde_json::from_value(values).map_err(|error| problem(error.to_string()))
     }
 
-    /// The value at a place, as a JSON pointer.
+    /// Returns the value at a JSON pointer.
     pub(super) fn at(&self, place: &str) -> Option<&Value> {
         self.0.pointer(place)
     }
 
-    /// The same, to change it.
+    /// Returns a mutable reference to the value at a JSON pointer.
     pub(super) fn at_mut(&mut self, place: &str) -> Option<&mut Value> {
         self.0.pointer_mut(place)
     }
 }
 
-/// The search that settings of a strategy make.
+/// Builds the search from the settings of a strategy.
 ///
 /// # Errors
-/// If they are of another strategy, or one lies outside its range.
+/// If the settings belong to another strategy, or a setting lies outside its range.
 pub fn build_as<R: Recipe>(
     settings: &Settings,
     space: &Space,

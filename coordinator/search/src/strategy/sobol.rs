@@ -1,8 +1,8 @@
-//! Sobol's sequence: points that fill a box more evenly than chance does, whatever their number.
+//! Sobol sequence: low-discrepancy points in the unit cube.
 //!
 //! Direction numbers of Joe and Kuo, "Constructing Sobol sequences with better two-dimensional projections"
-//! (SIAM J. Sci. Comput. 30, 2008), in Gray-code order; a random digital shift makes another sequence of every
-//! seed and keeps what is even about it.
+//! (SIAM J. Sci. Comput. 30, 2008), in Gray-code order; a random digital shift gives a different sequence for
+//! every seed and preserves its uniformity.
 
 /// Degree, inner coefficients and first direction numbers of the primitive polynomials of dimensions 2 to 21.
 const POLYNOMIALS: [(usize, u32, &[u32]); 20] = [
@@ -28,13 +28,13 @@ const POLYNOMIALS: [(usize, u32, &[u32]); 20] = [
     (7, 4, &[1, 3, 7, 13, 13, 15, 69]),
 ];
 
-/// Dimensions that there are direction numbers for.
+/// Maximum number of dimensions, for which direction numbers are known.
 pub(super) const MOST: usize = POLYNOMIALS.len() + 1;
 
-/// Bits of a coordinate.
+/// Number of bits of a coordinate.
 const BITS: usize = 32;
 
-/// Direction numbers of a dimension, the highest bit first.
+/// Returns the direction numbers of a dimension, highest bit first.
 fn directions(dimension: usize) -> [u32; BITS] {
     let mut v = [0; BITS];
     let polynomial = dimension.checked_sub(1).and_then(|k| POLYNOMIALS.get(k));
@@ -60,8 +60,8 @@ fn directions(dimension: usize) -> [u32; BITS] {
     v
 }
 
-/// The first `count` points in the unit cube, shifted digit by digit by one number for each of at most
-/// [`MOST`] dimensions.
+/// Returns the first `count` points in the unit cube, with one digital shift for each of at most [`MOST`]
+/// dimensions.
 pub(super) fn sobol(count: usize, shifts: &[u32]) -> Vec<Vec<f64>> {
     let axes: Vec<[u32; BITS]> = (0..shifts.len()).map(directions).collect();
     let mut state = vec![0_u32; shifts.len()];
@@ -82,7 +82,7 @@ pub(super) fn sobol(count: usize, shifts: &[u32]) -> Vec<Vec<f64>> {
 mod tests {
     use super::*;
 
-    /// Points 0 to 7 of the first three dimensions, as published.
+    /// Compares points 0 to 7 of the first three dimensions with published values.
     #[test]
     fn the_first_points_are_the_published_ones() {
         let expected = [
@@ -102,7 +102,8 @@ mod tests {
         }
     }
 
-    /// Of 2^k points each of as many equal parts of every axis holds one, shifted or not.
+    /// Checks that of 2^k points exactly one lies in each of 2^k equal parts of every axis, also when
+    /// shifted.
     #[test]
     fn every_part_of_every_axis_is_met_once() {
         let shifts: Vec<u32> = (0_u32..)

@@ -1,9 +1,9 @@
-//! A search that begins with a table of individuals.
+//! Searches that begin with a table of individuals.
 //!
-//! The table is evaluated first, all of it at once. Then the search is made over a space that knows the
-//! individuals which survived, the best first ([`Space::beginning_at`]): populations have them in their first
-//! places, a local search begins at the best, and one that can use neither goes its own way. What the table
-//! has answered is not evaluated again. No strategy knows of any of this.
+//! The table is evaluated first, all of it at once. Then the search is built over a space whose starting
+//! points are the surviving individuals, best first ([`Space::beginning_at`]): populations contain them in
+//! their first places, a local search begins at the best, and a strategy that can use neither ignores them.
+//! Individuals of the table are not evaluated again. Strategies need no knowledge of the table.
 use super::{
     archive::{Archive, Evaluated, Residual},
     ask_tell::Strategy,
@@ -18,13 +18,13 @@ use super::{
 use crate::space::Space;
 use std::collections::BTreeMap;
 
-/// Two values are the same where they differ by less, relative to their size: what comes back from its
-/// coordinate differs from what was read in the last bits.
+/// Relative difference below which two values are considered equal: a value converted to its coordinate and
+/// back differs in the last bits.
 const SAME: f64 = 1e-12;
 
-/// The search that settings make over a space, from a seed, after these individuals: values of all unknowns
-/// [declared units] inside the bounds. They come on top of what the settings plan; without any it is the
-/// search of [`build`].
+/// Builds a search over a space, from a seed, that first evaluates these individuals: values of all unknowns
+/// [declared units] inside the bounds. They are added to the evaluations that the settings plan; without
+/// individuals the search is that of [`build`].
 ///
 /// # Errors
 /// As [`build`]; if there are more individuals than evaluations are planned without them.
@@ -71,34 +71,34 @@ pub fn build_after(
     }))
 }
 
-/// A table, then a search.
+/// Strategy that evaluates a table of individuals, then runs a search.
 struct AfterTable {
-    /// Individuals of the table.
+    /// Number of individuals in the table.
     table: usize,
-    /// The search: until the table is through, one that is never asked and says what is planned.
+    /// Inner search: until the table is evaluated a placeholder that only reports the planned evaluations.
     inner: Box<dyn Strategy>,
-    /// What it is made anew from.
+    /// Settings, space and seed from which the inner search is rebuilt.
     recipe: (Settings, Space, u64),
-    /// Its own ids of what was asked in its name.
+    /// Ids of the inner search by the ids under which its proposals were handed out.
     own_ids: BTreeMap<u64, u64>,
-    /// How many of its individuals the table has answered.
+    /// Number of the inner search's individuals whose results were taken from the table.
     known: u64,
     outbox: Vec<Proposal>,
     intake: Intake,
 }
 
 impl AfterTable {
-    /// The next id: one more than all that were asked for.
+    /// Returns the next proposal id.
     fn next_id(&self) -> u64 {
         self.intake.archive().entries().len() as u64 + self.intake.awaited()
     }
 
-    /// Whether every individual of the table has its result.
+    /// Returns whether every individual of the table has its result.
     fn is_through(&self) -> bool {
         self.intake.archive().entries().len() >= self.table
     }
 
-    /// Makes the search of what the table has found.
+    /// Builds the inner search with the surviving individuals of the table as starting points.
     fn begin(&mut self) {
         let (settings, space, seed) = &self.recipe;
         let survived: Vec<Vec<f64>> = {
@@ -113,7 +113,7 @@ impl AfterTable {
         self.pass_on();
     }
 
-    /// What the table says of genes, if it holds them.
+    /// Returns the table's result for these genes, if the table contains them.
     fn answered(&self, genes: &[f64]) -> Option<Told> {
         let table = self.intake.archive().entries().iter().take(self.table);
         let same = |entry: &&Evaluated| {
@@ -123,7 +123,8 @@ impl AfterTable {
         table.into_iter().find(same).map(|entry| entry.told)
     }
 
-    /// Hands on what the search asks for, but for individuals that the table has answered.
+    /// Forwards the proposals of the inner search, answering initial individuals that are in the table
+    /// directly.
     fn pass_on(&mut self) {
         loop {
             let asked = self.inner.ask();
@@ -208,7 +209,7 @@ mod tests {
         test_function::SPHERE,
     };
 
-    /// Individuals at these coordinates on every axis.
+    /// Returns individuals with the same coordinate on every axis, one per given coordinate.
     fn at(space: &Space, coordinates: &[f64]) -> Vec<Vec<f64>> {
         let one = |x: &f64| space.values(&vec![*x; space.dimension()]);
         coordinates.iter().map(one).collect()

@@ -1,4 +1,4 @@
-//! Laws that every preset of the catalogue obeys.
+//! Requirements that every preset of the catalogue fulfils.
 use super::{memetic::MemeticSettings, quick::QuickSettings, *};
 use crate::{
     random::{Phase, Stream, Streams},
@@ -8,10 +8,10 @@ use crate::{
 use protocol::case::{Scale, Unknown};
 use std::collections::BTreeMap;
 
-/// A function that strategies are held to.
+/// Objective function on which strategies are tested.
 pub(super) type Tell<'a> = dyn Fn(&[f64]) -> Told + 'a;
 
-/// Everything a run leaves behind, in id order.
+/// Record of a run: proposals and results in id order, best individual, end.
 #[derive(Debug, PartialEq)]
 pub(super) struct Record {
     pub(super) asked: Vec<Proposal>,
@@ -20,12 +20,12 @@ pub(super) struct Record {
     pub(super) finish: Finish,
 }
 
-/// Runs a strategy to its end; `reorder` shuffles the open proposals before one is told.
+/// Runs a strategy to its end; `reorder` selects the open proposal to answer next at random.
 pub(super) fn run(strategy: &mut dyn Strategy, tell: &Tell<'_>, reorder: Option<Stream>) -> Record {
     run_with(strategy, tell, &|_| Vec::new(), reorder)
 }
 
-/// Runs a strategy on a function, residual vectors included.
+/// Runs a strategy to its end on a test function, including residual vectors.
 pub(super) fn run_on(
     strategy: &mut dyn Strategy,
     function: &TestFunction,
@@ -73,7 +73,7 @@ fn run_with(
     }
 }
 
-/// A preset's settings for a space, with 16 workers planned.
+/// Returns a preset's settings for a space, with 16 planned workers.
 pub(super) fn settings(preset: &Preset, space: &Space) -> Settings {
     (preset.settings)(&Plan { space, workers: 16 })
 }
@@ -90,7 +90,7 @@ fn run_preset(preset: &Preset, function: &TestFunction, seed: u64, order: Option
 }
 
 impl Record {
-    /// Every bit of what was asked and of the best individual, by FNV-1a.
+    /// Returns the FNV-1a hash of all proposals and of the best fitness.
     pub(super) fn bits(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
         let mut add = |bytes: &[u8]| {
@@ -111,7 +111,7 @@ impl Record {
     }
 }
 
-/// A search over ten genes keeps every bit from one version to the next.
+/// Checks that a search over ten genes is bit-identical from one version to the next.
 #[test]
 fn the_bits_of_every_preset_stay() {
     let frozen = [
@@ -304,8 +304,8 @@ fn every_preset_finds_the_minima_that_it_promises_to_find() {
     }
 }
 
-/// Two logarithmic unknowns beside two linear ones: one negative, one that begins at its lower bound.
-/// Every preset finds the minimum, and none leaves the bounds.
+/// Checks that every preset finds the minimum within the bounds with two logarithmic and two linear unknowns:
+/// one linear start is negative, the other is at its lower bound.
 #[test]
 fn linear_axes_are_searched_like_logarithmic_ones() {
     let linear = |name, start, bounds| Unknown::new(name, "N", Scale::Linear, start, bounds);
@@ -391,7 +391,7 @@ fn refining_presets_enter_the_valley_wherever_it_lies() {
     }
 }
 
-/// Small searches for tests of single settings, as far as a preset has them.
+/// Settings that keep searches short in tests of single settings; keys that a preset lacks are skipped.
 const SMALL: &[(&str, &str)] = &[
     ("population", "12"),
     ("generations", "3"),
@@ -400,7 +400,8 @@ const SMALL: &[(&str, &str)] = &[
     ("points", "40"),
 ];
 
-/// What a setting needs beside it to matter at all.
+/// Prerequisites of settings, as (setting, other key, value): the setting has an effect only with this value
+/// of the other key.
 const BESIDE: &[(&str, &str, &str)] = &[
     ("real_step", "encoding", "real"),
     ("reuse_clones", "mutation_probability", "0"),
@@ -410,7 +411,7 @@ const BESIDE: &[(&str, &str, &str)] = &[
     ("speculation", "acceptance", "first"),
 ];
 
-/// Values other than the present one.
+/// Returns allowed values other than the present one.
 fn others(setting: &setting::Setting, now: &str) -> Vec<String> {
     let some = match setting.values {
         setting::Values::Words(words) => words.iter().map(ToString::to_string).collect(),
@@ -431,7 +432,7 @@ fn others(setting: &setting::Setting, now: &str) -> Vec<String> {
     some.into_iter().filter(|value| value != now).collect()
 }
 
-/// Every value that help offers is taken, comes back in the same words, and changes the search.
+/// Checks that every value offered in help is accepted, formatted in the same words, and changes the search.
 #[test]
 fn every_setting_of_every_preset_can_be_set_and_changes_something() {
     let space = test_function::RASTRIGIN.space();

@@ -1,18 +1,18 @@
-//! The result of an evaluation, and which of two is the better.
+//! Result of an evaluation, and its ordering.
 use std::cmp::Ordering;
 
-/// The result of an evaluation.
+/// Result of an evaluation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Told {
-    /// What is minimised; of an incomplete simulation a grade that says how far it got. Not a
-    /// number counts as the worst failure.
+    /// Fitness, which is minimised; for an incomplete simulation a grade of how far it got. NaN counts as the
+    /// worst failure.
     pub fitness: f64,
     /// Whether the simulation reached its end.
     pub complete: bool,
 }
 
 impl Told {
-    /// Complete before failed, then by fitness; the smaller is the better. Not a number is last.
+    /// Compares two results: complete before failed, then by fitness, smaller is better. NaN is last.
     pub fn order(self, other: Self) -> Ordering {
         let key = |told: Self| (!told.complete || told.fitness.is_nan(), told.fitness);
         let ((failed, fitness), (other_failed, other_fitness)) = (key(self), key(other));
@@ -23,12 +23,12 @@ impl Told {
             .then_with(|| fitness.total_cmp(&other_fitness))
     }
 
-    /// Strictly better than another.
+    /// Returns whether the result is strictly better than another.
     pub fn beats(self, other: Self) -> bool {
         self.order(other) == Ordering::Less
     }
 
-    /// Complete and comparable: fit to be an elite.
+    /// Returns whether the simulation completed with a fitness that is not NaN.
     pub fn survived(self) -> bool {
         self.complete && !self.fitness.is_nan()
     }

@@ -19,13 +19,13 @@ fn sphere(z: &DVector<f64>) -> f64 {
     z.norm_squared()
 }
 
-/// Axes of lengths up to a thousand to one.
+/// Computes an ellipsoid function with axis ratios up to a thousand.
 fn ellipsoid(z: &DVector<f64>) -> f64 {
     let weight = |k: usize| libm::pow(10.0, 6.0 * k as f64 / (DIMENSION as f64 - 1.0));
     z.iter().enumerate().map(|(k, z)| weight(k) * z * z).sum()
 }
 
-/// A bent valley.
+/// Computes the Rosenbrock function, a curved valley.
 fn rosenbrock(z: &DVector<f64>) -> f64 {
     let pair = |k: usize| {
         let (x, y) = (z[k] + 1.0, z[k + 1] + 1.0);
@@ -34,13 +34,14 @@ fn rosenbrock(z: &DVector<f64>) -> f64 {
     (0..DIMENSION - 1).map(pair).sum()
 }
 
-/// Ten to the fifth basins.
+/// Computes the Rastrigin function, with about 10^5 basins of attraction.
 fn rastrigin(z: &DVector<f64>) -> f64 {
     let ripple = |z: &f64| 10.0 * (1.0 - libm::cos(std::f64::consts::TAU * z)) + z * z;
     z.iter().map(ripple).sum()
 }
 
-/// How many of ten instances a strategy brings below a value, and the evaluations it asks for.
+/// Returns in how many of ten instances a strategy reaches a fitness below `below`; checks that it uses
+/// exactly the budget of evaluations.
 fn solved(name: &str, function: Function, below: f64) -> u64 {
     let names: Vec<String> = (0..DIMENSION).map(|k| format!("x{k}")).collect();
     let unknown = |name: &String| Unknown::new(name, "1", Scale::Linear, 0.0, [-5.0, 5.0]);

@@ -1,13 +1,13 @@
-//! Numbers with their derivatives by the parameters, so that a model is written once and its columns are
-//! exact. It does not know models.
+//! Dual numbers: values with their derivatives by the parameters, so that a model is written once and its
+//! Jacobian columns are exact. Independent of any model.
 //!
 //! `f(a + a' e) = f(a) + f'(a) a' e` with `e^2 = 0` (forward differentiation).
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Most parameters of a set.
+/// Maximum number of parameters of a data set.
 pub(crate) const MOST: usize = 9;
 
-/// A value, and its derivatives by the parameters.
+/// Dual number: a value and its derivatives by the parameters.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Dual {
     pub(crate) value: f64,
@@ -15,19 +15,19 @@ pub(crate) struct Dual {
 }
 
 impl Dual {
-    /// A parameter of this place.
+    /// Creates the parameter at index `place`.
     pub(crate) fn parameter(place: usize, value: f64) -> Self {
         let by = std::array::from_fn(|k| if k == place { 1.0 } else { 0.0 });
         Self { value, by }
     }
 
-    /// A function of it with its value and its derivative there.
+    /// Applies the chain rule for a function with this value and slope.
     fn through(self, value: f64, slope: f64) -> Self {
         let by = self.by.map(|own| slope * own);
         Self { value, by }
     }
 
-    /// A function of it and another with its value and its derivatives by both.
+    /// Applies the chain rule for a function of two arguments with this value and partial derivatives.
     fn with(self, other: Self, value: f64, [own, others]: [f64; 2]) -> Self {
         let by = std::array::from_fn(|k| own * self.by[k] + others * other.by[k]);
         Self { value, by }
@@ -59,7 +59,7 @@ impl Dual {
         self * self
     }
 
-    /// A power with any exponent; of a positive value.
+    /// Computes a power of a positive base with any exponent.
     pub(crate) fn pow(self, exponent: Self) -> Self {
         (exponent * self.ln()).exp()
     }

@@ -1,6 +1,6 @@
-//! The least squares of `calibrate` and `diagnose` against the certified values of NIST's Statistical
-//! Reference Datasets for nonlinear regression: correct digits of parameters and of standard errors, from
-//! both starts, with exact columns and with the search's own differences.
+//! Comparison of the least squares of `calibrate` and `diagnose` with the certified values of NIST's
+//! Statistical Reference Datasets for nonlinear regression: correct digits of parameters and of standard
+//! errors, from both starts, with exact columns and with the search's own differences.
 //!
 //! `cargo test -p search --test nist -- --nocapture` prints the table.
 mod dual;
@@ -12,22 +12,22 @@ use nalgebra::DMatrix;
 use search::least_squares::{LeastSquares, Settings, Variable};
 use set::Set;
 
-/// Digits beyond which certified values say no more.
+/// Maximum number of digits counted, as certified values are not more precise.
 const MOST: f64 = 10.0;
 
-/// Sets that no fit reaches from start 1: the first step leads to where the model is flat in a parameter, or
-/// to another minimum.
+/// Data sets for which no fit converges from start 1: the first step leads to where the model is flat in a
+/// parameter, or to another minimum.
 const FAR: [&str; 4] = ["MGH17", "BoxBOD", "MGH10", "Eckerle4"];
 
-/// How a fit ended: the fewest correct digits of any parameter and of any standard error, and the points it
-/// took.
+/// Result of a fit: the fewest correct digits of any parameter and of any standard error, and the number of
+/// points evaluated.
 struct Fit {
     parameters: f64,
     errors: f64,
     points: u64,
 }
 
-/// Fits from a start, with exact columns or by central differences.
+/// Fits a data set from a start, with exact columns or by central differences.
 fn fit(set: &Set, start: &[f64], exact: bool) -> Fit {
     let variable = |start: &f64| Variable {
         start: *start,
@@ -69,8 +69,8 @@ fn fit(set: &Set, start: &[f64], exact: bool) -> Fit {
     }
 }
 
-/// Roots of the diagonal of `s^2 (J^T J)^-1` with `s^2 = |r|^2 / (n - p)`, through the triangle of `J`, whose
-/// columns are brought to length 1 first.
+/// Returns the standard errors: roots of the diagonal of `s^2 (J^T J)^-1` with `s^2 = |r|^2 / (n - p)`, by QR
+/// factorisation of `J` with columns scaled to norm 1.
 fn standard_errors(jacobian: &DMatrix<f64>, square: f64) -> Vec<f64> {
     let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
     let mut scaled = jacobian.clone();
@@ -86,7 +86,7 @@ fn standard_errors(jacobian: &DMatrix<f64>, square: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The fewest digits in which values agree with those certified.
+/// Returns the fewest digits in which values agree with the certified ones, at most [`MOST`].
 fn digits(values: &[f64], certified: &[f64]) -> f64 {
     let pairs = values.iter().zip(certified);
     let one = pairs.map(|(value, known)| -((value - known) / known).abs().log10());

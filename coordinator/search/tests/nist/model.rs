@@ -1,11 +1,11 @@
-//! The models of the sets, as their files state them. They do not know data.
+//! Models of the data sets, as their files state them. Independent of data.
 use crate::dual::Dual;
 use std::f64::consts::PI;
 
-/// What a model gives at parameters and predictors.
+/// Model function of parameters and predictors.
 pub(crate) type Model = fn(&[Dual], &[f64]) -> Dual;
 
-/// The sets with their models, from the lower level of difficulty to the higher.
+/// Data sets with their models, from lower to higher level of difficulty.
 pub(crate) const MODELS: [(&str, Model); 27] = [
     ("Misra1a", saturation),
     ("Chwirut2", chwirut),
@@ -83,7 +83,7 @@ fn cubic(b: &[Dual], x: &[f64]) -> Dual {
     polynomial(&b[..4], x[0]) / (polynomial(&b[4..], x[0]) * x[0] + 1.0)
 }
 
-/// `c_0 + c_1 x + ...`
+/// Computes the polynomial `c_0 + c_1 x + ...`.
 fn polynomial(coefficients: &[Dual], x: f64) -> Dual {
     let add = |sum: Dual, own: &Dual| sum * x + *own;
     coefficients.iter().rev().fold(Dual::from(0.0), add)

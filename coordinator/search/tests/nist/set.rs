@@ -1,25 +1,25 @@
-//! A set as its file states it: starts, certified values, data. It does not know searches.
+//! Data set as its file states it: starts, certified values, data. Independent of any search.
 use crate::{dual::Dual, model::Model};
 use search::least_squares::Evaluated;
 use std::{fs, path::Path};
 
-/// Lines before the data.
+/// Number of lines before the data.
 const HEAD: usize = 60;
 
-/// A set of data with its model and what is certified of it.
+/// Data set with its model and certified values.
 pub(crate) struct Set {
     model: Model,
-    /// Where a search starts: far, near.
+    /// Starting values: far, near.
     pub(crate) starts: [Vec<f64>; 2],
-    /// Certified parameters, and their standard errors.
+    /// Certified parameters; `errors` are their standard errors.
     pub(crate) parameters: Vec<f64>,
     pub(crate) errors: Vec<f64>,
-    /// Response and predictors of every observation.
+    /// Response and predictors of each observation.
     pub(crate) data: Vec<(f64, Vec<f64>)>,
 }
 
 impl Set {
-    /// Reads the file of a set.
+    /// Reads the file of a data set.
     pub(crate) fn read(name: &'static str, model: Model) -> Self {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/nist/data");
         let text =
@@ -54,7 +54,7 @@ impl Set {
         }
     }
 
-    /// Model less data with the columns; none where the model is no number.
+    /// Returns the residual (model minus data) with its Jacobian columns; `None` if any value is not finite.
     pub(crate) fn evaluate(&self, x: &[f64]) -> Option<Evaluated> {
         let parameters = x.iter().enumerate();
         let parameters: Vec<Dual> = parameters.map(|(k, x)| Dual::parameter(k, *x)).collect();

@@ -1,4 +1,4 @@
-//! Where a case comes from, and its reading.
+//! Source and loading of a case.
 use crate::cli::output::terminal;
 use case::{Overrides, load_with_notes};
 use clap::Args;
@@ -8,7 +8,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A case folder as it is typed: its `case.toml` stands for it.
+/// Parses a case folder; the path of its `case.toml` is also accepted.
 #[expect(clippy::unnecessary_wraps, reason = "the shape that clap asks for")]
 pub(crate) fn case_folder(typed: &str) -> Result<PathBuf, Infallible> {
     let path = PathBuf::from(typed);
@@ -20,7 +20,7 @@ pub(crate) fn case_folder(typed: &str) -> Result<PathBuf, Infallible> {
     })
 }
 
-/// Where a case comes from, shared by commands that read one.
+/// Source of a case, shared by commands that read one.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct CaseChoice {
     /// Case folder, with `case.toml` in it.
@@ -32,25 +32,26 @@ pub(crate) struct CaseChoice {
     pub(crate) measured: Option<PathBuf>,
 }
 
-/// A case that was read.
+/// Loaded case with the source of its measured records.
 pub(crate) struct LoadedCase {
     pub(crate) case: Case,
-    /// Where the records came from.
+    /// Folder of the measured records.
     pub(crate) measured: String,
-    /// Whether the case says that they were computed.
+    /// Whether the case declares its records as computed (synthetic).
     pub(crate) synthetic: bool,
-    /// What there is to know about them.
+    /// Notes about the records.
     pub(crate) notes: Vec<String>,
 }
 
 impl CaseChoice {
-    /// Reads the case; what is worth knowing goes to standard error.
+    /// Reads the case; prints notes to standard error.
     pub(crate) fn load(&self) -> anyhow::Result<LoadedCase> {
         load_case(&self.case, self.measured.as_deref())
     }
 }
 
-/// Reads a case folder, with the records of another folder in place of its own if one is given.
+/// Reads a case folder, with the measured records of another folder in place of its own if one is given;
+/// prints notes to standard error.
 pub(crate) fn load_case(folder: &Path, measured: Option<&Path>) -> anyhow::Result<LoadedCase> {
     let overrides = Overrides {
         measured: measured.map(Path::to_owned),

@@ -1,15 +1,15 @@
-//! What a simulation is differentiated by, as it is typed.
+//! Parsing of `--derivatives`: the columns by which a simulation is differentiated.
 use crate::cli::output::problem::Problem;
 use protocol::{case::Case, job::Column};
 
-/// The word for everything that the case has.
+/// Word for all unknowns and effect parameters of the case.
 const ALL: &str = "all";
 
-/// Columns by name, separated by commas; `all` are the unknowns of the case and the parameters of its
-/// effects.
+/// Parses columns by name, separated by commas; `all` stands for the unknowns of the case and the parameters
+/// of its effects.
 ///
 /// # Errors
-/// A name that is neither an unknown nor could be a parameter of an effect, or one that stands twice.
+/// If a name is neither an unknown nor could be a parameter of an effect, or occurs twice.
 pub(crate) fn columns(case: &Case, typed: &str) -> Result<Vec<Column>, Problem> {
     let own = case.unknowns.iter().map(|unknown| unknown.name.clone());
     let parameters = case.effects.iter().flat_map(|effect| {
@@ -29,12 +29,12 @@ pub(crate) fn columns(case: &Case, typed: &str) -> Result<Vec<Column>, Problem> 
     let mut names: Vec<&str> = Vec::new();
     for name in typed.split(',').map(str::trim) {
         let problem = if names.contains(&name) {
-            "stands twice"
+            "is given twice"
         } else if known.iter().any(|one| one == name) || name.contains('.') {
             names.push(name);
             continue;
         } else {
-            "is no unknown of the case"
+            "is not an unknown of the case"
         };
         return Err(Problem {
             message: format!("--derivatives: `{name}` {problem}"),

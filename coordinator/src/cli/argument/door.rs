@@ -1,8 +1,8 @@
-//! How workers on other machines may join a run.
+//! Arguments for access by workers on other machines.
 use clap::Args;
 use std::path::PathBuf;
 
-/// How workers on other machines may join; not at all by default.
+/// Access for workers on other machines; none by default.
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct Door {
     /// Where workers on other machines may connect, as `quic/0.0.0.0:7447`.

@@ -1,26 +1,26 @@
-//! Factors of a sweep: settings of a search with the values that they take, `--factor KEY=A,B,C`.
+//! Factors of a sweep: settings of a search with their levels, `--factor KEY=A,B,C`.
 use super::settings::refuse;
 use crate::cli::output::problem::Problem;
 use search::strategy::{Preset, Settings};
 use study::orthogonal::Factor;
 
-/// What stands between the names of settings that take their values together.
+/// Separator between settings that are varied jointly as one factor.
 const JOINT: char = '+';
 
-/// From a command line: `KEY=A,B,C`.
+/// Parses a factor from the command line: `KEY=A,B,C`.
 pub(crate) fn parse(text: &str) -> Result<Factor, String> {
     let (name, levels) = text
         .split_once('=')
-        .ok_or("write KEY=A,B,C, as population=40,80,120")?;
+        .ok_or("write the factor as KEY=A,B,C, for example population=40,80,120")?;
     Ok(Factor::new(name.trim(), levels.split(',').map(str::trim)))
 }
 
-/// The same again.
+/// Formats a factor as on the command line: `KEY=A,B,C`.
 pub(crate) fn words(factor: &Factor) -> String {
     format!("{}={}", factor.name, factor.levels.join(","))
 }
 
-/// The settings that a factor sets.
+/// Returns the keys of the settings that a factor sets.
 pub(crate) fn keys(factor: &Factor) -> impl Iterator<Item = &str> {
     factor.name.split(JOINT)
 }
@@ -28,7 +28,7 @@ pub(crate) fn keys(factor: &Factor) -> impl Iterator<Item = &str> {
 /// Sets a factor to one of its levels.
 ///
 /// # Errors
-/// If a preset has no such setting, or it may not be that.
+/// If the preset lacks one of the settings, or a value is not allowed.
 pub(crate) fn set(
     factor: &Factor,
     level: usize,
@@ -42,10 +42,11 @@ pub(crate) fn set(
     Ok(())
 }
 
-/// Refuses factors that a preset does not have, values that they may not take, and what is named twice.
+/// Checks factors against a preset: every key must exist, every level must be allowed, and no key or level
+/// may occur twice.
 ///
 /// # Errors
-/// The first of them, with what there is.
+/// The first violation, with its remedy.
 pub(crate) fn check(
     factors: &[Factor],
     preset: &Preset,
@@ -55,7 +56,7 @@ pub(crate) fn check(
     for factor in factors {
         let twice = |message: String| Problem {
             message,
-            remedy: "name every setting, and every value of it, once".to_owned(),
+            remedy: "give every setting, and every value of a setting, only once".to_owned(),
         };
         for key in keys(factor) {
             if named.contains(&key) {
@@ -76,7 +77,7 @@ pub(crate) fn check(
             })?;
             if met.contains(&settings) {
                 return Err(twice(format!(
-                    "factor {}: {words} stands twice",
+                    "factor {}: the value {words} is given twice",
                     factor.name
                 )));
             }

@@ -1,11 +1,11 @@
-//! Which parameters are simulated, and under which working condition.
+//! Arguments for the simulated individual and the working condition.
 use crate::cli::output::problem::Problem;
 use case::read_genes;
 use clap::Args;
 use protocol::case::Case;
 use std::path::Path;
 
-/// Which parameters are simulated, and under which condition.
+/// Parameters to simulate, and the working condition.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct IndividualChoice {
     /// Parameters: `recommended`, or a gene file such as a run's `calibrated.toml`.
@@ -22,7 +22,7 @@ pub(crate) struct IndividualChoice {
 }
 
 impl IndividualChoice {
-    /// Its genes in the case's order.
+    /// Returns the genes in the case's order.
     pub(crate) fn genes(&self, case: &Case) -> anyhow::Result<Vec<f64>> {
         Ok(match self.genes.as_str() {
             "recommended" => case.start(),
@@ -30,13 +30,13 @@ impl IndividualChoice {
         })
     }
 
-    /// Position of its condition in the case.
+    /// Returns the position of the chosen condition in the case.
     pub(crate) fn condition(&self, case: &Case) -> Result<usize, Problem> {
         condition(case, self.condition.as_deref())
     }
 }
 
-/// Position of a condition by name; the calibrated one without.
+/// Returns the position of a condition by name; that of the objective without a name.
 pub(crate) fn condition(case: &Case, name: Option<&str>) -> Result<usize, Problem> {
     let Some(name) = name else {
         return Ok(case.objective.condition);

@@ -1,4 +1,4 @@
-//! A table of individuals: a CSV file with a column for each unknown that a case searches.
+//! Table of individuals: a CSV file with a column for each unknown that a case searches.
 use case::{
     CaseError, file,
     table::{Table, columns},
@@ -7,25 +7,25 @@ use search::space::{Axis, Space};
 use std::path::Path;
 use store::gene_column;
 
-/// Columns by which a table is one that this program wrote: of `export`, and of a sweep. Its other columns say what came
-/// of the individuals.
+/// Columns that identify a table written by this program: by `export`, or by a sweep. Further columns, which
+/// hold results, are permitted in it.
 const EXPORTED: [&[&str]; 2] = [&["job", "verdict"], &["objective", "verdict"]];
 
-/// Individuals that somebody wrote down.
+/// Individuals read from a user's table.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Individuals {
-    /// Unknowns that the case searches, in its order.
+    /// Searched unknowns, in the case's order.
     pub(crate) names: Vec<String>,
-    /// Their values, row by row \[declared units\].
+    /// Values of the searched unknowns, row by row \[declared units\].
     pub(crate) rows: Vec<Vec<f64>>,
 }
 
 impl Individuals {
-    /// Reads a table; every row is looked at before anything is done with one.
+    /// Reads a table; all rows are checked before any is used.
     ///
     /// # Errors
-    /// An unknown that is missing or none of the case, a row of another length, a cell that is no finite number or
-    /// lies outside the bounds, no rows.
+    /// If an unknown is missing or not in the case, a row has another length, a cell is not a finite number
+    /// or lies outside the bounds, or there are no rows.
     pub(crate) fn read(path: &Path, space: &Space) -> Result<Self, CaseError> {
         let bytes = file::read(path, "the table of individuals that was asked for")?;
         let names = space.axes().iter().map(|axis| axis.unknown.name.as_str());
@@ -62,7 +62,7 @@ impl Individuals {
                     return Ok(value);
                 }
                 let allowed = format!("{lower:e} to {upper:e} {}", unknown.unit);
-                let help = "choose it inside the bounds, or widen them in case.toml";
+                let help = "choose a value inside the bounds, or widen the bounds of this unknown in case.toml";
                 Err(table.cell(path, (row, column), format!("{value:e}"), allowed, help))
             };
             cells.map(cell).collect()

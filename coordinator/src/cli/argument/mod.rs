@@ -1,4 +1,4 @@
-//! Arguments that several commands share, one kind per file.
+//! Arguments shared by several commands, one kind per file.
 pub(crate) mod case;
 pub(super) mod derivatives;
 pub(super) mod door;

@@ -1,4 +1,4 @@
-//! Hosts that are reached by ssh, as they are typed.
+//! Arguments for hosts reached by ssh.
 use clap::Args;
 use launch::{Host, read_hosts};
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ pub(crate) struct HostsChoice {
         value_delimiter = ','
     )]
     ssh: Vec<String>,
-    /// File of such hosts, one a line, with `slots=N` behind those that differ.
+    /// File of hosts, one a line, with `slots=N` after those that differ.
     #[arg(
         long,
         value_name = "FILE",
@@ -26,12 +26,12 @@ pub(crate) struct HostsChoice {
 }
 
 impl HostsChoice {
-    /// Whether none was named.
+    /// Returns whether no host was given.
     pub(crate) const fn is_empty(&self) -> bool {
         self.ssh.is_empty() && self.hosts.is_none()
     }
 
-    /// The hosts.
+    /// Reads the hosts from the arguments or the file.
     pub(crate) fn read(&self) -> Result<Vec<Host>, Problem> {
         match &self.hosts {
             Some(file) => read_hosts(file),

@@ -1,7 +1,7 @@
-//! The choice of output.
+//! Output format argument shared by all commands.
 use clap::{Args, ValueEnum};
 
-/// How results are printed.
+/// Format in which a command prints its results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Output {
     /// Tables for people.
@@ -10,7 +10,7 @@ pub(crate) enum Output {
     Json,
 }
 
-/// The choice of output, shared by all commands.
+/// Output format argument, flattened into the arguments of every command.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct OutputChoice {
     /// How results are printed on standard output.

@@ -1,4 +1,5 @@
-//! Settings of a search by name: `--set KEY=VALUE`, their table in the help, and what they become.
+//! Search settings given by name: parses `--set KEY=VALUE`, applies the values to a preset, and renders the
+//! table of settings for the help text.
 use crate::cli::output::problem::Problem;
 use clap::Args;
 use search::{
@@ -29,20 +30,21 @@ fn pair(text: &str) -> Result<(String, String), String> {
     Ok((key.trim().to_owned(), value.trim().to_owned()))
 }
 
-/// Settings as they were chosen.
+/// Settings given on the command line that replace those of the preset.
 #[derive(Clone, Debug)]
 pub(crate) struct Chosen {
-    /// All of them.
+    /// Complete settings: the preset's, with the values given on the command line in their place.
     pub(crate) settings: Settings,
-    /// Those that differ from the preset's, as `key=value`, in the order of the table.
+    /// Settings that differ from the preset's, as `key=value`, in the order of the settings table.
     pub(crate) set: Vec<String>,
 }
 
 impl SettingsChoice {
-    /// The settings of a preset for a plan, with what was set in their place.
+    /// Returns the settings of a preset for a plan, with the values given by `--set` in place of the
+    /// preset's.
     ///
     /// # Errors
-    /// If a key is unknown, or a value may not be that.
+    /// If a key is unknown or a value is not allowed for its setting.
     pub(crate) fn choose(&self, preset: &Preset, plan: &Plan<'_>) -> Result<Chosen, Problem> {
         let usual = (preset.settings)(plan);
         let mut settings = usual.clone();
@@ -59,13 +61,13 @@ impl SettingsChoice {
         Ok(Chosen { settings, set })
     }
 
-    /// Whether a setting was set by name.
+    /// Returns whether a setting was given by `--set`.
     pub(crate) fn names(&self, key: &str) -> bool {
         self.set.iter().any(|(typed, _)| typed == key)
     }
 
-    /// Takes over from an earlier session what follows the number of workers and was not set anew:
-    /// the same run may go on with another number of them.
+    /// Copies from an earlier session every setting whose default depends on the number of workers and that
+    /// was not set anew, so that a run can be resumed with a different number of workers.
     pub(crate) fn keep(&self, chosen: &mut Chosen, preset: &Preset, earlier: Option<&Settings>) {
         let named = preset.named();
         let follow = named.iter().filter(|one| one.setting.follows_workers);
@@ -82,7 +84,8 @@ impl SettingsChoice {
     }
 }
 
-/// What to do about a setting that a preset does not take.
+/// Converts the error for a rejected setting into a message and a remedy: the nearest known key, or where the
+/// allowed values are listed.
 pub(crate) fn refuse(preset: &Preset, error: SettingsError) -> Problem {
     let message = format!("preset {}: {error}", preset.name);
     let help = if let SettingsError::Unknown { key, known } = error {
@@ -99,8 +102,8 @@ pub(crate) fn refuse(preset: &Preset, error: SettingsError) -> Problem {
     }
 }
 
-/// The table of all settings for the help: what each may be, its value in every preset that has it,
-/// and what it means.
+/// Renders the table of all settings for the help text: allowed values, the value in every preset that has
+/// the setting, and its meaning.
 pub(crate) fn table() -> String {
     // of a function that has everything on which a default of the table depends
     let space = RESONANCE.space();
@@ -127,7 +130,7 @@ pub(crate) fn table() -> String {
     text
 }
 
-/// Values of a setting in the presets that have it, as `quick 32; paper, window 80`.
+/// Lists the values of a setting by preset, for example `quick 32; paper, window 80`.
 fn usual(key: &str, plan: &Plan<'_>) -> String {
     let mut by_value: BTreeMap<String, Vec<&str>> = BTreeMap::new();
     for preset in CATALOGUE {

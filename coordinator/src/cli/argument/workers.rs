@@ -1,4 +1,5 @@
-//! Who works on a run: worker processes on this machine, and others through the door.
+//! Worker arguments: worker processes on this machine, and workers of other machines that connect over the
+//! network.
 use super::{door::Door, nodes::HostsChoice};
 use clap::{
     Args,
@@ -7,7 +8,7 @@ use clap::{
 use dispatch::runtime::PAUSE_LIMIT;
 use std::time::Duration;
 
-/// Who works on a run.
+/// Arguments that select the workers of a run.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct WorkersChoice {
     #[command(flatten)]
@@ -27,29 +28,30 @@ pub(crate) struct WorkersChoice {
 }
 
 impl WorkersChoice {
-    /// Worker processes to start on this machine.
+    /// Returns the number of worker processes to start on this machine.
     pub(crate) fn local(&self) -> usize {
         self.workers.unwrap_or_else(cores)
     }
 
-    /// How long the run waits where its disk is full.
+    /// Returns how long the run waits while its disk is full before it ends.
     pub(crate) fn pause_limit(&self) -> Duration {
         let minutes = |minutes: u32| Duration::from_secs(60 * u64::from(minutes));
         self.pause_limit.map_or(PAUSE_LIMIT, minutes)
     }
 
-    /// Whether workers of other machines take part.
+    /// Returns whether workers on other machines can take part.
     pub(crate) const fn has_others(&self) -> bool {
         self.door.listen.is_some() || !self.hosts.is_empty()
     }
 }
 
-/// Numbers of local worker processes: more would only get in each other's way.
+/// Returns the parser for the number of local worker processes, 0 to 1024; more would only compete for the
+/// cores.
 pub(crate) fn worker_count() -> impl TypedValueParser<Value = usize> {
     RangedU64ValueParser::<usize>::new().range(0..=1024)
 }
 
-/// How many local worker processes to start by default: one per core.
+/// Returns the default number of local worker processes: one per core.
 pub(crate) fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }

@@ -1,4 +1,4 @@
-//! `horsehead allow`: what a case's own program may do on this machine.
+//! `horsehead allow`: permits this machine to start the external program of a case.
 use crate::cli::{
     argument::{case::case_folder, output::OutputChoice},
     output::{
@@ -15,10 +15,10 @@ use support::atomic_file;
 
 /// Let this machine start the program of a case.
 ///
-/// A case of the kind `command` names an entry of a list that each machine keeps for itself, and cannot say
-/// more: what is started, with which arguments and within what limits stands in the list alone. This
-/// command shows the entry that the case needs, with every file that the program would find in its folder, and
-/// writes it. Once the case's files change, they are to be looked at and allowed again.
+/// A case of the kind `command` only names an entry of an allow list that each machine keeps for itself: what
+/// is started, with which arguments and within what limits stands in that list alone. This command shows the
+/// entry that the case needs, with every file that the program would find in its folder, and writes it. When
+/// the case's files change, review and allow them again.
 #[derive(Debug, Args)]
 #[command(after_help = format!("\
 Examples:
@@ -44,23 +44,23 @@ pub(super) struct Arguments {
     output: OutputChoice,
 }
 
-/// What `allow --output json` prints.
+/// JSON object printed by `allow --output json`.
 #[derive(Debug, Serialize)]
 struct AllowOutput<'a> {
-    /// File of the list.
+    /// Path of the allow list file.
     list: String,
-    /// Name of the entry.
+    /// Name of the entry in the allow list.
     entry: &'a str,
-    /// What stands in it.
+    /// Content of the entry: program, arguments, files, version and limits.
     #[serde(flatten)]
     allowed: &'a allow::Entry,
-    /// Files that the program finds in its folder.
+    /// Files that the program finds in its working folder.
     case_files: &'a [String],
-    /// Whether it was written.
+    /// Whether the entry was written; false with `--dry-run`.
     written: bool,
 }
 
-/// Shows the entry, and writes it.
+/// Shows the allow list entry that the case needs and, without `--dry-run`, writes it.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let Proposal {
         name,
@@ -117,7 +117,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             .and_then(|()| atomic_file::replace(&path, allow::text(&allowed).as_bytes()));
         written.map_err(|error| Problem {
             message: format!("cannot write {}: {error}", path.display()),
-            remedy: "name a list that can be written with HORSEHEAD_ALLOW".to_owned(),
+            remedy: "set HORSEHEAD_ALLOW to the path of a writable file".to_owned(),
         })?;
     }
     let words = if arguments.dry_run {

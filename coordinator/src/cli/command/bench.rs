@@ -1,4 +1,4 @@
-//! `horsehead bench`: what the machinery costs without physics.
+//! `horsehead bench`: measures the overhead of job dispatch with no-op jobs, without simulation.
 use crate::cli::{
     argument::{
         door::Door,
@@ -14,7 +14,7 @@ use protocol::case::Case;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Measure what the machinery costs.
+/// Measure the overhead of dispatching jobs.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(subcommand)]
@@ -38,12 +38,12 @@ Examples:
         /// Worker processes to start, each with one slot process.
         #[arg(long, value_name = "N", default_value_t = 2, env = "HORSEHEAD_WORKERS", value_parser = clap::value_parser!(u32).range(1..=1024))]
         workers: u32,
-        /// Instead of processes, so many workers that are only sessions within this process, over
-        /// the memory link: no transport and no slots, the rest is real.
+        /// Instead of processes, use this many workers that are only sessions within this process, over the
+        /// memory link: no transport and no slots, the rest is real.
         #[arg(long, value_name = "N", env = "HORSEHEAD_SESSIONS", value_parser = clap::value_parser!(u32).range(1..=16_384))]
         sessions: Option<u32>,
-        /// Instead of processes, so many workers that are only sessions of one other process, over
-        /// TCP on loopback: no slots, the rest is real.
+        /// Instead of processes, use this many workers that are only sessions of one other process, over TCP
+        /// on loopback: no slots, the rest is real.
         #[arg(long, value_name = "N", conflicts_with = "sessions", env = "HORSEHEAD_CONNECTIONS", value_parser = clap::value_parser!(u32).range(1..=990))]
         connections: Option<u32>,
         /// Have those connections come over QUIC instead of TCP, with the certificate of `worker-01` of
@@ -51,27 +51,28 @@ Examples:
         /// with --silent or --idle.
         #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
         tls: Option<PathBuf>,
-        /// Jobs to do.
+        /// Number of jobs to run.
         #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..))]
         jobs: u64,
         /// Bytes of each result: a score has about 300, one with its residual 10,000.
         #[arg(long, value_name = "N", default_value_t = 10_000, env = "HORSEHEAD_RESULT_BYTES", value_parser = clap::value_parser!(u32).range(..=10_000_000))]
         result_bytes: u32,
-        /// Measure too, in turn without and with them, what so many connections cost that say
-        /// nothing and are opened again whenever the coordinator closes them.
+        /// Also measure, alternately without and with them, the cost of this many connections that send
+        /// nothing and are reopened whenever the coordinator closes them.
         #[arg(long, value_name = "N", conflicts_with = "sessions", env = "HORSEHEAD_SILENT", value_parser = clap::value_parser!(u32).range(1..=8000))]
         silent: Option<u32>,
-        /// The same with sessions of the bus that never announce themselves: the coordinator takes
-        /// 1,000 sessions in all.
+        /// As --silent, with sessions of the bus that never announce themselves; the coordinator takes 1,000
+        /// sessions in all.
         #[arg(long, value_name = "N", conflicts_with_all = ["sessions", "silent"], env = "HORSEHEAD_IDLE", value_parser = clap::value_parser!(u32).range(1..=990))]
         idle: Option<u32>,
-        /// How often, with --silent or --idle: 8 s without and 8 s with them each time.
+        /// Number of repetitions with --silent or --idle: each takes 8 s without and 8 s with the silent
+        /// connections.
         #[arg(long, value_name = "N", default_value_t = 5, env = "HORSEHEAD_TURNS", value_parser = clap::value_parser!(u32).range(1..=1000))]
         turns: u32,
         #[command(flatten)]
         output: OutputChoice,
     },
-    /// Be many workers that are only sessions, for `bench dispatch --connections`.
+    /// Act as many workers that are only sessions, for `bench dispatch --connections`.
     #[command(hide = true, after_help = format!("\
 Example:
   horsehead bench sessions tcp/127.0.0.1:7447 64
@@ -81,15 +82,15 @@ Example:
         /// Address to dial.
         #[arg(value_name = "LOCATOR", value_parser = Locator::parse)]
         connect: Locator,
-        /// How many.
+        /// Number of sessions.
         #[arg(value_name = "N")]
         sessions: usize,
         /// Key material of a worker.
         #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
         tls: Option<PathBuf>,
     },
-    /// Hold connections that say nothing, for `bench dispatch` with `--silent` or `--idle`, until
-    /// standard input ends.
+    /// Hold connections that send nothing, for `bench dispatch` with `--silent` or `--idle`, until standard
+    /// input ends.
     #[command(hide = true, after_help = format!("\
 Example:
   horsehead bench silent tcp/127.0.0.1:7447 5000
@@ -99,7 +100,7 @@ Example:
         /// Address to dial.
         #[arg(value_name = "LOCATOR", value_parser = Locator::parse)]
         connect: Locator,
-        /// How many.
+        /// Number of connections.
         #[arg(value_name = "N")]
         connections: usize,
         /// Open a session of the bus on each.
@@ -108,29 +109,29 @@ Example:
     },
 }
 
-/// Of `horsehead bench dispatch`.
+/// JSON object printed by `horsehead bench dispatch --output json`.
 #[derive(Debug, Serialize)]
 struct BenchOutput {
-    /// `processes` over TCP on loopback, `connections` of one other process over the same, or
-    /// `sessions` of this process over the memory link.
+    /// Kind of workers: `processes` over TCP on loopback, `connections` of one other process over TCP or QUIC
+    /// on loopback, or `sessions` of this process over the memory link.
     crew: &'static str,
-    /// How many of them.
+    /// Number of workers.
     workers: usize,
-    /// Time until all of them had joined (s).
+    /// Time until all workers had joined (s).
     joined_s: f64,
-    /// Jobs that were done.
+    /// Number of completed jobs.
     jobs: u64,
-    /// Round trip of one job at a time (ms).
+    /// Round-trip time of jobs dispatched one at a time (ms).
     rtt_ms: RoundTrip,
-    /// Throughput with every worker busy.
+    /// Throughput with every worker busy (jobs/s).
     jobs_per_s: f64,
     /// CPU time of the coordinator per job (us).
     coordinator_cpu_us_per_job: f64,
-    /// The same for the last tenth of the jobs over the first.
+    /// Coordinator CPU time per job in the last tenth of the jobs, divided by that in the first tenth.
     cost_ratio: f64,
-    /// Memory of this process (MiB).
+    /// Resident memory of the coordinator process (MiB).
     coordinator_rss_mib: f64,
-    /// What silent connections cost; null where none were asked for.
+    /// Cost of silent connections; null unless `--silent` or `--idle` is given.
     silent: Option<SilentResult>,
 }
 
@@ -141,7 +142,7 @@ struct RoundTrip {
     p99: f64,
 }
 
-/// Measures and shows.
+/// Runs the selected benchmark and prints its result.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match &arguments.what {
         What::Dispatch {
@@ -269,7 +270,7 @@ fn beside(silent: &SilentResult) -> String {
     )
 }
 
-/// Measures the dispatcher with no-op jobs, in a scratch folder; with key material, over QUIC.
+/// Measures the dispatcher with no-op jobs in a temporary run folder, over QUIC if key material is given.
 async fn measure(plan: BenchPlan, tls: Option<PathBuf>) -> anyhow::Result<BenchOutput> {
     let scratch = tempfile::tempdir()?;
     let options = bus::Options {

@@ -1,4 +1,4 @@
-//! `horsehead calibrate`: identify the parameters, and show what it brought.
+//! `horsehead calibrate`: identifies the unknowns of a case and reports the result.
 use crate::cli::{
     argument::{
         case::{CaseChoice, LoadedCase},
@@ -56,12 +56,12 @@ pub(super) struct Arguments {
         value_parser = PossibleValuesParser::new(CATALOGUE.iter().map(|preset| preset.name))
     )]
     preset: String,
-    /// Gene file to search around instead of the recommended values, such as the `calibrated.toml` of
-    /// an earlier calibration or diagnosis.
+    /// Gene file with the values to search around instead of the recommended ones, such as the
+    /// `calibrated.toml` of an earlier calibration or diagnosis.
     #[arg(long, value_name = "FILE", env = "HORSEHEAD_GENES")]
     genes: Option<PathBuf>,
-    /// Table of individuals to evaluate before the search and to begin it with: a CSV file with a column for
-    /// each unknown that the case searches. The run keeps them, and goes on without the file.
+    /// CSV table of individuals to evaluate first and to start the search from, with a column for each
+    /// unknown that the case searches. The run keeps a copy and resumes without the file.
     #[arg(long, value_name = "FILE", env = "HORSEHEAD_START")]
     start: Option<PathBuf>,
     /// Fixes every random choice: the same seed gives the same bits.
@@ -73,9 +73,9 @@ pub(super) struct Arguments {
     run: Option<PathBuf>,
     #[command(flatten)]
     settings: SettingsChoice,
-    /// Of the preset `window`, short for --set window=L: an individual is bred from results that are
-    /// this many behind, part of what decides the result [default: that of the run, or 3 times the
-    /// workers planned: those started here, 40 at least with --listen or --ssh].
+    /// For the preset `window`, short for --set window=L: an individual is bred from results this many
+    /// evaluations back, which affects the result [default: that of the run, or 3 times the planned workers:
+    /// those started here, at least 40 with --listen or --ssh].
     #[arg(long, value_name = "L", env = "HORSEHEAD_WINDOW", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     window: Option<u32>,
     #[command(flatten)]
@@ -105,10 +105,10 @@ Ctrl-C stops cleanly: results so far are kept, and the same command goes on.
     )
 }
 
-/// Workers to plan for where any number of machines may connect.
+/// Number of workers assumed for planning when workers of other machines may connect.
 const LISTENING: usize = 40;
 
-/// How many workers the run is planned for.
+/// Returns the number of workers that the run is planned for.
 fn planned_workers(workers: &WorkersChoice) -> usize {
     if workers.has_others() {
         workers.local().max(LISTENING)
@@ -117,7 +117,10 @@ fn planned_workers(workers: &WorkersChoice) -> usize {
     }
 }
 
-/// The space to search, about the recommended values or those of a start.
+/// Builds the search space, centred on the recommended values or on those of a gene file.
+///
+/// # Errors
+/// If a starting value lies outside its bounds.
 fn searched(case: &Case, start: Option<&Start>) -> Result<Space, Problem> {
     manifest::space(case, start).map_err(|error| Problem {
         message: match start {
@@ -128,7 +131,7 @@ fn searched(case: &Case, start: Option<&Start>) -> Result<Space, Problem> {
     })
 }
 
-/// The table of individuals to begin with, if there is one.
+/// Reads the table of individuals to start from, if one was given.
 fn first_table(file: Option<&Path>, space: &Space) -> anyhow::Result<Option<FirstTable>> {
     let read = |file: &Path| -> anyhow::Result<FirstTable> {
         let rows = Individuals::read(file, space)?.rows;
@@ -140,7 +143,7 @@ fn first_table(file: Option<&Path>, space: &Space) -> anyhow::Result<Option<Firs
     file.map(read).transpose()
 }
 
-/// Refuses a table that the search cannot begin with.
+/// Checks that the search can start from the table of individuals.
 fn check_table(
     table: Option<&FirstTable>,
     settings: &Settings,
@@ -159,7 +162,7 @@ fn check_table(
     })
 }
 
-/// The run that was asked for, as it begins or goes on.
+/// Creates the requested run, or opens it to resume.
 fn begin(arguments: &Arguments) -> anyhow::Result<Calibration> {
     let LoadedCase {
         case,
@@ -212,14 +215,14 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Calibration> {
     Run::begin(&path, manifest, case)
 }
 
-/// Calibrates from the first proposal to the report.
+/// Runs the calibration from the first proposal to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let session = Session::begin(&arguments.workers);
     let run = begin(arguments)?;
     if run.lost_journal() {
         terminal::tell(&format!(
-            "warning: the journal of {} is gone or empty, and with it the results: the run begins \
-             anew",
+            "warning: the journal of {} is missing or empty, so earlier results are lost: the run starts \
+             again",
             run.folder.path().display()
         ));
     }

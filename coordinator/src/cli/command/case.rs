@@ -1,4 +1,4 @@
-//! `horsehead case`: look at a case, or begin one.
+//! `horsehead case`: checks a case folder, writes a template, or imports a PEST control file.
 use crate::cli::{
     argument::{case::CaseChoice, output::OutputChoice},
     output::{
@@ -27,7 +27,7 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Action {
-    /// Read a case with all its files, and tell what is in it or what is wrong.
+    /// Read a case with all its files, and report its content or its errors.
     #[command(after_help = format!("Example:\n  horsehead case check cases/cyjs10-5-37hb\n\n{EXIT_CODES}"))]
     Check {
         #[command(flatten)]
@@ -65,7 +65,7 @@ PEST does. What has no meaning here is listed.
     },
 }
 
-/// What `case check --output json` prints.
+/// JSON object printed by `case check --output json`.
 #[derive(Debug, Serialize)]
 struct CheckOutput<'a> {
     case: &'a str,
@@ -75,7 +75,7 @@ struct CheckOutput<'a> {
     notes: Vec<String>,
 }
 
-/// Checks or begins.
+/// Runs the selected action: check, new or import.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match &arguments.action {
         Action::Check { choice, output } => check(choice, *output),
@@ -108,8 +108,8 @@ fn check(choice: &CaseChoice, output: OutputChoice) -> anyhow::Result<()> {
     terminal::print(output.output, text, &object)
 }
 
-/// What a worker of this machine knows of a case: whether its effects can be simulated, and whether its records can be
-/// those of its channels.
+/// Lets a local worker check a case: whether it knows the case's effects, and whether the measured records
+/// fit the channels. Returns notes.
 fn ask_worker(folder: &Path, overrides: &Overrides) -> anyhow::Result<Vec<String>> {
     let loaded = load_with_notes(folder, overrides)?;
     let case = &loaded.case;
@@ -148,16 +148,16 @@ fn ask_worker(folder: &Path, overrides: &Overrides) -> anyhow::Result<Vec<String
     })
 }
 
-/// What `case import --output json` prints.
+/// JSON object printed by `case import --output json`.
 #[derive(Debug, Serialize)]
 struct ImportOutput {
-    /// The case folder.
+    /// Path of the case folder that was written.
     case: String,
-    /// Parameters that are estimated.
+    /// Number of estimated parameters.
     parameters: usize,
-    /// Observations that count.
+    /// Number of observations with nonzero weight.
     observations: usize,
-    /// What was taken otherwise than it stands, or not at all.
+    /// Entries of the control file that were changed or omitted in the import.
     notes: Vec<String>,
 }
 

@@ -1,5 +1,5 @@
-//! `horsehead diagnose`: where simulation and record part, which missing effect explains it, how sure
-//! that is, and how far the gap closes.
+//! `horsehead diagnose`: where simulation and measured records differ, which missing effect explains the
+//! difference, how certain that is, and how far the gap closes.
 use crate::cli::{
     argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
     output::{diagnosis::Answer, problem::EXIT_CODES, progress::StageDisplay, terminal},
@@ -51,8 +51,8 @@ pub(super) struct Arguments {
     /// Effects that are added at most.
     #[arg(long, default_value_t = 3, value_name = "N", env = "HORSEHEAD_ROUNDS", value_parser = clap::value_parser!(u8).range(1..=5))]
     rounds: u8,
-    /// Take every derivative as a difference of whole simulations, as if the model gave none: slower, and
-    /// the judge of the exact ones.
+    /// Take every derivative as a difference of whole simulations, as if the model gave none: slower, and a
+    /// check of the exact derivatives.
     #[arg(long, env = "HORSEHEAD_DIFFERENCES")]
     differences: bool,
     /// Append what is found to the case's case.toml.
@@ -71,7 +71,7 @@ pub(super) struct Arguments {
     output: OutputChoice,
 }
 
-/// Diagnoses from the record to the report.
+/// Runs the diagnosis from the measured records to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let session = Session::begin(&arguments.workers);
     let mut target = Target::read(

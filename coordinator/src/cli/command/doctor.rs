@@ -1,4 +1,5 @@
-//! `horsehead doctor`: which layer between workers and a coordinator fails, and what to do.
+//! `horsehead doctor`: finds the layer of the connection between workers and a coordinator that fails, and
+//! its remedy.
 use crate::cli::{
     argument::{
         case::{case_folder, load_case},
@@ -31,36 +32,36 @@ firewall, version. Exit code 1 where one fails.
 
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
-    /// Where workers dial.
+    /// Address that workers dial.
     #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_CONNECT", conflicts_with = "listen", value_parser = Locator::parse)]
     connect: Option<Locator>,
-    /// Where the coordinator is to listen.
+    /// Address at which the coordinator is to listen.
     #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_LISTEN", value_parser = Locator::parse)]
     listen: Option<Locator>,
     /// Key material: of a worker with --connect, of the coordinator with --listen.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
     tls: Option<PathBuf>,
-    /// Case folder to look at first.
+    /// Case folder to check first.
     #[arg(long, value_name = "CASE", env = "HORSEHEAD_CASE", value_parser = case_folder)]
     case: Option<PathBuf>,
     #[command(flatten)]
     output: OutputChoice,
 }
 
-/// Of `horsehead doctor`.
+/// JSON object printed by `horsehead doctor --output json`.
 #[derive(Debug, Serialize)]
 struct DoctorOutput {
-    /// `worker` or `coordinator`; `machine` where no address was given.
+    /// Side that was checked: `worker`, `coordinator`, or `machine` if no address was given.
     side: &'static str,
-    /// The address.
+    /// Address that was checked.
     locator: String,
-    /// Whether every layer holds.
+    /// Whether every checked layer works.
     healthy: bool,
-    /// Layers in the order in which they were looked at; the first that fails is the last.
+    /// Results by layer, in the order of checking; checking stops at the first failure.
     checks: Vec<Check>,
 }
 
-/// Looks, and says what was found.
+/// Checks the layers and prints the findings.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut checks = Vec::new();
     if let Some(case) = &arguments.case {

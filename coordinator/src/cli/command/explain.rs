@@ -1,4 +1,4 @@
-//! `horsehead explain`: why workers were idle, from the journal of a run.
+//! `horsehead explain`: how workers spent their time and why they were idle, from the journal of a run.
 use crate::cli::{
     argument::output::OutputChoice,
     output::{problem::EXIT_CODES, terminal},
@@ -12,7 +12,7 @@ use report::table::{self, Table};
 use serde::Serialize;
 use std::{collections::BTreeMap, path::PathBuf};
 
-/// Most jobs that were given up that are named one by one.
+/// Maximum number of abandoned jobs listed individually.
 const MOST_NAMED: usize = 10;
 
 /// Say how the workers of a run spent their time, and why they were idle.
@@ -31,36 +31,36 @@ pub(super) struct Arguments {
     output: OutputChoice,
 }
 
-/// What programs read.
+/// JSON object printed by `explain --output json`.
 #[derive(Debug, Serialize)]
 struct ExplainOutput {
-    /// The run's folder.
+    /// Path of the run folder.
     run: String,
-    /// Coordinator processes that worked on it.
+    /// Number of coordinator processes that worked on the run, one after the other.
     processes: u32,
-    /// Time that they worked, as far as it was accounted (s).
+    /// Wall time during which coordinator processes ran, as far as accounted (s).
     wall_s: f64,
-    /// Results recorded.
+    /// Number of recorded results.
     results: u64,
-    /// Attempts that failed.
+    /// Number of failed attempts.
     failed_attempts: u64,
-    /// Slot time by use (s).
+    /// Slot time by activity (s).
     slot_seconds: BTreeMap<&'static str, f64>,
-    /// What each machine did.
+    /// Work done by each machine, by host name.
     hosts: BTreeMap<String, HostOutput>,
-    /// How long jobs took, by kind.
+    /// Durations of jobs, by kind of job.
     jobs: BTreeMap<&'static str, JobOutput>,
-    /// Why slots were not useful.
+    /// Reasons why slots did no useful work.
     why: Vec<String>,
-    /// Why workers went, with how often.
+    /// Reasons why workers left, each with its number of occurrences.
     left: Vec<(String, u64)>,
-    /// Jobs that were given up, with the reason.
+    /// Jobs that were given up, each with the reason.
     given_up: Vec<(u64, String)>,
-    /// What of the journal could not be read.
+    /// Descriptions of the parts of the journal that could not be read.
     damage: Vec<String>,
 }
 
-/// What one machine did.
+/// Work done by one machine.
 #[derive(Debug, Serialize)]
 struct HostOutput {
     workers: u64,
@@ -70,7 +70,7 @@ struct HostOutput {
     slot_seconds: BTreeMap<&'static str, f64>,
 }
 
-/// How long the jobs of a kind took.
+/// Durations of the jobs of one kind.
 #[derive(Debug, Serialize)]
 struct JobOutput {
     results: u64,
@@ -129,7 +129,7 @@ impl ExplainOutput {
     }
 }
 
-/// Reads the journal and explains.
+/// Reads the journal of a run and prints how its workers spent their time.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let folder = RunFolder::at(&arguments.run)?;
     let account = account::read(&folder.file(journal::FILE))?;

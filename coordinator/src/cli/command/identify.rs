@@ -1,4 +1,5 @@
-//! `horsehead identify`: which unknowns a record sees, at all and apart, and what it leaves open.
+//! `horsehead identify`: which unknowns the measured records determine, individually and jointly, and which
+//! remain undetermined.
 use crate::cli::{
     argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
     output::{identification::show, problem::EXIT_CODES, progress::StageDisplay, terminal},
@@ -15,7 +16,7 @@ use clap::Args;
 use discrepancy::thresholds::Thresholds;
 use std::path::PathBuf;
 
-/// Say which unknowns a record can see, how well, which trade off, and what that does to predictions.
+/// Say which unknowns a record determines, how well, which trade off, and what that does to predictions.
 #[derive(Debug, Args)]
 #[command(after_help = format!("\
 Examples:
@@ -24,7 +25,7 @@ Examples:
   horsehead identify cases/cyjs10-5-37hb --measured tests/of/march --output json
 
 A case is fitted first; a finished run of `calibrate`, or a gene file, gives the start. Every
-unknown gets its value with a 95 % interval, a bound on one side, or \"not seen by this record\":
+unknown gets its value with a 95 % interval, a bound on one side, or \"not determined by this record\":
 where the likelihood profile, all else refitted, rises by 3.84 within the bounds. Where the fit
 leaves more than noise the intervals are widened by that, and `diagnose` is the next thing to
 do.
@@ -57,7 +58,7 @@ pub(super) struct Arguments {
     output: OutputChoice,
 }
 
-/// Identifies from the record to the report.
+/// Runs the identifiability analysis from the measured records to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let session = Session::begin(&arguments.workers);
     let target = Target::read(

@@ -1,4 +1,4 @@
-//! `horsehead keys`: certificates for workers on other machines.
+//! `horsehead keys`: creates certificates for workers on other machines.
 use crate::cli::{
     argument::workers::worker_count,
     output::{
@@ -51,7 +51,7 @@ keys/worker-01 has been copied to its machine. One folder may serve any number o
         #[arg(long, value_name = "DAYS", default_value_t = 365, env = "HORSEHEAD_DAYS", value_parser = clap::value_parser!(u32).range(1..=3650))]
         days: u32,
     },
-    /// Let further workers join, with folders of their own.
+    /// Issue certificates for further workers, each with a folder of its own.
     #[command(after_help = format!("\
 Example:
   horsehead keys add keys rack2-node7
@@ -71,7 +71,7 @@ of the form worker-01, worker-02; others may join when it is started again.
         #[arg(long, value_name = "DAYS", default_value_t = 365, env = "HORSEHEAD_DAYS", value_parser = clap::value_parser!(u32).range(1..=3650))]
         days: u32,
     },
-    /// Say whether a folder can be used, and for what.
+    /// Report whether a folder of certificates can be used, and for what.
     #[command(after_help = format!("Example:\n  horsehead keys check keys\n\n{EXIT_CODES}"))]
     Check {
         /// The coordinator's or a worker's folder.
@@ -79,7 +79,7 @@ of the form worker-01, worker-02; others may join when it is started again.
     },
 }
 
-/// Makes, adds or checks.
+/// Runs the selected action: new, add or check.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match &arguments.action {
         Action::New {
@@ -118,7 +118,7 @@ fn make(folder: &Path, workers: usize, hosts: &[String], valid: Validity) -> Res
          coordinator: horsehead calibrate CASE --listen quic/0.0.0.0:7447 --tls {at}\n\
          each worker: copy {at}/worker-01 (or another) to its machine, then\n  \
          horsehead-worker --connect quic/{dial}:7447 --tls worker-01\n\
-         {CA_KEY} signs further workers and is needed by nobody else: keep it safe",
+         {CA_KEY} signs the certificates of further workers and is needed for nothing else: keep it safe",
         hosts.join(", "),
     ));
     Ok(())

@@ -1,8 +1,8 @@
-//! The commands, one per file, each with the same habits.
+//! Commands, one per file.
 //!
-//! A command is a file with its `Arguments` and the function `run`; here it costs its name in two
-//! lists. Its help shows examples and the exit codes, its options have twins in the environment, and
-//! its results go through [`terminal`].
+//! A command is a file with its `Arguments` and the function `run`; it is registered in this file by name in
+//! the list of modules and in `commands!`. Its help shows examples and the exit codes, its options can also
+//! be set by environment variables, and its results are printed through [`terminal`].
 mod allow;
 mod ask_tell;
 mod bench;
@@ -49,8 +49,8 @@ First steps:
 
 Exit codes: 0 done, 1 failed, 2 usage or bad input, 130 interrupted.";
 
-/// Makes the enum of the commands and runs the one that was typed; what stands in brackets is given
-/// to the command beside its arguments.
+/// Defines the enum of the commands and its dispatch to their `run` functions; an expression in brackets is
+/// passed to the command as an additional argument.
 macro_rules! commands {
     ($($name:ident: $file:ident $([$more:expr])?,)*) => {
         #[derive(Debug, Subcommand)]
@@ -90,7 +90,7 @@ commands! {
     Completions: completions [&mut Cli::command()],
 }
 
-/// Runs the program; its exit code says how it ended.
+/// Runs the program and returns its exit code.
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,

@@ -1,26 +1,27 @@
-//! Every command that is printed or written down anywhere can be typed: in errors, notes, reports
-//! and help, which are string literals and doc comments of the sources, and in the READMEs.
+//! Test that every command line quoted in error messages, notes, reports, help texts and READMEs is accepted
+//! by the argument parser. Searches the string literals and doc comments of the sources.
 use super::*;
 use std::{
     fs,
     path::{Path, PathBuf},
 };
 
-/// Where commands may be written down, from the root of the workspace.
+/// Files and folders searched for command lines, relative to the workspace root.
 const PLACES: &[&str] = &[
     "README.md",
     "cases",
     "coordinator",
     "deploy",
+    "docs",
     "protocol",
     "tests",
     "worker",
 ];
 
-/// What begins like a command and is the name of something else: an authority, a stream of draws.
+/// Strings that begin like a command but name something else.
 const NAMES: &[&str] = &["horsehead authority", "horsehead blind suite"];
 
-/// Files of text below a place.
+/// Collects the text files below a folder.
 fn texts(place: &Path, found: &mut Vec<PathBuf>) {
     let hidden = place.ends_with("target") || place.ends_with("fuzz");
     if place.is_dir() && !hidden {
@@ -37,7 +38,7 @@ fn texts(place: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// What a Rust source says to people: its string literals, and its doc comments.
+/// Extracts the user-visible text of a Rust source: its string literals and its doc comments.
 fn said(source: &str) -> Vec<String> {
     let mut all = Vec::new();
     let docs = source.lines().map(str::trim_start);
@@ -83,7 +84,8 @@ fn said(source: &str) -> Vec<String> {
     all
 }
 
-/// Commands in a text: in backticks, at the beginning of a line, or with the program's folder.
+/// Extracts the command lines of a text: those in backticks, at the beginning of a line, or preceded by a
+/// path.
 fn commands_of(text: &str) -> Vec<String> {
     let text = text.replace("\\\n", " ");
     let mut found = Vec::new();
@@ -110,7 +112,8 @@ fn commands_of(text: &str) -> Vec<String> {
     found
 }
 
-/// A word with something that may be typed in place of `{x}`, `CASE`, `KEY=VALUE`.
+/// Replaces a placeholder such as `{x}`, `CASE` or `KEY=VALUE` by a valid argument; returns other words
+/// unchanged.
 fn typed(word: &str, before: &str) -> String {
     let placeholder = |word: &str| {
         let capital = word
@@ -126,7 +129,7 @@ fn typed(word: &str, before: &str) -> String {
     }
 }
 
-/// Why a command cannot be typed, if it cannot.
+/// Returns the parser's error for a command line, or `None` if it is valid.
 fn problem_of(command: &str) -> Option<String> {
     let words = shlex::split(command).unwrap_or_else(|| vec![command.to_owned()]);
     // the name of a command alone is mentioned, not to be typed

@@ -1,4 +1,4 @@
-//! `horsehead report`: the files of a finished run again, from its journal.
+//! `horsehead report`: writes the files of a finished run again, from its journal.
 use crate::cli::{
     argument::output::OutputChoice,
     output::{problem::EXIT_CODES, progress::Silent},
@@ -26,7 +26,7 @@ pub(super) struct Arguments {
     output: OutputChoice,
 }
 
-/// Replays the run and writes its files.
+/// Replays the run from its journal and writes its report files.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let run = AnyRun::open(&arguments.run)?;
     run.expect_replayable()?;

@@ -1,4 +1,4 @@
-//! `horsehead simulate`: one run of the machine.
+//! `horsehead simulate`: simulates one individual under one condition.
 use crate::{
     cli::{
         argument::{
@@ -34,10 +34,10 @@ pub(super) struct Arguments {
     choice: CaseChoice,
     #[command(flatten)]
     individual: IndividualChoice,
-    /// Folder for the report, the figures and the curves; none are written without.
+    /// Folder for the report, the figures and the curves; nothing is written if it is not given.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_OUT")]
     out: Option<PathBuf>,
-    /// Differentiate the curves, too, by unknowns separated by commas, parameters of effects as
+    /// Also differentiate the curves by unknowns separated by commas, parameters of effects as
     /// EFFECT.PARAMETER (whether the case has the effect or not), or `all` that the case has.
     #[arg(long, value_name = "NAMES|all", env = "HORSEHEAD_DERIVATIVES")]
     derivatives: Option<String>,
@@ -45,7 +45,7 @@ pub(super) struct Arguments {
     output: OutputChoice,
 }
 
-/// Simulates and shows.
+/// Simulates, prints the results and writes the report if a folder was given.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let loaded = arguments.choice.load()?;
     let case = &loaded.case;
@@ -111,7 +111,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
     }
     if arguments.out.is_none() && arguments.output.output == Output::Table {
-        terminal::tell("for the report with figures and curves: the same with --out DIR");
+        terminal::tell("add --out DIR for the report with figures and curves");
     }
     let object = simulation((case, condition), &curves, &derived, digest)?;
     let tables = || {
@@ -125,7 +125,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     ended(&verdict)
 }
 
-/// A simulation that did not complete is shown, and fails.
+/// Returns an error for a simulation that did not complete; its results have already been printed.
 fn ended(verdict: &Verdict) -> anyhow::Result<()> {
     if *verdict == Verdict::Complete {
         return Ok(());
@@ -139,7 +139,7 @@ fn ended(verdict: &Verdict) -> anyhow::Result<()> {
     .into())
 }
 
-/// Genes that a search of this case would never try, one sentence each.
+/// Describes every gene that lies outside the case's search bounds, one sentence each.
 fn outside_bounds(case: &Case, genes: &[f64]) -> Vec<String> {
     let genes = case.unknowns.iter().zip(genes);
     genes

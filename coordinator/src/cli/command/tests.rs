@@ -1,4 +1,4 @@
-//! Habits of the command line: help, run folders, gene files.
+//! Tests of the command line: help texts, run folders, gene files.
 use super::*;
 use crate::cli::{
     argument::{
@@ -54,7 +54,7 @@ fn manifest(case: &Case, seed: u64) -> Manifest {
     }
 }
 
-/// A start at other genes than the recommended ones.
+/// Returns a start at genes other than the recommended ones.
 fn started(case: &Case) -> Start {
     Start {
         file: "found.toml".into(),
@@ -92,7 +92,7 @@ fn a_run_keeps_the_genes_that_it_started_at() {
     );
 }
 
-/// Every command, also those below others.
+/// Collects every command and subcommand with its full path.
 fn commands(command: &clap::Command, path: &str, all: &mut Vec<(String, clap::Command)>) {
     for sub in command
         .get_subcommands()
@@ -160,7 +160,7 @@ fn every_option_has_a_twin_in_the_environment() {
     }
 }
 
-/// A line that is longer than the help is wide is broken where it should not be.
+/// Checks that no line of a help text exceeds the help width, since clap would wrap it and break its layout.
 #[test]
 fn every_line_of_a_help_fits() {
     let mut all = Vec::new();
@@ -335,7 +335,7 @@ fn the_way_to_go_on_names_the_folder_in_hand() {
     assert!(with("1025").is_err() && with("-1").is_err());
 }
 
-/// What `--set` makes of a preset's settings, with so many workers planned.
+/// Applies `--set` arguments to a preset's settings, planned for the given number of workers.
 fn chosen(name: &str, set: &[(&str, &str)], workers: usize) -> Result<Chosen, Problem> {
     let case = load(&shipped(), &Overrides::default()).unwrap();
     let space = Space::new(&case.unknowns).unwrap();
@@ -415,7 +415,7 @@ fn unknown_settings_are_answered_with_the_nearest_and_bad_values_with_what_is_al
     assert!(typed("population=40,encoding=gray").is_ok() && typed("population").is_err());
 }
 
-/// A run goes on with its own window, however many workers there are then.
+/// Checks that a resumed run keeps its own window length, whatever the number of workers is then.
 #[test]
 fn what_follows_the_workers_stays_with_the_run() {
     let window = preset("window").unwrap();
@@ -453,7 +453,7 @@ fn help_lists_every_setting_of_every_preset_with_its_values() {
     );
 }
 
-/// The journal still knows which command a damaged folder belongs to.
+/// Checks that the remedy for a damaged run folder names the right command, which is read from the journal.
 #[test]
 fn the_way_out_of_damage_is_the_command_of_the_run() {
     let scratch = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! `horsehead verify`: the parameters of a run under a condition that took no part in the fit.
+//! `horsehead verify`: scores the parameters of a run under a condition that took no part in the fit.
 use crate::cli::{
     argument::{
         case::load_case,
@@ -36,7 +36,7 @@ pub(super) struct Arguments {
     /// Run folder of a calibration.
     #[arg(value_name = "RUN", env = "HORSEHEAD_RUN")]
     run: PathBuf,
-    /// Working condition, one with a record.
+    /// Working condition; it must have a record.
     #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
     condition: String,
     /// Folder whose inputs and records replace those of the case.
@@ -49,7 +49,7 @@ pub(super) struct Arguments {
     output: OutputChoice,
 }
 
-/// Scores both parameter sets and shows them side by side.
+/// Scores the recommended and the optimised parameters and prints them side by side.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let started = Instant::now();
     let run = Calibration::open(&arguments.run)?;

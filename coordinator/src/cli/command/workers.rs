@@ -1,11 +1,11 @@
-//! `horsehead workers`: bring workers up on other nodes, and see to those that are there.
+//! `horsehead workers`: starts workers on other nodes, and lists, drains or ends those of a run.
 use crate::cli::output::problem::EXIT_CODES;
 use clap::{Args, Subcommand};
 
 mod crew;
 mod up;
 
-/// Bring workers up on spare nodes, and see to those of a run.
+/// Start workers on spare nodes, and manage those of a run.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(subcommand)]
@@ -17,7 +17,7 @@ enum Action {
     /// Start workers on other nodes, by ssh, Slurm, Kubernetes or this machine's systemd.
     #[command(after_help = format!("{}\n\n{EXIT_CODES}", up::EXAMPLES))]
     Up(Box<up::Arguments>),
-    /// Show who works on a run: name, host, slots, version, jobs in hand, rate, last seen.
+    /// Show the workers of a run: name, host, slots, version, jobs in hand, rate, last seen.
     #[command(after_help = format!("{}\n\n{EXIT_CODES}", crew::LIST))]
     List(crew::ListArguments),
     /// Give workers no more jobs.
@@ -26,12 +26,12 @@ enum Action {
     /// End workers.
     #[command(after_help = format!("{}\n\n{EXIT_CODES}", crew::DOWN))]
     Down(crew::DownArguments),
-    /// Show the end of what a host's workers said.
+    /// Show the last lines of the log of a host's workers.
     #[command(after_help = format!("{}\n\n{EXIT_CODES}", up::LOGS))]
     Logs(up::LogsArguments),
 }
 
-/// Does it.
+/// Runs the selected action.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match &arguments.action {
         Action::Up(arguments) => up::run(arguments),

@@ -1,4 +1,4 @@
-//! The files and the output of a finished calibration.
+//! Output of a finished calibration: files in the run folder, and text or JSON on standard output.
 use super::{
     object::{
         calibration::CalibrateOutput,
@@ -25,7 +25,8 @@ use search::strategy::Finish;
 use std::collections::BTreeMap;
 use study::{self, Calibrated, Compared, Curves};
 
-/// The report's form of one comparison of recommended and optimised.
+/// Converts a comparison of the recommended and the optimised individual to the report's type; `None` unless
+/// there are exactly these two.
 pub(crate) fn condition_result(compared: &Compared) -> Option<ConditionResult> {
     let [recommended, optimised] = compared.individuals.as_slice() else {
         return None;
@@ -130,7 +131,7 @@ fn result_object<'a>(
     }
 }
 
-/// The sum over the conditions that are calibrated; null where one of them failed.
+/// Sums each parameter set's objective over the calibrated conditions; null if a condition failed.
 fn summed(run: &Run, found: &Found) -> Both<Option<f64>> {
     let objective = &run.case.objective;
     let of = |which: usize| -> Option<f64> {

@@ -1,4 +1,4 @@
-//! The files and the output of a finished diagnosis.
+//! Output of a finished diagnosis: files in the run folder, and text or JSON on standard output.
 use super::{
     object::diagnosis::answer::{DiagnoseOutput, object},
     terminal,
@@ -15,13 +15,13 @@ use ::report::{diagnosis as report, text};
 use case::{Loaded, append_effects, write_starts};
 use std::path::Path;
 
-/// A finished diagnosis with everything that its files name.
+/// Finished diagnosis with the data that its output files need.
 pub(crate) struct Answer<'a> {
-    /// How it was begun, and where its files go.
+    /// Run that was diagnosed: its manifest and its folder.
     pub(crate) run: &'a Diagnosis,
-    /// Its case with the cycles of the records.
+    /// Case with the measured cycles of its records.
     pub(crate) loaded: &'a Loaded,
-    /// What was found.
+    /// Results of the diagnosis.
     pub(crate) found: &'a Found,
     /// Wall time of all sessions (s).
     pub(crate) wall_s: f64,
@@ -40,8 +40,8 @@ impl Answer<'_> {
         })
     }
 
-    /// Writes the parameters that the answer rests on: with the effects in the case, a simulation of
-    /// them is the diagnosis's "after".
+    /// Writes the fitted parameters of the final model as a gene file: simulating them with the found effects
+    /// in the case reproduces the diagnosis's "after" curves.
     fn write_genes(&self) -> anyhow::Result<()> {
         let Some(fit) = &self.found.diagnosed.diagnosis.after else {
             return Ok(());
@@ -53,7 +53,7 @@ impl Answer<'_> {
             .write_genes(&self.loaded.case, &genes, &about)
     }
 
-    /// Writes the files into the run folder; returns the object of `--output json`.
+    /// Writes the result files into the run folder and returns the object for `--output json`.
     pub(crate) fn write(&self) -> anyhow::Result<DiagnoseOutput> {
         let subject = self.subject()?;
         if let Some(text) = report::effects_toml(&subject) {
@@ -71,15 +71,15 @@ impl Answer<'_> {
         Ok(object)
     }
 
-    /// Prints the answer as the user wants it.
+    /// Prints the diagnosis in the chosen output format.
     pub(crate) fn print(&self, output: Output, object: &DiagnoseOutput) -> anyhow::Result<()> {
         let subject = self.subject()?;
         let whole = || text(&report::report(&subject), terminal::styled());
         terminal::print(output, whole, object)
     }
 
-    /// Adds what was found to a case file, if anything was: an unknown of the case that was off starts from
-    /// there, the rest is new to it.
+    /// Adds the effects found by the diagnosis to a case file; an unknown of the case that was switched off
+    /// gets its fitted value as starting value. Does nothing if the diagnosis found neither.
     pub(crate) fn add(&self, file: &Path) -> anyhow::Result<()> {
         let subject = self.subject()?;
         let (new, starts) = (report::effects(&subject), report::starts(&subject));
@@ -94,7 +94,7 @@ impl Answer<'_> {
         }
         terminal::tell(&format!("added to {}", file.display()));
         terminal::tell(&format!(
-            "to search it with everything else, from what was found:\n  horsehead calibrate {} --genes {}",
+            "to calibrate the added effects together with all other unknowns, starting from the values found:\n  horsehead calibrate {} --genes {}",
             quote_path(&self.run.manifest.case_folder),
             quote_path(&self.run.folder.file(GENES)),
         ));

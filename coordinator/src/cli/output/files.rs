@@ -1,8 +1,8 @@
-//! Folders that a user names for results.
+//! Checks of output folders named by the user.
 use super::problem::Problem;
 use std::path::Path;
 
-/// Refuses a folder that cannot be written, before anything is simulated for it.
+/// Checks that a folder can be written, before any simulation is run for it.
 pub(crate) fn check_out(folder: &Path) -> Result<(), Problem> {
     let tried = std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
     match tried {

@@ -1,4 +1,5 @@
-//! The files and the output of a finished identification.
+//! Output of a finished identifiability analysis: files in the run folder, and text or JSON on standard
+//! output.
 use super::{object::identification::object, terminal};
 use crate::cli::{
     argument::output::Output,

@@ -1,4 +1,4 @@
-//! What a command prints and writes: the terminal, progress, errors, tables, files, JSON objects.
+//! Output of commands: terminal, progress display, errors, tables, files and JSON objects.
 pub(super) mod calibration;
 pub(super) mod diagnosis;
 pub(super) mod files;

@@ -1,33 +1,33 @@
-//! Errors as people see them: what happened, why, and what to do; and the exit code they mean.
+//! Error output: message, causes, remedies and the exit code.
 use super::terminal;
 use case::CaseError;
 use std::process::ExitCode;
 use study::{EvaluatorError, StudyError};
 
-/// What the help of every command ends with.
+/// Line of exit codes at the end of every command's help.
 pub(crate) const EXIT_CODES: &str =
     "Exit codes: 0 done, 1 failed, 2 usage or bad input, 130 interrupted.";
 
-/// Exit code of a command that could not do its work.
+/// Exit code of a command that failed.
 const FAILED: u8 = 1;
 /// Exit code of a wrong command line or wrong input.
 pub(crate) const BAD_INPUT: u8 = 2;
 /// Exit code after Ctrl-C.
 pub(crate) const INTERRUPTED: u8 = 130;
 
-/// The command line, or a file it names, cannot be used: its errors end in exit code 2.
+/// Error for a command line, or a file it names, that cannot be used; results in exit code 2.
 pub(crate) use support::Problem;
 
-/// Prints an error with its causes and remedies, and gives its exit code.
+/// Prints an error with its causes and remedies, and returns its exit code.
 pub(crate) fn explain(error: &anyhow::Error) -> ExitCode {
     terminal::tell(&describe(error));
     ExitCode::from(code(error))
 }
 
-/// Words of the standard library about numbers that cannot be read, and what people would say.
+/// Number parsing messages of the standard library, each with its replacement in plain words.
 const NUMBERS: [(&str, &str); 6] = [
-    ("invalid digit found in string", "it is no whole number"),
-    ("invalid float literal", "it is no number"),
+    ("invalid digit found in string", "not a whole number"),
+    ("invalid float literal", "not a number"),
     (
         "cannot parse integer from empty string",
         "there is no number",
@@ -37,7 +37,7 @@ const NUMBERS: [(&str, &str); 6] = [
     ("number too small to fit in target type", "it is too small"),
 ];
 
-/// A message about the command line in plain words; none where it is plain already.
+/// Replaces technical wording in a command line error; `None` if nothing was replaced.
 pub(crate) fn plainly(message: &str) -> Option<String> {
     let replace = |text: String, (from, to): &(&str, &str)| text.replace(from, to);
     let plain = NUMBERS.iter().fold(message.to_owned(), replace);
@@ -63,7 +63,7 @@ fn code(error: &anyhow::Error) -> u8 {
     code
 }
 
-/// `error:`, then its causes, then `help:` lines.
+/// Formats an error as `error:` with its causes, followed by `help:` lines.
 fn describe(error: &anyhow::Error) -> String {
     let mut causes: Vec<String> = error.chain().map(ToString::to_string).collect();
     causes.dedup();

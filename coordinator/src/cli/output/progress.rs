@@ -1,4 +1,4 @@
-//! Progress on standard error: a bar on a terminal, else a line per generation or ten seconds.
+//! Progress display on standard error: a bar on a terminal, else a line per generation or every ten seconds.
 use super::terminal;
 use discrepancy::laboratory::Stage;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -10,31 +10,31 @@ use std::{
 };
 use study::{Crew, ProgressView, StageView, View, Watch};
 
-/// Longest silence where there is no terminal.
+/// Maximum time between two progress lines if there is no terminal.
 const SILENCE: Duration = Duration::from_secs(10);
-/// Least time between two looks at the workers, which cost more than a result does.
+/// Minimum time between two queries of the workers' state, since a query costs more than processing a result.
 const LOOK: Duration = Duration::from_millis(200);
 
-/// Shows how a calibration comes along.
+/// Progress display of a calibration.
 pub(crate) struct Display {
-    /// Behind the best objective, with a space before it; empty where it has no unit.
+    /// Unit appended to the best objective, with a leading space; empty if it has no unit.
     unit: String,
-    /// What is counted beside simulations.
+    /// Name of the counted quantity shown besides simulations.
     counted: &'static str,
     bar: Option<ProgressBar>,
     last: Instant,
     generation: Option<u32>,
-    /// Results of earlier sessions that come back at once.
+    /// Number of results of earlier sessions, which are read from the journal at once.
     recorded: u64,
 }
 
 impl Display {
-    /// Of a calibration whose objective is a square of this unit.
+    /// Creates the display of a calibration; the objective is in the square of `unit`.
     pub(crate) fn new(unit: Option<&str>) -> Self {
         Self::counting("generation or stage", unit)
     }
 
-    /// The same of what counts something else than the generations of one search.
+    /// Creates a display that counts something other than the generations of one search.
     pub(crate) fn counting(counted: &'static str, unit: Option<&str>) -> Self {
         let bar = io::stderr().is_terminal().then(|| {
             let template = "{bar:32} {pos}/{len}  {msg}";
@@ -53,7 +53,7 @@ impl Display {
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the progress bar.
     pub(crate) fn clear(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
@@ -61,7 +61,7 @@ impl Display {
     }
 }
 
-/// Shows how a diagnosis comes along: the stage, its experiments, the workers.
+/// Progress display of a diagnosis: stage, simulations and workers.
 pub(crate) struct StageDisplay {
     bar: Option<ProgressBar>,
     last: Instant,
@@ -84,7 +84,7 @@ impl StageDisplay {
         }
     }
 
-    /// Takes the line away.
+    /// Removes the progress line.
     pub(crate) fn clear(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
@@ -131,15 +131,15 @@ impl Watch<StageView> for StageDisplay {
     }
 }
 
-/// What comes back in a second, over the last while: what a journal gives again comes at once and is soon
-/// forgotten.
+/// Throughput over a sliding time window; results read at once from the journal soon leave the window.
 #[derive(Default)]
 struct Pace {
     seen: VecDeque<(Instant, f64)>,
 }
 
 impl Pace {
-    /// With so much come back until now; nothing before a few seconds were seen.
+    /// Records the total `spent` at time `now` and returns the rate per second; `None` until more than 8 s
+    /// have been observed.
     fn of(&mut self, now: Instant, spent: f64) -> Option<f64> {
         const WINDOW: Duration = Duration::from_secs(45);
         const ENOUGH: Duration = Duration::from_secs(8);
@@ -156,7 +156,7 @@ impl Pace {
     }
 }
 
-/// Shows nothing: for a replay, which takes a moment and whose workers are those of the past.
+/// Progress display that shows nothing, for replays, which are short and have no live workers.
 pub(crate) struct Silent;
 
 impl<V: View> Watch<V> for Silent {
@@ -197,7 +197,7 @@ impl Watch<ProgressView> for Display {
     }
 }
 
-/// One line: what is counted, best, failures, workers, rate, time left.
+/// Formats the progress line: generation or stage, best objective, failures, workers, rate, remaining time.
 fn describe(view: &ProgressView, (counted, unit): (&str, &str), crew: &Crew) -> String {
     let mut parts = Vec::new();
     // before the first is asked for there is nothing to count, and one of one says nothing
@@ -229,7 +229,8 @@ fn describe(view: &ProgressView, (counted, unit): (&str, &str), crew: &Crew) -> 
     parts.join("  ")
 }
 
-/// Who is at work. Until the first job is given out workers fetch the case and build the model.
+/// Describes the connected workers. Before the first job is dispatched, workers fetch the case and build the
+/// model.
 fn at_work(crew: &Crew) -> String {
     let attached = crew.workers.iter().filter(|worker| worker.attached).count();
     let workers = match attached {
@@ -243,8 +244,8 @@ fn at_work(crew: &Crew) -> String {
     workers
 }
 
-/// What slots do beside what they are there for, as `slots 91 % useful, 8 % barrier`; nothing as
-/// long as there is little to go by.
+/// Formats the use of slot time, for example `slots 91 % useful, 8 % barrier`; `None` below 5 s of connected
+/// slot time.
 fn slot_use(spent: &Spent) -> Option<String> {
     if spent.connected_us < 5_000_000 {
         return None;
@@ -261,7 +262,7 @@ fn slot_use(spent: &Spent) -> Option<String> {
     Some(format!("slots {}", shown.join(", ")))
 }
 
-/// `42 s`, `3 min 05 s`, `2 h 07 min`.
+/// Formats a duration as `42 s`, `3 min 05 s` or `2 h 07 min`.
 fn clock(time: Duration) -> String {
     let seconds = time.as_secs();
     match seconds {

@@ -1,4 +1,4 @@
-//! Printing: results on standard output, everything else on standard error.
+//! Terminal output: results on standard output, everything else on standard error.
 use crate::cli::argument::output::Output;
 use serde::Serialize;
 use std::{
@@ -6,9 +6,9 @@ use std::{
     io::{self, IsTerminal as _, Write as _},
 };
 
-/// Sends warnings of the machinery to standard error; `HORSEHEAD_LOG` asks for more or less, as
-/// `HORSEHEAD_LOG=info`. The bus itself is silent by default: it reports as errors what happens
-/// whenever a session ends.
+/// Sends log messages of level warning and above to standard error; `HORSEHEAD_LOG` selects another level,
+/// for example `HORSEHEAD_LOG=info`. Messages of Zenoh are off by default, because it logs errors whenever a
+/// session ends.
 pub(crate) fn diagnostics() {
     let filter = tracing_subscriber::EnvFilter::try_from_env("HORSEHEAD_LOG")
         .unwrap_or_else(|_| tracing_subscriber::EnvFilter::new("warn,zenoh=off"));
@@ -21,19 +21,19 @@ pub(crate) fn diagnostics() {
         .init();
 }
 
-/// Prints a line for people on standard error. A reader that has gone is nobody's problem.
+/// Prints a line on standard error; write errors are ignored.
 pub(crate) fn tell(text: &str) {
     let _gone = writeln!(io::stderr().lock(), "{text}");
 }
 
-/// Prints notes for people on standard error, a line each.
+/// Prints notes on standard error, one line each.
 pub(crate) fn note(notes: &[impl fmt::Display]) {
     for note in notes {
         tell(&format!("note: {note}"));
     }
 }
 
-/// Prints a result: a table for people or one object for programs.
+/// Prints a result on standard output: a text table or one JSON object.
 pub(crate) fn print(
     output: Output,
     table: impl FnOnce() -> String,
@@ -56,7 +56,7 @@ pub(crate) fn print(
     write(&text)
 }
 
-/// Writes to standard output; a reader that has gone, as `head`, is no error.
+/// Writes to standard output; a closed pipe, for example to `head`, is not an error.
 pub(crate) fn write(text: &str) -> anyhow::Result<()> {
     let mut stdout = io::stdout().lock();
     match stdout
@@ -68,7 +68,7 @@ pub(crate) fn write(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// Whether tables may use bold type: only on a terminal, and not where `NO_COLOR` is set.
+/// Returns whether tables may use bold type: only on a terminal, and only if `NO_COLOR` is not set.
 pub(crate) fn styled() -> bool {
     io::stdout().is_terminal() && !colourless()
 }

@@ -1,4 +1,4 @@
-//! A run that was begun: its folder, how it was begun, and its case.
+//! Run with its folder, manifest and case: opening, resuming and comparing runs.
 use super::{
     bus,
     folder::{CASE, MANIFEST, RunFolder},
@@ -10,19 +10,19 @@ use protocol::case::Case;
 use report::Origin;
 use std::path::{Path, PathBuf};
 
-/// A run of one kind; `S` is what decides its result beside case, seed and start.
+/// Run of one kind; `S` is the type of the settings that, with case, seed and start, determine its result.
 #[derive(Clone, Debug)]
 pub(crate) struct Run<S> {
-    /// Its folder.
+    /// Run folder.
     pub(crate) folder: RunFolder,
-    /// How it was begun, with the wall time of the sessions that are over.
+    /// Manifest: how the run was begun, with the wall time of its finished sessions.
     pub(crate) manifest: Manifest<S>,
-    /// Its case.
+    /// Case as it was when the run was begun.
     pub(crate) case: Case,
 }
 
 impl<S: Decides> Run<S> {
-    /// Opens a run that was begun before.
+    /// Opens an existing run.
     ///
     /// # Errors
     /// If the folder holds no run, or one of another version or kind.
@@ -52,11 +52,11 @@ impl<S: Decides> Run<S> {
         })
     }
 
-    /// A run in a folder where it can begin, or where it goes on because it is the same one. Writes
-    /// nothing: [`Run::remember`] does, once the journal has agreed.
+    /// Prepares a new run in a vacant folder, or resumes the same run in its folder. Writes nothing:
+    /// [`Run::remember`] does so once the journal has been accepted.
     ///
     /// # Errors
-    /// If the folder holds another run or something else.
+    /// If the folder holds another run or unrelated files.
     pub(crate) fn begin(path: &Path, manifest: Manifest<S>, case: Case) -> anyhow::Result<Self> {
         let folder = RunFolder::new(path);
         let mut run = Self {
@@ -87,7 +87,8 @@ impl<S: Decides> Run<S> {
         Ok(run)
     }
 
-    /// In what it is not the same run as an earlier one, in words.
+    /// Describes the first difference in seed, start or settings from an earlier run; `None` if there is
+    /// none.
     fn difference(&self, earlier: &Self) -> Option<String> {
         let (was, is) = (&earlier.manifest, &self.manifest);
         if was.seed != is.seed {
@@ -113,7 +114,7 @@ impl<S: Decides> Run<S> {
         }
     }
 
-    /// Where its results come from, as reports say it; `digest` may be empty.
+    /// Returns the provenance of the results as shown in reports; `digest` may be empty.
     pub(crate) fn origin(&self, digest: String) -> anyhow::Result<Origin> {
         let manifest = &self.manifest;
         Ok(Origin {
@@ -129,24 +130,24 @@ impl<S: Decides> Run<S> {
         })
     }
 
-    /// Whether its results are gone although there were some.
+    /// Returns whether the run computed results but its journal is missing or empty.
     pub(crate) fn lost_journal(&self) -> bool {
         let computed = self.manifest.wall_s > 0.0 || self.folder.is_finished();
         self.folder.is_begun() && computed && !self.folder.has_journal()
     }
 
-    /// Makes sure that the run can be replayed: it is finished and its journal is there.
+    /// Checks that the run can be replayed: it is finished and its journal is present.
     ///
     /// # Errors
-    /// If not; the error says how to go on.
+    /// If it cannot be replayed; the error gives the command that resumes it.
     pub(crate) fn expect_replayable(&self) -> Result<(), Problem> {
         let path = self.folder.path().display();
         let (message, remedy) = if !self.folder.is_finished() {
-            (format!("{path} is not finished"), "go on with it first")
+            (format!("{path} is not finished"), "resume the run first")
         } else if !self.folder.has_journal() {
             (
-                format!("the journal of {path} is gone or empty"),
-                "put it back, or compute the run anew",
+                format!("the journal of {path} is missing or empty"),
+                "restore the journal, or compute the run again",
             )
         } else {
             return Ok(());
@@ -157,7 +158,7 @@ impl<S: Decides> Run<S> {
         })
     }
 
-    /// Remembers how the run was begun and the wall time that was spent (s).
+    /// Writes the case and the manifest into the run folder, with the wall time spent so far (s).
     pub(crate) fn remember(&self, wall_s: f64) -> anyhow::Result<()> {
         if !self.folder.file(CASE).exists() {
             self.folder.write_json(CASE, &self.case)?;
@@ -169,12 +170,12 @@ impl<S: Decides> Run<S> {
         self.folder.write_json(MANIFEST, &manifest)
     }
 
-    /// The command that goes on with the run in the folder where it lies now.
+    /// Returns the command that resumes the run in its current folder.
     pub(crate) fn resume_command(&self) -> String {
         self.manifest.resume_command(self.folder.path())
     }
 
-    /// The case with its records: a run keeps its case, but not the cycles of the records.
+    /// Loads the case with the measured cycles of its records, which the run folder does not contain.
     ///
     /// # Errors
     /// If the case has changed since the run was begun.
@@ -191,7 +192,8 @@ impl<S: Decides> Run<S> {
         Ok(loaded)
     }
 
-    /// Why a run cannot go on with a case that was changed: the same command would say the same again.
+    /// Returns the error for a run whose case has changed; its remedy names a new run folder, because
+    /// repeating the command would fail again.
     fn changed(&self, changes: &str) -> Problem {
         let manifest = &self.manifest;
         let path = self.folder.path();
@@ -202,19 +204,19 @@ impl<S: Decides> Run<S> {
                 path.display()
             ),
             remedy: format!(
-                "a run is of one case; put {} back as it was, or begin a run of the changed one:\n  {another}",
+                "a run belongs to one case; restore {}, or begin a new run of the changed case:\n  {another}",
                 manifest.case_folder.display()
             ),
         }
     }
 
-    /// A case without what this very diagnosis has added to it.
+    /// Removes from a case the effects that this diagnosis has added to it.
     pub(crate) fn as_begun(&self, loaded: Loaded) -> anyhow::Result<Loaded> {
         Ok(loaded.without_found_in(&bus::case_hash(&self.case)?))
     }
 }
 
-/// The first folder beside one that is not there yet: its name with a number from 2 on.
+/// Returns the first path of the form `NAME-2`, `NAME-3`, ... that does not exist yet.
 fn unused(path: &Path) -> PathBuf {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let numbered = |number: u32| path.with_file_name(format!("{name}-{number}"));

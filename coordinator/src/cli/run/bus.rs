@@ -1,4 +1,5 @@
-//! The dispatcher as an evaluator: opening it, and its refusals in words that help.
+//! Adapter that makes the dispatcher an evaluator: options, opening, and conversion of its errors to messages
+//! with remedies.
 use crate::cli::{argument::door::Door, output::problem::Problem};
 use dispatch::journal::{self, JournalError};
 use dispatch::runtime::{Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot};
@@ -16,24 +17,24 @@ use study::{Completed, Crew, Evaluator, EvaluatorError, JobNumbers, WorkerStatus
 /// Name and version of this program.
 pub(crate) const PROGRAM: &str = concat!("horsehead ", env!("CARGO_PKG_VERSION"));
 
-/// How to open the bus.
+/// Options for opening the dispatcher.
 pub(crate) struct Options {
     /// Folder of the journal.
     pub(crate) run_dir: PathBuf,
-    /// How other machines may join.
+    /// Network access for workers of other machines: listening address and key material.
     pub(crate) door: Door,
-    /// Worker processes to start here.
+    /// Number of worker processes to start on this machine.
     pub(crate) local_workers: usize,
-    /// Longest time for which the run waits for a disk that is full.
+    /// Longest time for which the run waits while its disk is full.
     pub(crate) pause_limit: Duration,
-    /// Which command the run belongs to.
+    /// Name of the command to which the run belongs.
     pub(crate) kind: String,
-    /// Canonical JSON of everything that decides the result.
+    /// Canonical JSON of all settings that determine the result.
     pub(crate) settings: String,
 }
 
 impl Options {
-    /// The same as the dispatcher takes it.
+    /// Converts the options to those of the dispatcher.
     pub(crate) fn for_dispatch(self, case: &Case) -> anyhow::Result<DispatchOptions> {
         Ok(DispatchOptions {
             run_dir: self.run_dir,
@@ -52,14 +53,17 @@ impl Options {
     }
 }
 
-/// The dispatcher, as an evaluator.
+/// Evaluator that runs jobs through the dispatcher.
 pub(crate) struct Bus {
     dispatch: Dispatch,
     journal: PathBuf,
 }
 
 impl Bus {
-    /// Opens or resumes the journal and starts local workers.
+    /// Opens or resumes the journal and starts the local workers.
+    ///
+    /// # Errors
+    /// If the local workers cannot run the case, or the dispatcher cannot be opened.
     pub(crate) async fn open(options: Options, case: &Case) -> anyhow::Result<Self> {
         let unready = (options.local_workers > 0).then(|| case::kind::of(case).unready(case));
         if let Some((message, help)) = unready.flatten() {
@@ -77,12 +81,12 @@ impl Bus {
         Ok(Self { dispatch, journal })
     }
 
-    /// How many results earlier sessions left in the journal.
+    /// Returns the number of results recorded in the journal by earlier sessions.
     pub(crate) const fn recorded(&self) -> usize {
         self.dispatch.recorded()
     }
 
-    /// Tells the workers to end and waits for the local ones.
+    /// Shuts down the workers and waits for the local ones to exit.
     pub(crate) async fn close(self) -> anyhow::Result<()> {
         self.dispatch
             .close()
@@ -136,7 +140,7 @@ fn crew(snapshot: Snapshot) -> Crew {
     }
 }
 
-/// Why a run cannot be opened: most often because of what was typed.
+/// Converts an error of opening a run to one with a remedy, mostly a corrected command line argument.
 fn refuse(error: &DispatchError) -> anyhow::Error {
     let help = match error {
         DispatchError::NobodyToAsk => "for example --workers 2, or --listen tcp/127.0.0.1:7447",
@@ -169,8 +173,8 @@ fn refuse(error: &DispatchError) -> anyhow::Error {
     .into()
 }
 
-/// The text without ` at /some/file.rs:12`, with which the transport tells where in its own
-/// source an error was made.
+/// Removes fragments such as ` at /some/file.rs:12`, which the transport adds to its errors to show a place
+/// in its own source.
 fn without_source_places(text: &str) -> String {
     let mut kept = String::with_capacity(text.len());
     let mut rest = text;
@@ -189,7 +193,7 @@ fn without_source_places(text: &str) -> String {
     kept + rest
 }
 
-/// The error of work that cannot go on.
+/// Converts a dispatcher error during the work to an evaluator error, without a remedy.
 pub(crate) fn explain(error: &DispatchError) -> EvaluatorError {
     EvaluatorError {
         message: without_source_places(&error.to_string()),
@@ -197,17 +201,17 @@ pub(crate) fn explain(error: &DispatchError) -> EvaluatorError {
     }
 }
 
-/// The name of some content.
+/// Computes the hash of a value's encoded content.
 pub(crate) fn content_hash(content: &impl Serialize) -> anyhow::Result<ContentHash> {
     Ok(ContentHash::of(&wire::encode(content)?))
 }
 
-/// The name of a case's content, in hexadecimal digits.
+/// Computes the content hash of a case as hexadecimal digits.
 pub(crate) fn case_hash(case: &Case) -> anyhow::Result<String> {
     Ok(content_hash(case)?.to_string())
 }
 
-/// Runs a future to its end on a runtime of its own.
+/// Runs a future to completion on a runtime of its own.
 pub(crate) fn block_on<T>(future: impl Future<Output = anyhow::Result<T>>) -> anyhow::Result<T> {
     tokio::runtime::Builder::new_multi_thread()
         .enable_all()

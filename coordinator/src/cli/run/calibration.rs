@@ -1,4 +1,4 @@
-//! The work of a calibration: the search, then recommended and best individual side by side.
+//! Work of a calibration: the search, then the comparison of the recommended with the best individual.
 use super::{begun::Run, diagnosis::inputs};
 use crate::cli::output::terminal;
 use discrepancy::{diagnose::Inputs, identify::UnknownEstimate, thresholds::Thresholds};
@@ -9,21 +9,22 @@ use study::{
     Wanted, Watch,
 };
 
-/// A calibration that was begun.
+/// Run of `horsehead calibrate`.
 pub(crate) type Calibration = Run<Settings>;
 
-/// What a calibration finds.
+/// Results of a calibration.
 pub(crate) struct Found {
-    /// The best individual and the log of the search.
+    /// Best individual and evaluation log of the search.
     pub(crate) calibrated: Calibrated,
-    /// Recommended and best individual, the calibrated condition first.
+    /// Comparisons of the recommended and the best individual, the calibrated condition first.
     pub(crate) compared: Vec<Compared>,
-    /// Records that cannot be those of their channels.
+    /// Notes about records that do not fit their channels.
     pub(crate) notes: Vec<String>,
 }
 
-/// Looks at the recommended individual, searches, and compares on whatever evaluates: workers, or the recording of a
-/// journal, which gives the same again.
+/// Simulates the recommended individual, runs the search, and compares the recommended with the best
+/// individual. The evaluator is either the workers or the recording of a journal, which reproduces the
+/// results.
 ///
 /// # Errors
 /// As [`study::calibrate()`] and [`study::compare()`].
@@ -72,11 +73,11 @@ pub(crate) async fn calibrate<E: Evaluator>(
     })
 }
 
-/// What the record says of the best individual's unknowns, each with an interval, to first order; nothing where
-/// the case is not as it was, or it cannot be said.
+/// Estimates to first order how well the record determines the unknowns at the best individual, each with an
+/// interval; `None` if the case has changed or no estimate is possible.
 ///
 /// # Errors
-/// If nobody evaluates any more, or the user stops.
+/// If no evaluator is left, or the user stops the run.
 pub(crate) async fn seen<E: Evaluator>(
     evaluator: &mut E,
     run: &Calibration,
@@ -97,7 +98,7 @@ pub(crate) async fn seen<E: Evaluator>(
     Ok(study::glance_on(evaluator, &inputs, watch, stop).await?)
 }
 
-/// The two parameter sets of the paper's tables.
+/// Returns the two parameter sets of the paper's tables, recommended and optimised, with their names.
 pub(crate) fn pair(case: &Case, best: &[f64]) -> Vec<(String, Vec<f64>)> {
     vec![
         ("recommended".to_owned(), case.start()),

@@ -1,4 +1,4 @@
-//! The work of a diagnosis: what decides it, the case with its cycles, the experiments.
+//! Work of a diagnosis: its settings, its inputs (case and measured cycles) and its execution.
 use super::{
     begun::Run,
     command_line::quote,
@@ -12,15 +12,15 @@ use search::space::Space;
 use serde::{Deserialize, Serialize};
 use study::{self, Diagnosed, Evaluator, StageView, Stop, Watch};
 
-/// A diagnosis that was begun.
+/// Run of `horsehead diagnose`.
 pub(crate) type Diagnosis = Run<Decides>;
 
-/// Everything that decides a diagnosis beside case, seed and start.
+/// Settings that determine a diagnosis, besides case, seed and start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Decides {
-    /// Thresholds.
+    /// Thresholds of the statistical tests and limits of the diagnosis.
     pub(crate) thresholds: Thresholds,
-    /// Whether every derivative is a difference of whole simulations.
+    /// Whether every derivative is a finite difference of whole simulations.
     pub(crate) differences: bool,
 }
 
@@ -39,21 +39,22 @@ impl manifest::Decides for Decides {
     }
 }
 
-/// What a diagnosis finds.
+/// Results of a diagnosis.
 pub(crate) struct Found {
-    /// What there is to know of the case and its records.
+    /// Notes about the case and its records.
     pub(crate) notes: Vec<String>,
-    /// The answer and what it cost.
+    /// Diagnosis and its cost by stage.
     pub(crate) diagnosed: Diagnosed,
-    /// Effects that the workers know and the case has not, and unknowns of the case that are off.
+    /// Candidate effects: those known to the workers but absent from the case, and unknowns of the case that
+    /// are switched off.
     pub(crate) library: Vec<EffectDescriptor>,
 }
 
-/// Learns the library and diagnoses, on whatever evaluates: workers, or the recording of a journal,
-/// which gives the same again.
+/// Requests the library of effects from the workers and runs the diagnosis. The evaluator is either the
+/// workers or the recording of a journal, which reproduces the results.
 ///
 /// # Errors
-/// If an effect that is to be left out is unknown; as [`study::diagnose_on`].
+/// If an effect to be excluded is unknown; otherwise as [`study::diagnose_on`].
 pub(crate) async fn diagnose<E: Evaluator>(
     evaluator: &mut E,
     manifest: &Manifest<Decides>,
@@ -97,18 +98,19 @@ pub(crate) async fn diagnose<E: Evaluator>(
     })
 }
 
-/// The search that finds the way into the valley: where no valley is narrow, descents find it in a fraction of the
+/// Returns the preset of the search that finds the basin of attraction of the fit: `quick` if the case
+/// declares a narrow valley, else `least-squares`, whose local descents find the basin with a fraction of the
 /// simulations.
 pub(super) fn entrance(case: &Case) -> &'static str {
     let narrow = case.unknowns.iter().any(|unknown| unknown.valley.is_some());
     if narrow { "quick" } else { "least-squares" }
 }
 
-/// What is fitted: the calibrated condition's record first. The library is without the effects of the case,
-/// and a search of the named preset finds the way into the valley.
+/// Builds the inputs of a fit: the record of the calibrated condition first, the library without the effects
+/// that the case already has, and `entrance`, the preset of the search that finds the basin of attraction.
 ///
 /// # Errors
-/// If the case has no space to search, or says nothing of its kind.
+/// If the case has no space to search, or the data of its kind of model cannot be decoded.
 pub(super) fn inputs<S>(
     loaded: &Loaded,
     manifest: &Manifest<S>,

@@ -1,8 +1,7 @@
-//! The folder of a run: where its files lie, and what to do where one of them is damaged.
+//! Run folder: paths of its files, and the remedy if one of them is damaged.
 //!
-//! `run.json` and `case.json` make the folder independent of the case folder: `verify` and
-//! `report` need nothing else. The journal, which the dispatcher keeps in the same folder, holds
-//! every result.
+//! `run.json` and `case.json` make the folder independent of the case folder: `verify` and `report` need
+//! nothing else. The journal, which the dispatcher keeps in the same folder, holds every result.
 use super::{
     bus::content_hash,
     command_line::quote_path,
@@ -20,24 +19,24 @@ use std::{
 };
 use support::atomic_file;
 
-/// How a run was begun, and what decides its result.
+/// Manifest file: how the run was begun, and the settings that determine its result.
 pub(crate) const MANIFEST: &str = "run.json";
-/// The case as it was when the run was begun.
+/// File with the case as it was when the run was begun.
 pub(crate) const CASE: &str = "case.json";
-/// The output of a run that came to its end.
+/// File with the output of a finished run.
 pub(crate) const RESULT: &str = "result.json";
-/// What the record sees of a calibration's unknowns.
+/// File with the first-order identifiability of a calibration's unknowns.
 pub(crate) const SEEN: &str = "seen.json";
-/// The parameters that a run found, as a gene file.
+/// Gene file with the parameters that a run found.
 pub(crate) const GENES: &str = "calibrated.toml";
 
-/// Folder of the keys of workers that the run brings up itself.
+/// Folder with the keys of workers that the run starts itself.
 pub(crate) const KEYS: &str = "keys";
 
-/// Longest list of settings that is written out in the name of a folder.
+/// Maximum length of the settings in a default folder name (bytes); a longer list is replaced by its hash.
 const LONGEST_SET: usize = 60;
 
-/// What every manifest says, whatever kind of run it is of.
+/// Fields common to the manifests of all kinds of run.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Head {
     format: u32,
@@ -46,22 +45,23 @@ pub(crate) struct Head {
     pub(crate) kind: String,
 }
 
-/// A run folder.
+/// Folder of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct RunFolder {
     path: PathBuf,
 }
 
 impl RunFolder {
-    /// A folder, whatever is in it.
+    /// Wraps a path without checking its content.
     pub(crate) fn new(path: &Path) -> Self {
         let path = path.to_owned();
         Self { path }
     }
 
-    /// `runs/CASE-WHAT[-SET...][-RECORDS-HASH]-seedN` below the current folder, so that the same command
-    /// finds it. `set` is what distinguishes its settings; `measured` is the folder of records that replace the case's: many folders have the
-    /// same name, so the start of the records' hash tells them apart.
+    /// Returns the default path `runs/CASE-WHAT[-SET...][-RECORDS-HASH]-seedN`, relative to the current
+    /// folder, so that repeating a command finds its run. `set` lists the settings that differ from the
+    /// default; `measured` is the folder of records that replace the case's. Since many such folders have the
+    /// same name, the start of the records' hash is appended.
     pub(crate) fn default_path(
         case: &Case,
         what: &str,
@@ -95,10 +95,10 @@ impl RunFolder {
         Ok(Path::new("runs").join(format!("{word}-{what}{set}{records}-seed{seed}")))
     }
 
-    /// The folder of a run of any kind.
+    /// Opens the folder of a run of any kind.
     ///
     /// # Errors
-    /// If no run was begun there.
+    /// If the folder contains no run.
     pub(crate) fn at(path: &Path) -> Result<Self, Problem> {
         let folder = Self::new(path);
         if folder.is_begun() {
@@ -107,13 +107,15 @@ impl RunFolder {
         Err(Problem {
             message: format!("{} is no run folder: it has no {MANIFEST}", path.display()),
             remedy:
-                "`horsehead calibrate CASE` and `horsehead diagnose CASE` make them below runs/"
+                "name a folder below runs/ that `horsehead calibrate CASE` or `horsehead diagnose CASE` has written"
                     .to_owned(),
         })
     }
 
-    /// What its manifest says, whatever kind of run it is of; an error if this version does not
-    /// read it.
+    /// Reads the common fields of the manifest.
+    ///
+    /// # Errors
+    /// If the manifest is damaged or has a format that this version does not read.
     pub(crate) fn head(&self) -> anyhow::Result<Head> {
         let head: Head = self.read_json(MANIFEST)?;
         if head.format == FORMAT {
@@ -121,7 +123,7 @@ impl RunFolder {
         }
         Err(Problem {
             message: format!(
-                "{} was made by {}, in a form this version does not read",
+                "{} was written by {}, in a format that this version cannot read",
                 self.path.display(),
                 head.program
             ),
@@ -130,7 +132,10 @@ impl RunFolder {
         .into())
     }
 
-    /// Refuses what is no folder, or is one with files of something else.
+    /// Checks that a new run can be begun in the folder.
+    ///
+    /// # Errors
+    /// If the path is not a folder, or the folder contains unrelated files.
     pub(crate) fn check_vacant(&self) -> Result<(), Problem> {
         let path = self.path.display();
         let help = "choose an empty or new folder with --run DIR".to_owned();
@@ -153,22 +158,22 @@ impl RunFolder {
         }
     }
 
-    /// Whether a run was begun in it.
+    /// Returns whether a run was begun in the folder.
     pub(crate) fn is_begun(&self) -> bool {
         self.file(MANIFEST).exists()
     }
 
-    /// Whether the run came to its end.
+    /// Returns whether the run has finished.
     pub(crate) fn is_finished(&self) -> bool {
         self.file(RESULT).exists()
     }
 
-    /// Whether a journal with anything in it is there.
+    /// Returns whether the folder contains a journal that is not empty.
     pub(crate) fn has_journal(&self) -> bool {
         fs::metadata(self.file(journal::FILE)).is_ok_and(|file| file.len() > 0)
     }
 
-    /// The journal, for reading alone; what of it is damaged goes to standard error.
+    /// Opens the journal read-only; damage to it is reported on standard error.
     pub(crate) fn recording(&self) -> anyhow::Result<Recording> {
         let recording = Recording::read(&self.file(journal::FILE), |_, _| {})?;
         for damage in journal::words(&recording.report().damage) {
@@ -177,12 +182,12 @@ impl RunFolder {
         Ok(recording)
     }
 
-    /// The folder.
+    /// Returns the path of the folder.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// A file in it.
+    /// Returns the path of a file in the folder.
     pub(crate) fn file(&self, name: &str) -> PathBuf {
         self.path.join(name)
     }
@@ -194,7 +199,7 @@ impl RunFolder {
         self.write(name, &text)
     }
 
-    /// Writes values of a case's unknowns, with a line that says where they come from.
+    /// Writes values of a case's unknowns as a gene file; `about` is a line that states their source.
     pub(crate) fn write_genes(
         &self,
         case: &Case,
@@ -208,14 +213,14 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Writes a file as a whole: whoever reads it finds the old one or the new one.
+    /// Writes a file atomically: a concurrent reader finds either the old or the new content.
     pub(crate) fn write(&self, name: &str, text: &str) -> anyhow::Result<()> {
         let file = self.file(name);
         let written = atomic_file::replace(&file, text.as_bytes());
         written.with_context(|| format!("cannot write {}", file.display()))
     }
 
-    /// Reads a file of JSON.
+    /// Reads a JSON file.
     pub(crate) fn read_json<T: DeserializeOwned>(&self, name: &str) -> anyhow::Result<T> {
         let file = self.file(name);
         let damaged = |why: &dyn std::fmt::Display| Problem {
@@ -226,8 +231,8 @@ impl RunFolder {
         Ok(serde_json::from_str(&text).map_err(|error| damaged(&error))?)
     }
 
-    /// How to go on where the manifest or the case is damaged: the journal knows which command the
-    /// run belongs to.
+    /// Returns the remedy for a damaged manifest or case file; the command of the run is read from the
+    /// journal.
     fn repair(&self) -> String {
         let mut kind = None;
         // a journal that cannot be read says nothing, which is answered below

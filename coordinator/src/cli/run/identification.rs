@@ -1,4 +1,4 @@
-//! The work of an identification: what decides it, and what the record sees.
+//! Work of an identifiability analysis: its settings and its execution.
 use super::{
     begun::Run,
     diagnosis::{entrance, inputs},
@@ -12,15 +12,15 @@ use discrepancy::{
 use serde::{Deserialize, Serialize};
 use study::{self, Evaluator, StageCost, StageView, Stop, Watch};
 
-/// An identification that was begun.
+/// Run of `horsehead identify`.
 pub(crate) type Identification = Run<Decides>;
 
-/// Everything that decides an identification beside case, seed and start.
+/// Settings that determine an identifiability analysis, besides case, seed and start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Decides {
-    /// Highest order of a period that is compared.
+    /// Highest order of a period that is compared [1].
     pub(crate) orders: usize,
-    /// Whether every derivative is a difference of whole simulations.
+    /// Whether every derivative is a finite difference of whole simulations.
     pub(crate) differences: bool,
 }
 
@@ -36,20 +36,20 @@ impl manifest::Decides for Decides {
     }
 }
 
-/// What an identification finds.
+/// Results of an identifiability analysis.
 pub(crate) struct Found {
-    /// What there is to know of the case and its records.
+    /// Notes about the case and its records.
     pub(crate) notes: Vec<String>,
-    /// The answer.
+    /// Identifiability of the unknowns, and prediction bands.
     pub(crate) identified: Identified,
-    /// Stages that did experiments.
+    /// Cost of each stage that ran simulations.
     pub(crate) accounts: Vec<(Stage, StageCost)>,
 }
 
-/// Learns which instruments the workers know, and identifies, on whatever evaluates.
+/// Requests the library of instrument effects from the workers and runs the identifiability analysis.
 ///
 /// # Errors
-/// If nothing completes near the start; as [`study::identify_on`].
+/// If no fit completes near the start; otherwise as [`study::identify_on`].
 pub(crate) async fn identify<E: Evaluator>(
     evaluator: &mut E,
     manifest: &Manifest<Decides>,
@@ -74,7 +74,7 @@ pub(crate) async fn identify<E: Evaluator>(
     let done = study::identify_on(evaluator, case, &inputs, watch, stop).await?;
     let Some(identified) = done.identified else {
         return Err(Problem {
-            message: "no fit of this record completes, so nothing can be said of what it sees"
+            message: "no fit of this record completes, so the identifiability of the unknowns cannot be assessed"
                 .to_owned(),
             remedy: "`horsehead simulate` says whether the case runs at all; start from parameters that \
                    do with --genes FILE, or take `held_out` from a channel of the calibrated condition"

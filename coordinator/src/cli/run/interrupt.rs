@@ -1,15 +1,15 @@
-//! Ctrl-C: the first stops cleanly, the second at once.
+//! Handling of Ctrl-C: the first stops the run cleanly, the second exits at once.
 use crate::cli::output::{problem::INTERRUPTED, terminal};
 use study::Stop;
 use tokio::sync::watch;
 
-/// Listens for Ctrl-C and SIGTERM from now on; needs a running asynchronous runtime. What is
-/// returned becomes true with the first of them.
+/// Starts listening for Ctrl-C and SIGTERM; requires a running asynchronous runtime. The returned value
+/// becomes true with the first signal; the second ends the process.
 pub(crate) fn listen() -> Stop {
     let (sender, stop) = watch::channel(false);
     tokio::spawn(async move {
         signal().await;
-        terminal::tell("stopping; once more to stop at once");
+        terminal::tell("stopping cleanly; press Ctrl-C again to stop at once");
         // whoever listened may be busy ending the run, which may have to wait for a full disk
         sender.send_replace(true);
         signal().await;

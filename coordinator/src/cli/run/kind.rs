@@ -1,4 +1,5 @@
-//! Which kind of run a folder holds: asked here, and nowhere else.
+//! Determines the kind of a run (calibration, diagnosis or identification) from its run folder; no other
+//! module does so.
 use super::{
     begun::Run,
     calibration::{self, Calibration, calibrate},
@@ -18,31 +19,31 @@ use case::Loaded;
 use std::path::Path;
 use study::{Evaluator, ProgressView, StageView, Stop, Watch};
 
-/// A run that was begun, of either kind.
+/// Run that was opened from its run folder, of any kind.
 pub(crate) enum AnyRun {
-    /// Of `horsehead calibrate`.
+    /// Run of `horsehead calibrate`.
     Calibration(Calibration),
-    /// Of `horsehead diagnose`.
+    /// Run of `horsehead diagnose`.
     Diagnosis(Diagnosis),
-    /// Of `horsehead identify`.
+    /// Run of `horsehead identify`.
     Identification(Identification),
 }
 
-/// A run with what it found, repeated from its journal.
+/// Run together with its result, recomputed from its journal.
 pub(crate) enum Repeated<'a> {
-    /// A calibration.
+    /// Calibration and its result.
     Calibration(&'a Calibration, calibration::Found),
-    /// A diagnosis, with the case and the records that it read anew.
+    /// Diagnosis and its result, with the case and the measured records read again.
     Diagnosis(&'a Diagnosis, Box<Loaded>, Box<diagnosis::Found>),
-    /// An identification.
+    /// Identification and its result.
     Identification(&'a Identification, Box<identification::Found>),
 }
 
 impl AnyRun {
-    /// Opens a run that was begun before.
+    /// Opens an existing run.
     ///
     /// # Errors
-    /// If the folder holds none, or one that this version does not know.
+    /// If the folder holds no run, or a run of a kind that this version does not know.
     pub(crate) fn open(path: &Path) -> anyhow::Result<Self> {
         let head = RunFolder::at(path)?.head()?;
         match head.kind.as_str() {
@@ -58,10 +59,10 @@ impl AnyRun {
         }
     }
 
-    /// Makes sure that the run can be replayed: it is finished and its journal is there.
+    /// Checks that the run can be replayed: it is finished and its journal exists.
     ///
     /// # Errors
-    /// If not; the error says how to go on.
+    /// If the run cannot be replayed; the error says how to continue.
     pub(crate) fn expect_replayable(&self) -> Result<(), Problem> {
         match self {
             Self::Calibration(run) => run.expect_replayable(),
@@ -70,10 +71,10 @@ impl AnyRun {
         }
     }
 
-    /// Does the same again, on what answers from a recording.
+    /// Repeats the study of the run with an evaluator that answers from a recording.
     ///
     /// # Errors
-    /// If the recording does not hold everything that the run asks for.
+    /// If the recording lacks a result that the run asks for.
     pub(crate) async fn repeat<E: Evaluator>(
         &self,
         evaluator: &mut E,
@@ -99,7 +100,7 @@ impl AnyRun {
 }
 
 impl Repeated<'_> {
-    /// Writes its files, and prints its result.
+    /// Writes the files of the run and prints its result.
     ///
     /// # Errors
     /// If a file cannot be written.

@@ -1,7 +1,8 @@
-//! Workers on other nodes that come with a run and go with it; and carrying out any plan of workers.
+//! Starts workers on other hosts for the duration of a run, and executes any launch plan.
 //!
-//! Where nothing else is said, the run listens on port 7447, for the address from which a host says that we
-//! come, with keys in the run folder: started again, it is the same to its workers.
+//! By default, the run listens on port 7447 of every interface, at the address of this machine that a host
+//! reports for its SSH connection, with keys kept in the run folder; a restarted run therefore has the same
+//! address and keys for its workers.
 use super::folder::KEYS;
 use crate::cli::{
     argument::{door::Door, workers::WorkersChoice},
@@ -27,30 +28,32 @@ use std::{
     thread::{self, JoinHandle},
 };
 
-/// Where a run listens for workers that it brings up itself.
+/// Default listening address of a run that launches its own workers.
 const LISTEN: &str = "quic/0.0.0.0:7447";
-/// Days for which the keys of a run are valid.
+/// Validity of the keys of a run (days).
 const DAYS: u32 = 365;
-/// Seconds that a host's worker may take to be seen in the run.
+/// Time within which a launched worker must join the run (s).
 const WAIT_S: u64 = 30;
-/// Seconds after which a worker ends that nobody told of the end of its run, as when this process is killed.
+/// Idle time (s) after which a launched worker exits if it is never told that its run ended, for example
+/// because this process was killed.
 const IDLE_S: u64 = 600;
 
-/// Workers that were brought up with a run.
+/// Remote workers that are launched together with a run.
 #[derive(Debug)]
 pub(crate) struct Launch {
     hosts: Vec<Host>,
     order: WorkerOptions,
-    /// How the run listens for them.
+    /// Listening address and keys of the run for these workers.
     pub(crate) door: Door,
-    /// No further step of bringing them up begins.
+    /// Cancellation flag: once set, no further launch step begins.
     cancelled: Arc<AtomicBool>,
-    /// Brings them up.
+    /// Thread that launches the workers; none before [`Launch::up`].
     launching: Option<JoinHandle<()>>,
 }
 
 impl Launch {
-    /// What is needed before the run listens: an address and keys; none where no host is named.
+    /// Determines the address and creates the keys that the run needs before it listens; returns none if no
+    /// host is named.
     pub(crate) fn prepare(workers: &WorkersChoice, run: &Path) -> anyhow::Result<Option<Self>> {
         let hosts = workers.hosts.read()?;
         let Some(first) = hosts.first() else {
@@ -87,7 +90,8 @@ impl Launch {
         }))
     }
 
-    /// Brings the workers up, beside the run; a host that fails is told of and not waited for.
+    /// Launches the workers on a separate thread, concurrently with the run; a host that fails is reported
+    /// and not waited for.
     pub(crate) fn up(&mut self) -> anyhow::Result<()> {
         let plan = ssh::up(&self.order, &self.hosts, &programs(&[])?, WAIT_S);
         let plan = plan?;
@@ -96,14 +100,14 @@ impl Launch {
             .name("launch".to_owned())
             .spawn(move || {
                 if let Err(error) = carry_until(&plan, &cancelled) {
-                    tracing::warn!("workers of other nodes: {error}");
+                    tracing::warn!("workers on other hosts could not be started: {error}");
                 }
             })?;
         self.launching = Some(launching);
         Ok(())
     }
 
-    /// Ends them, those among them that are being started too.
+    /// Stops all launched workers, including those that are still being started.
     pub(crate) fn down(mut self) {
         self.cancelled.store(true, Ordering::Relaxed);
         let is_launching = |launching: &JoinHandle<()>| !launching.is_finished();
@@ -117,13 +121,15 @@ impl Launch {
             ended = carry(&down);
         }
         if let Err(error) = ended {
-            tracing::warn!("workers of other nodes may go on for {IDLE_S} s: {error}");
+            tracing::warn!(
+                "workers on other hosts could not be stopped and end by themselves after {IDLE_S} s: {error}"
+            );
         }
     }
 }
 
-/// The authority of a run's own keys: the one that earlier processes of the run had, or a new one with the keys of a
-/// first worker.
+/// Returns the certificate authority of the run: that of earlier processes of the run, or a new one that has
+/// also issued the keys of a first worker.
 fn authority(folder: &Path) -> anyhow::Result<Authority> {
     if !folder.exists() {
         // a process that is killed here leaves no half of a folder under its name
@@ -138,7 +144,8 @@ fn authority(folder: &Path) -> anyhow::Result<Authority> {
     Ok(Authority::open(folder)?)
 }
 
-/// The name under which a run owns the workers that it launches: the same for every process of the run.
+/// Returns the owner name of the workers that the run launches, derived from host name and run folder and
+/// thus equal for every process of the run.
 fn owner(run: &Path) -> std::io::Result<String> {
     let uname = rustix::system::uname();
     let host = uname.nodename().to_string_lossy();
@@ -147,12 +154,12 @@ fn owner(run: &Path) -> std::io::Result<String> {
     Ok(format!("run-{}", hash.chars().take(16).collect::<String>()))
 }
 
-/// Carries a plan out and tells how it ended at each place.
+/// Executes a plan and prints the outcome at each host.
 pub(crate) fn carry(plan: &Plan) -> anyhow::Result<()> {
     carry_until(plan, &AtomicBool::new(false))
 }
 
-/// The same until it is cancelled.
+/// Executes a plan like [`carry`] until `cancelled` is set.
 fn carry_until(plan: &Plan, cancelled: &AtomicBool) -> anyhow::Result<()> {
     let failed = AtomicUsize::new(0);
     carry_out(plan, cancelled, &|part, ended| match ended {
@@ -169,7 +176,7 @@ fn carry_until(plan: &Plan, cancelled: &AtomicBool) -> anyhow::Result<()> {
     }
 }
 
-/// What failed, with its remedy.
+/// Converts a launch error into a problem with its remedy.
 fn remedied(error: &LaunchError) -> Problem {
     Problem {
         message: error.to_string(),
@@ -177,16 +184,20 @@ fn remedied(error: &LaunchError) -> Problem {
     }
 }
 
-/// The worker that `horsehead` would start here, then those that were named for other machines, which
-/// come before it where they are for the same.
+/// Returns the worker programs for the machine types of the hosts: the worker program of this machine first,
+/// then those named for other architectures; a named program replaces the local one for the same
+/// architecture.
 pub(crate) fn programs(named: &[String]) -> Result<Vec<Program>, Problem> {
     let mut programs = Vec::new();
     for text in named {
         let wrong = |why: &str| Problem {
             message: format!("--worker-program {text}: {why}"),
-            remedy: "write ARCH=PATH with ARCH as `uname -m` says on the host".to_owned(),
+            remedy: "write ARCH=PATH, where ARCH is the output of `uname -m` on the host"
+                .to_owned(),
         };
-        let (machine, path) = text.split_once('=').ok_or_else(|| wrong("it has no ="))?;
+        let (machine, path) = text
+            .split_once('=')
+            .ok_or_else(|| wrong("the = between ARCH and PATH is missing"))?;
         let program = Program::read(Path::new(path))?;
         if program.machine != machine {
             return Err(wrong(&format!("it is a program for {}", program.machine)));
@@ -206,7 +217,7 @@ pub(crate) fn programs(named: &[String]) -> Result<Vec<Program>, Problem> {
         Err(error) if programs.is_empty() => {
             return Err(Problem {
                 message: error.to_string(),
-                remedy: "or name one with --worker-program ARCH=PATH".to_owned(),
+                remedy: "name a worker program with --worker-program ARCH=PATH".to_owned(),
             });
         }
         Err(_) => {}

@@ -1,4 +1,4 @@
-//! How a run was begun: what decides its result, and the command that goes on with it.
+//! Manifest of a run: the inputs that determine its result, and the command that resumes it.
 use super::{
     bus,
     command_line::{command_line, quote, quote_path},
@@ -12,45 +12,46 @@ use search::{
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::path::{Path, PathBuf};
 
-/// Version of the files that a run folder keeps of its manifest and its case.
+/// Format version of the manifest and case files in a run folder.
 pub(crate) const FORMAT: u32 = 1;
 
-/// Most settings that are named one by one where two runs differ.
+/// Maximum number of differing settings that are listed by name when two runs differ.
 const MOST_NAMED: usize = 3;
 
-/// The kind of a calibration; folders that name none hold one.
+/// Kind of a calibration; also the default for manifests without a kind.
 pub(crate) const CALIBRATE: &str = "calibrate";
-/// The kind of a diagnosis.
+/// Kind of a diagnosis.
 pub(crate) const DIAGNOSE: &str = "diagnose";
-/// The kind of an identification: what a record sees.
+/// Kind of an identification: which unknowns a measured record determines.
 pub(crate) const IDENTIFY: &str = "identify";
-/// The kind of a run of individuals that another program asks for.
+/// Kind of a run that evaluates individuals for another program.
 pub(crate) const EVALUATE: &str = "evaluate";
 
-/// The kind that a manifest without one has.
+/// Returns the default kind of a manifest that names none.
 pub(crate) fn calibrate() -> String {
     CALIBRATE.to_owned()
 }
 
-/// What decides the result of a kind of run beside case, seed and start.
+/// Settings of one kind of run that determine its result, in addition to case, seed and start.
 pub(crate) trait Decides: Serialize + DeserializeOwned + PartialEq + Clone {
-    /// The command that runs of this kind belong to.
+    /// Command that creates runs of this kind, as in `horsehead calibrate`.
     const KIND: &'static str;
-    /// Whether a seed is part of it.
+    /// Whether the command takes a seed.
     const SEEDED: bool = true;
 
-    /// The command with what it is about, as a shell takes it; `case` is the folder of the case.
+    /// Returns the command and its positional arguments, quoted for a shell; `case` is the folder of the
+    /// case.
     fn command(&self, case: &str) -> String {
         [Self::KIND, " ", case].concat()
     }
 
-    /// What of it a command line must repeat beside preset, settings and seed, each word after a
-    /// space.
+    /// Returns the further options that a command line must repeat besides preset, settings and seed, each
+    /// word preceded by a space.
     fn arguments(&self) -> String {
         String::new()
     }
 
-    /// In what these settings differ from those of an earlier run, in words.
+    /// Describes how these settings differ from those of an earlier run.
     fn difference(&self, _earlier: &Self) -> String {
         "its settings differ".to_owned()
     }
@@ -74,47 +75,47 @@ impl Decides for Settings {
     }
 }
 
-/// How a run was begun; `S` is everything that decides its result beside case, seed and start.
+/// Manifest of a run; `S` holds the settings that determine its result in addition to case, seed and start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Manifest<S = Settings> {
-    /// The command that it belongs to.
+    /// Command that created the run.
     #[serde(default = "calibrate")]
     pub(crate) kind: String,
-    /// Version of this file.
+    /// Format version of the manifest file.
     pub(crate) format: u32,
-    /// Program and version that began the run.
+    /// Name and version of the program that created the run.
     pub(crate) program: String,
-    /// Command line that begins, and continues, the run.
+    /// Command line that creates or resumes the run.
     pub(crate) command: String,
-    /// Preset that the settings come from; empty where there are none.
+    /// Name of the preset of the settings; empty if there is none.
     pub(crate) preset: String,
     /// Settings that differ from the preset's, as `key=value`.
     #[serde(default)]
     pub(crate) set: Vec<String>,
-    /// Seed of every random choice.
+    /// Seed of the random number generator.
     pub(crate) seed: u64,
-    /// Everything that decides the result beside seed and start.
+    /// Settings that determine the result, besides seed and start.
     pub(crate) settings: S,
-    /// Where it starts, if not at the recommended values.
+    /// Start of the search; none for the recommended values.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) start: Option<Start>,
-    /// Individuals that its search evaluates first.
+    /// Individuals that the search evaluates first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) table: Option<FirstTable>,
-    /// Where the case was read from.
+    /// Folder from which the case was read.
     pub(crate) case_folder: PathBuf,
-    /// Where the records came from.
+    /// Folder from which the measured records were read.
     pub(crate) measured: String,
-    /// Whether the case says that they were computed, not measured.
+    /// Whether the case declares its measured records as synthetic (computed instead of measured).
     #[serde(default)]
     pub(crate) synthetic: bool,
     /// Remarks about the case.
     pub(crate) notes: Vec<String>,
-    /// Wall time of the sessions that are over (s).
+    /// Wall time of the completed sessions (s).
     pub(crate) wall_s: f64,
 }
 
-/// What decides the result of a run beside its case.
+/// Inputs that determine the result of a run of a given case; serialised for comparison with the journal.
 #[derive(Serialize)]
 struct Identity<'a, S> {
     seed: u64,
@@ -125,26 +126,26 @@ struct Identity<'a, S> {
     table: Option<&'a [Vec<f64>]>,
 }
 
-/// Individuals that a search evaluates first. A run keeps them, and goes on without their file.
+/// Individuals that a search evaluates first; stored in the run, which is resumed without the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct FirstTable {
-    /// The table that they come from.
+    /// File from which the individuals were read.
     pub(crate) file: PathBuf,
-    /// Values of all unknowns, row by row [declared units].
+    /// Values of all unknowns, one row per individual [declared units].
     pub(crate) individuals: Vec<Vec<f64>>,
 }
 
-/// Values of the case's genes that a run starts at.
+/// Values of the unknowns at which a run starts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Start {
-    /// The gene file that they come from.
+    /// Gene file from which the values were read.
     pub(crate) file: PathBuf,
     /// One value per gene [declared units].
     pub(crate) genes: Vec<f64>,
 }
 
 impl Start {
-    /// Reads a gene file, if there is one.
+    /// Reads the start from a gene file; returns none if no file is given.
     ///
     /// # Errors
     /// As [`read_genes`].
@@ -160,18 +161,18 @@ impl Start {
 }
 
 impl<S> Manifest<S> {
-    /// Values of the case's genes that the run starts at, if not the recommended ones.
+    /// Returns the values of the unknowns at which the run starts; none for the recommended values.
     pub(crate) fn start_genes(&self) -> Option<&[f64]> {
         self.start.as_ref().map(|start| start.genes.as_slice())
     }
 
-    /// Individuals that its search evaluates first.
+    /// Returns the individuals that the search evaluates first.
     pub(crate) fn first_individuals(&self) -> Option<&[Vec<f64>]> {
         let table = self.table.as_ref();
         table.map(|table| table.individuals.as_slice())
     }
 
-    /// The space that it searches.
+    /// Returns the search space of the run.
     ///
     /// # Errors
     /// As [`Space::new`] and [`Space::about`].
@@ -179,7 +180,7 @@ impl<S> Manifest<S> {
         space(case, self.start.as_ref())
     }
 
-    /// The folder of records that replace those of the case, if any do.
+    /// Returns the folder of the measured records if they do not come from the case folder.
     pub(crate) fn replaced_records(&self) -> Option<&Path> {
         let measured = Path::new(&self.measured);
         let of_case = std::path::absolute(measured).is_ok_and(|path| path == self.case_folder)
@@ -189,7 +190,8 @@ impl<S> Manifest<S> {
 }
 
 impl<S: Decides> Manifest<S> {
-    /// Of a run that begins now, of a case with its own records, without a preset and from the recommended values.
+    /// Creates the manifest of a new run with the measured records of the case, no preset, and the
+    /// recommended values as start.
     pub(crate) fn new(case_folder: &Path, seed: u64, settings: S) -> anyhow::Result<Self> {
         Ok(Self {
             kind: S::KIND.to_owned(),
@@ -210,7 +212,8 @@ impl<S: Decides> Manifest<S> {
         })
     }
 
-    /// What decides the result, as canonical JSON: the journal refuses to mix two of them.
+    /// Returns everything that determines the result as canonical JSON; the journal refuses a run with a
+    /// different text.
     pub(crate) fn settings_json(&self) -> anyhow::Result<String> {
         let identity = Identity {
             seed: self.seed,
@@ -221,7 +224,7 @@ impl<S: Decides> Manifest<S> {
         Ok(serde_json::to_string(&identity)?)
     }
 
-    /// The command that goes on with the run in the folder where it lies now.
+    /// Returns the command that resumes the run in its present folder.
     pub(crate) fn resume_command(&self, folder: &Path) -> String {
         let about = self.settings.command(&quote_path(&self.case_folder));
         let mut command = format!("horsehead {about}");
@@ -246,7 +249,7 @@ impl<S: Decides> Manifest<S> {
     }
 }
 
-/// The space of a case's genes, about the recommended values or those of a start.
+/// Returns the search space of the case's unknowns, centred on the recommended values or on those of a start.
 ///
 /// # Errors
 /// As [`Space::new`] and [`Space::about`].

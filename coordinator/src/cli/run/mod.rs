@@ -1,4 +1,4 @@
-//! Runs: their folders, what is remembered of them, and what opens, resumes and repeats them.
+//! Runs: run folders, manifests, and functions that open, resume and repeat runs.
 pub(super) mod begun;
 pub(crate) mod bus;
 pub(super) mod calibration;

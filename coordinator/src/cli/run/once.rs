@@ -1,4 +1,4 @@
-//! Work of one command on local workers, without a run folder that outlives it.
+//! Jobs of a single command on local workers, in a temporary run folder.
 use super::{
     bus::{self, Bus},
     interrupt,
@@ -9,7 +9,7 @@ use dispatch::runtime::PAUSE_LIMIT;
 use protocol::case::Case;
 use study::{self, Compared, Stop, StudyError, Wanted};
 
-/// Works with so many local workers in a scratch folder.
+/// Executes `work` with `local_workers` local workers in a temporary run folder.
 ///
 /// # Errors
 /// If workers cannot be started, or the work fails.
@@ -39,7 +39,7 @@ pub(crate) fn in_scratch<T>(
     })
 }
 
-/// Scores and simulates parameter sets.
+/// Evaluates and simulates sets of parameter values on local workers in a temporary run folder.
 ///
 /// # Errors
 /// As [`in_scratch`] and [`study::compare()`].

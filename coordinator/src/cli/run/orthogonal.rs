@@ -1,15 +1,16 @@
-//! The work of an orthogonal test: the rows of the array with every seed, then the best levels with other seeds.
+//! Orthogonal test of settings: evaluates the rows of an orthogonal array with every seed, then confirms the
+//! best levels with new seeds.
 use super::{begun::Run, manifest::Decides, searches::Searches};
 use serde::{Deserialize, Serialize};
 use study::orthogonal::{Analysis, Array, Confirmation, Tested};
 use study::{Evaluator, ProgressView, Stop, Sweep, Watch};
 
-/// What decides a test.
+/// Settings of an orthogonal test that determine its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Orthogonal {
-    /// Which array.
+    /// Orthogonal array.
     pub(crate) array: Array,
-    /// What its rows are.
+    /// Searches that the rows of the array vary.
     pub(crate) searches: Searches,
 }
 
@@ -25,7 +26,7 @@ impl Decides for Orthogonal {
     }
 }
 
-/// Tests on whatever evaluates.
+/// Runs the test on the given evaluator.
 ///
 /// # Errors
 /// As [`Sweep::run`].

@@ -1,4 +1,5 @@
-//! The work of a sweep over slots: every row in turn, each kept in a file of the run folder as soon as it is there.
+//! Scaling measurement over numbers of slots: rows are measured one after another, and each is stored in the
+//! run folder as soon as it is complete.
 use super::{
     begun::Run,
     bus::{self, Bus, Options},
@@ -28,29 +29,30 @@ use study::scaling::{How, Overheads, Row, Scaled, Shares, Stand, project};
 use study::{Evaluator as _, ProgressView, Search, Stop, Sweep, Watch, score_all};
 use support::quantile;
 
-/// Sessions and jobs by which the coordinator's cost of a result is measured, and bytes of each: about a score.
+/// Benchmark of the coordinator's cost per result: number of sessions, number of jobs, and bytes per result
+/// (about the size of a score).
 const MEASURED: (usize, u64, u32) = (16, 4000, 300);
-/// Evaluations of a sleeping search for each of its slots, at least.
+/// Minimum number of evaluations per slot in a search on sleeping sessions.
 const EACH: u64 = 8;
-/// How often individuals are scored until all workers have joined.
+/// Maximum number of warm-up rounds before all workers must have joined.
 const WARMING: u32 = 200;
 
-/// What decides a sweep over slots.
+/// Settings of a scaling measurement that determine its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Scaling {
-    /// Names of the searches' presets.
+    /// Names of the search presets to measure.
     pub(crate) presets: Vec<String>,
-    /// Individuals of a generation.
+    /// Population sizes to measure (individuals per generation).
     pub(crate) populations: Vec<u64>,
-    /// Evaluations of a search on workers of this machine, and at least of a sleeping one.
+    /// Evaluations per search on workers of this machine; minimum for a search on sleeping sessions.
     pub(crate) evaluations: u64,
-    /// Worker processes that simulate.
+    /// Numbers of simulating worker processes to measure.
     pub(crate) crews: Vec<u64>,
-    /// Sessions that sleep.
+    /// Numbers of sleeping sessions to measure.
     pub(crate) sleeping: Vec<u64>,
-    /// For how long on average \[s\].
+    /// Mean sleeping time per job \[s\].
     pub(crate) sleep_s: f64,
-    /// Slots of projections.
+    /// Numbers of slots to project to.
     pub(crate) projected: Vec<u64>,
 }
 
@@ -80,21 +82,21 @@ impl Decides for Scaling {
     }
 }
 
-/// A row with what its simulations took.
+/// Row of the scaling table with the simulation times that were measured for it.
 #[derive(Serialize, Deserialize)]
 struct Measured {
     row: Row,
-    /// Mean computing time \[s\].
+    /// Mean computing time of a simulation \[s\].
     simulation_s: f64,
-    /// Quantiles of the same at 0, 5 .. 100 % \[s\].
+    /// Quantiles of the computing time of a simulation at 0, 5 .. 100 % \[s\].
     simulation_quantiles_s: Vec<f64>,
 }
 
 impl Scaling {
-    /// The settings of a search for so many slots.
+    /// Returns the settings of a search for the given number of slots.
     ///
     /// # Errors
-    /// If the preset has no population, or it may not be that.
+    /// If the preset has no population setting, or the population is not allowed.
     pub(crate) fn settings(
         (name, population): (&str, u64),
         space: &Space,
@@ -108,7 +110,7 @@ impl Scaling {
         Ok(chosen)
     }
 
-    /// Every search.
+    /// Returns every combination of preset and population size.
     pub(crate) fn searches(&self) -> impl Iterator<Item = (&str, u64)> {
         let each = self.presets.iter();
         each.flat_map(|name| {
@@ -119,10 +121,10 @@ impl Scaling {
     }
 }
 
-/// Measures every row that the run folder does not hold.
+/// Measures every row that is not yet stored in the run folder.
 ///
 /// # Errors
-/// If settings make no search, if nobody evaluates any more, or the user stops; rows that are there stay.
+/// If the settings are invalid, if no worker remains, or the user stops; stored rows are kept.
 pub(crate) async fn scale(
     run: &Run<Scaling>,
     watch: &mut dyn Watch<ProgressView>,
@@ -148,7 +150,8 @@ pub(crate) async fn scale(
             }
         }
     }
-    let alone = alone.context("no crew was asked for")?;
+    let alone =
+        alone.context("no number of worker processes was given: name at least one with --crews")?;
     let make = async |scale: &mut Scale<'_>| scale.overheads(&alone).await;
     let overheads = scale.kept("overheads.json", make).await?;
     for search in settings.searches() {
@@ -171,12 +174,12 @@ pub(crate) async fn scale(
     Ok(Scaled::new(overheads, rows))
 }
 
-/// The file of a row, and the folder of its journal.
+/// Returns the file name of a row; without its extension, the name of its journal folder.
 fn file(how: How, (preset, population): (&str, u64), slots: u64) -> String {
     format!("{}-{preset}-{population}-{slots}.json", how.as_str())
 }
 
-/// A run whose rows are measured.
+/// Scaling measurement in progress.
 struct Scale<'a> {
     run: &'a Run<Scaling>,
     space: &'a Space,
@@ -184,7 +187,8 @@ struct Scale<'a> {
 }
 
 impl Scale<'_> {
-    /// What a file holds, or what is made and kept there. A time must be in one piece: half a row begins anew.
+    /// Returns the content of a file, or computes and stores it. Wall times must be measured without
+    /// interruption: an incomplete row is measured again from its beginning.
     async fn kept<T: Serialize + DeserializeOwned>(
         &mut self,
         name: &str,
@@ -204,7 +208,7 @@ impl Scale<'_> {
         Ok(build(&settings, self.space, self.run.manifest.seed)?)
     }
 
-    /// A search of the case on so many worker processes.
+    /// Measures a search of the case on `slots` worker processes.
     async fn compute(
         &self,
         search: (&str, u64),
@@ -272,7 +276,8 @@ impl Scale<'_> {
         })
     }
 
-    /// What jobs that do nothing cost, beside what simulations take.
+    /// Measures the coordinator's cost per empty job and the round-trip time, and adds the simulation times
+    /// of `alone`.
     async fn overheads(&self, alone: &Measured) -> anyhow::Result<Overheads> {
         let (workers, jobs, result_bytes) = MEASURED;
         let plan = BenchPlan {
@@ -294,7 +299,7 @@ impl Scale<'_> {
         })
     }
 
-    /// A search on so many sessions that sleep as unevenly as simulations take.
+    /// Measures a search on `slots` sessions that sleep for times distributed like the simulation times.
     async fn sleep(
         &self,
         search: (&str, u64),
@@ -321,7 +326,7 @@ impl Scale<'_> {
         if slept.slots < usize::try_from(slots)? {
             return Err(Problem {
                 message: format!("only {} of {slots} sessions joined", slept.slots),
-                remedy: "ask for fewer with --sleeping; `ulimit -n` says how many connections a process may hold"
+                remedy: "give smaller numbers with --sleeping, or raise the limit of open connections that `ulimit -n` shows"
                     .to_owned(),
             }
             .into());
@@ -337,7 +342,7 @@ impl Scale<'_> {
     }
 }
 
-/// A run of jobs that do nothing, in a scratch folder.
+/// Returns the options of a run of empty jobs in a temporary folder.
 fn empty_run(folder: &std::path::Path) -> anyhow::Result<runtime::DispatchOptions> {
     let options = Options {
         run_dir: folder.to_owned(),
@@ -350,7 +355,7 @@ fn empty_run(folder: &std::path::Path) -> anyhow::Result<runtime::DispatchOption
     options.for_dispatch(&Case::default())
 }
 
-/// A row of what was measured: times are wall time and the coordinator's processor time.
+/// Builds a row from measured values; the two times are wall time and processor time of the coordinator.
 fn row(
     (how, (preset, population), slots): (How, (&str, u64), u64),
     evaluations: u64,

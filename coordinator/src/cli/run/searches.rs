@@ -1,4 +1,5 @@
-//! Searches of a sweep: one choice of settings, varied by factors and seeds, each within one budget.
+//! Searches of a sweep: a base choice of settings, varied by factors and seeds, each with the same budget of
+//! evaluations.
 use super::command_line::quote;
 use crate::cli::{
     argument::{
@@ -16,35 +17,35 @@ use serde::{Deserialize, Serialize};
 use study::orthogonal::{Factor, Tried};
 use study::{Search, Searched};
 
-/// Settings that say how long a search goes on, each of some presets.
+/// Names of the settings that limit the length of a search; a preset has some of these.
 const LENGTHS: [&str; 3] = ["generations", "evaluations", "points"];
 
-/// The most that such a setting may be.
+/// Upper limit of the settings in [`LENGTHS`].
 const LONGEST: u64 = 1_000_000;
 
-/// Evaluations of every search where neither they are given nor a factor says how long it goes on.
+/// Default number of evaluations per search, used if none is given and no factor sets the length.
 const EVALUATIONS: u64 = 1000;
 
-/// What decides the searches of a sweep.
+/// Settings of the searches of a sweep that determine its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Searches {
-    /// Name of the preset that factors are settings of.
+    /// Name of the preset whose settings the factors vary.
     pub(crate) preset: String,
-    /// All settings, before factors.
+    /// Base settings, before factors are applied.
     pub(crate) settings: Settings,
-    /// What is varied.
+    /// Factors: varied settings with their levels.
     pub(crate) factors: Vec<Factor>,
-    /// Evaluations of each; none where a factor says how long it goes on.
+    /// Evaluations per search; none where a factor sets the length of the search.
     pub(crate) evaluations: Option<u64>,
-    /// Seeds of each.
+    /// Seeds with which every row is searched.
     pub(crate) seeds: Vec<u64>,
 }
 
 impl Searches {
-    /// Checked searches, with the settings that were set by name as `key=value`.
+    /// Creates and checks the searches; also returns the settings that were set by name, as `key=value`.
     ///
     /// # Errors
-    /// If the preset has no such setting, a value may not be that, or something is named twice.
+    /// If the preset has no such setting, a value is not allowed, or a setting is named twice.
     pub(crate) fn new(
         space: &Space,
         preset: &Preset,
@@ -93,10 +94,10 @@ impl Searches {
         Ok((searches, chosen.set))
     }
 
-    /// Every row with every seed.
+    /// Returns the searches of all rows with every seed.
     ///
     /// # Errors
-    /// If the settings of a row make no search.
+    /// If the settings of a row are invalid.
     pub(crate) fn list(&self, space: &Space, rows: &[Vec<usize>]) -> anyhow::Result<Vec<Search>> {
         let preset = preset(&self.preset).context("the catalogue has lost a preset")?;
         let mut all = Vec::with_capacity(rows.len() * self.seeds.len());
@@ -120,7 +121,7 @@ impl Searches {
         Ok(all)
     }
 
-    /// A row in words, as `population=40 mutation_probability=0.1`.
+    /// Returns a row as text, for example `population=40 mutation_probability=0.1`.
     pub(crate) fn words(&self, row: &[usize]) -> String {
         let one = |(factor, level): (&Factor, &usize)| {
             format!("{}={}", factor.name, factor.levels[*level])
@@ -129,7 +130,7 @@ impl Searches {
         words.join(" ")
     }
 
-    /// What was found, in the order of [`Searches::list`].
+    /// Returns the results with levels and seeds, in the order of [`Searches::list`].
     pub(crate) fn tried(&self, rows: &[Vec<usize>], found: &[Searched]) -> Vec<Tried> {
         let asked = rows
             .iter()
@@ -147,7 +148,7 @@ impl Searches {
         asked.zip(found).map(one).collect()
     }
 
-    /// What of a command line says the same, each word after a space.
+    /// Returns the command-line options that reproduce these searches, each word preceded by a space.
     pub(crate) fn arguments(&self) -> String {
         let mut text = String::new();
         for factor in &self.factors {

@@ -1,4 +1,4 @@
-//! One session of a run: the bus is opened in its folder, the work is done, the time is kept.
+//! Session of a run: opens the bus in the run folder, does the work, and records the wall time.
 use super::{
     begun::Run,
     bus::{self, Bus},
@@ -10,16 +10,16 @@ use crate::cli::{argument::workers::WorkersChoice, output::terminal};
 use std::time::Instant;
 use study::{Stop, StudyError};
 
-/// Who works on a run, and since when.
+/// Choice of workers and start time of a session.
 pub(crate) struct Session {
-    /// Who works.
+    /// Choice of local and remote workers.
     workers: WorkersChoice,
-    /// When the command began.
+    /// Time at which the command began.
     started: Instant,
 }
 
 impl Session {
-    /// Of a command that begins now.
+    /// Begins a session at the present time.
     pub(crate) fn begin(workers: &WorkersChoice) -> Self {
         Self {
             workers: workers.clone(),
@@ -27,13 +27,13 @@ impl Session {
         }
     }
 
-    /// Wall time of a run with this session (s).
+    /// Returns the wall time of the run including this session (s).
     pub(crate) fn wall_s<S>(&self, run: &Run<S>) -> f64 {
         run.manifest.wall_s + self.started.elapsed().as_secs_f64()
     }
 
-    /// Has the work of a run done on the bus; what the journal holds is not computed again. Says at
-    /// the beginning whether the run is new, and how to go on where it is stopped.
+    /// Executes the work of a run on the bus; results in the journal are not computed again. Prints at the
+    /// beginning whether the run is new or resumed, and the command that resumes it if it is stopped.
     pub(crate) fn work<S: Decides, T>(
         &self,
         run: &Run<S>,
@@ -82,7 +82,7 @@ impl Session {
         done.inspect_err(|error| {
             if can_go_on(error) {
                 terminal::tell(&format!(
-                    "results so far are kept in {}; to go on:\n  {}",
+                    "the results so far are kept in {}; to resume the run:\n  {}",
                     run.folder.path().display(),
                     run.manifest.command
                 ));
@@ -91,7 +91,8 @@ impl Session {
     }
 }
 
-/// Whether the same command may bring more: not if the case or the workers are at fault.
+/// Returns whether repeating the command may add results: true after an interruption or an evaluator error,
+/// false if the case or the workers are at fault.
 fn can_go_on(error: &anyhow::Error) -> bool {
     let study = error.downcast_ref::<StudyError>();
     matches!(

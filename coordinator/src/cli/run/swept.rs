@@ -1,24 +1,24 @@
-//! What decides a sweep of a file: a grid of settings, or a table of individuals.
+//! Settings of a sweep over the content of a file: a grid of settings, or a table of individuals.
 use super::{command_line::quote_path, manifest::Decides, searches::Searches};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// A file that is swept.
+/// File that is swept, with its content.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Swept {
-    /// Where it lies.
+    /// Path of the file.
     pub(crate) file: PathBuf,
-    /// What it holds.
+    /// Content of the file.
     pub(crate) holds: Holds,
 }
 
-/// What a file holds.
+/// Content of a swept file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Holds {
-    /// Searches: every level of every factor with every other.
+    /// Full factorial grid: searches with every combination of factor levels.
     Grid(Searches),
-    /// Individuals, by the hash of their values.
+    /// Table of individuals, identified by the hash of their values.
     Individuals(String),
 }
 
@@ -32,14 +32,14 @@ impl Decides for Swept {
 
     fn difference(&self, earlier: &Self) -> String {
         if self.holds == earlier.holds {
-            format!("it is of {}", earlier.file.display())
+            format!("it is a sweep of {}", earlier.file.display())
         } else {
             "its file holds something else".to_owned()
         }
     }
 }
 
-/// Every combination of levels, the last factor fastest.
+/// Returns every combination of levels; the last factor varies fastest.
 pub(crate) fn combinations(levels: &[usize]) -> Vec<Vec<usize>> {
     let one = |rows: Vec<Vec<usize>>, count: &usize| {
         let longer = rows.iter().flat_map(|row| {

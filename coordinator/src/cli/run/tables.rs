@@ -1,5 +1,5 @@
-//! A run as tables for queries: its study is repeated on its journal, and every simulation that it
-//! asks for becomes a row.
+//! Export of a run as tables for queries: its study is repeated from its journal, and every simulation that
+//! the study asks for becomes a row.
 use super::{
     bus,
     calibration::{Calibration, calibrate},
@@ -17,7 +17,7 @@ use std::{cell::RefCell, collections::BTreeMap, path::PathBuf};
 use store::{Exported, Format, Label, Store, StoreError, Target};
 use study::{Crew, EvaluatorError, ProgressView, Recorded, StageView, Stop, StudyError, Watch};
 
-/// What is known of the run as a whole, beside its journal.
+/// Returns the properties of the whole run, from its manifest, as names and values.
 pub(crate) fn facts<S: Serialize>(
     manifest: &Manifest<S>,
 ) -> anyhow::Result<Vec<(&'static str, String)>> {
@@ -68,10 +68,10 @@ pub(crate) fn facts<S: Serialize>(
     ])
 }
 
-/// Labels of the simulations that were asked for and have not come back.
+/// Labels of simulations that were requested and have not returned, by job number.
 type Waiting = RefCell<BTreeMap<u64, Label>>;
 
-/// Notes down why the study wants what it asks for.
+/// Watch that records why the study requested each simulation.
 pub(crate) struct Labels<'a>(&'a Waiting);
 
 impl Watch<ProgressView> for Labels<'_> {
@@ -98,7 +98,8 @@ impl Watch<StageView> for Labels<'_> {
     }
 }
 
-/// What is asked for outside the search: both parameter sets of the tables.
+/// Returns the label of simulations requested outside the search, which are the two parameter sets that the
+/// result tables compare.
 fn comparison() -> Label {
     Label {
         generation: None,
@@ -106,17 +107,17 @@ fn comparison() -> Label {
     }
 }
 
-/// A run that tables are made of.
+/// Run from which tables are made.
 pub(crate) struct Source<'a> {
-    /// Its folder.
+    /// Run folder.
     pub(crate) folder: &'a RunFolder,
-    /// Its case.
+    /// Case of the run.
     pub(crate) case: &'a Case,
-    /// What is known of it as a whole: of [`facts`].
+    /// Properties of the whole run, from [`facts`].
     pub(crate) facts: Vec<(&'static str, String)>,
 }
 
-/// The tables of a calibration as CSV files of its folder; their paths.
+/// Writes the tables of a calibration as CSV files into its run folder and returns their paths.
 ///
 /// # Errors
 /// As [`make`].
@@ -139,7 +140,8 @@ pub(crate) fn calibration(run: &Calibration) -> anyhow::Result<Vec<PathBuf>> {
     Ok(exported.files)
 }
 
-/// Reads the journal of a run, has its study repeated on it, and writes; what is missing in words.
+/// Reads the journal of a run, repeats the study on it, and writes the tables; also returns notes on missing
+/// results.
 ///
 /// # Errors
 /// If there is no journal, the target cannot be written, or the user stops.
@@ -152,7 +154,9 @@ pub(crate) fn make(
     if !path.exists() {
         return Err(Problem {
             message: format!("{} has no journal yet", source.folder.path().display()),
-            remedy: "the command that began the run makes it".to_owned(),
+            remedy:
+                "start the run again with the command that created it; the journal is written then"
+                    .to_owned(),
         }
         .into());
     }
@@ -197,8 +201,8 @@ pub(crate) fn make(
             )
         } else {
             format!(
-                "the table evaluations ends where the run could not be repeated on its journal, \
-                 the table results does not: {error:#}"
+                "the run could not be replayed completely from its journal: the table `evaluations` is \
+                 incomplete, the table `results` is complete: {error:#}"
             )
         });
     }
@@ -206,11 +210,11 @@ pub(crate) fn make(
     Ok((store.finish()?, notes))
 }
 
-/// Says what to do where something else is in the way.
+/// Adds a remedy to errors caused by the target of the export.
 fn explained(error: StoreError) -> anyhow::Error {
     let help = match &error {
         StoreError::Foreign { .. } => "choose another place with --to, or replace it with --force",
-        StoreError::Io { .. } => "choose a place that can be written, with --to",
+        StoreError::Io { .. } => "choose a writable file or folder with --to",
         StoreError::Table { .. } | StoreError::Journal(_) => return error.into(),
     };
     Problem {

@@ -1,4 +1,5 @@
-//! What a command fits: a case folder, or a finished calibration, whose case, records and parameters are taken.
+//! Target of a command that fits a model: a case folder, or a finished calibration whose case, records and
+//! parameters are used.
 use super::{
     calibration::Calibration,
     diagnosis::Diagnosis,
@@ -9,25 +10,25 @@ use crate::cli::output::problem::Problem;
 use case::{Loaded, Overrides, load_with_notes, require_record};
 use std::path::{Path, PathBuf};
 
-/// A case with its records, and where it came from.
+/// Case with its measured records, and their sources.
 pub(crate) struct Target {
     /// Folder of the case.
     pub(crate) folder: PathBuf,
-    /// Folder of the records, where they replace the case's.
+    /// Folder of the measured records that replace those of the case.
     pub(crate) measured: Option<PathBuf>,
-    /// The case as it was read.
+    /// Case as read from its folder.
     pub(crate) loaded: Loaded,
-    /// Where the recalibration starts, if that is known.
+    /// Start of the recalibration; none for the recommended values.
     pub(crate) start: Option<Start>,
 }
 
 impl Target {
-    /// A case folder, or a finished calibration with its case, records and parameters; records and genes that
-    /// are named take the place of those.
+    /// Reads a case folder, or a finished calibration with its case, records and parameters; explicitly named
+    /// records and genes take precedence.
     ///
     /// # Errors
-    /// If the case or a file cannot be read, it has no record of the calibrated condition, or the run is of
-    /// another kind or not finished.
+    /// If the case or a file cannot be read, the case has no record of the calibrated condition, or the run
+    /// is of another kind or not finished.
     pub(crate) fn read(
         target: &Path,
         measured: Option<&Path>,
@@ -58,7 +59,7 @@ impl Target {
         })
     }
 
-    /// How a run on it begins, with what else decides its result.
+    /// Creates the manifest of a new run on this target with the given seed and settings.
     pub(crate) fn manifest<S: Decides>(
         &self,
         seed: u64,
@@ -75,7 +76,8 @@ impl Target {
         })
     }
 
-    /// Without what this very diagnosis has added to the case; the start is one of what is left.
+    /// Removes what an earlier session of this diagnosis added to the case, and restricts the start to the
+    /// remaining unknowns.
     pub(crate) fn without_found_by(mut self, earlier: &Diagnosis) -> anyhow::Result<Self> {
         let stated = self.loaded.case.unknowns.clone();
         self.loaded = earlier.as_begun(self.loaded)?;
@@ -93,7 +95,7 @@ impl Target {
     }
 }
 
-/// A calibration that came to its end.
+/// Opens a calibration and checks that it is finished.
 fn finished(folder: &RunFolder) -> anyhow::Result<Calibration> {
     let path = folder.path();
     let kind = folder.head()?.kind;

@@ -1,4 +1,4 @@
-//! The revolution in the object of `horsehead simulate`.
+//! Curves of a revolution in the output object of `horsehead simulate`.
 use discrepancy::identify::Band;
 use protocol::{
     case::Case,
@@ -9,8 +9,8 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
-/// Derivatives of the channels: of the gauges by number, in the unit that is named, and of the others where
-/// the case has them, per the same.
+/// Returns the derivatives with respect to `per`: those of the gauges by gauge number in MPa per unit of
+/// `per`, and those of position and torque where the case has these channels.
 pub(in crate::pumping_unit) fn derivative(
     case: &Case,
     condition: usize,
@@ -38,7 +38,8 @@ pub(in crate::pumping_unit) fn derivative(
     said
 }
 
-/// Bands of the channels: those of the gauges by number, in MPa, and the others' in units of their own.
+/// Returns the prediction bands of the channels: those of the gauges by gauge number in MPa, the others in
+/// the units of their keys.
 pub(in crate::pumping_unit) fn predicted(case: &Case, band: &Band) -> Map<String, Value> {
     let mut said = Map::new();
     for ((_, channel), curve) in case.channels_of(band.condition).zip(&band.channels) {
@@ -55,18 +56,18 @@ pub(in crate::pumping_unit) fn predicted(case: &Case, band: &Band) -> Map<String
     said
 }
 
-/// The curves of a revolution, and its energy.
+/// Curves of a revolution, and its energy balance.
 #[derive(Debug, Serialize)]
 pub(in crate::pumping_unit) struct CurvesOutput<'a> {
     /// Crank angle from bottom dead centre (deg).
     crank_deg: &'a [f64],
-    /// Stress by gauge number `MPa`.
+    /// Stress by gauge number (MPa).
     gauge_mpa: BTreeMap<String, &'a [f64]>,
     /// Tension of the back rope at the crossbeam (N).
     rope_tension_n: &'a [f64],
     /// Tension of the front rope at the suspension (N).
     front_rope_tension_n: &'a [f64],
-    /// By how much of twin ropes the one at +z pulls more (N); absent where there is one rope.
+    /// Tension of the twin rope at +z minus that at -z (N); absent where there is one rope.
     #[serde(skip_serializing_if = "Option::is_none")]
     twin_tension_difference_n: Option<TwinTensionOutput<'a>>,
     /// Beam angle (deg).
@@ -75,11 +76,11 @@ pub(in crate::pumping_unit) struct CurvesOutput<'a> {
     suspension_m: &'a [f64],
     /// Net torque at the crank shaft (N m).
     crank_torque_nm: &'a [f64],
-    /// Energy of the revolution; null unless it was completed.
+    /// Energy balance of the revolution; null unless the revolution was completed.
     energy: Option<Energy>,
 }
 
-/// A difference of tensions over the revolution (N).
+/// Difference of twin rope tensions over the revolution, for back and front ropes (N).
 #[derive(Debug, Serialize)]
 struct TwinTensionOutput<'a> {
     back: &'a [f64],

@@ -1,4 +1,4 @@
-//! The files that a reduced head becomes: the case's two tables, and a picture for `ParaView`.
+//! Files written from a reduced head: the tables of the case, and a VTU file for `ParaView`.
 use crate::cli::run::bus::PROGRAM;
 use anyhow::Context as _;
 use case::pumping_unit::{GaugePlace, HeadSource, TwinFile};
@@ -14,7 +14,7 @@ use std::{
 };
 use support::atomic_file::Draft;
 
-/// The modes file, as cases are delivered with it.
+/// Modes file of a case.
 #[derive(Debug, Serialize)]
 struct ModesFile<'a> {
     mesh_blake3: &'a str,
@@ -35,8 +35,8 @@ struct ModesFile<'a> {
     gauges: BTreeMap<String, GaugePlace>,
 }
 
-/// Replaces the tables of a case: modes file, influence file, and that for a pair of ropes where there
-/// is one; returns their paths.
+/// Replaces the tables of a case (modes file, influence file, and the twin rope file where there is one) and
+/// returns their paths.
 pub(crate) fn write_tables(
     machine: &Machine,
     source: &HeadSource,
@@ -118,7 +118,7 @@ fn cannot_write(path: &Path) -> String {
     format!("cannot write {}", path.display())
 }
 
-/// The influence lines as CSV.
+/// Returns the influence lines as CSV text.
 fn influence(head: &ReducedHead) -> String {
     let mut text = "psi_deg".to_owned();
     for kind in ["normal", "tangential"] {
@@ -142,7 +142,7 @@ fn influence(head: &ReducedHead) -> String {
     text
 }
 
-/// Writes `head.vtu` into a folder, which is made if it does not exist.
+/// Writes `head.vtu` into a folder, which is created if it does not exist.
 pub(crate) fn write_vtu(
     folder: &Path,
     mesh: &HeadMesh,
@@ -178,7 +178,7 @@ pub(crate) fn write_vtu(
     Ok(path)
 }
 
-/// Equivalent stress of xx, yy, zz, xy, yz, zx.
+/// Computes the von Mises stress of the components xx, yy, zz, xy, yz, zx.
 fn von_mises(stress: &[f32; 6]) -> [f32; 1] {
     let [xx, yy, zz, xy, yz, zx] = stress;
     let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);

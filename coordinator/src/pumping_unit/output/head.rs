@@ -1,4 +1,4 @@
-//! The object of `horsehead head`.
+//! Output object of `horsehead head`.
 use case::pumping_unit::HeadComparison;
 use protocol::{
     case::Case,
@@ -7,40 +7,42 @@ use protocol::{
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Of `horsehead head`.
+/// Output object of `horsehead head`.
 #[derive(Debug, Serialize)]
 pub(crate) struct HeadOutput<'a> {
     case: &'a str,
     /// Condition of the quasi-static turn.
     condition: &'a str,
-    /// Content of the mesh file.
+    /// BLAKE3 hash of the mesh file.
     mesh_blake3: &'a str,
-    /// Time on the worker (s).
+    /// Computing time on the worker (s).
     wall_s: f64,
-    /// Unknown displacements of the half that was solved.
+    /// Number of displacement unknowns of the solved half of the mesh.
     unknowns: usize,
     lanczos_steps: usize,
     mass_kg: f64,
     modes: Vec<HeadModeOutput>,
-    /// Modes out of the plane (Hz); absent where there is one rope.
+    /// Frequencies of the out-of-plane modes (Hz); absent where there is one rope.
     #[serde(skip_serializing_if = "Option::is_none")]
     twin_modes_hz: Option<&'a [f64]>,
-    /// Modes that couple less to the loads of a turn; empty where they were not asked for.
+    /// Modes that were left out because they couple less to the loads of a turn; empty unless coupled modes
+    /// were requested.
     left_out: &'a [LeftOutMode],
-    /// Modes of the case's table that do not move the rope surface (Hz).
+    /// Frequencies of modes in the case's table that do not move the rope surface (Hz).
     inert_table_modes_hz: &'a [f64],
-    /// By gauge number.
+    /// Statics of the gauges by gauge number.
     gauges: BTreeMap<String, HeadGaugeOutput>,
 }
 
-/// A mode; the table's are null where it has none like it.
+/// Mode of the reduced head; the `table` fields and `mac` are null where the case's table has no matching
+/// mode.
 #[derive(Debug, Serialize)]
 pub(crate) struct HeadModeOutput {
     family: ModeFamily,
     frequency_hz: f64,
     table_frequency_hz: Option<f64>,
     mac: Option<f64>,
-    /// Largest share of any load pattern's static energy; null where they were not asked for.
+    /// Largest share of any load pattern's static energy; null unless coupled modes were requested.
     coupling: Option<f64>,
 }
 
@@ -54,7 +56,7 @@ pub(crate) struct HeadGaugeOutput {
     influence_difference: f64,
 }
 
-/// Gathers what `horsehead head` prints.
+/// Builds the output object of `horsehead head`.
 pub(crate) fn head<'a>(
     (case, condition): (&'a Case, &'a str),
     mesh_blake3: &'a str,

@@ -1,4 +1,4 @@
-//! What the machine's own commands print and write.
+//! Output of commands that are specific to the pumping unit: JSON objects and files.
 pub(super) mod curves;
 pub(super) mod files;
 pub(super) mod head;

@@ -1,8 +1,8 @@
-//! Agreement of a gauge by its number, with the unit in the names.
+//! Score of a gauge by its gauge number, with units in the field names.
 use protocol::{case::Channel, job::ChannelScore, pumping_unit::Sensor};
 use serde_json::{Map, Value, json};
 
-/// Key of a channel's agreement, and what stands there beside it.
+/// Returns the key of a channel's score, and further fields for a gauge.
 pub(in crate::pumping_unit) fn scored(
     channel: &Channel,
     score: &ChannelScore,

@@ -1,4 +1,4 @@
-//! The contract of `--output json` of a pumping unit: the fields of every object, by name.
+//! Tests of the contract of `--output json` for a pumping unit: the field names of every object.
 use crate::cli::output::object::{
     calibration::CalibrateOutput,
     score::{condition, unknowns},

@@ -1,4 +1,4 @@
-//! Tables about the run as a whole: what is known of it, its genes, and what every column means.
+//! Tables that describe the run as a whole: its properties, its unknowns, and the dictionary of all columns.
 use crate::{
     column::{Column, Columns},
     row::Fact,
@@ -7,18 +7,18 @@ use protocol::{case::Unknown, unit::Unit};
 
 pub(super) fn run() -> Columns<Fact> {
     Columns::new()
-        .text("name", "what is known of the run", |fact: &Fact| {
+        .text("name", "name of a property of the run", |fact: &Fact| {
             Some(fact.name.clone())
         })
         .text("value", "its value", |fact| Some(fact.value.clone()))
 }
 
-/// Name of the column of a gene, with its unit: `stiffness_n_per_m`.
+/// Returns the column name of an unknown with its unit, for example `stiffness_n_per_m`.
 pub fn gene_column(gene: &Unknown) -> String {
     column(&gene.name.replace('.', "_"), &gene.unit)
 }
 
-/// Name of a column of values in a unit: `mse_force_n2` in `N2`.
+/// Returns a column name with a unit, for example `mse_force_n2` for `mse_force` in `N2`.
 pub(super) fn column(name: &str, unit: &str) -> String {
     let unit = unit.to_lowercase();
     let unit = unit.replace('/', "_per_").replace(['.', '^'], "_");
@@ -43,12 +43,12 @@ pub(super) fn genes() -> Columns<Unknown> {
         .real("upper", "largest value to search", |gene| Some(gene.upper))
         .text(
             "si_unit",
-            "its SI unit; none where the unit is a word that nothing converts",
+            "its SI unit; none where the unit cannot be converted",
             |gene| Some(Unit::named(&gene.unit)?.si().symbol().to_owned()),
         )
         .real(
             "si_factor",
-            "what one of the unit is in SI; none where nothing converts it",
+            "factor that converts the unit to SI; none where the unit cannot be converted",
             |gene| Some(Unit::named(&gene.unit)?.si_factor()),
         )
 }
@@ -64,7 +64,9 @@ pub(super) fn dictionary() -> Columns<(String, Column)> {
         .text("kind", "integer, real or text", |(_, column)| {
             Some(column.kind.as_str().to_owned())
         })
-        .text("meaning", "what it says, with its unit", |(_, column)| {
-            Some(column.about.clone())
-        })
+        .text(
+            "meaning",
+            "meaning of the column, with its unit",
+            |(_, column)| Some(column.about.clone()),
+        )
 }

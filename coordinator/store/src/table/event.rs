@@ -1,4 +1,4 @@
-//! Tables of what happened: workers, events of the run, damage of its journal.
+//! Tables of workers, events of the run, and damage of its journal.
 use crate::{column::Columns, row::Happened};
 use dispatch::journal::Damage;
 use protocol::event::{Spent, WorkerAccount};
@@ -9,13 +9,15 @@ pub(super) fn workers() -> Columns<WorkerAccount> {
             Some(row.worker.to_string())
         })
         .text("host", "its machine", |row| Some(row.host.clone()))
-        .integer("slots", "jobs it does at a time", |row| {
-            Some(u64::from(row.slots))
-        })
-        .integer("done", "results of it that were accepted", |row| {
+        .integer(
+            "slots",
+            "number of jobs that it computes in parallel",
+            |row| Some(u64::from(row.slots)),
+        )
+        .integer("done", "number of its results that were accepted", |row| {
             Some(row.done)
         })
-        .integer("failed", "attempts that failed there", |row| {
+        .integer("failed", "number of attempts that failed on it", |row| {
             Some(row.failed)
         })
         .real("connected_s", "slots times time connected [s]", |row| {
@@ -38,7 +40,7 @@ pub(super) fn events() -> Columns<Happened> {
     Columns::new()
         .integer(
             "journal_byte",
-            "where it stands in the journal",
+            "byte offset of the event in the journal",
             |row: &Happened| Some(row.at_byte),
         )
         .integer("process", "coordinator process of the run, from 1", |row| {
@@ -50,9 +52,11 @@ pub(super) fn events() -> Columns<Happened> {
         .text("event", "opened, joined, left, proved or closed", |row| {
             Some(row.event.to_owned())
         })
-        .text("worker", "whom it concerns", |row| {
-            Some(row.worker?.to_string())
-        })
+        .text(
+            "worker",
+            "id of the worker that the event concerns",
+            |row| Some(row.worker?.to_string()),
+        )
         .text("host", "machine of a worker that joined", |row| {
             row.host.clone()
         })
@@ -61,8 +65,8 @@ pub(super) fn events() -> Columns<Happened> {
         })
         .text(
             "detail",
-            "why a worker left; model digest of one that joined; what the reference individual \
-             came to",
+            "why a worker left; model digest of a worker that joined; result of the reference \
+             individual",
             |row| row.detail.clone(),
         )
 }
@@ -71,10 +75,12 @@ pub(super) fn damage() -> Columns<Damage> {
     Columns::new()
         .integer(
             "journal_byte",
-            "where a stretch begins that could not be read",
+            "byte offset at which an unreadable part of the journal begins",
             |row: &Damage| Some(row.at),
         )
-        .integer("bytes", "how long it is", |row| Some(row.bytes))
+        .integer("bytes", "length of the unreadable part [bytes]", |row| {
+            Some(row.bytes)
+        })
         .text(
             "kind",
             "damaged, or torn: an unfinished record at the end",

@@ -1,7 +1,7 @@
-//! The tables: what there is to query, each column once.
+//! Definition of all tables, each column once.
 //!
-//! A new column is a line in one of the files here; a new table a function there, a line in
-//! [`Tables::begin`] and the place where its rows come from.
+//! A new column is a line in one of the modules here; a new table needs a function there, a line in
+//! [`Tables::begin`], and code that adds its rows.
 mod about;
 mod event;
 mod result;
@@ -20,7 +20,7 @@ use protocol::{
     event::WorkerAccount,
 };
 
-/// Every table of an export.
+/// Handles of all tables of an export.
 pub(super) struct Tables {
     pub(super) run: Table<Fact>,
     pub(super) genes: Table<Unknown>,
@@ -35,7 +35,7 @@ pub(super) struct Tables {
 }
 
 impl Tables {
-    /// Begins all of them.
+    /// Begins all tables.
     pub(super) fn begin(book: &mut Book, case: &Case) -> Result<Self, StoreError> {
         Ok(Self {
             run: book.begin("run", about::run())?,
@@ -52,7 +52,7 @@ impl Tables {
     }
 }
 
-/// Their names.
+/// Names of all tables.
 pub(super) const NAMES: [&str; 10] = [
     "run",
     "genes",

@@ -1,4 +1,4 @@
-//! Tables of results: what was asked, how it ended, what it cost, how well it agrees.
+//! Tables of results: requested individuals, outcome, cost, and scores.
 use super::about::{column, gene_column};
 use crate::{
     column::{Columns, JOB},
@@ -20,7 +20,7 @@ pub(super) fn evaluations(case: &Case) -> Columns<Evaluated> {
         )
         .text(
             "purpose",
-            "what the search, or which stage of the diagnosis, wanted it for",
+            "purpose in the search, or stage of the diagnosis",
             |row| Some(row.purpose.clone()),
         )
         .text("condition", "working condition", |row| {
@@ -28,7 +28,7 @@ pub(super) fn evaluations(case: &Case) -> Columns<Evaluated> {
         })
         .integer(
             "effects",
-            "effects beside those of the case; the table effects has them",
+            "number of effects added to those of the case, listed in the table effects",
             |row| Some(row.effects as u64),
         );
     for (place, gene) in case.unknowns.iter().enumerate() {
@@ -48,7 +48,7 @@ pub(super) fn results(case: &Case) -> Columns<Brief> {
         .with(outcome(case), |row| row)
 }
 
-/// How a job ended, who did it and what it cost.
+/// Returns the columns for the outcome of a job, its worker and its cost.
 fn outcome(case: &Case) -> Columns<Brief> {
     let unit = case.objective_unit();
     let fitness = unit.map_or_else(|| "fitness".to_owned(), |unit| squared("fitness", unit));
@@ -76,7 +76,7 @@ fn outcome(case: &Case) -> Columns<Brief> {
         )
         .real(
             &fitness,
-            &format!("objective if complete, a grade above every complete one's otherwise{of}"),
+            &format!("objective if complete, otherwise a penalty larger than every complete objective{of}"),
             |row| row.fitness,
         );
     for (channel, places) in measured(case) {
@@ -90,7 +90,7 @@ fn outcome(case: &Case) -> Columns<Brief> {
     columns = columns
         .text(
             "worker",
-            "who did it; none for a failure that the coordinator stated",
+            "id of the worker; none for a failure that the coordinator recorded",
             |row| Some(row.worker?.to_string()),
         )
         .real("wall_s", "time in the slot [s]", |row| {
@@ -101,12 +101,12 @@ fn outcome(case: &Case) -> Columns<Brief> {
         })
         .integer(
             "process",
-            "coordinator process of the run that offered it, from 1",
+            "coordinator process of the run that dispatched the job, from 1",
             |row| Some(u64::from(row.offered?.0)),
         )
         .integer(
             "attempts",
-            "offers of the job in that process until the one that brought the result",
+            "number of attempts of the job in that process, including the one with the result",
             |row| Some(u64::from(row.offered?.1) + 1),
         )
         .text(
@@ -126,7 +126,8 @@ fn outcome(case: &Case) -> Columns<Brief> {
     columns
 }
 
-/// Measured channels, each name once whatever the condition, with their places among the case's.
+/// Returns the measured channels, each name once for all conditions, with the indices of its channels in the
+/// case.
 fn measured(case: &Case) -> Vec<(&Channel, Vec<usize>)> {
     let mut named: Vec<(&Channel, Vec<usize>)> = Vec::new();
     let all = (0..case.conditions.len()).flat_map(|condition| case.measured(condition));
@@ -142,7 +143,7 @@ fn measured(case: &Case) -> Vec<(&Channel, Vec<usize>)> {
     named
 }
 
-/// Name of a column of squares of a unit.
+/// Returns the name of a column whose values are in the square of a unit.
 fn squared(name: &str, unit: &str) -> String {
     column(name, &format!("{unit}2"))
 }
@@ -200,7 +201,7 @@ pub(super) fn effects() -> Columns<Added> {
         .text("effect", "identifier", |row| Some(row.effect.clone()))
         .text(
             "parameter",
-            "its name; none for an effect all of whose parameters are the model's",
+            "name of the parameter; none for an effect whose parameters are all set by the model",
             |row| Some(row.parameter.as_ref()?.0.clone()),
         )
         .real("value", "in the unit that the effect declares", |row| {

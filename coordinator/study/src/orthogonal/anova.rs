@@ -1,53 +1,55 @@
-//! Analysis of variance of a balanced design in blocks: how much of the scatter is a factor's, and how likely chance
-//! alone makes as much.
+//! Analysis of variance of a balanced design in blocks: sum of squares of each factor, and the probability
+//! that chance alone causes a sum as large.
 use super::range::{Observation, mean, means};
 use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
-/// Share of all squares below which what is left is rounding, and no scatter to compare with.
+/// Share of the total sum of squares below which the residual sum is taken for rounding errors, with no F
+/// test.
 const ROUNDING: f64 = 1e-12;
 
-/// Where squares come from.
+/// Source of variation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// The factor of this number, from 0.
+    /// Factor with this index, from 0.
     Factor(usize),
-    /// The blocks, which are taken out of the error.
+    /// Blocks, whose variation is separated from the error.
     Block,
-    /// What neither explains.
+    /// Residual error, explained by neither factors nor blocks.
     Error,
 }
 
-/// One line of the table.
+/// Line of the analysis of variance table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
-    /// Whose it is.
+    /// Source of variation.
     pub source: Source,
     /// Sum of squares \[square of the unit of the response\].
     pub squares: f64,
     /// Degrees of freedom.
     pub freedom: usize,
-    /// Of a factor its mean square over that of the error; none where the error is nothing but rounding.
+    /// F statistic of a factor (mean square over that of the error); none where the error is nothing but
+    /// rounding.
     pub f: Option<f64>,
-    /// Probability that chance makes F as large or larger.
+    /// Probability of an F statistic at least as large under the null hypothesis.
     pub p: Option<f64>,
 }
 
 impl Term {
-    /// Sum of squares per degree of freedom.
+    /// Returns the sum of squares per degree of freedom.
     pub fn mean_square(&self) -> f64 {
         self.squares / self.freedom as f64
     }
 }
 
-/// The table: factors in their order, blocks where there are several, the error last.
+/// Analysis of variance table: factors in their order, blocks if there are several, the error last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Anova {
-    /// Its lines.
+    /// Lines of the table.
     pub terms: Vec<Term>,
 }
 
-/// The table of a balanced design of so many factors of `levels` levels in so many blocks. None where it is
-/// saturated: no degree of freedom is left for the error, and nothing could be told from chance.
+/// Computes the table of a balanced design of `factors` factors with `levels` levels in `blocks` blocks.
+/// Returns none for a saturated design, which leaves no degree of freedom for the error.
 pub fn anova(
     observations: &[Observation],
     levels: usize,
@@ -117,7 +119,7 @@ mod tests {
         assert_eq!(term.freedom, freedom);
     }
 
-    /// Montgomery's vascular grafts: one factor of four levels in six blocks.
+    /// Checks the table of Montgomery's vascular grafts: one factor of four levels in six blocks.
     #[test]
     fn a_randomised_block_design_of_the_textbook() {
         const YIELD: [[f64; 6]; 4] = [
@@ -147,7 +149,7 @@ mod tests {
         near(terms[0].p.unwrap(), 0.0019, 4);
     }
 
-    /// Montgomery's rocket propellant, a Latin square: three columns of L25.
+    /// Checks the table of Montgomery's rocket propellant, a Latin square, as three columns of L25.
     #[test]
     fn a_latin_square_of_the_textbook_is_part_of_an_array() {
         const RATE: [[f64; 5]; 5] = [

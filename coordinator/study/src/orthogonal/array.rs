@@ -1,10 +1,11 @@
-//! Orthogonal arrays: few rows in which every pair of columns meets every pair of levels once.
+//! Orthogonal arrays: designs of few rows in which every pair of columns contains every pair of levels
+//! exactly once.
 use serde::{Deserialize, Serialize};
 
-/// An orthogonal array of q^2 rows with q + 1 columns of q levels.
+/// Orthogonal array of q^2 rows with q + 1 columns of q levels.
 ///
-/// Rows are the pairs (a, b) of a field of q elements; columns are a, b and a + k b for every k but zero (Bose's
-/// construction, R. C. Bose 1938).
+/// Rows are the pairs (a, b) of a field of q elements; columns are a, b and a + k b for every nonzero k
+/// (Bose's construction, R. C. Bose 1938).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Array {
     /// 9 rows, up to 4 factors of 3 levels.
@@ -16,10 +17,10 @@ pub enum Array {
 }
 
 impl Array {
-    /// Every one, the smallest first.
+    /// All arrays, the smallest first.
     pub const ALL: [Self; 3] = [Self::L9, Self::L16, Self::L25];
 
-    /// As the literature calls it.
+    /// Returns the name of the array in the literature.
     pub const fn name(self) -> &'static str {
         match self {
             Self::L9 => "L9",
@@ -28,7 +29,7 @@ impl Array {
         }
     }
 
-    /// Levels of every column.
+    /// Returns the number of levels of every column.
     pub const fn levels(self) -> usize {
         match self {
             Self::L9 => 3,
@@ -37,12 +38,12 @@ impl Array {
         }
     }
 
-    /// Most factors that it holds.
+    /// Returns the maximum number of factors.
     pub const fn columns(self) -> usize {
         self.levels() + 1
     }
 
-    /// The level of each of the first `factors` columns, row by row.
+    /// Returns the levels of the first `factors` columns, row by row.
     pub fn rows(self, factors: usize) -> Vec<Vec<usize>> {
         let levels = self.levels();
         let pairs = (0..levels).flat_map(|a| (0..levels).map(move |b| (a, b)));
@@ -60,7 +61,8 @@ impl Array {
         }
     }
 
-    /// Of four elements the field is that of polynomials over {0, 1} modulo x^2 + x + 1.
+    /// Returns the product in the field; that of four elements consists of polynomials over {0, 1} modulo x^2
+    /// + x + 1.
     const fn product(self, a: usize, b: usize) -> usize {
         match self {
             Self::L16 => [[0, 0, 0, 0], [0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2]][a][b],

@@ -1,7 +1,7 @@
-//! Orthogonal tests of several factors at once: which level of which factor is best, and whether the record of
-//! runs can tell.
+//! Orthogonal tests of several factors at once: the best level of each factor, and whether its effect is
+//! statistically significant.
 //!
-//! Pure functions of plain data. It knows neither what a factor does, nor who runs anything.
+//! Pure functions of plain data, independent of the meaning of the factors and of the execution of the runs.
 //! Source: D. C. Montgomery, Design and Analysis of Experiments, chapters 3 and 4.
 mod anova;
 mod array;

@@ -1,29 +1,29 @@
-//! Range analysis: the mean response at every level of a factor, and how far these means lie apart.
+//! Range analysis: mean response at every level of a factor, and the range of these means.
 
-/// One run of a design.
+/// Observation of a design: one run with its response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observation {
-    /// The level of every factor, from 0.
+    /// Level of every factor, from 0.
     pub levels: Vec<usize>,
-    /// The block, from 0: what runs of one block share beside the factors.
+    /// Index of the block, from 0; runs of one block share conditions other than the factors.
     pub block: usize,
-    /// What came out, in any unit; the smaller the better.
+    /// Response in any unit; smaller is better.
     pub response: f64,
 }
 
-/// What the levels of one factor do.
+/// Range analysis of one factor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Range {
     /// Mean response at each level \[unit of the response\].
     pub means: Vec<f64>,
-    /// Largest less smallest mean \[unit of the response\].
+    /// Largest minus smallest mean \[unit of the response\].
     pub range: f64,
-    /// The level of the smallest mean; the first of equals.
+    /// Level with the smallest mean; the first of equal ones.
     pub best: usize,
 }
 
-/// Ranges of the first `factors` factors, each of so many levels. In a balanced design a mean over all runs of a
-/// level is free of the other factors.
+/// Computes the ranges of the first `factors` factors, each of `levels` levels. In a balanced design, the
+/// mean over all runs of a level is unaffected by the other factors.
 pub fn ranges(observations: &[Observation], levels: usize, factors: usize) -> Vec<Range> {
     let of = |factor: usize| {
         let group = |one: &Observation| one.levels[factor];
@@ -39,14 +39,14 @@ pub fn ranges(observations: &[Observation], levels: usize, factors: usize) -> Ve
     (0..factors).map(of).collect()
 }
 
-/// The response to expect at the best level of every factor, if factors add up \[unit of the response\].
+/// Predicts the response at the best level of every factor under an additive model \[unit of the response\].
 pub fn predicted(observations: &[Observation], ranges: &[Range]) -> f64 {
     let grand = mean(observations.iter().map(|one| one.response));
     let gains = ranges.iter().map(|own| own.means[own.best] - grand);
     grand + gains.sum::<f64>()
 }
 
-/// Mean response of each of so many groups; not a number where a group is empty.
+/// Computes the mean response of each group; NaN for an empty group.
 pub(super) fn means(
     observations: &[Observation],
     groups: usize,
@@ -69,7 +69,7 @@ mod tests {
     use super::*;
     use crate::orthogonal::Array;
 
-    /// Additive effects are found as they were put in, and predict the best combination exactly.
+    /// Checks that additive effects are recovered and predict the best combination exactly.
     #[test]
     fn additive_effects_come_back() {
         const EFFECTS: [[f64; 3]; 4] = [

@@ -1,4 +1,4 @@
-//! An orthogonal test from its runs to what follows of them.
+//! Orthogonal test: runs, their analysis, and the confirmation of the best levels.
 use super::{
     anova::{Anova, anova},
     array::Array,
@@ -6,17 +6,17 @@ use super::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Something with several values that are compared.
+/// Factor of a design, with the levels that are compared.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Factor {
-    /// Its name.
+    /// Name of the factor.
     pub name: String,
-    /// Its values in words.
+    /// Values of the levels as text.
     pub levels: Vec<String>,
 }
 
 impl Factor {
-    /// From words.
+    /// Creates a factor from its name and the texts of its levels.
     pub fn new(name: &str, levels: impl IntoIterator<Item = impl Into<String>>) -> Self {
         Self {
             name: name.to_owned(),
@@ -25,40 +25,41 @@ impl Factor {
     }
 }
 
-/// One run.
+/// Run of a design: one search with its result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tried {
-    /// The level of every factor, from 0.
+    /// Level of every factor, from 0.
     pub levels: Vec<usize>,
-    /// Its seed; runs of one seed are a block.
+    /// Seed of the run; runs with the same seed form a block.
     pub seed: u64,
-    /// The best objective that it found, in the objective's unit; none where nothing was complete.
+    /// Best objective of the run, in the objective's unit; none where no simulation was complete.
     pub objective: Option<f64>,
-    /// How many evaluations it took.
+    /// Number of evaluations of the run.
     pub evaluations: u64,
 }
 
 impl Tried {
-    /// The response: log10 of the best objective, which makes factors add up and seeds scatter alike.
+    /// Returns the response: log10 of the best objective, which makes the effects of factors additive and the
+    /// variance between seeds uniform.
     pub fn response(&self) -> Option<f64> {
         let positive = self.objective.filter(|objective| *objective > 0.0);
         positive.map(f64::log10)
     }
 }
 
-/// What the runs of a design say.
+/// Analysis of the runs of a design.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
-    /// Of every factor.
+    /// Range analysis of every factor.
     pub ranges: Vec<Range>,
-    /// None where the design is saturated.
+    /// Analysis of variance; none where the design is saturated.
     pub anova: Option<Anova>,
-    /// The response to expect at the best levels.
+    /// Predicted response at the best levels.
     pub predicted: f64,
 }
 
 impl Analysis {
-    /// Of the runs of a design; `seeds` are its blocks. None where one of them has no response.
+    /// Analyses the runs of a design with `seeds` as blocks. Returns none if a run has no response.
     pub fn of(array: Array, factors: usize, seeds: &[u64], runs: &[Tried]) -> Option<Self> {
         let observe = |run: &Tried| {
             Some(Observation {
@@ -76,25 +77,25 @@ impl Analysis {
         })
     }
 
-    /// The best level of every factor.
+    /// Returns the best level of every factor.
     pub fn best(&self) -> Vec<usize> {
         self.ranges.iter().map(|range| range.best).collect()
     }
 }
 
-/// The best levels together, tried with seeds of their own.
+/// Confirmation runs of the best levels with new seeds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Confirmation {
-    /// The best level of every factor.
+    /// Best level of every factor.
     pub levels: Vec<usize>,
-    /// The response that was expected.
+    /// Predicted response.
     pub predicted: f64,
-    /// What came out.
+    /// Confirmation runs.
     pub runs: Vec<Tried>,
 }
 
 impl Confirmation {
-    /// Mean response; none where a run has none.
+    /// Returns the mean response; none if a run has no response.
     pub fn obtained(&self) -> Option<f64> {
         let responses: Option<Vec<f64>> = self.runs.iter().map(Tried::response).collect();
         let responses = responses.filter(|all| !all.is_empty())?;
@@ -102,24 +103,24 @@ impl Confirmation {
     }
 }
 
-/// A whole test.
+/// Complete orthogonal test.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tested {
-    /// Its array.
+    /// Orthogonal array of the test.
     pub array: Array,
-    /// Its factors.
+    /// Factors of the test.
     pub factors: Vec<Factor>,
-    /// Its runs, row by row, each with every seed.
+    /// Runs of the test, row by row, each with every seed.
     pub runs: Vec<Tried>,
-    /// What they say; none where one of them found nothing complete.
+    /// Analysis of the runs; none if a run has no complete simulation.
     pub analysis: Option<Analysis>,
-    /// The best levels together; none without an analysis.
+    /// Confirmation of the best levels; none without an analysis.
     pub confirmation: Option<Confirmation>,
 }
 
 impl Tested {
-    /// Whether runs took different numbers of evaluations, so that a level may be better only because it was
-    /// given more.
+    /// Returns whether runs took different numbers of evaluations, in which case a level may be better only
+    /// because of a larger budget.
     pub fn budgets_differ(&self) -> bool {
         let mut evaluations = self.runs.iter().map(|run| run.evaluations);
         let first = evaluations.next();

@@ -1,6 +1,6 @@
-//! How a search scales with the slots that it is given: measured, and projected to more than there are.
+//! Scaling of a search with the number of slots: measured, and projected to more slots than are available.
 //!
-//! Plain data and arithmetic over accounts of slot time. It knows neither who measured nor how it is shown.
+//! Data types and arithmetic over accounts of slot time, independent of the measurement and of the display.
 mod project;
 mod row;
 

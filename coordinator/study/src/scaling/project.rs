@@ -1,4 +1,5 @@
-//! A search on more slots than there are: the real core and the real strategy on a simulated clock.
+//! Projection of a search to more slots than are available: the real scheduler and the real strategy on a
+//! simulated clock.
 use super::row::{How, Overheads, Row, Shares};
 use dispatch::simulated::{Cluster, Search, Setting};
 use protocol::event::Spent;
@@ -8,14 +9,15 @@ use search::{
 };
 use std::time::Duration;
 
-/// Longest time of a projected search: more than any takes.
+/// Upper limit of the simulated time of a projected search, longer than any search takes.
 const LIMIT: Duration = Duration::from_hours(24 * 365);
 
-/// Physics in place of those of a case: the squared distance from a point in its box, in coordinates.
+/// Synthetic objective in place of the simulation of a case: squared distance from a point in the search
+/// space, in normalised coordinates.
 pub struct Stand<'a>(pub &'a Space);
 
 impl Stand<'_> {
-    /// What comes of an individual.
+    /// Computes the synthetic objective of an individual.
     pub fn tell(&self, genes: &[f64]) -> Told {
         let point = self.0.point(genes);
         let squares = point.iter().map(|x| (x - 0.3) * (x - 0.3));
@@ -26,7 +28,7 @@ impl Stand<'_> {
     }
 }
 
-/// Runs a search to its end on so many simulated slots; `name` and `population` are told in the row.
+/// Runs a search to its end on `slots` simulated slots; `name` and `population` are copied into the row.
 pub fn project(
     (name, population): (&str, u64),
     strategy: Box<dyn Strategy>,

@@ -1,22 +1,23 @@
-//! One search on one number of slots: how fast it was, and where slot time went.
+//! Scaling row of one search on one number of slots: speed, and use of slot time.
 use protocol::event::Spent;
 use search::random::{Phase, Streams};
 use serde::{Deserialize, Serialize};
 
-/// What slots did.
+/// Method by which a row was obtained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum How {
-    /// Workers of this machine simulated the case.
+    /// Measured: workers of this machine simulated the case.
     Computed,
-    /// Sessions of one other process slept, over TCP on loopback: all is real but the slots.
+    /// Measured with sleeping sessions of another process, over TCP on loopback: real except for the
+    /// computation.
     Slept,
-    /// The coordinator's state machine on a simulated clock.
+    /// Projected: state machine of the coordinator on a simulated clock.
     Projected,
 }
 
 impl How {
-    /// As it is written.
+    /// Returns the name of the method, as in files.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Computed => "computed",
@@ -26,25 +27,25 @@ impl How {
     }
 }
 
-/// Shares of slot time by use; together 1.
+/// Shares of slot time by use; their sum is 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Shares {
-    /// Computing results that were accepted.
+    /// Share spent computing accepted results.
     pub useful: f64,
-    /// Waiting for results that others compute.
+    /// Share spent waiting for results that other slots compute.
     pub barrier: f64,
-    /// Waiting for the next order though there was work.
+    /// Share spent waiting for the next job although jobs were available.
     pub starved: f64,
-    /// Computing what another slot brought first.
+    /// Share spent computing results that another slot delivered first.
     pub speculative: f64,
-    /// On attempts that failed.
+    /// Share spent on failed attempts.
     pub failed: f64,
-    /// On attempts whose worker was lost.
+    /// Share spent on attempts whose worker was lost.
     pub lost: f64,
 }
 
 impl Shares {
-    /// Of the time between two accounts; all 0 where there was none.
+    /// Computes the shares of the time between two accounts; all 0 if no time passed.
     pub fn between(before: &Spent, after: &Spent) -> Self {
         let share = |of: fn(&Spent) -> u64| {
             let us = of(after).saturating_sub(of(before)) as f64;
@@ -61,51 +62,53 @@ impl Shares {
     }
 }
 
-/// One search on one number of slots.
+/// Scaling result of one search on one number of slots.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// What slots did.
+    /// Method by which the row was obtained.
     pub how: How,
-    /// Name of the search's preset.
+    /// Name of the preset of the search.
     pub preset: String,
-    /// Individuals of a generation.
+    /// Number of individuals per generation.
     pub population: u64,
-    /// Jobs at a time.
+    /// Number of slots (jobs in parallel).
     pub slots: u64,
-    /// Evaluations that the search took.
+    /// Number of evaluations of the search.
     pub evaluations: u64,
-    /// From the first that was asked to the last result \[s\].
+    /// Wall time from the first request to the last result \[s\].
     pub wall_s: f64,
-    /// Computing time of the results that were accepted \[s\].
+    /// Computing time of the accepted results \[s\].
     pub useful_s: f64,
-    /// What slot time went to.
+    /// Use of slot time.
     pub shares: Shares,
-    /// Processor time of the coordinator, the search's own among it \[us a result\]; of a projection what it
-    /// assumes.
+    /// Processor time of the coordinator per result, including that of the search \[us\]; for a projection
+    /// the assumed value.
     pub coordinator_us_per_result: f64,
-    /// The same over the wall time: at 1 one processor of the coordinator is busy all the time.
+    /// Processor time of the coordinator over the wall time; at 1, one processor is busy all the time.
     pub coordinator_share: f64,
-    /// Computing time that one slot alone takes for as many evaluations, over the wall time.
+    /// Speed-up: computing time of a single slot for the same number of evaluations, over the wall time.
     pub speed_up: f64,
-    /// The same over the slots.
+    /// Parallel efficiency: speed-up over the number of slots.
     pub efficiency: f64,
 }
 
-/// What was measured for the projection, or of it.
+/// Measured simulation times and overheads, the inputs of a projection.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Overheads {
     /// Mean computing time of a simulation in one slot \[s\].
     pub simulation_s: f64,
-    /// Quantiles of the same at 0, 5 .. 100 % \[s\]: many simulations end early, others take long.
+    /// Quantiles of the computing time of a simulation at 0, 5 .. 100 % \[s\]; the distribution is wide since
+    /// many simulations end early.
     pub simulation_quantiles_s: Vec<f64>,
-    /// Processor time of the coordinator for a job and its result over TCP \[us\].
+    /// Processor time of the coordinator per job and result over TCP \[us\].
     pub coordinator_us: f64,
-    /// Median round trip of a job that does nothing over TCP on loopback \[ms\].
+    /// Median round-trip time of an empty job over TCP on loopback \[ms\].
     pub round_trip_ms: f64,
 }
 
 impl Overheads {
-    /// How long a job takes \[s\]: drawn from the quantiles, a property of the job alone.
+    /// Returns the simulated computing time of a job \[s\]: drawn from the quantiles, and dependent on the
+    /// job number alone.
     pub fn takes_s(&self, job: u64) -> f64 {
         let index = usize::try_from(job).unwrap_or(usize::MAX);
         let mut stream = Streams::new(1, 6).at(0, Phase::Mutation, index);
@@ -124,20 +127,20 @@ impl Overheads {
     }
 }
 
-/// How searches scale.
+/// Scaling of searches, measured and projected.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scaled {
-    /// What the projection is made from.
+    /// Measured inputs of the projection.
     pub overheads: Overheads,
-    /// What it takes for granted, sentence by sentence.
+    /// Assumptions of the projection, one sentence each.
     pub assumptions: Vec<String>,
-    /// Every search on every number of slots.
+    /// Rows of every search on every number of slots.
     pub rows: Vec<Row>,
 }
 
 impl Scaled {
-    /// Rows with speed-up and efficiency, each against one slot: where one was measured with the same search, by
-    /// its computing time, otherwise by the row's own.
+    /// Computes speed-up and efficiency of the rows relative to one slot. The reference is the computing time
+    /// per evaluation of the same search on one slot, or that of the row if this was not measured.
     pub fn new(overheads: Overheads, mut rows: Vec<Row>) -> Self {
         let per_evaluation = |row: &Row| row.useful_s / row.evaluations.max(1) as f64;
         let alone: Vec<Row> = rows.iter().filter(|row| row.slots == 1).cloned().collect();
@@ -199,7 +202,8 @@ mod tests {
         }
     }
 
-    /// Two slots that disturb each other take longer over each evaluation: that is no speed-up.
+    /// Checks that two slots that slow each other down, and so take longer over each evaluation, do not count
+    /// as speed-up.
     #[test]
     fn speed_up_is_against_what_one_slot_takes() {
         let overheads = Overheads {

@@ -1,9 +1,9 @@
-//! Many searches over one space side by side, on the same workers: while one waits for its last results, others keep
-//! the slots busy.
+//! Concurrent searches over one space on the same workers: while one search waits for its last results, the
+//! others keep the slots busy.
 //!
-//! It knows searches and their budgets, not why there are many. A job is numbered by its content: an individual
-//! that several searches ask for is computed once, and a run that is opened again finds all in its journal. What a
-//! search finds is its own affair, in whatever order results arrive.
+//! Independent of the purpose of the searches. A job is numbered by its content: an individual that several
+//! searches request is computed once, and a resumed run finds all results in its journal. The result of a
+//! search depends neither on the other searches nor on the order in which results arrive.
 use super::{
     calibrate::{LEAST_TRIED, all_failed, entry, residual, score},
     error::StudyError,
@@ -24,55 +24,55 @@ use std::collections::BTreeMap;
 #[cfg(test)]
 mod tests;
 
-/// Jobs that wait or run before another search is begun: enough for the slots of a large crew.
+/// Number of open jobs above which no further search is begun; enough for the slots of many workers.
 const BUSY: usize = 256;
 
-/// A search of a sweep.
+/// Search of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Search {
-    /// Its settings.
+    /// Settings of the search.
     pub settings: Settings,
-    /// Its seed.
+    /// Seed of the search.
     pub seed: u64,
-    /// Evaluations after which it is ended; none: it ends when it has done what it planned.
+    /// Budget of evaluations; none for a search that ends as planned by its settings.
     pub evaluations: Option<u64>,
 }
 
-/// What came of a search.
+/// Result of a search of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Searched {
-    /// The best of its evaluations.
+    /// Best individual.
     pub best: Option<Best>,
-    /// How many it took, those that others had asked for among them.
+    /// Number of evaluations, including those that other searches had already requested.
     pub evaluations: u64,
 }
 
-/// A search under way.
+/// Search in progress.
 struct Running {
     strategy: Box<dyn Strategy>,
-    /// Proposals from this number on are not evaluated.
+    /// Budget: proposals with this id or a higher one are not evaluated.
     limit: u64,
 }
 
-/// Searches over one space, with what is known of all of them.
+/// Concurrent searches over one space, with a common store of results.
 pub struct Sweep<'a> {
     case: &'a Case,
     space: &'a Space,
     running: BTreeMap<usize, Running>,
-    /// What has ended; every search since the beginning has a number of its own.
+    /// Results of finished searches, by consecutive number over all calls.
     found: BTreeMap<usize, Searched>,
-    /// Who waits for a job.
+    /// Searches and their proposals that wait for each open job.
     open: BTreeMap<JobId, Vec<(usize, Proposal)>>,
     known: BTreeMap<JobId, Outcome>,
-    /// Numbers of the run's jobs; none before the first search is asked.
+    /// Job numbers of the run; none before the first call of [`Sweep::run`].
     numbers: Option<JobNumbers>,
     view: ProgressView,
-    /// What has failed, as long as nothing else has happened.
+    /// Log of failed evaluations; none once an evaluation was complete.
     failed: Option<EvaluationLog>,
 }
 
 impl<'a> Sweep<'a> {
-    /// None yet.
+    /// Creates a sweep without searches.
     pub fn new(case: &'a Case, space: &'a Space) -> Self {
         Self {
             case,
@@ -87,12 +87,12 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Runs searches to their ends; results in the order of the list. May be called again, on the same evaluator:
-    /// what is known is not computed anew.
+    /// Runs searches to their ends; results in the order of the list. May be called again with the same
+    /// evaluator; known results are not computed again.
     ///
     /// # Errors
-    /// If settings make no search, if the case or the workers make every evaluation impossible, if everything that
-    /// a whole search has tried fails, if nobody evaluates any more, or if the user stops it.
+    /// If settings are invalid, if the case or the workers make every evaluation impossible, if a whole
+    /// search ends and every evaluation so far has failed, if no evaluator is left, or if the user stops it.
     pub async fn run<E: Evaluator>(
         &mut self,
         evaluator: &mut E,
@@ -140,7 +140,7 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Asks a search until it waits for results or ends.
+    /// Asks a search for proposals and submits these until the search waits for results or ends.
     fn advance<E: Evaluator>(&mut self, evaluator: &mut E, index: usize) -> anyhow::Result<()> {
         while let Some(running) = self.running.get_mut(&index) {
             let strategy = running.strategy.as_mut();
@@ -194,7 +194,7 @@ impl<'a> Sweep<'a> {
         Ok(())
     }
 
-    /// Takes a result into what is shown, once, whoever asked for it.
+    /// Adds a result to the progress, once for all searches that requested it.
     fn count(
         &mut self,
         asked: &[(usize, Proposal)],
@@ -215,7 +215,7 @@ impl<'a> Sweep<'a> {
         Ok(())
     }
 
-    /// Gives up where a whole search has ended and nothing has ever been complete.
+    /// Fails if a whole search has ended and no evaluation was ever complete.
     fn check_failed(&self) -> anyhow::Result<()> {
         match &self.failed {
             Some(failed) if failed.len() >= LEAST_TRIED => Err(all_failed(failed).into()),
@@ -223,7 +223,7 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// How far all searches have come, those that have not begun at their budgets `waiting`.
+    /// Updates the progress of all searches; `waiting` holds the budgets of those that have not begun.
     fn plan(&mut self, waiting: impl Iterator<Item = u64>) {
         let running = self.running.values().map(|running| {
             let progress = running.strategy.progress();

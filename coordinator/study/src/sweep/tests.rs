@@ -1,4 +1,4 @@
-//! Searches side by side against an evaluator that answers in any order.
+//! Tests of concurrent searches with an evaluator that answers in random order.
 use super::*;
 use crate::JobNumbers;
 use crate::{
@@ -39,7 +39,7 @@ async fn swept(case: &Case, order: u64, lists: &[&[Search]]) -> (Vec<Searched>, 
     (found, oracle.computed)
 }
 
-/// However results arrive and whatever runs beside it, a search finds what it finds alone.
+/// Checks that the result of a search depends neither on the order of results nor on concurrent searches.
 #[tokio::test]
 async fn searches_do_not_disturb_each_other() {
     let case = case();
@@ -64,7 +64,7 @@ async fn searches_do_not_disturb_each_other() {
     }
 }
 
-/// Jobs of several searches whose hashes begin alike are not taken for each other.
+/// Checks that jobs of several searches whose hashes begin alike are not confused.
 #[tokio::test]
 async fn searches_find_the_same_where_numbers_of_jobs_are_few() {
     let case = case();
@@ -79,7 +79,8 @@ async fn searches_find_the_same_where_numbers_of_jobs_are_few() {
     assert_eq!(found.unwrap(), expected);
 }
 
-/// A budget ends a search in the middle of a batch, with the best of what it was given.
+/// Checks that a budget ends a search exactly, even within a batch, with the best of the evaluated
+/// individuals.
 #[tokio::test]
 async fn a_budget_is_kept_to_the_evaluation() {
     let case = case();
@@ -91,7 +92,7 @@ async fn a_budget_is_kept_to_the_evaluation() {
     assert!(fitness(&longer) <= fitness(&short));
 }
 
-/// What one search has asked for is not computed for another, even by a later call.
+/// Checks that an individual requested by several searches is computed once, even in a later call.
 #[tokio::test]
 async fn equal_individuals_are_computed_once() {
     let case = case();

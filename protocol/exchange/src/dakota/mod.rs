@@ -1,4 +1,5 @@
-//! Files of Dakota: the parameters that it hands a driver, the results that it takes, texts with `{name}`.
+//! Dakota's files: parameters passed to a driver, results returned by a driver, and templates with `{name}`
+//! fields.
 //!
 //! Source: Dakota user's manual, chapters on parameters to and responses from simulations.
 mod parameters;

@@ -1,20 +1,20 @@
-//! The parameters file that a driver finds.
+//! Writer of the Dakota parameters file that a driver reads.
 use serde_json::json;
 use std::fmt::Write as _;
 
-/// In what form it is written.
+/// Format of the parameters file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// `value label`.
+    /// Dakota's standard format: `value label`.
     Standard,
-    /// `{ label = value }`.
+    /// APREPRO format: `{ label = value }`.
     Aprepro,
-    /// An object of JSON.
+    /// JSON format: one object.
     Json,
 }
 
 impl Form {
-    /// The form of a name.
+    /// Returns the format of a given name; `None` for an unknown name.
     pub fn named(name: &str) -> Option<Self> {
         match name {
             "standard" => Some(Self::Standard),
@@ -25,8 +25,8 @@ impl Form {
     }
 }
 
-/// The text of a parameters file: the variables, one active-set entry for each function (values alone are asked
-/// for), the derivative variables, no analysis components, the number of the evaluation.
+/// Formats a parameters file: variables, one active-set entry per function (requesting values only),
+/// derivative variables, no analysis components, and the number of the evaluation.
 pub fn parameters(
     form: Form,
     variables: &[(String, f64)],

@@ -1,25 +1,25 @@
-//! The results file that a driver leaves.
+//! Reader of the Dakota results file that a driver writes.
 use crate::{Problem, number, problem::clip};
 
-/// What a driver says of an evaluation.
+/// Result of an evaluation as reported by a driver.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Results {
-    /// A value for each function and, where the file has them, gradients.
+    /// A value per function and, if the file contains them, gradients.
     Values {
-        /// In the order of the functions.
+        /// Values in the order of the functions.
         values: Vec<f64>,
-        /// Derivatives of each by the variables; empty where there are none.
+        /// Derivatives of each function with respect to the variables; empty if the file contains none.
         gradients: Vec<Vec<f64>>,
     },
-    /// It could not be evaluated: the file begins with `fail`.
+    /// Failed evaluation: the file begins with `fail`.
     Fail,
 }
 
-/// Reads a results file: `value [label]` for each function, then `[ gradient ]`; Hessians (`[[ .. ]]`) are passed
-/// over.
+/// Reads a results file: `value [label]` for each function, then `[ gradient ]`; Hessians (`[[ .. ]]`) are
+/// ignored.
 ///
 /// # Errors
-/// Too few or too many values, a label that is another function's, what is no finite number.
+/// Too few or too many values, a label that does not match its function, or a number that is not finite.
 pub fn results(file: &str, text: &str, functions: &[String]) -> Result<Results, Problem> {
     let first = text.trim_start();
     let is_fail = first
@@ -44,7 +44,7 @@ pub fn results(file: &str, text: &str, functions: &[String]) -> Result<Results, 
                 at + 1,
                 found,
                 allowed,
-                "look at what the program wrote",
+                "check the program's results file",
             )
         };
         let mut words = line.split_whitespace();
@@ -74,7 +74,7 @@ pub fn results(file: &str, text: &str, functions: &[String]) -> Result<Results, 
             line: None,
             found: format!("{} values", read.len()),
             allowed: format!("{} values, one for each function", functions.len()),
-            remedy: "look whether the program has finished the file".to_owned(),
+            remedy: "check that the program has finished writing the file".to_owned(),
         });
     }
     Ok(Results::Values {
@@ -83,7 +83,7 @@ pub fn results(file: &str, text: &str, functions: &[String]) -> Result<Results, 
     })
 }
 
-/// The lists between single brackets.
+/// Parses the gradients, which are lists in single brackets; stops at the first Hessian.
 fn gradients(file: &str, text: &str) -> Result<Vec<Vec<f64>>, Problem> {
     let plain = text.split("[[").next().unwrap_or_default();
     let lists = plain.split('[').skip(1);
@@ -97,7 +97,7 @@ fn gradients(file: &str, text: &str) -> Result<Vec<Vec<f64>>, Problem> {
                 line: None,
                 found: format!("gradient `[{}]`", clip(list)),
                 allowed: "finite numbers between brackets".to_owned(),
-                remedy: "look at what the program wrote".to_owned(),
+                remedy: "check the program's results file".to_owned(),
             })
     };
     lists.map(list).collect()

@@ -1,8 +1,8 @@
-//! A text with `{name}`, and nothing else between braces: expressions belong to the user's own driver.
+//! Text templates whose only fields are `{name}`; expressions are left to a driver of the user's own.
 use crate::{Problem, problem::clip};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A text with fields, read once. A brace that is meant itself has a backslash before it.
+/// Parsed text template with `{name}` fields. A literal brace is escaped by a backslash.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Template {
     parts: Vec<Part>,
@@ -16,10 +16,10 @@ enum Part {
 }
 
 impl Template {
-    /// Reads a text.
+    /// Parses a template.
     ///
     /// # Errors
-    /// A brace without its like, what is no name between two.
+    /// A brace without its counterpart, or anything other than a name between braces.
     pub fn parse(file: &str, text: &str) -> Result<Self, Problem> {
         let (mut parts, mut plain, mut line) = (Vec::new(), String::new(), 1);
         let mut letters = text.chars().peekable();
@@ -42,7 +42,8 @@ impl Template {
                     if !is_closed || plain_name.is_empty() || !plain_name.chars().all(is_name) {
                         let found = format!("`{{{}}}`", clip(&name));
                         let allowed = "the name of one parameter between braces";
-                        let remedy = "expressions belong to a driver of your own; write \\{ for a brace that is meant itself";
+                        let remedy =
+                            "expressions need a driver of your own; write \\{ for a literal brace";
                         return Err(Problem::at(file, line, found, allowed, remedy));
                     }
                     parts.push(Part::Text(std::mem::take(&mut plain)));
@@ -64,7 +65,7 @@ impl Template {
         })
     }
 
-    /// Names of the parameters.
+    /// Returns the names of the parameters used in the template.
     pub fn fields(&self) -> BTreeSet<String> {
         let names = self.parts.iter().filter_map(|part| match part {
             Part::Field { name, .. } => Some(name.clone()),
@@ -73,10 +74,10 @@ impl Template {
         names.collect()
     }
 
-    /// The text with each parameter's own in its place.
+    /// Returns the text with each field replaced by its parameter's text.
     ///
     /// # Errors
-    /// A parameter that has no text.
+    /// A field whose parameter has no text in `texts`.
     pub fn fill(&self, texts: &BTreeMap<String, String>) -> Result<String, Problem> {
         let each = self.parts.iter().map(|part| match part {
             Part::Text(text) => Ok(text.as_str()),

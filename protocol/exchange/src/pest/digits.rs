@@ -1,7 +1,7 @@
-//! A number in a field of so many characters, with as many digits as fit.
+//! Formatting of numbers for fields of limited width, with as many digits as fit.
 
-/// The text of a value in at most `width` characters: exact where that fits, else as near as the field allows; none
-/// where not even one digit does.
+/// Formats a value in at most `width` characters: exactly if possible, otherwise as accurately as the field
+/// allows; `None` if not even one digit fits.
 pub fn fit(value: f64, width: usize) -> Option<String> {
     if !value.is_finite() {
         return None;
@@ -29,8 +29,8 @@ pub fn fit(value: f64, width: usize) -> Option<String> {
     (!lost).then(|| pointed(best, width))
 }
 
-/// With a point and a zero where there is room for both: a program that reads integers where it finds them takes it
-/// for a real number.
+/// Appends `.0` where there is room, so that programs that distinguish integers from real numbers read a real
+/// number.
 fn pointed(text: String, width: usize) -> String {
     if text.contains(['.', 'e']) || text.len() + 2 > width {
         text

@@ -1,24 +1,23 @@
-//! The first line of templates and instructions: a word that says which of the two a file is, and the delimiter that
-//! it uses.
+//! First line of template and instruction files: a keyword for the file type, and the delimiter.
 use crate::{Problem, problem::clip};
 
-/// What such a line must be.
+/// Requirements on the first line of a template or instruction file.
 pub(super) struct Marked {
-    /// The word, as `ptf`.
+    /// Keyword for the file type, e.g. `ptf`.
     pub(super) word: &'static str,
-    /// What no delimiter may be, beside letters and digits.
+    /// Characters that may not be the delimiter, in addition to letters and digits.
     pub(super) barred: &'static str,
-    /// What the line must be, in words.
+    /// Description of a valid first line, for error messages.
     pub(super) allowed: &'static str,
-    /// What to do where it is not.
+    /// Remedy for an invalid first line, for error messages.
     pub(super) remedy: &'static str,
 }
 
 impl Marked {
-    /// The delimiter, and the lines behind it.
+    /// Returns the delimiter and the text after the first line.
     ///
     /// # Errors
-    /// Another first line.
+    /// An invalid first line.
     pub(super) fn read<'a>(&self, file: &str, text: &'a str) -> Result<(char, &'a str), Problem> {
         let (first, body) = text.split_once('\n').unwrap_or((text, ""));
         let mut words = first.split_whitespace();

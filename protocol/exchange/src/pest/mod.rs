@@ -1,7 +1,7 @@
-//! Files of PEST: templates that are filled in, instructions that find values, control files.
+//! PEST's files: templates, instruction files that locate values, and control files.
 //!
-//! Source: PEST++ user's manual, chapters 2 (templates, instructions) and 4 (control files). Names are in small
-//! letters, for they are the same in any case.
+//! Source: PEST++ user's manual, chapters 2 (templates, instructions) and 4 (control files). Names are
+//! converted to lower case, because PEST ignores case.
 mod control;
 mod digits;
 mod instruction;

@@ -1,35 +1,35 @@
-//! What PEST leaves of a calibration: values (`.par`) and residuals (`.rei`).
+//! Writers of PEST's result files: parameter values (`.par`) and residuals (`.rei`).
 use std::fmt::Write as _;
 
-/// A row of a `.par` file.
+/// Row of a `.par` file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParRow {
     /// Name of the parameter.
     pub name: String,
-    /// Its value.
+    /// Value of the parameter.
     pub value: f64,
-    /// `scale x value + offset` is what templates get.
+    /// Factor in `scale x value + offset`, the number written into templates.
     pub scale: f64,
-    /// See [`Self::scale`].
+    /// Summand in `scale x value + offset`; see [`Self::scale`].
     pub offset: f64,
 }
 
-/// A row of a `.rei` file.
+/// Row of a `.rei` file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReiRow {
     /// Name of the observation.
     pub name: String,
-    /// Its group.
+    /// Observation group.
     pub group: String,
-    /// What was measured.
+    /// Measured value.
     pub measured: f64,
-    /// What the model gives.
+    /// Value computed by the model.
     pub modelled: f64,
-    /// Factor of the residual.
+    /// Factor on the residual.
     pub weight: f64,
 }
 
-/// The text of a `.par` file.
+/// Formats a `.par` file.
 pub fn par(rows: &[ParRow]) -> String {
     let mut text = "single point\n".to_owned();
     for row in rows {
@@ -48,7 +48,7 @@ pub fn par(rows: &[ParRow]) -> String {
     text
 }
 
-/// The text of a `.rei` file.
+/// Formats a `.rei` file.
 pub fn rei(rows: &[ReiRow]) -> String {
     let mut text = "MODEL OUTPUTS AT THE BEST PARAMETERS:\n\n".to_owned();
     let heads = [

@@ -1,12 +1,12 @@
-//! Templates: a text with fields that take the values of parameters.
+//! PEST templates: texts with fixed-width fields for the values of parameters.
 use super::mark::Marked;
 use crate::{Problem, problem::clip};
 use std::collections::BTreeMap;
 
-/// Longest template (bytes).
+/// Maximum size of a template (bytes).
 const MOST: usize = 64 << 20;
 
-/// Its first line.
+/// Requirements on the first line of a template.
 const FIRST: Marked = Marked {
     word: "ptf",
     barred: "",
@@ -14,7 +14,7 @@ const FIRST: Marked = Marked {
     remedy: "write it as the first line of the template",
 };
 
-/// A template, read once.
+/// Parsed template.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Template {
     file: String,
@@ -25,21 +25,21 @@ pub struct Template {
 enum Part {
     Text(String),
     Field {
-        /// The parameter, in small letters.
+        /// Name of the parameter in lower case.
         name: String,
-        /// Its width with both delimiters (characters).
+        /// Width of the field including both delimiters (characters).
         width: usize,
-        /// Line of the template.
+        /// Line number in the template.
         line: usize,
     },
 }
 
 impl Template {
-    /// Reads a template: `ptf` and a delimiter in the first line, then a text in which a parameter's name stands
-    /// between two of them.
+    /// Parses a template: `ptf` and a delimiter in the first line, then a text in which the names of
+    /// parameters stand between two delimiters.
     ///
     /// # Errors
-    /// Another first line, a delimiter without its like, a field without a name.
+    /// An invalid first line, an unpaired delimiter, or a field without a name.
     pub fn parse(file: &str, text: &str) -> Result<Self, Problem> {
         let (mark, body) = FIRST.read(file, text)?;
         if text.len() > MOST {
@@ -61,14 +61,14 @@ impl Template {
             while let Some(field) = pieces.next() {
                 let name = field.trim().to_lowercase();
                 let Some(after) = pieces.next() else {
-                    let found = format!("a `{mark}` without its like");
+                    let found = format!("a `{mark}` without a second one");
                     let allowed = "two delimiters about each parameter's name";
                     return Err(Problem::at(
                         file,
                         number,
                         found,
                         allowed,
-                        "add it, or choose another delimiter",
+                        "add the second delimiter, or declare another delimiter in the first line",
                     ));
                 };
                 if name.is_empty() || name.contains(char::is_whitespace) {
@@ -96,7 +96,7 @@ impl Template {
         })
     }
 
-    /// The parameters with the width of their narrowest field (characters).
+    /// Returns the parameters with the width of their narrowest field (characters).
     pub fn fields(&self) -> BTreeMap<String, usize> {
         let mut fields = BTreeMap::new();
         for part in &self.parts {
@@ -108,10 +108,10 @@ impl Template {
         fields
     }
 
-    /// The text with a parameter's text in each of its fields, at the right end.
+    /// Returns the text with each field replaced by its parameter's text, right-aligned.
     ///
     /// # Errors
-    /// A parameter that has no text, or one that is wider than its field.
+    /// A parameter without a text, or a text that is wider than its field.
     pub fn fill(&self, texts: &BTreeMap<String, String>) -> Result<String, Problem> {
         let mut filled = String::new();
         for part in &self.parts {
@@ -123,7 +123,7 @@ impl Template {
                         .filter(|text| text.chars().count() <= *width);
                     let Some(text) = text else {
                         let found = format!("the field of `{name}`, {width} wide");
-                        let allowed = "that of a parameter whose value fits into it";
+                        let allowed = "the field of a known parameter, wide enough for its value";
                         return Err(Problem::at(
                             &self.file,
                             *line,

@@ -1,5 +1,5 @@
-//! The way from the gate to the router: loopback, with certificates that live as long as this
-//! process and never touch a disk.
+//! Connection from the gate to the router over loopback, with certificates that exist only in the memory of
+//! this process.
 use super::terms::{BUS, HANDSHAKE};
 use crate::{
     LinkError,
@@ -25,10 +25,11 @@ use std::{
 };
 use tokio::time::timeout;
 
-/// Days for which the certificates are valid: a run may take long.
+/// Validity of the certificates (days), longer than any run.
 const DAYS: u32 = 365;
 
-/// An authority in memory, and the certificates it gave.
+/// In-memory certificate authority with the client configurations for all worker names and the router's TLS
+/// section.
 pub(crate) struct Inner {
     router: SocketAddr,
     endpoint: Endpoint,
@@ -79,17 +80,17 @@ impl Inner {
         })
     }
 
-    /// Whether a name has a certificate here, and so rules of access.
+    /// Returns whether a name has a certificate here, and therefore access rules at the router.
     pub(super) fn knows(&self, owner: &str) -> bool {
         self.configs.contains_key(owner)
     }
 
-    /// The router's section on certificates. Holds a private key.
+    /// Returns the TLS section of the router's configuration, which contains a private key.
     pub(crate) const fn listening(&self) -> &Value {
         &self.section
     }
 
-    /// Connects as one of the workers.
+    /// Connects to the router under the name of a worker.
     pub(super) async fn connect(
         &self,
         owner: &str,

@@ -1,5 +1,5 @@
-//! The names that may join, read again while the coordinator runs: who is added comes in, who is taken
-//! out goes.
+//! List of the workers that may join, read again while the coordinator runs: added names are admitted,
+//! removed names are disconnected.
 use super::{inner::Inner, terms::CONNECTIONS};
 use crate::keys::Keys;
 use std::{
@@ -12,28 +12,30 @@ use tokio::{
     time::{MissedTickBehavior, interval, timeout},
 };
 
-/// How often the file is read: whoever is taken out is gone well within five seconds.
+/// Interval between readings of the list; a removed worker is disconnected well within five seconds.
 const AGAIN: Duration = Duration::from_secs(1);
-/// How long a name may take to be read that was written just now, by whoever launched its worker.
+/// Maximum time for which an unlisted peer waits for the next reading of the list, because its name may have
+/// been written only just before its launch.
 const FRESH: Duration = Duration::from_millis(1200);
 
-/// By name, how many more connections each may have.
+/// Semaphores by name that count the further connections each name may have.
 #[derive(Clone, Debug)]
 pub(super) struct Listed(BTreeMap<String, Arc<Semaphore>>);
 
 impl Listed {
-    /// Nobody of them is connected.
+    /// Creates a list in which no name has a connection yet.
     pub(super) fn new(names: &BTreeSet<String>) -> Self {
         let places = |name: &String| (name.clone(), Arc::new(Semaphore::new(CONNECTIONS)));
         Self(names.iter().map(places).collect())
     }
 
-    /// The places of a name that is on the list.
+    /// Returns the connection semaphore of a name, if the name is on the list.
     pub(super) fn places(&self, name: &str) -> Option<Arc<Semaphore>> {
         self.0.get(name).cloned()
     }
 
-    /// The list is another one now; whoever stays keeps its connections. Whether that changes anything.
+    /// Replaces the names of the list; names on both lists keep their semaphores, and so their connections.
+    /// Returns whether the set of names has changed.
     fn change(&mut self, names: &BTreeSet<String>) -> bool {
         if self.0.keys().eq(names) {
             return false;
@@ -49,8 +51,8 @@ impl Listed {
     }
 }
 
-/// Reads the list again and again. A list that cannot be read changes nothing and is spoken of once, and
-/// so is a name for which no room was made when the coordinator started.
+/// Reads the list periodically and publishes changes. A list that cannot be read changes nothing and is
+/// logged once; so is a name for which the coordinator made no access rules at its start.
 pub(super) async fn read_again(keys: Keys, inner: Arc<Inner>, say: watch::Sender<Listed>) {
     let mut ticks = interval(AGAIN);
     ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
@@ -65,7 +67,9 @@ pub(super) async fn read_again(keys: Keys, inner: Arc<Inner>, say: watch::Sender
             Ok(names) => names.into_iter().partition(|name| inner.knows(name)),
             Err(error) => {
                 if told.insert(error.to_string()) {
-                    tracing::warn!("the list of workers stays as it was: {error}");
+                    tracing::warn!(
+                        "the list of workers could not be read and was not updated: {error}"
+                    );
                 }
                 continue;
             }
@@ -82,7 +86,8 @@ pub(super) async fn read_again(keys: Keys, inner: Arc<Inner>, say: watch::Sender
     }
 }
 
-/// The places of a name that is on the list or about to be read.
+/// Returns the connection semaphore of a name; waits briefly for the next reading of the list if the name is
+/// not on it.
 pub(super) async fn places(
     mut listed: watch::Receiver<Listed>,
     name: &str,

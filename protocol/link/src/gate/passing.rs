@@ -1,11 +1,11 @@
-//! Two connections as one: what comes in by either goes out by the other, unread.
+//! Forwarding of streams between two connections in both directions, without inspection.
 use super::terms::WELCOME;
 use quinn::{Connection, ConnectionError, RecvStream, SendStream, VarInt};
 
-/// Bytes passed on at a time.
+/// Maximum number of bytes forwarded at a time.
 const PIECE: usize = 64 << 10;
 
-/// Passes everything on between two connections until one of them ends; then the other does.
+/// Forwards all streams between two connections until one of them ends, then closes both.
 pub(super) async fn join(outer: &Connection, inner: &Connection) {
     // streams stand for priorities by their order, which `accept` and `open` keep
     let passing = async {
@@ -26,7 +26,7 @@ pub(super) async fn join(outer: &Connection, inner: &Connection) {
     }
 }
 
-/// The one stream that goes both ways: the worker opens it.
+/// Forwards the single bidirectional stream, which the worker opens.
 async fn both_ways(outer: &Connection, inner: &Connection) -> Result<(), ConnectionError> {
     let (outer_send, outer_receive) = outer.accept_bi().await?;
     let (inner_send, inner_receive) = inner.open_bi().await?;
@@ -37,7 +37,7 @@ async fn both_ways(outer: &Connection, inner: &Connection) -> Result<(), Connect
     Ok(())
 }
 
-/// All streams that go one way.
+/// Forwards all unidirectional streams in one direction.
 async fn one_way(from: &Connection, to: &Connection) -> Result<(), ConnectionError> {
     let mut passing = tokio::task::JoinSet::new();
     for priority in 0.. {
@@ -52,7 +52,7 @@ async fn one_way(from: &Connection, to: &Connection) -> Result<(), ConnectionErr
     Ok(())
 }
 
-/// Passes bytes on; the receiver's pace is the sender's.
+/// Forwards bytes of one stream; writes wait for the receiver, so backpressure reaches the sender.
 async fn pass(mut from: RecvStream, mut to: SendStream) {
     while let Ok(Some(piece)) = from.read_chunk(PIECE, true).await {
         if to.write_chunk(piece.bytes).await.is_err() {

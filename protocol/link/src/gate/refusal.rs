@@ -1,4 +1,5 @@
-//! Who was turned away and why: each reason once a minute, however many knock.
+//! Logging of refused connections: each reason at most once a minute, with a count of the occurrences
+//! suppressed.
 use std::{
     collections::BTreeMap,
     net::SocketAddr,
@@ -6,19 +7,20 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How often the same reason is told.
+/// Minimum interval between log messages with the same reason.
 const PAUSE: Duration = Duration::from_mins(1);
-/// Longest name that is repeated in a message.
+/// Maximum number of characters of a peer's name in a message.
 const SHOWN: usize = 64;
 
-/// What was told, when, and how often it happened since.
+/// Reasons logged so far, each with the time of its last message and the number of occurrences suppressed
+/// since.
 #[derive(Debug, Default)]
 pub(super) struct Refusals {
     told: Mutex<BTreeMap<&'static str, (Instant, u64)>>,
 }
 
 impl Refusals {
-    /// A handshake failed; `words` are the transport's.
+    /// Logs a failed handshake; `words` is the transport's error message.
     pub(super) fn tell(&self, from: SocketAddr, words: &str) {
         if let Some(reason) = reason(words) {
             self.say(from, reason, "");
@@ -27,7 +29,7 @@ impl Refusals {
         }
     }
 
-    /// A certificate was good, but its name is not on the list.
+    /// Logs a peer with a valid certificate whose name is not on the list of workers.
     pub(super) fn unlisted(&self, from: SocketAddr, owner: &str) {
         let shown: String = owner
             .chars()
@@ -38,9 +40,9 @@ impl Refusals {
         self.say(from, reason, &format!(" (\"{shown}\")"));
     }
 
-    /// A certificate has too many connections already.
+    /// Logs a peer whose certificate has reached its maximum number of connections.
     pub(super) fn crowded(&self, from: SocketAddr, owner: &str) {
-        let reason = "its certificate has as many connections as one may have";
+        let reason = "its certificate has reached the maximum number of connections";
         self.say(from, reason, &format!(" (\"{owner}\")"));
     }
 
@@ -48,13 +50,14 @@ impl Refusals {
         if let Some(more) = self.is_news(reason, Instant::now()) {
             let more = match more {
                 0 => String::new(),
-                more => format!("; {more} more since this was last said"),
+                more => format!("; {more} more since the last such message"),
             };
             tracing::warn!("a connection from {from} was refused: {reason}{detail}{more}");
         }
     }
 
-    /// Whether a reason is to be told now, and how often it was not.
+    /// Returns the number of occurrences suppressed since the last message if the reason is to be logged now,
+    /// otherwise `None`.
     fn is_news(&self, reason: &'static str, now: Instant) -> Option<u64> {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         match told.get_mut(reason) {
@@ -71,7 +74,8 @@ impl Refusals {
     }
 }
 
-/// The transport's reason in our words; none for connections that merely broke off.
+/// Translates the transport's error message into a reason for the log; `None` for connections that merely
+/// broke off.
 fn reason(words: &str) -> Option<&'static str> {
     let has = |part: &str| words.contains(part);
     if has("UnknownIssuer") || has("BadSignature") {
@@ -85,7 +89,7 @@ fn reason(words: &str) -> Option<&'static str> {
     } else if has("invalid peer certificate") {
         Some("its certificate is not one for a worker")
     } else if has("application protocol") {
-        Some("it is no worker of this build")
+        Some("it is not a worker of this build")
     } else if has("unknown ca") || has("unknown CA") || has("UnknownCA") {
         Some("it does not trust this coordinator's authority")
     } else {

@@ -1,17 +1,18 @@
-//! What a gate and those who come to it have agreed on.
+//! Constants shared by the gate and its peers: protocol names, close codes and limits.
 use std::time::Duration;
 
-/// What a worker shows that only asks whether it may come in.
+/// ALPN protocol of a probe connection, by which a worker asks only whether it would be admitted.
 pub(crate) const KNOCK: &[u8] = b"horsehead-knock";
-/// Protocol of the router: a stream for each priority.
+/// ALPN protocol of the router, with one stream per priority.
 pub(crate) const BUS: &[u8] = b"zenoh-ms";
-/// Answer to a knock, and last word of a connection that ends in good order.
+/// Close code for an admitted probe and for connections that end regularly.
 pub(crate) const WELCOME: u32 = 0;
-/// Answer to whoever may not come in: its name is not on the list.
+/// Close code for a peer whose name is not on the list of workers.
 pub(crate) const UNLISTED: u32 = 1;
-/// Answer to whoever may not come in: its certificate has all the connections that one may have.
+/// Close code for a peer whose certificate has reached its maximum number of connections.
 pub(crate) const CROWDED: u32 = 2;
-/// How long shaking hands may take.
+/// Maximum duration of a handshake.
 pub(crate) const HANDSHAKE: Duration = Duration::from_secs(3);
-/// Connections, and workers, of one certificate: the router's sessions are for all.
+/// Maximum number of connections, and of workers, per certificate, because all certificates share the
+/// router's sessions.
 pub(crate) const CONNECTIONS: usize = 1024;

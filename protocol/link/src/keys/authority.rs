@@ -1,8 +1,8 @@
-//! Makes key material: an authority, and the certificates that it signs.
+//! Creation of key material: a certificate authority and the certificates that it signs.
 //!
-//! Keys are ECDSA P-256, made and kept on the machine that runs this; files that hold one are
-//! readable by their owner alone. A coordinator's certificate is good for serving only and a
-//! worker's for dialling only, so that a stolen worker's key cannot pose as the coordinator.
+//! Keys are ECDSA P-256, made and kept on the machine that runs this code; files with a private key are
+//! readable by their owner only. A coordinator's certificate is valid for serving only and a worker's for
+//! connecting only, so that a stolen worker's key cannot impersonate the coordinator.
 use super::certificate::Certificate;
 use super::error::KeyError;
 use super::material::{CA, CA_KEY, COORDINATOR, Role, WORKER, WORKERS, readable};
@@ -20,22 +20,22 @@ use std::{
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
 
-/// A certificate is valid from so long ago: clocks of a cluster differ.
+/// Backdating of a certificate's start of validity, because the clocks of a cluster differ.
 const BACKDATED: Duration = Duration::from_hours(24);
-/// An authority is valid for so long.
+/// Validity of an authority's certificate.
 const AUTHORITY_VALID: Duration = Duration::from_hours(24 * 3650);
 
-/// When a certificate is valid.
+/// Validity period of a certificate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Validity {
-    /// From when.
+    /// Start of validity.
     pub from: SystemTime,
-    /// Until when.
+    /// End of validity.
     pub until: SystemTime,
 }
 
 impl Validity {
-    /// From a day ago, because clocks differ, until `days` from now.
+    /// Returns a period from one day ago, because clocks differ, until `days` from now.
     pub fn days(days: u32) -> Self {
         let now = SystemTime::now();
         Self {
@@ -45,7 +45,7 @@ impl Validity {
     }
 }
 
-/// Signs certificates; lives in a folder.
+/// Certificate authority whose files are stored in a folder.
 #[derive(Debug)]
 pub struct Authority {
     folder: PathBuf,
@@ -55,10 +55,10 @@ pub struct Authority {
 }
 
 impl Authority {
-    /// Makes an authority in a new or empty folder.
+    /// Creates an authority in a new or empty folder.
     ///
     /// # Errors
-    /// [`KeyError::Make`] if there is key material already or the folder cannot be written.
+    /// [`KeyError::Make`] if the folder is not empty or cannot be written.
     pub fn create(folder: &Path) -> Result<Self, KeyError> {
         let make = |reason: String| KeyError::Make {
             path: folder.to_owned(),
@@ -95,10 +95,10 @@ impl Authority {
         })
     }
 
-    /// Opens the authority of a folder, to sign more.
+    /// Opens the authority stored in a folder, to sign further certificates.
     ///
     /// # Errors
-    /// [`KeyError`] if its certificate or key is not there or cannot be read.
+    /// [`KeyError`] if its certificate or key is missing or cannot be read.
     pub fn open(folder: &Path) -> Result<Self, KeyError> {
         let read = |file: &str| {
             let path = folder.join(file);
@@ -122,11 +122,11 @@ impl Authority {
         })
     }
 
-    /// Writes the coordinator's certificate and key, in place of any that are there; `hosts` are the names and
-    /// addresses that workers dial.
+    /// Writes the coordinator's certificate and key, replacing existing ones; `hosts` are the names and
+    /// addresses to which workers connect.
     ///
     /// # Errors
-    /// [`KeyError::Make`] if a host is no name, or a file cannot be written.
+    /// [`KeyError::Make`] if a host is not a valid name, or a file cannot be written.
     pub fn issue_coordinator(&self, hosts: &[String], valid: Validity) -> Result<(), KeyError> {
         let [certificate, key] = COORDINATOR.map(|file| self.folder.join(file));
         let pair = self.pair_for_coordinator(hosts, valid)?;
@@ -142,7 +142,7 @@ impl Authority {
         replace(&new_certificate, &certificate)
     }
 
-    /// Certificate and key of a coordinator, in PEM.
+    /// Makes a coordinator's certificate and key, both in PEM.
     pub(crate) fn pair_for_coordinator(
         &self,
         hosts: &[String],
@@ -161,7 +161,7 @@ impl Authority {
         self.sign(&params)
     }
 
-    /// Certificate and key of a worker, in PEM.
+    /// Makes a worker's certificate and key, both in PEM.
     pub(crate) fn pair_for_worker(
         &self,
         name: &str,
@@ -171,16 +171,17 @@ impl Authority {
         self.sign(&params.map_err(|error| self.failed(&error))?)
     }
 
-    /// The authority's certificate, in PEM.
+    /// Returns the authority's certificate in PEM.
     pub(crate) fn pem(&self) -> &str {
         &self.pem
     }
 
-    /// Makes the folder of one worker and lets it join.
+    /// Creates the folder of one worker and adds its name to the list of workers that may join; returns the
+    /// folder.
     ///
     /// # Errors
-    /// [`KeyError::Name`] if the name cannot be used; [`KeyError::Make`] if the worker exists or
-    /// a file cannot be written.
+    /// [`KeyError::Name`] if the name is not valid; [`KeyError::Make`] if the worker exists or a file cannot
+    /// be written.
     pub fn issue_worker(&self, name: &str, valid: Validity) -> Result<PathBuf, KeyError> {
         let list = self.folder.join(WORKERS);
         check_owner(name).map_err(|source| KeyError::Name {
@@ -224,7 +225,7 @@ impl Authority {
     }
 }
 
-/// An authority that is kept nowhere.
+/// Creates an authority that is kept in memory only.
 pub(crate) fn for_memory() -> Result<Authority, KeyError> {
     Authority::generate(Path::new("the inner certificates"))
 }
@@ -288,7 +289,7 @@ fn set_validity(params: &mut CertificateParams, valid: Validity) {
     params.not_after = at(valid.until);
 }
 
-/// Who may read a file.
+/// Read permission of a file: all users, or its owner only.
 #[derive(Clone, Copy)]
 enum Open {
     All,

@@ -1,4 +1,4 @@
-//! One certificate: whom it names, until when, and whether the other end will take it.
+//! Parsed certificate: names, validity period, and verification as the other end will perform it.
 use super::error::KeyError;
 use super::material::{Chain, Role};
 use rustls::{
@@ -18,25 +18,25 @@ use x509_parser::{
     certificate::X509Certificate, extensions::GeneralName, prelude::FromDer, time::ASN1Time,
 };
 
-/// The cryptography that the transport uses, too.
+/// Returns the cryptography provider, the one that the transport also uses.
 pub(crate) fn provider() -> Arc<CryptoProvider> {
     Arc::new(ring::default_provider())
 }
 
-/// What is of interest in a certificate.
+/// Fields of a certificate that the checks and messages need.
 #[derive(Debug)]
 pub(super) struct Certificate {
     path: PathBuf,
-    /// Its common name; empty without one.
+    /// Common name; empty if the certificate has none.
     pub(super) name: String,
-    /// A host it is for; empty without one.
+    /// First host name or address in the certificate; empty if it has none.
     host: String,
     from: ASN1Time,
     until: ASN1Time,
 }
 
 impl Certificate {
-    /// Reads the first of a chain.
+    /// Parses the first certificate of a chain.
     pub(super) fn parse(path: &Path, chain: &[CertificateDer<'_>]) -> Result<Self, KeyError> {
         let not = || KeyError::NotPem {
             path: path.to_owned(),
@@ -55,7 +55,8 @@ impl Certificate {
         })
     }
 
-    /// Does what the other end will do, and says what it would not say.
+    /// Verifies certificate and key as the other end will, and returns a specific error, which the transport
+    /// would not report.
     pub(super) fn check(&self, role: Role, chain: &Chain, ca: &Path) -> Result<(), KeyError> {
         let path = || self.path.clone();
         let [end, rest @ ..] = chain.certificates.as_slice() else {
@@ -116,7 +117,7 @@ impl Certificate {
     }
 }
 
-/// The common name of a certificate, if it has one.
+/// Returns the common name of a certificate, if it has one.
 pub(crate) fn certificate_name(der: &CertificateDer<'_>) -> Option<String> {
     let (_, read) = X509Certificate::from_der(der).ok()?;
     let name = read.subject().iter_common_name().next()?;

@@ -1,85 +1,85 @@
-//! What can be wrong with key material, by file, and what to do about it.
+//! Errors of key material, by file, with remedies.
 use protocol::name::NameError;
 use std::path::PathBuf;
 
-/// Why key material cannot be used.
+/// Reason why key material cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KeyError {
-    /// The folder is not there.
+    /// The folder does not exist.
     #[error("there is no folder {} with key material: `horsehead keys new DIR` makes one", folder.display())]
     NoFolder {
-        /// As given.
+        /// Folder as given by the caller.
         folder: PathBuf,
     },
-    /// A file is not there.
+    /// A file does not exist.
     #[error("{} is missing: {remedy}", path.display())]
     Missing {
-        /// Which.
+        /// Missing file.
         path: PathBuf,
-        /// What to do.
+        /// Remedy.
         remedy: String,
     },
     /// A file cannot be read.
     #[error("{} cannot be read: {reason}", path.display())]
     Unreadable {
-        /// Which.
+        /// File that cannot be read.
         path: PathBuf,
-        /// The system's words.
+        /// Error message of the operating system.
         reason: String,
     },
-    /// A file does not hold what it should.
+    /// A file does not contain the expected PEM item.
     #[error("{} holds no {what} in PEM", path.display())]
     NotPem {
-        /// Which.
+        /// File without the item.
         path: PathBuf,
-        /// What it should hold.
+        /// Item that the file should contain.
         what: &'static str,
     },
-    /// Certificate and key are not a pair.
+    /// Certificate and key do not match.
     #[error("the key beside {} is not the one of that certificate", path.display())]
     Mismatch {
-        /// The certificate.
+        /// File of the certificate.
         path: PathBuf,
     },
-    /// The certificate is out of date, or not yet valid.
+    /// The certificate has expired or is not valid yet.
     #[error("{} {when}: `horsehead keys` makes a new one (and check this machine's clock)", path.display())]
     Date {
-        /// The certificate.
+        /// File of the certificate.
         path: PathBuf,
-        /// Since or from when.
+        /// Clause for the message with the date since or from which.
         when: String,
     },
-    /// The certificate was signed by somebody else.
+    /// The certificate was signed by another authority.
     #[error("{} was not signed by the authority of {}: both must come from the same `horsehead keys new`", path.display(), ca.display())]
     OtherAuthority {
-        /// The certificate.
+        /// File of the certificate.
         path: PathBuf,
-        /// The authority's.
+        /// File of the authority's certificate.
         ca: PathBuf,
     },
-    /// The certificate is not made for this end.
+    /// The certificate is not suitable for this end of the link.
     #[error("{} cannot be used here: {reason}", path.display())]
     Unfit {
-        /// The certificate.
+        /// File of the certificate.
         path: PathBuf,
-        /// The verifier's words.
+        /// Error message of the verifier.
         reason: String,
     },
-    /// A name cannot be used on the bus.
+    /// A name is not allowed on the bus.
     #[error("{}: {source}", path.display())]
     Name {
-        /// Where the name stands.
+        /// File that contains the name.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Fault of the name.
         source: NameError,
     },
-    /// Key material cannot be made or written.
+    /// Key material cannot be created or written.
     #[error("{} cannot be made: {reason}", path.display())]
     Make {
-        /// Which file or folder.
+        /// File or folder that could not be created.
         path: PathBuf,
-        /// Why not.
+        /// Reason of the failure.
         reason: String,
     },
 }

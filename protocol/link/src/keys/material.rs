@@ -1,4 +1,4 @@
-//! The files of key material: what they are called, and what is in them.
+//! Names and contents of the files of key material.
 use super::error::KeyError;
 use protocol::name::check_owner;
 use rustls::{
@@ -7,27 +7,27 @@ use rustls::{
 };
 use std::{collections::BTreeSet, fs, io, path::Path};
 
-/// File of the authority's certificate.
+/// File name of the authority's certificate.
 pub const CA: &str = "ca.pem";
-/// File of the authority's key.
+/// File name of the authority's private key.
 pub const CA_KEY: &str = "ca.key";
-/// Files of the coordinator: certificate and key.
+/// File names of the coordinator's certificate and private key.
 pub const COORDINATOR: [&str; 2] = ["coordinator.pem", "coordinator.key"];
-/// Files of a worker: certificate and key.
+/// File names of a worker's certificate and private key.
 pub const WORKER: [&str; 2] = ["worker.pem", "worker.key"];
-/// File of the names that may join.
+/// File name of the list of workers that may join.
 pub const WORKERS: &str = "workers";
-/// Which end the material is for.
+/// End of the link for which key material is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Listens; its certificate names hosts.
+    /// Coordinator: listens; its certificate names hosts.
     Coordinator,
-    /// Dials; its certificate names it.
+    /// Worker: connects; its certificate carries the worker's name.
     Worker,
 }
 
-/// Names that a coordinator makes room for before they are on the list, since its rules of access are
-/// fixed while it runs: `worker-01`, `worker-02` and so on.
+/// Returns the names `worker-01`, `worker-02` and so on, for which a coordinator makes access rules before
+/// they are on the list, because these rules are fixed while it runs.
 pub fn pool() -> impl Iterator<Item = String> {
     (1..=512).map(|number| format!("worker-{number:02}"))
 }
@@ -41,14 +41,14 @@ impl Role {
     }
 }
 
-/// The parts of key material as TLS takes them.
+/// Key material in the form that TLS takes: trusted roots, certificate chain and private key.
 pub(crate) struct Chain {
     pub(crate) roots: RootCertStore,
     pub(crate) certificates: Vec<CertificateDer<'static>>,
     pub(crate) key: PrivateKeyDer<'static>,
 }
 
-/// The certificates of a file.
+/// Reads the certificates of a PEM file.
 pub(super) fn certificates(
     path: &Path,
     role: Role,
@@ -68,7 +68,7 @@ pub(super) fn certificates(
     }
 }
 
-/// What a file holds; what to do if it is not there.
+/// Reads a file; the error for a missing file carries the remedy.
 pub(super) fn readable(path: &Path, role: Role) -> Result<Vec<u8>, KeyError> {
     fs::read(path).map_err(|error| {
         let path = path.to_owned();
@@ -82,7 +82,8 @@ pub(super) fn readable(path: &Path, role: Role) -> Result<Vec<u8>, KeyError> {
     })
 }
 
-/// What to do about a file that is not there: most often the folder is the other end's.
+/// Returns the remedy for a missing file; the most frequent cause is that the folder belongs to the other
+/// end.
 fn remedy(folder: &Path, role: Role) -> String {
     let has = |file: &str| folder.join(file).exists();
     match role {
@@ -106,7 +107,7 @@ fn remedy(folder: &Path, role: Role) -> String {
     }
 }
 
-/// The names of a list of workers.
+/// Reads the names of a list of workers.
 pub(super) fn read_workers(path: &Path) -> Result<BTreeSet<String>, KeyError> {
     let bytes = readable(path, Role::Coordinator)?;
     let text = String::from_utf8_lossy(&bytes);

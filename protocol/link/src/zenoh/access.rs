@@ -1,14 +1,16 @@
-//! Access control: what the workers of each certificate may do; everything else is refused.
+//! Access control of the router: the actions allowed to the workers of each certificate; all other actions
+//! are denied.
 //!
-//! The transport knows a peer by the common name of its certificate. Rules are fixed when a
-//! coordinator starts, for a pool of further names too; who may come in is for the gate to say. A refused action gives the peer no error, which is why names that are not
-//! on the list are turned away at the gate.
+//! The transport identifies a peer by the common name of its certificate. Rules are fixed when a coordinator
+//! starts and also cover a pool of names that are not in use yet; the gate decides who is admitted. A denied
+//! action gives the peer no error, which is why names that are not on the list are refused at the gate.
 use protocol::{key::Grant, name::ANYONE};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
-/// The section of the configuration; with `plain`, workers without certificates are taken from
-/// TCP listeners, which are on loopback.
+/// Returns the `access_control` section of the router's configuration; with `plain`, workers without
+/// certificates are admitted through TCP listeners, which are on loopback unless the user has allowed
+/// insecure ones.
 pub(super) fn control(owners: &BTreeSet<String>, plain: bool) -> Value {
     let mut rules = vec![
         rule("fetch-in", "ingress", &["query"], &[Grant::fetch()]),

@@ -1,4 +1,4 @@
-//! The coordinator's end: an embedded router with its listeners.
+//! Coordinator's end of the bus: an embedded router with its listeners.
 use super::session::{INBOX, close, common, needed, open, transport};
 use super::{access, names::Names, sender::Sender};
 use crate::{
@@ -20,26 +20,26 @@ use std::{
 use tokio::sync::mpsc;
 use zenoh::{Session, bytes::Encoding, sample::SampleKind};
 
-/// Where and for what a coordinator listens.
+/// Settings for opening a coordinator's end.
 #[derive(Clone, Debug)]
 pub struct CoordinatorOptions {
-    /// Addresses; a port of 0 is replaced by a free one.
+    /// Addresses to listen on; a port of 0 is replaced by a free one.
     pub listen: Vec<Locator>,
     /// Whether unencrypted addresses may be open to the network.
     pub insecure: bool,
-    /// Key material for QUIC, with the names that may join.
+    /// Key material for QUIC, including the names of the workers that may join.
     pub keys: Option<Keys>,
-    /// The run it works for.
+    /// Run that the coordinator serves.
     pub run: RunId,
-    /// What workers may fetch.
+    /// Content that workers may fetch.
     pub blob: Blob,
 }
 
-/// How often ports are chosen before it is given up: another program may take one between its choice
-/// and our listening on it.
+/// Maximum number of attempts to open with freshly chosen ports, because another program may take a port
+/// between its choice and the listening on it.
 const CHOICES: u32 = 5;
 
-/// A coordinator on the bus.
+/// Coordinator's end of a link over Zenoh.
 #[derive(Debug)]
 pub struct ZenohCoordinator {
     session: Session,
@@ -54,8 +54,8 @@ impl ZenohCoordinator {
     /// Opens the router and starts to listen.
     ///
     /// # Errors
-    /// [`LinkError::Exposed`] or [`LinkError::NoKeys`] for addresses that may not be
-    /// listened on as they are; [`LinkError::Transport`] if the address is taken.
+    /// [`LinkError::Exposed`] or [`LinkError::NoKeys`] for addresses that may not be listened on as given;
+    /// [`LinkError::Transport`] if the address is taken.
     pub async fn open(options: CoordinatorOptions) -> Result<Self, LinkError> {
         // behind a gate, the router itself is at a port of our choice
         let chosen = |at: &Locator| at.port == 0 || at.protocol == Protocol::Quic;
@@ -122,7 +122,7 @@ impl ZenohCoordinator {
         })
     }
 
-    /// Where it listens, with the ports that were found.
+    /// Returns the addresses it listens on, with the ports that were chosen.
     pub fn listening(&self) -> &[Locator] {
         &self.listening
     }
@@ -159,10 +159,10 @@ impl CoordinatorEnd for ZenohCoordinator {
     }
 }
 
-/// The router's configuration behind gates, and a gate for each QUIC address.
+/// Creates the router's configuration for operation behind gates, and a gate for each QUIC address.
 ///
-/// The router itself listens for QUIC on a free port of loopback alone, and takes nobody there but
-/// who comes through a gate.
+/// The router itself listens for QUIC only on a free loopback port, where it accepts only connections made by
+/// a gate.
 fn behind_gates(locators: &[Locator], keys: &Keys) -> Result<(Value, Vec<Gate>), LinkError> {
     let inside = Locator {
         protocol: Protocol::Quic,

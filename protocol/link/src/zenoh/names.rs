@@ -1,4 +1,4 @@
-//! Which name on the bus stands behind each worker id, for as many as one certificate may have.
+//! Mapping from worker ids to names on the bus, limited per certificate.
 use crate::gate::terms::CONNECTIONS;
 use protocol::{
     id::WorkerId,
@@ -9,15 +9,16 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Workers without a certificate: those of loopback, and of networks that were opened to all.
+/// Maximum number of workers without a certificate: those on loopback, and on networks opened with
+/// `--insecure`.
 const OF_ANYONE: usize = 4096;
-/// A name that was silent for so long makes room for another one of its certificate: longer than it
-/// takes to count as lost, so that nobody works under more names than it may have.
+/// Silence after which a name may be replaced by another one of the same certificate. Longer than the time
+/// after which a worker counts as lost, so that no certificate works under more names than it may have.
 const SILENT: Duration = Duration::from_secs(10);
-/// How long an owner without room is not looked at again.
+/// Interval for which further names of an owner at its limit are refused without a search for silent ones.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// The names that were heard.
+/// Names from which frames have been received, by worker id and by owner.
 #[derive(Debug, Default)]
 pub(super) struct Names {
     known: BTreeMap<WorkerId, Known>,
@@ -33,13 +34,14 @@ struct Known {
 #[derive(Debug, Default)]
 struct Owner {
     names: usize,
-    /// Until when there is no room for another name.
+    /// Time until which new names are refused without a search for silent ones.
     full_until: Option<Instant>,
     told: bool,
 }
 
 impl Names {
-    /// A name was heard; its id, or none if its certificate has as many workers as one may have.
+    /// Records a frame from a name and returns the worker's id; `None` if its certificate has the maximum
+    /// number of workers.
     pub(super) fn note(&mut self, name: WorkerName, now: Instant) -> Option<WorkerId> {
         let id = name.id();
         if let Some(known) = self.known.get_mut(&id) {
@@ -53,12 +55,12 @@ impl Names {
         Some(id)
     }
 
-    /// The name behind an id.
+    /// Returns the name of a worker id.
     pub(super) fn of(&self, id: WorkerId) -> Option<&WorkerName> {
         self.known.get(&id).map(|known| &known.name)
     }
 
-    /// A worker is gone.
+    /// Removes a worker that is gone.
     pub(super) fn forget(&mut self, id: WorkerId) {
         if let Some(known) = self.known.remove(&id)
             && let Some(owner) = self.owners.get_mut(known.name.owner())
@@ -68,7 +70,8 @@ impl Names {
         }
     }
 
-    /// Whether an owner may have another name; one that has been silent for long gives way to it.
+    /// Returns whether an owner may have another name; removes its longest silent name to make room if that
+    /// has been silent for long enough.
     fn make_room(&mut self, owner: &str, now: Instant) -> bool {
         let most = if owner == ANYONE {
             OF_ANYONE
@@ -99,7 +102,7 @@ impl Names {
         state.full_until = Some(now + PAUSE);
         if !std::mem::replace(&mut state.told, true) {
             tracing::warn!(
-                "\"{owner}\" has {most} workers, as many as one certificate may have: further ones \
+                "\"{owner}\" has {most} workers, the maximum per certificate: further ones \
                  are not heard"
             );
         }
@@ -115,8 +118,8 @@ mod tests {
         WorkerName::of(owner, process).unwrap()
     }
 
-    /// However many processes a certificate claims to have, it gets no more numbers than connections,
-    /// those it has go on, and those of others are not touched.
+    /// Checks that a certificate with any number of process names gets no more worker ids than connections,
+    /// keeps those it has, and does not displace those of other certificates.
     #[test]
     fn a_flood_of_names_gets_no_more_than_its_share_and_takes_nothing_from_others() {
         let (mut names, begun) = (Names::default(), Instant::now());

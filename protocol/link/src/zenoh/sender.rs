@@ -1,4 +1,4 @@
-//! The one thread that publishes for an end: a full pipe may hold it for seconds, nobody else.
+//! Sending thread of an end; only this thread is blocked by a full pipe, which may take seconds.
 use protocol::key::Lane;
 use std::{sync::mpsc, thread, time::Duration};
 use tokio::sync::oneshot;
@@ -7,7 +7,7 @@ use zenoh::{
     qos::{CongestionControl, Priority},
 };
 
-/// Longest time that frames still queued may take when the link closes.
+/// Maximum time for sending the queued frames when the link closes.
 const FLUSH: Duration = Duration::from_secs(1);
 
 #[derive(Debug)]
@@ -49,7 +49,7 @@ impl Sender {
         }
     }
 
-    /// Waits until all is sent, within reason.
+    /// Waits until all frames are sent, or until the time limit [`FLUSH`] has passed.
     pub(super) async fn finish(self) {
         drop(self.queue);
         if tokio::time::timeout(FLUSH, self.ended).await.is_err() {

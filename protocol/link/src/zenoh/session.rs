@@ -1,4 +1,4 @@
-//! A session of either end: what it is made of, how it is opened and closed.
+//! Zenoh session of either end: common configuration, opening and closing.
 use crate::{
     LinkError,
     keys::Keys,
@@ -7,25 +7,26 @@ use crate::{
 use serde_json::{Value, json};
 use std::{collections::BTreeSet, time::Duration};
 
-/// Frames that may wait to be read before further ones are dropped (and repeated by their
+/// Maximum number of received frames waiting to be read; further frames are dropped (and repeated by their
 /// senders).
 pub(super) const INBOX: usize = 16 << 10;
-/// Longest time that closing a session may take: with a dead peer zenoh needs 10 s.
+/// Maximum time for closing a session; with a dead peer zenoh needs 10 s.
 const CLOSE: Duration = Duration::from_secs(2);
 
-/// How long a peer may take to open a session once it is connected \[ms\]: silent ones hold the
-/// places of others for so long.
+/// Maximum time for a connected peer to open its session \[ms\]; silent peers occupy pending places for this
+/// long.
 const ACCEPT_MS: u64 = 4000;
 
-/// Sessions that an end holds. An idle one costs the coordinator its keep-alives, some 80 us a second:
-/// this many leave it about nine tenths of its rate, twice as many seven (`tests/README.md`).
+/// Maximum number of sessions of an end. An idle session costs the coordinator its keep-alives, about 80 us
+/// per second: this number leaves the coordinator about nine tenths of its throughput, twice the number about
+/// seven tenths (`tests/README.md`).
 const SESSIONS: usize = 1000;
 
-/// Connections that may be waiting for their session: those that never speak must not keep others
-/// out, and each takes little more than its socket.
+/// Maximum number of connections waiting for their session. Large, because connections that never speak must
+/// not keep others out, and each costs little more than its socket.
 const PENDING: usize = 8192;
 
-/// What a session of either end is made of.
+/// Returns the session configuration common to both ends.
 pub(super) fn common(locators: &[&Locator], tls: &Value) -> Value {
     // no other protocol than those asked for: a peer cannot choose a weaker one
     let protocols: BTreeSet<&str> = locators.iter().map(|at| at.protocol.name()).collect();
@@ -48,7 +49,7 @@ pub(super) fn common(locators: &[&Locator], tls: &Value) -> Value {
     })
 }
 
-/// The key material of an end that connects, as the bus takes it.
+/// Returns the TLS section of the configuration of an end that connects.
 pub(super) fn connecting(keys: &Keys) -> Value {
     json!({
         "root_ca_certificate": keys.ca(), "connect_certificate": keys.certificate(),
@@ -57,7 +58,10 @@ pub(super) fn connecting(keys: &Keys) -> Value {
     })
 }
 
-/// The key material that some addresses need: that of the first QUIC one, if there is one.
+/// Returns the key material if any of the addresses uses QUIC, `None` otherwise.
+///
+/// # Errors
+/// [`LinkError::NoKeys`] if a QUIC address is given without key material.
 pub(super) fn needed<'a>(
     locators: &[&Locator],
     keys: Option<&'a Keys>,
@@ -73,10 +77,10 @@ pub(super) fn needed<'a>(
     })
 }
 
-/// Opens a session.
+/// Opens a session; `doing` describes the attempted action for the error message.
 ///
 /// # Errors
-/// [`LinkError::Transport`] in the words of the bus; `doing` is what was tried.
+/// [`LinkError::Transport`] with the error message of the bus.
 pub(super) async fn open(config: &Value, doing: &str) -> Result<zenoh::Session, LinkError> {
     let config =
         zenoh::Config::from_json5(&config.to_string()).map_err(|error| transport(doing, &error))?;
@@ -85,7 +89,7 @@ pub(super) async fn open(config: &Value, doing: &str) -> Result<zenoh::Session, 
         .map_err(|error| transport(doing, &error))
 }
 
-/// What the bus says of something that was tried.
+/// Converts an error of the bus into a [`LinkError::Transport`].
 pub(super) fn transport(doing: &str, reason: &dyn std::fmt::Display) -> LinkError {
     let reason = reason.to_string();
     // the transport adds where in its own source it noticed, which helps nobody here
@@ -96,7 +100,7 @@ pub(super) fn transport(doing: &str, reason: &dyn std::fmt::Display) -> LinkErro
     }
 }
 
-/// Closes a session, within reason.
+/// Closes a session, but gives up after the time limit [`CLOSE`].
 pub(super) async fn close(session: zenoh::Session) {
     if !matches!(
         tokio::time::timeout(CLOSE, async { session.close().await }).await,

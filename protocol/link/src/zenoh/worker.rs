@@ -1,4 +1,4 @@
-//! A worker's end: a client with one address.
+//! Worker's end of the bus: a client with one address.
 use super::sender::Sender;
 use super::session::{INBOX, close, common, connecting, needed, open, transport};
 use crate::{LinkError, WorkerEnd, handshake, keys::Keys, locator::Locator};
@@ -17,10 +17,10 @@ use zenoh::{
     query::ConsolidationMode,
 };
 
-/// How long one piece of a blob may take.
+/// Maximum time for fetching one chunk of a blob.
 const PIECE: Duration = Duration::from_secs(10);
 
-/// A worker on the bus.
+/// Worker's end of a link over Zenoh.
 #[derive(Debug)]
 pub struct ZenohWorker {
     name: WorkerName,
@@ -31,12 +31,12 @@ pub struct ZenohWorker {
 }
 
 impl ZenohWorker {
-    /// Connects; later interruptions are repaired by the session itself. `process` tells this
-    /// worker from others with the same certificate, or without any.
+    /// Connects to a coordinator; the session repairs later interruptions itself. `process` distinguishes
+    /// this worker from others with the same certificate, or without one.
     ///
     /// # Errors
-    /// What is wrong with the key material or the address, or why one end refuses the other's
-    /// certificate; [`LinkError::may_pass`] says whether trying again may help.
+    /// Faults of the key material or the address, or the reason why one end rejects the other's certificate;
+    /// [`LinkError::may_pass`] tells whether a retry may succeed.
     pub async fn open(
         connect: &Locator,
         keys: Option<&Keys>,

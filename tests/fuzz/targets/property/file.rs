@@ -1,5 +1,5 @@
-//! Properties of the readers of files: an answer, or an error in words. Each writes its bytes into a
-//! folder that is given to it.
+//! Properties of file readers: each either returns a valid value or an error with a message. Each function
+//! writes its input bytes into the given folder.
 use super::wire::crc32;
 use case::{
     Overrides,
@@ -25,7 +25,7 @@ fn names_the_file(error: &dyn Display, name: &str) {
     assert!(words.contains(name), "{words}");
 }
 
-/// A record of a journal: mark, length and checksum in order around any body.
+/// Encodes a journal entry: mark, length, checksum and the given body.
 pub fn record(body: &[u8]) -> Vec<u8> {
     let length = u32::try_from(body.len()).expect("inputs are short");
     let checked = [&length.to_le_bytes(), body].concat();
@@ -33,7 +33,8 @@ pub fn record(body: &[u8]) -> Vec<u8> {
     [&journal::MARK, &checked[..4], &checksum, body].concat()
 }
 
-/// Every byte of a journal is read or reported, and what is read would be written so again.
+/// Checks that every byte of a journal is either read or reported as damage, and that each event read encodes
+/// to its original bytes.
 pub fn is_read_or_reported(folder: &Path, bytes: &[u8]) -> ReadReport {
     let path = file(folder, "journal.hhj", bytes);
     let (mut read, mut events) = (0, 0);
@@ -51,7 +52,7 @@ pub fn is_read_or_reported(folder: &Path, bytes: &[u8]) -> ReadReport {
     report
 }
 
-/// A case, or refused in words.
+/// Checks that the bytes are either a valid case or rejected with an error message.
 pub fn is_a_case_or_refused(folder: &Path, bytes: &[u8]) {
     file(folder, "case.toml", bytes);
     if let Err(error) = case::check(folder, &Overrides::default()) {
@@ -59,7 +60,8 @@ pub fn is_a_case_or_refused(folder: &Path, bytes: &[u8]) {
     }
 }
 
-/// A value for every gene of the case that can be written and read again bit for bit, or refused.
+/// Checks that the bytes are either a gene file with a value for every gene, which survives writing and
+/// reading bit for bit, or rejected with an error message.
 pub fn are_genes_or_refused(folder: &Path, case: &Case, bytes: &[u8]) {
     let bits = |genes: &[f64]| genes.iter().map(|gene| gene.to_bits()).collect::<Vec<_>>();
     match read_genes(&file(folder, "genes.toml", bytes), case) {
@@ -73,7 +75,8 @@ pub fn are_genes_or_refused(folder: &Path, case: &Case, bytes: &[u8]) {
     }
 }
 
-/// One turn of finite loads, or refused.
+/// Checks that the bytes are either a load card with at least 24 samples, all finite, or rejected with an
+/// error message.
 pub fn is_a_card_or_refused(folder: &Path, bytes: &[u8]) {
     match read_card(&file(folder, "card.csv", bytes), Smoothing::None, "a card") {
         Ok(card) => {
@@ -84,7 +87,8 @@ pub fn is_a_card_or_refused(folder: &Path, bytes: &[u8]) {
     }
 }
 
-/// A mesh whose elements have nodes, or refused.
+/// Checks that the bytes are either a mesh whose elements refer to existing nodes, or rejected with an error
+/// message.
 pub fn is_a_mesh_or_refused(folder: &Path, bytes: &[u8]) {
     match mesh::read(&file(folder, "head.msh", bytes)) {
         Ok(mesh) => {
@@ -97,7 +101,8 @@ pub fn is_a_mesh_or_refused(folder: &Path, bytes: &[u8]) {
     }
 }
 
-/// Samples of a gauge record, counted, or refused.
+/// Checks that the bytes are either a gauge record with at least four samples, or rejected with an error
+/// message.
 pub fn are_samples_or_refused(bytes: &[u8]) {
     match count_samples(Path::new("record.csv"), bytes) {
         Ok(samples) => assert!(samples >= 4),

@@ -1,4 +1,4 @@
-//! The properties that decoders must keep, whatever bytes they get: what the targets try a million times
-//! and the suites of `protocol` and `coordinator` a few hundred.
+//! Properties that decoders must keep for arbitrary bytes. The fuzz targets test them on millions of inputs,
+//! the test suites of `protocol` and `coordinator` on a few hundred.
 pub mod file;
 pub mod wire;

@@ -1,11 +1,12 @@
-//! Properties of the wire: frames, and the messages in them.
+//! Properties of the wire format: frames and their messages.
 use protocol::{
     id::RunId,
     wire::{self, HEADER_BYTES, Kind},
 };
 use serde::{Serialize, de::DeserializeOwned};
 
-/// A frame is taken whole or refused, and its header alone gives the length.
+/// Checks that a frame is either accepted completely or rejected, and that the header alone determines the
+/// body length.
 pub fn is_a_frame_or_refused(bytes: &[u8]) {
     for kind in Kind::ALL {
         let opened = wire::open(kind, bytes);
@@ -23,7 +24,7 @@ pub fn is_a_frame_or_refused(bytes: &[u8]) {
     }
 }
 
-/// Whatever decodes encodes to the same bytes: there is one way to write a value.
+/// Checks that bytes that decode also encode to the same bytes, so that each value has exactly one encoding.
 pub fn is_canonical<T: Serialize + DeserializeOwned>(bytes: &[u8]) {
     if let Ok(value) = wire::decode::<T>(bytes) {
         let again = wire::encode(&value).expect("what was decoded can be encoded");
@@ -31,7 +32,7 @@ pub fn is_canonical<T: Serialize + DeserializeOwned>(bytes: &[u8]) {
     }
 }
 
-/// The same within a frame whose header and checksum are in order.
+/// Checks that a value has one encoding also inside a frame with a valid header and checksum.
 pub fn is_canonical_in_frame<T: Serialize + DeserializeOwned>(kind: Kind, body: &[u8]) {
     is_canonical::<T>(body);
     let mut frame = wire::seal(kind, RunId(7), &()).expect("an empty frame");
@@ -47,7 +48,7 @@ pub fn is_canonical_in_frame<T: Serialize + DeserializeOwned>(kind: Kind, body: 
     );
 }
 
-/// CRC-32 (IEEE), bit by bit: not by the code under test.
+/// Computes the CRC-32 (IEEE) bit by bit, independently of the code under test.
 pub fn crc32(bytes: &[u8]) -> u32 {
     let mut crc = u32::MAX;
     for byte in bytes {

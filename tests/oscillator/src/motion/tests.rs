@@ -1,4 +1,4 @@
-//! The exact motion against small steps of a method that knows nothing of exponentials.
+//! Tests of the exact motion against Runge-Kutta integration with small steps.
 use super::*;
 use std::f64::consts::TAU;
 
@@ -18,7 +18,7 @@ fn drive(hz: f64) -> Drive {
     }
 }
 
-/// Steps of the classical Runge-Kutta method; standing where friction holds the mass.
+/// Integrates the motion with the classical Runge-Kutta method; the mass stands where friction holds it.
 fn stepped(o: &Oscillator, drive: &Drive, start: State, span: f64, steps: usize) -> State {
     let base_speed = drive.base.rate();
     let through = |t: f64, x: f64, v: f64| {
@@ -119,7 +119,7 @@ fn with_friction_it_slides_and_stands_as_small_steps_do() {
     }
 }
 
-/// The mass comes to rest where friction holds it, and stays.
+/// Checks that a released mass comes to rest where friction holds it, and stays.
 #[test]
 fn a_mass_that_is_let_go_comes_to_rest() {
     let oscillator = Oscillator {
@@ -162,8 +162,9 @@ fn a_steady_motion_repeats_itself_and_is_reached_from_anywhere() {
     }
 }
 
-/// Den Hartog's answer to a pure cosine: over half a period the free part of the motion is known
-/// whatever the phase, and the greatest displacement follows.
+/// Checks the greatest displacement under a harmonic force with dry friction against Den Hartog's solution:
+/// over half a period the free part of the motion is known for any phase, and the greatest displacement
+/// follows.
 #[test]
 fn dry_friction_agrees_with_den_hartog() {
     let oscillator = Oscillator {

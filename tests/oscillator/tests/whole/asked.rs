@@ -1,9 +1,9 @@
-//! Individuals that another program asks for: every line is answered, what cannot be taken by name, and what is
-//! asked again by the journal.
+//! Tests of `evaluate`, with which another program requests individuals: every line is answered, invalid
+//! lines name their error, and repeated requests are answered from the journal.
 use crate::rig::{Rig, number};
 use serde_json::{Value, json};
 
-/// A line about the unknowns of the case.
+/// Returns a request line for the unknowns of the case.
 fn line(id: &Value, mass: f64, more: &Value) -> String {
     let mut line = json!({"id": id, "genes": {
         "mass": mass, "left": 5.6, "damping": 26.0, "lead": 1.7}});

@@ -1,5 +1,5 @@
-//! The whole program on a model that it does not know: real processes, a case in the general form, and
-//! not one word of another machine in what they print and write.
+//! Tests of the whole program on a model of another kind: real processes, a case in the general form, and no
+//! pumping-unit terms in anything printed or written.
 #![expect(
     clippy::unwrap_used,
     reason = "helpers of tests: a command that cannot be run or read has failed"
@@ -19,7 +19,7 @@ use search::strategy::CATALOGUE;
 use serde_json::Value;
 use std::{fs, time::Duration};
 
-/// Settings by which a preset ends within a second, where it has them.
+/// Settings with which each preset ends within a second, for presets that need them.
 const SHORT: &[(&str, &[&str])] = &[
     ("paper", &["population=24", "generations=12"]),
     ("paper-batch", &["population=24", "generations=12"]),
@@ -31,8 +31,8 @@ const SHORT: &[(&str, &[&str])] = &[
     ("l-shade", &["evaluations=200"]),
 ];
 
-/// Every search finds a way through a box that it knows from the case alone; the quick ones reach the
-/// hidden values as far as the model lets them.
+/// Checks that each preset improves the objective of a case with a model unknown to the program (random
+/// sampling need only give a finite value).
 #[test]
 fn every_preset_calibrates() {
     let rig = Rig::new();
@@ -55,7 +55,7 @@ fn every_preset_calibrates() {
     }
 }
 
-/// The case is checked and simulated, with its own units and abscissas.
+/// Checks that the case is validated and simulated with its own units and abscissas.
 #[test]
 fn the_case_is_checked_and_simulated() {
     let rig = Rig::new();
@@ -86,7 +86,7 @@ fn the_case_is_checked_and_simulated() {
     words::check_folder(&rig.file("simulated"));
 }
 
-/// One calibration through all that can be done with it.
+/// Checks verification, report and export of a calibration.
 #[test]
 fn a_run_is_verified_reported_and_exported() {
     let rig = Rig::new();
@@ -113,7 +113,7 @@ fn a_run_is_verified_reported_and_exported() {
     words::check_folder(run.as_ref());
 }
 
-/// The tie holds in every individual, what is fixed stays, and what does nothing stays at nothing.
+/// Checks that tied unknowns stay equal, and that fixed and absent unknowns keep their values.
 #[test]
 fn ties_fixed_and_absent_unknowns_keep_their_values() {
     let rig = Rig::new();
@@ -125,8 +125,8 @@ fn ties_fixed_and_absent_unknowns_keep_their_values() {
     assert!((value("mass") / rig::HIDDEN.mass_kg - 1.0).abs() < 0.1);
 }
 
-/// The friction that the record hides is named among five suspects, and added to the case; with it the
-/// calibration reaches the noise.
+/// Checks that the diagnosis names the hidden friction among five candidate effects and adds it to the case,
+/// and that a calibration with it reaches the noise.
 #[test]
 fn the_hidden_effect_is_named_and_added() {
     let rig = Rig::new();
@@ -147,7 +147,8 @@ fn the_hidden_effect_is_named_and_added() {
     assert!(mse < 2.0 * rig::NOISE_MM * rig::NOISE_MM, "{mse}");
 }
 
-/// An unknown that does nothing at its start is a suspect, too: what is found is its start from then on.
+/// Checks that an unknown that is absent at its start value is a candidate, too, and that its estimate
+/// becomes the new start value.
 #[test]
 fn a_hidden_unknown_is_named_and_becomes_the_start() {
     let rig = Rig::with_crosstalk();
@@ -170,7 +171,7 @@ fn a_hidden_unknown_is_named_and_becomes_the_start() {
     words::check_folder(run.as_ref());
 }
 
-/// Killed in the middle, the same command ends as if nothing had been.
+/// Checks that a calibration that was killed and resumed gives the same log digest as an uninterrupted one.
 #[test]
 fn a_killed_calibration_goes_on() {
     let rig = Rig::new();

@@ -1,5 +1,5 @@
-//! An orthogonal test that was killed ends with the same bytes, and says what it must; factors that cannot be
-//! tested are refused before anything runs.
+//! Tests of orthogonal sweeps: one that was killed and resumed gives the same bytes, and factors that cannot
+//! be tested are refused before anything runs.
 use crate::{
     rig::{Rig, number},
     words,
@@ -7,7 +7,8 @@ use crate::{
 use serde_json::{Value, json};
 use std::{fs, time::Duration};
 
-/// A small test: nine rows of three factors, two seeds, sixty evaluations each.
+/// Returns the arguments of a small orthogonal sweep: nine rows of three factors, two seeds, sixty
+/// evaluations each.
 fn small(run: &str) -> Vec<&str> {
     vec![
         "sweep",

@@ -1,5 +1,5 @@
-//! How often a diagnosis of this model is wrong: records that hide nothing, and records that hide one thing, as repeated
-//! periods and as one log whose noise is stated; the model simulates here, without a program between.
+//! Error rates of the diagnosis for this model: synthetic records without a hidden effect and records with
+//! one, as repeated periods and as a single log with stated noise. The model runs in the test process.
 use crate::rig::{HIDDEN, Rig};
 use case::{self, Overrides};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
@@ -18,7 +18,7 @@ use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 use worker::simulator::{Model, Simulator as _};
 
-/// The model as a laboratory that answers at once.
+/// Laboratory that simulates synchronously in this process.
 struct AtOnce(Box<dyn Model>);
 
 impl Laboratory for AtOnce {
@@ -34,7 +34,7 @@ impl Laboratory for AtOnce {
     }
 }
 
-/// Diagnoses a rig's case, from so many of the periods of each condition.
+/// Diagnoses a rig's case from the first `cycles` periods of each condition.
 fn diagnosed(rig: &Rig, cycles: usize) -> Diagnosis {
     let loaded = case::load_with_notes(&rig.file("case"), &Overrides::default()).unwrap();
     let case = loaded.case;
@@ -62,7 +62,7 @@ fn diagnosed(rig: &Rig, cycles: usize) -> Diagnosis {
     }
 }
 
-/// What one record may hide: its name, and with which values and effects.
+/// Returns the name, values and effects of the hidden effect of test number `which`.
 fn hiding(which: u64) -> (&'static str, Values, Effects) {
     let none = Effects::default();
     let size = 1.0 + (which / 5) as f64 * 0.4;
@@ -110,7 +110,7 @@ fn hiding(which: u64) -> (&'static str, Values, Effects) {
     }
 }
 
-/// Whether an answer claims anything.
+/// Returns whether a diagnosis claims an effect.
 fn claims(answer: &Diagnosis) -> bool {
     matches!(
         answer.verdict,
@@ -118,7 +118,7 @@ fn claims(answer: &Diagnosis) -> bool {
     )
 }
 
-/// In one line, for failures.
+/// Formats a diagnosis in one line for failure messages.
 fn line(what: &str, answer: &Diagnosis) -> String {
     let ids: Vec<&str> = answer.effects.iter().map(|own| &*own.id).collect();
     let scores: Vec<f64> = answer.prediction.iter().map(|one| one.nats).collect();
@@ -128,8 +128,8 @@ fn line(what: &str, answer: &Diagnosis) -> String {
     )
 }
 
-/// Of forty records that hide nothing and forty that hide one thing at most two are wrong; most of what is hidden gets its
-/// name.
+/// Checks that the diagnosis is wrong for at most two of forty records without a hidden effect and forty with
+/// one, and that at least thirty of the forty hidden effects are found.
 #[test]
 fn names_are_hardly_ever_wrong() {
     let (mut wrong, mut silent, mut named) = (Vec::new(), Vec::new(), 0);

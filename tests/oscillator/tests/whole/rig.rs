@@ -1,4 +1,4 @@
-//! A copy of the case with its records, and the programs that are run on it.
+//! Test folder with a copy of the case and its synthetic records, and helpers that run the program on them.
 use crate::words;
 use oscillator::{
     effect::Effects,
@@ -17,7 +17,7 @@ use std::{
 };
 use tempfile::TempDir;
 
-/// What the records hide, beside [`FRICTION_N`].
+/// True values of the unknowns, with which the records are generated together with [`FRICTION_N`].
 pub(crate) const HIDDEN: Values = Values {
     mass_kg: 2.13,
     armature_kg: 0.4,
@@ -27,20 +27,21 @@ pub(crate) const HIDDEN: Values = Values {
     lead_deg: 1.7,
     crosstalk_mm_per_n: 0.0,
 };
-/// The dry friction that they hide \[N\].
+/// True dry friction in the records, absent from the case \[N\].
 const FRICTION_N: f64 = 2.4;
-/// Force in the reading of the displacement that others hide [mm/N].
+/// True crosstalk of the force into the displacement reading, in the records of [`Rig::with_crosstalk`]
+/// [mm/N].
 pub(crate) const CROSSTALK: f64 = 4e-3;
-/// Noise of one value of the displacement \[mm\].
+/// Standard deviation of the noise of the displacement \[mm\].
 pub(crate) const NOISE_MM: f64 = 0.02;
-/// Noise of one value of the force \[N\].
+/// Standard deviation of the noise of the force \[N\].
 const NOISE_N: f64 = 0.2;
 
-/// A scratch folder with the case.
+/// Temporary folder with the case, and the seed of the noise of its records.
 pub(crate) struct Rig(TempDir, u64);
 
 impl Rig {
-    /// With records that hide dry friction.
+    /// Creates the case with records that contain dry friction, which the case lacks.
     pub(crate) fn new() -> Self {
         let effects = Effects {
             friction_n: FRICTION_N,
@@ -49,7 +50,7 @@ impl Rig {
         Self::hiding(&HIDDEN, &effects, 0)
     }
 
-    /// With records that hide force in the reading of the displacement.
+    /// Creates the case with records in which the force disturbs the displacement reading.
     pub(crate) fn with_crosstalk() -> Self {
         let values = Values {
             crosstalk_mm_per_n: CROSSTALK,
@@ -58,13 +59,13 @@ impl Rig {
         Self::hiding(&values, &Effects::default(), 0)
     }
 
-    /// With records that hide nothing.
+    /// Creates the case with records without a hidden effect.
     pub(crate) fn healthy() -> Self {
         Self::hiding(&HIDDEN, &Effects::default(), 0)
     }
 
-    /// With records of these values that hide so much dry friction \[N\], and noise of their own; the friction is
-    /// an unknown of the case.
+    /// Creates the case with records of the given values and dry friction \[N\], and the noise seed `noise`;
+    /// the friction is an unknown of the case.
     pub(crate) fn with_friction(values: &Values, friction_n: f64, noise: u64) -> Self {
         let effects = Effects {
             friction_n,
@@ -122,7 +123,7 @@ impl Rig {
         rig
     }
 
-    /// Writes the record of a condition.
+    /// Simulates a condition and writes its record with noise.
     fn measure(
         &self,
         name: &str,
@@ -150,17 +151,18 @@ impl Rig {
         fs::write(self.file(&format!("case/measured/{name}.csv")), table).unwrap();
     }
 
-    /// A file of the scratch folder.
+    /// Returns the path of a file in the test folder.
     pub(crate) fn file(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
 
-    /// The same as a word of a command line.
+    /// Returns the path of a file in the test folder as a command-line argument.
     pub(crate) fn path(&self, name: &str) -> String {
         self.file(name).display().to_string()
     }
 
-    /// The program with these words, two workers of our own kind, and nothing of the environment.
+    /// Returns the `horsehead` command with these arguments (`CASE` stands for the case folder) and two
+    /// oscillator workers.
     fn command(&self, words: &[&str]) -> Command {
         let worker = Path::new(env!("CARGO_BIN_EXE_test-oscillator-worker"));
         let mut command = Command::new(worker.with_file_name("horsehead"));
@@ -177,7 +179,8 @@ impl Rig {
         command
     }
 
-    /// Runs a command that must succeed; what it printed, each of its words looked at.
+    /// Runs a command, asserts success, checks that its output contains no pumping-unit terms, and returns
+    /// its standard output.
     pub(crate) fn run(&self, words: &[&str]) -> String {
         let output = self.command(words).output().unwrap();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -188,7 +191,7 @@ impl Rig {
         printed
     }
 
-    /// Runs a command that must be refused as bad input; what it said.
+    /// Runs a command, asserts that it is refused as bad input (exit code 2), and returns its standard error.
     pub(crate) fn refused(&self, words: &[&str]) -> String {
         let output = self.command(words).output().unwrap();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -197,7 +200,8 @@ impl Rig {
         said
     }
 
-    /// Runs a command on an input: the lines that it printed and its exit code.
+    /// Runs a command with the given standard input; returns the JSON lines that it printed and its exit
+    /// code.
     pub(crate) fn fed(&self, words: &[&str], input: &str) -> (Vec<Value>, Option<i32>) {
         let mut command = self.command(words);
         let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped());
@@ -216,12 +220,12 @@ impl Rig {
         (lines.collect(), output.status.code())
     }
 
-    /// The same with `--output json`: the object.
+    /// Runs a command with `--output json` and returns the parsed object.
     pub(crate) fn json(&self, words: &[&str]) -> Value {
         serde_json::from_str(&self.run(&[words, &["--output", "json"]].concat())).unwrap()
     }
 
-    /// Starts a command and kills it as soon as the journal in its run folder has so many bytes.
+    /// Starts a command and kills it as soon as the journal in its run folder has `bytes` bytes.
     pub(crate) fn kill_at(&self, words: &[String], run: &Path, bytes: u64, limit: Duration) {
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let mut command = self.command(&words);
@@ -244,7 +248,7 @@ impl Rig {
     }
 }
 
-/// A number of an object.
+/// Returns a JSON value as a number; NaN if it is none.
 pub(crate) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or(f64::NAN)
 }

@@ -1,4 +1,4 @@
-//! How searches scale: the contract of the object, and that rows which are there are not measured again.
+//! Tests of `sweep scaling`: the structure of the JSON object, and that existing rows are not measured again.
 use crate::{
     rig::{Rig, number},
     words,

@@ -1,5 +1,5 @@
-//! What a record sees of the unknowns: all that there are where nothing is missing, with intervals that hold
-//! the hidden values; and that a diagnosis comes first where something is.
+//! Tests of `identify`: all unknowns are identified, with intervals that contain the true values, where the
+//! model is complete, and a diagnosis is recommended first where it is not.
 use crate::rig::{HIDDEN, Rig, number};
 use crate::words;
 use oscillator::simulate::Values;
@@ -11,7 +11,7 @@ fn identified(rig: &Rig, run: &str) -> Value {
     object
 }
 
-/// Without the time it took.
+/// Removes the wall time from a result, for comparison.
 fn said(mut object: Value) -> Value {
     object["wall_s"] = Value::Null;
     object
@@ -92,7 +92,8 @@ fn what_lacks_something_is_sent_to_the_diagnosis_first() {
     assert!(text.contains("horsehead diagnose"), "{text}");
 }
 
-/// What the case states beforehand counts; what it states wrongly is refused by field.
+/// Checks that prior knowledge in the case narrows the intervals in every accepted form, and that wrong forms
+/// are refused by field.
 #[test]
 fn what_is_known_beforehand_is_read_in_every_form() {
     let rig = Rig::healthy();
@@ -139,8 +140,8 @@ fn what_is_known_beforehand_is_read_in_every_form() {
     }
 }
 
-/// Of records with noise and values of their own, with the effect that they hide in the model, 95 % intervals
-/// hold the truth 90 to 99 % of the time.
+/// Checks that 95 % intervals contain the truth in 90 to 99 % of cases, over records with different values
+/// and noise, with the effect in the records included in the model.
 #[test]
 #[ignore = "a minute or two of simulations: tests/README.md says how"]
 fn intervals_hold_the_hidden_values_as_often_as_they_say() {

@@ -1,4 +1,5 @@
-//! Calibrations that begin with a table of individuals, and the same over standard input.
+//! Tests of calibrations that start from a table of individuals, and of start points given to `ask-tell` over
+//! standard input.
 use crate::{
     rig::{Rig, number},
     words,

@@ -1,4 +1,5 @@
-//! Sweeps of files: a table of individuals, a grid of settings; bad input is refused before anything runs.
+//! Tests of sweeps from files: a table of individuals and a grid of settings. Bad input is refused before
+//! anything runs.
 use crate::{
     rig::{Rig, number},
     words,

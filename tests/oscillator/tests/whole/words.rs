@@ -1,7 +1,7 @@
-//! Words of another machine, which must not occur in what is said of this one.
+//! Check that output about the oscillator contains no terms of the pumping unit.
 use std::{borrow::Cow, fs, path::Path};
 
-/// Whole words, letters and digits between anything else.
+/// Terms of the pumping unit, compared as whole alphanumeric words in lower case.
 const FOREIGN: [&str; 23] = [
     "gauge",
     "gauges",
@@ -28,10 +28,10 @@ const FOREIGN: [&str; 23] = [
     "counterweight",
 ];
 
-/// Whether a text is free of them.
+/// Checks that a text contains no foreign terms.
 ///
 /// # Panics
-/// If it is not, showing where.
+/// If it contains one, showing the surrounding text.
 pub(crate) fn check(place: &str, text: &str) {
     // a page has a head of its own
     let text = text.replace("<head>", "").replace("</head>", "");
@@ -49,17 +49,17 @@ pub(crate) fn check(place: &str, text: &str) {
     }
 }
 
-/// The words of bytes that are no text, longer than chance makes them.
+/// Extracts words of more than three characters from binary data, as shorter ones occur by chance.
 fn long_words(text: &str) -> String {
     let words = text.split(|c: char| !c.is_ascii_alphanumeric());
     let long: Vec<&str> = words.filter(|word| word.len() > 3).collect();
     long.join("\n")
 }
 
-/// Whether every file of a folder is free of them, whatever is readable in it.
+/// Checks that all files of a folder, and their names, contain no foreign terms.
 ///
 /// # Panics
-/// If one is not.
+/// If a file contains one, or the folder is empty.
 pub(crate) fn check_folder(folder: &Path) {
     let mut read = 0;
     for entry in fs::read_dir(folder).unwrap() {

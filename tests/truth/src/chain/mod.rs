@@ -1,8 +1,8 @@
-//! The measuring chain: from turns of the machine to the samples of a record.
+//! Measuring chain: converts simulated turns of the machine to the samples of a test record.
 //!
-//! Cycles differ in load and speed; an index pulse marks each turn a little early or late, and angles
-//! between two pulses are taken as uniform in time; gauges have zeros, coloured noise and a step of
-//! resolution; a wireless link loses samples.
+//! Cycles differ in load and speed; an index pulse marks each turn with a small timing error, and angles
+//! between two pulses are interpolated linearly in time; gauges have zero offsets, coloured noise and a
+//! finite resolution; a wireless link loses samples.
 mod sensors;
 mod time;
 
@@ -16,16 +16,16 @@ use simulation::math::spline::Splines;
 use std::sync::Arc;
 use time::Time;
 
-/// One sample of a record.
+/// Sample of a test record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Time \[s\].
     pub time: f64,
-    /// Crank angle from bottom dead centre, as the pulses say \[deg\].
+    /// Crank angle from bottom dead centre, interpolated between index pulses \[deg\].
     pub crank: f64,
     /// Stress at gauges 1 to 4 \[MPa\].
     pub stress: [f64; 4],
-    /// Load of the delivered card at that angle \[N\].
+    /// Load of the delivered card at this crank angle \[N\].
     pub load: f64,
     /// Height of the suspension point \[m\].
     pub position: f64,
@@ -33,27 +33,27 @@ pub struct Sample {
     pub torque: f64,
 }
 
-/// The machine's turn, and turns with one per cent more swing of the load and half a per cent more
-/// speed.
+/// Simulated turn of the machine, and turns with one per cent more load swing and with half a per cent more
+/// speed, from which sensitivities are computed.
 #[derive(Clone, Debug)]
 pub struct Turns {
-    /// As it is.
+    /// Turn at nominal load and speed.
     pub plain: Turn,
-    /// With [`MORE_LOAD`].
+    /// Turn with the load swing increased by [`MORE_LOAD`].
     pub loaded: Turn,
-    /// With [`MORE_SPEED`].
+    /// Turn with the speed increased by [`MORE_SPEED`].
     pub fast: Turn,
 }
 
-/// What the loaded turn has more of load.
+/// Relative increase of the load swing in the loaded turn.
 pub const MORE_LOAD: f64 = 0.01;
-/// What the fast turn has more of speed.
+/// Relative increase of the speed in the fast turn.
 pub const MORE_SPEED: f64 = 0.005;
 
-/// Recorded channels of a turn: four gauges, position, torque.
+/// Number of interpolated channels of a turn: four gauges, position, torque.
 const CHANNELS: usize = 6;
 
-/// Samples, and how many were lost.
+/// Generates the samples of a record; also returns the number of lost samples.
 pub fn record(
     turns: &Turns,
     card: &[f64],
@@ -98,7 +98,7 @@ pub fn record(
     (samples, link.lost)
 }
 
-/// Curves of a turn and how they change with load and speed.
+/// Curves of a turn, and their sensitivities to load swing and speed.
 struct Curves {
     plain: Splines,
     by_load: Splines,
@@ -144,7 +144,7 @@ impl Curves {
     }
 }
 
-/// The uniform speed of a condition [rad/s].
+/// Returns the crank speed of a condition [rad/s].
 pub fn speed(rpm: f64) -> f64 {
     rpm * std::f64::consts::TAU / 60.0
 }

@@ -1,33 +1,33 @@
-//! Sizes of what sensors do; noise and losses.
+//! Sensor properties, and models of their noise and of lost samples.
 use crate::draw::Draw;
 
-/// Sizes of what sensors do, as in the case's own records.
+/// Sensor properties, as in the case's own records.
 #[derive(Clone, Copy, Debug)]
 pub struct Sensors {
-    /// Samples a second \[Hz\].
+    /// Sampling rate \[Hz\].
     pub rate: f64,
     /// Noise of a gauge, rms \[MPa\].
     pub gauge_noise: f64,
-    /// How much of it comes back in the next sample.
+    /// Autocorrelation of the gauge noise from sample to sample.
     pub correlation: f64,
-    /// Share of its variance that all gauges have in common.
+    /// Share of the noise variance that is common to all gauges.
     pub common: f64,
-    /// Step of a gauge's reading \[MPa\].
+    /// Resolution (quantisation step) of a gauge's reading \[MPa\].
     pub resolution: f64,
-    /// Spread of a gauge's zero \[MPa\].
+    /// Standard deviation of a gauge's zero offset \[MPa\].
     pub zero: f64,
-    /// Noise of the position \[m\] and of the torque [N m].
+    /// Noise of the position \[m\] and of the torque [N m], rms.
     pub others: [f64; 2],
-    /// Spread of the index pulse \[deg\].
+    /// Standard deviation of the index pulse \[deg\].
     pub index: f64,
-    /// Share of samples that are lost one by one.
+    /// Probability that a single sample is lost.
     pub lost: f64,
-    /// Spread of load swing and of speed from cycle to cycle.
+    /// Relative standard deviations of load swing and of speed from cycle to cycle.
     pub cycles: [f64; 2],
 }
 
 impl Sensors {
-    /// With a factor on all noise.
+    /// Returns the default sensors with all noise multiplied by a factor.
     pub fn with_noise(factor: f64) -> Self {
         Self {
             rate: 100.0,
@@ -44,7 +44,7 @@ impl Sensors {
     }
 }
 
-/// Noise of the gauges: first order, a part of it common to all.
+/// First-order autoregressive noise of the gauges, part of which is common to all.
 pub(super) struct Noise {
     state: [f64; 5],
     kept: f64,
@@ -74,7 +74,7 @@ impl Noise {
     }
 }
 
-/// A wireless link: single samples are lost, and one burst.
+/// Wireless link that loses single samples and one burst of samples.
 pub(super) struct Link {
     burst: [f64; 2],
     share: f64,
@@ -91,7 +91,7 @@ impl Link {
         }
     }
 
-    /// The first sample always arrives.
+    /// Returns whether a sample arrives; the first always does.
     pub(super) fn delivers(&mut self, number: f64, draw: &mut Draw) -> bool {
         let in_burst = (self.burst[0]..self.burst[1]).contains(&number);
         let single = draw.unit() < self.share;

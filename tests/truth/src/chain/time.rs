@@ -1,18 +1,18 @@
-//! When cycles begin, what their pulses say, and what differs from cycle to cycle.
+//! True and indicated start times of cycles, and their variation in load and speed.
 use super::Sensors;
 use crate::draw::Draw;
 
-/// When cycles begin, really and by their pulses, and what is different in each.
+/// True and indicated start times of the cycles, and the load and speed variation of each cycle.
 pub(super) struct Time {
-    /// Begin of each cycle and of one beyond the last \[s\].
+    /// Start of each cycle and of additional ones at the end \[s\].
     begin: Vec<f64>,
-    /// The same as the pulses mark it.
+    /// Start of each cycle as marked by the index pulse \[s\].
     pulse: Vec<f64>,
     varied: Vec<[f64; 2]>,
 }
 
 impl Time {
-    /// The record begins with the first pulse.
+    /// Draws the start times and variations; time zero is the first pulse.
     pub(super) fn new(period: f64, sensors: &Sensors, cycles: usize, draw: &mut Draw) -> Self {
         let varied: Vec<[f64; 2]> = (0..cycles + 2)
             .map(|_| sensors.cycles.map(|spread| spread * draw.cut_normal()))
@@ -38,18 +38,18 @@ impl Time {
         }
     }
 
-    /// Turns since the begin of the first cycle.
+    /// Returns the number of turns since the start of the first cycle.
     pub(super) fn turned(&self, at: f64) -> f64 {
         Self::share(&self.begin, at)
     }
 
-    /// Crank angle by the pulses \[deg\].
+    /// Returns the crank angle as interpolated between pulses \[deg\].
     pub(super) fn indicated(&self, at: f64) -> f64 {
         let turned = Self::share(&self.pulse, at);
         360.0 * (turned - turned.floor())
     }
 
-    /// Number of the interval that a time is in, and the share of it that is over.
+    /// Returns the index of the interval that contains a time, plus the elapsed fraction of that interval.
     fn share(marks: &[f64], at: f64) -> f64 {
         let left = marks
             .partition_point(|mark| *mark <= at)
@@ -58,7 +58,7 @@ impl Time {
         left as f64 + (at - marks[left]) / (marks[left + 1] - marks[left])
     }
 
-    /// What differs, going over gently from the middle of a cycle to that of the next.
+    /// Returns the load and speed variation, interpolated linearly between the middles of consecutive cycles.
     pub(super) fn varied(&self, turned: f64) -> [f64; 2] {
         let place = (turned - 0.5).max(0.0);
         #[expect(

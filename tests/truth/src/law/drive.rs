@@ -1,4 +1,4 @@
-//! The crank does not turn as the record believes.
+//! Hidden effects of the drive: the crank angle differs from the recorded one.
 use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
 use crate::turn::Turn;
@@ -7,8 +7,8 @@ use simulation::math::spline::Splines;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// An induction motor by Kloss, `T_m = 2 T_k / (s / s_k + s_k / s)`, drives a heavy crank:
-/// `J dw/dt = T_m - T_net`, integrated over the turn until it repeats.
+/// Creates an induction motor after Kloss, `T_m = 2 T_k / (s / s_k + s_k / s)`, that drives a heavy crank: `J
+/// dw/dt = T_m - T_net`, integrated over several turns until the speed is periodic.
 pub(super) fn kloss(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Motor {
         slip: size,
@@ -24,21 +24,21 @@ struct Motor {
     slip: f64,
     /// Rated torque at the crank [N m].
     rated: f64,
-    /// Breakdown torque over it.
+    /// Ratio of breakdown torque to rated torque.
     breakdown: f64,
-    /// Of motor, gear and cranks, at the crank [kg m2].
+    /// Moment of inertia of motor, gear and cranks, referred to the crank [kg m2].
     inertia: f64,
 }
 
-/// Steps of integration over a turn.
+/// Integration steps per turn.
 const STEPS: usize = 11_520;
-/// Turns until the speed repeats.
+/// Number of integrated turns, after which the speed is periodic.
 const TURNS: usize = 3;
-/// Samples of the lead.
+/// Number of samples per turn of the net torque and of the crank's lead.
 const NODES: usize = 720;
 
 impl Motor {
-    /// Torque [N m] at a slip.
+    /// Computes the motor torque at a slip [N m].
     fn torque(&self, slip: f64) -> f64 {
         let k = self.breakdown;
         // slip at breakdown, from that at rated torque
@@ -47,7 +47,7 @@ impl Motor {
         2.0 * k * self.rated * s / (1.0 + s * s)
     }
 
-    /// What the crank is ahead of uniform rotation \[rad\], at equal times over one turn.
+    /// Computes the crank's lead over uniform rotation \[rad\], at equal times over one turn.
     fn ahead(&self, speed: f64, net: impl Fn(f64) -> f64) -> Vec<f64> {
         let step = TAU / speed / STEPS as f64;
         let mean = (0..360)
@@ -118,7 +118,7 @@ impl Effect for Motor {
 
 impl Law for Motor {}
 
-/// The index pulse comes early or late: all channels are read at another angle.
+/// Creates an index pulse error: all channels are recorded at a shifted crank angle.
 pub(super) fn late_index(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
     Arc::new(LateIndex { angle: size })
 }
@@ -156,8 +156,8 @@ mod tests {
         assert!((most - 2.1 * 35e3).abs() < 10.0);
     }
 
-    /// Small slip: `w / w_0 = 1 - s (T - mean) / T_r`, so a cosine gives a sine, and a heavy crank
-    /// follows a little later.
+    /// Checks the quasi-static limit of small slip, `w / w_0 = 1 - s (T - mean) / T_r`: a cosine torque gives
+    /// a sine lead; a heavy crank follows a little later.
     #[test]
     fn a_small_slip_gives_the_quasi_static_lead() {
         let motor = Motor {

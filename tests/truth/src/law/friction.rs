@@ -1,4 +1,4 @@
-//! Dry friction that sticks: hard signs, a Stribeck peak, sliding that sets in over a way.
+//! Hidden effects of dry friction: hard sign change, Stribeck peak, and presliding over a distance (Dahl).
 use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
 use libm::exp;
@@ -8,11 +8,11 @@ use simulation::math::spline::Splines;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Nodes of a curve over the turn.
+/// Number of samples of a curve over one turn.
 const NODES: usize = 1440;
 
-/// A grease-starved plain bearing: `M = mu r N (1 + p exp(-|w| / w_s)) sgn(w)`, with the bearing's
-/// own load `N`; the sign is hard but for `w_h`.
+/// Creates the friction of a grease-starved plain bearing: `M = mu r N (1 + p exp(-|w| / w_s)) sgn(w)` with
+/// the bearing load `N`; the sign function is linear only below the speed [`HARD`].
 pub(super) fn plain_bearing(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Bearing {
         moment: size,
@@ -21,7 +21,7 @@ pub(super) fn plain_bearing(size: f64, draw: &mut Draw, shape: &mut Shape) -> Ar
     })
 }
 
-/// A greased one: the same moment at every speed.
+/// Creates the friction of a greased bearing: Coulomb friction without a Stribeck peak.
 pub(super) fn sliding(moment: f64) -> Arc<dyn Law> {
     Arc::new(Bearing {
         moment,
@@ -32,13 +32,13 @@ pub(super) fn sliding(moment: f64) -> Arc<dyn Law> {
 
 #[derive(Clone, Copy, Debug)]
 struct Bearing {
-    /// Moment at the mean load [N m].
+    /// Friction moment at the mean load [N m].
     moment: f64,
     peak: f64,
     speed: f64,
 }
 
-/// Speed at which the hard sign is full [rad/s].
+/// Speed below which the sign function is replaced by a line [rad/s].
 const HARD: f64 = 3e-4;
 
 impl Effect for Bearing {
@@ -66,7 +66,7 @@ impl Law for Bearing {}
 #[derive(Clone, Debug)]
 struct Rubbing {
     law: Bearing,
-    /// Load of the bearing over its mean.
+    /// Bearing load divided by its mean, over the turn.
     share: Splines,
 }
 
@@ -91,8 +91,8 @@ impl LineForce for Rubbing {
     }
 }
 
-/// Packing that gives before it slides (Dahl): after a turn-round the friction goes over with the way,
-/// `F_s (1 - 2 exp(-x / x_d))`, and it is larger on one stroke than on the other.
+/// Creates the friction of a stuffing box packing with presliding (Dahl): after a reversal the force changes
+/// with the distance as `F_s (1 - 2 exp(-x / x_d))`, and differs between upstroke and downstroke.
 pub(super) fn packing(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Packing {
         force: size,
@@ -121,8 +121,8 @@ impl Effect for Packing {
 
 impl Law for Packing {}
 
-/// Loss of a rope that winds on and off its head: a share of the tension and a constant, setting in
-/// over an angle of winding.
+/// Creates the loss of a rope that winds on and off its head: a share of the tension plus a constant, reached
+/// gradually over an angle of winding after a reversal.
 pub(super) fn winding(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Winding {
         loss: size,
@@ -155,14 +155,14 @@ impl Effect for Winding {
 
 impl Law for Winding {}
 
-/// A force that is known over the turn.
+/// Force prescribed as a function of the crank turn.
 #[derive(Clone, Debug)]
 pub(super) struct Scheduled {
     force: Splines,
 }
 
 impl Scheduled {
-    /// Of a force at even places of the turn, as [`curve`] gives it.
+    /// Creates the force from samples at equally spaced angles of the turn, as returned by [`curve`].
     pub(super) fn new(force: Vec<f64>) -> Self {
         Self {
             force: Splines::periodic(0.0, TAU / force.len() as f64, &[force]),
@@ -179,14 +179,14 @@ impl LineForce for Scheduled {
     }
 }
 
-/// A curve over the turn.
+/// Samples a function at equally spaced angles of the turn.
 pub(super) fn curve(at: impl Fn(f64) -> f64) -> Vec<f64> {
     (0..NODES)
         .map(|i| at(TAU * i as f64 / NODES as f64))
         .collect()
 }
 
-/// Where Dahl's friction stands between -1 and 1 along a periodic motion: `dz = (1 - z sgn dx) dx / way`.
+/// Computes the Dahl friction state between -1 and 1 along a periodic motion: `dz = (1 - z sgn dx) dx / way`.
 fn dahl(motion: &[f64], way: f64) -> Vec<f64> {
     let n = motion.len();
     let mut side = vec![0.0; n];

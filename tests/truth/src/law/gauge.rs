@@ -1,11 +1,11 @@
-//! What becomes of strain on its way to the record.
+//! Hidden effects of the strain gauges and their amplifiers.
 use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
 use crate::turn::{Turn, shifted};
 use simulation::effect::Effect;
 use std::sync::Arc;
 
-/// A share for each gauge: one of them in full, the others at random.
+/// Draws a relative weight for each gauge: 1 for one of them, random for the others.
 fn pattern(draw: &mut Draw, shape: &mut Shape) -> [f64; 4] {
     let mut shares = [0.0; 4].map(|_: f64| draw.sign() * draw.between(0.1, 0.9));
     shares[draw.index(4)] = 1.0;
@@ -15,7 +15,7 @@ fn pattern(draw: &mut Draw, shape: &mut Shape) -> [f64; 4] {
     shares
 }
 
-/// The amplifiers deliver late, all that they see: a pure delay.
+/// Creates a pure delay of all gauge channels in the amplifiers.
 pub(super) fn delay(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Delay { time: size })
 }
@@ -36,7 +36,7 @@ impl Law for Delay {
     }
 }
 
-/// Gauges read too much, each by its own share, and a little more so at large strain.
+/// Creates a gain error for each gauge, with a slight nonlinearity in the stress.
 pub(super) fn gain(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     let bend = note(shape, "per_megapascal_1", draw.between(-2e-4, 2e-4));
     Arc::new(Gain {
@@ -63,7 +63,7 @@ impl Law for Gain {
     }
 }
 
-/// Gauges that stand askew: their own component turns into the partner's, `s_i cos + s_j sin`.
+/// Creates misaligned gauges, which read part of the partner gauge's component: `s_i cos + s_j sin`.
 pub(super) fn rotated(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Rotated {
         into: pattern(draw, shape).map(|share| share * size),
@@ -89,7 +89,8 @@ impl Law for Rotated {
     }
 }
 
-/// A cheek in the sun: zeros run away from the record's begin on, the less the warmer it is.
+/// Creates a thermal drift of the gauge zeros, from a cheek heated by the sun: fast at the start of the
+/// record and decaying exponentially.
 pub(super) fn warming(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Warming {
         turns: note(shape, "time_constant_turns_1", draw.between(4.0, 15.0)),
@@ -99,7 +100,7 @@ pub(super) fn warming(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn 
 
 #[derive(Clone, Copy, Debug)]
 struct Warming {
-    /// Rate at the begin \[MPa a turn\].
+    /// Drift rate at the start of the record \[MPa per turn\].
     rate: [f64; 4],
     turns: f64,
 }
@@ -113,9 +114,9 @@ impl Law for Warming {
     }
 }
 
-/// Pins that lie against one side of their holes or the other. They change sides where the rope's
-/// force on the head along some direction passes a bias, at once, and not where they changed before:
-/// friction keeps them `stick` longer.
+/// Creates pin clearance with hysteresis: pins lie against one side of their holes and change sides instantly
+/// when the rope's force on the head in some direction passes a bias. Friction shifts the change by `stick`
+/// beyond the bias in either direction.
 pub(super) fn clearance(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     let direction = note(shape, "direction_deg", 10.0 * draw.cut_normal());
     Arc::new(Clearance {
@@ -131,7 +132,7 @@ pub(super) fn clearance(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dy
 
 #[derive(Clone, Copy, Debug)]
 struct Clearance {
-    /// Half the step \[MPa\].
+    /// Half of the stress step at a change of sides \[MPa\].
     step: [f64; 4],
     direction: [f64; 2],
     bias: f64,
@@ -161,8 +162,8 @@ impl Law for Clearance {
     }
 }
 
-/// Two ropes of unequal length under one crossbeam: each carries `T / 2 +- k dL / 2`, nothing where it
-/// hangs slack, and some of each cheek's load crosses to the other.
+/// Creates two ropes of unequal length under one crossbeam: each carries `T / 2 +- k dL / 2`, zero if slack,
+/// and part of each cheek's load is felt by the other cheek.
 pub(super) fn twins(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Twins {
         length: size,
@@ -173,7 +174,7 @@ pub(super) fn twins(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn La
 #[derive(Clone, Copy, Debug)]
 struct Twins {
     length: f64,
-    /// Share of a cheek's load that the other feels.
+    /// Share of a cheek's load that the other cheek feels.
     crossing: f64,
 }
 

@@ -1,62 +1,62 @@
-//! A kind of effect that can be hidden, and an effect that was: what every law here is made into.
+//! Kinds of effects that can be hidden in a record, and hidden effects with their drawn parameters.
 use crate::draw::Draw;
 use crate::turn::Turn;
 use simulation::effect::Effect;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// An effect with its size. What acts on the machine itself is the [`Effect`] part, load included;
-/// the rest is what becomes of load card and readings on their way to the record.
+/// Hidden effect with its size. The supertrait [`Effect`] acts on the machine itself, including its load; the
+/// methods here change the load card and the readings on their way to the record.
 pub trait Law: Effect {
-    /// Makes the delivered card of the true one \[N\]; the crank turns with `speed` [rad/s].
+    /// Converts the true load card to the delivered one \[N\]; the crank turns with `speed` [rad/s].
     fn deliver(&self, _card: &mut Vec<f64>, _speed: f64) {}
 
-    /// Changes what the sensors of one turn give.
+    /// Changes the sensor readings of one turn.
     fn read(&self, _turn: &mut Turn) {}
 
-    /// Moves the zeros of the gauges \[MPa\], a number of turns after the record's begin.
+    /// Returns the zero drift of the gauges \[MPa\] at a number of turns after the start of the record.
     fn drift(&self, _turns: f64) -> [f64; 4] {
         [0.0; 4]
     }
 }
 
-/// A kind of effect that can be hidden.
+/// Kind of effect that can be hidden.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
-    /// Identifier; that of the program's library where it names the effect.
+    /// Identifier; the one of the library of candidate effects if it contains the effect.
     pub id: &'static str,
-    /// Name of the number that is drawn.
+    /// Name of the drawn size parameter.
     pub parameter: &'static str,
-    /// Unit of the number.
+    /// Unit of the size parameter.
     pub unit: &'static str,
-    /// Typical size, in that unit.
+    /// Typical size, in `unit`.
     pub scale: f64,
-    /// Whether it may be negative.
+    /// Whether the size may be negative.
     pub signed: bool,
-    /// Most times its scale.
+    /// Largest size in multiples of `scale`.
     pub most: f64,
-    /// Makes it; shape numbers are drawn and noted.
+    /// Constructor of the effect, which draws its shape parameters and records them.
     build: fn(f64, &mut Draw, &mut Shape) -> Arc<dyn Law>,
 }
 
-/// Further numbers of a law, by name with the unit in it.
+/// Shape parameters of an effect, by name including the unit.
 pub type Shape = BTreeMap<String, f64>;
 
-/// An effect that was hidden.
+/// Effect hidden in a record.
 #[derive(Debug)]
 pub struct Hidden {
-    /// What it is.
+    /// Kind of the effect.
     pub kind: Kind,
-    /// Its size in the kind's unit.
+    /// Size in the kind's unit.
     pub size: f64,
-    /// Further numbers.
+    /// Drawn shape parameters.
     pub shape: Shape,
-    /// The law itself.
+    /// Effect that acts on the machine or the readings.
     pub law: Arc<dyn Law>,
 }
 
 impl Kind {
-    /// Hides it with a size in units of its scale.
+    /// Creates a hidden effect whose size is `times` the typical size.
     pub fn hide(self, times: f64, draw: &mut Draw) -> Hidden {
         let size = times.clamp(-self.most, self.most) * self.scale;
         let mut shape = Shape::new();
@@ -70,7 +70,7 @@ impl Kind {
     }
 }
 
-/// A shape number, noted.
+/// Records a shape parameter and returns it.
 pub(super) fn note(shape: &mut Shape, name: &str, value: f64) -> f64 {
     shape.insert(name.to_owned(), value);
     value

@@ -1,4 +1,5 @@
-//! A card that is not the load: late, lagged, smoothed, of another zero, of another pump.
+//! Hidden effects of the load: a card that is late, lagged, smoothed or truncated, an unbalanced beam, and
+//! other pump conditions.
 use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
 use libm::{exp, sin};
@@ -9,7 +10,7 @@ use simulation::model::description::Description;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// The card is late: the load comes earlier than it says.
+/// Creates a late card: the true load precedes the delivered card.
 pub(super) fn late_card(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
     Arc::new(LateCard { time: size })
 }
@@ -44,14 +45,14 @@ fn whole(place: f64) -> usize {
     place as usize
 }
 
-/// The beam is out of balance, and the load cell is right.
+/// Creates an unbalanced beam with a correct load cell.
 pub(super) fn unbalance(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Unbalance { force: size })
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Unbalance {
-    /// At the front head \[N\].
+    /// Unbalance as a force at the front head \[N\].
     force: f64,
 }
 
@@ -63,14 +64,14 @@ impl Effect for Unbalance {
 
 impl Law for Unbalance {}
 
-/// The logger's filter has two poles: the delivered card is the load, smoothed and late.
+/// Creates a logger with a two-pole filter: the delivered card is the load, smoothed and delayed.
 pub(super) fn slow_logger(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
     Arc::new(SlowLogger { lag: size })
 }
 
 #[derive(Clone, Copy, Debug)]
 struct SlowLogger {
-    /// Delay of slow changes: both poles' time constants \[s\].
+    /// Delay of slow changes, the sum of both poles' time constants \[s\].
     lag: f64,
 }
 
@@ -87,14 +88,14 @@ impl Law for SlowLogger {
     }
 }
 
-/// The card was smoothed by a moving average.
+/// Creates a card smoothed by a moving average.
 pub(super) fn moving_average(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
     Arc::new(MovingAverage { window: size })
 }
 
 #[derive(Clone, Copy, Debug)]
 struct MovingAverage {
-    /// Width \[deg\].
+    /// Width of the averaging window \[deg\].
     window: f64,
 }
 
@@ -112,7 +113,7 @@ impl Law for MovingAverage {
     }
 }
 
-/// The card was delivered as its mean and so many harmonics.
+/// Creates a card truncated to its mean and `size` harmonics.
 pub(super) fn cut(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Cut { harmonics: size })
 }
@@ -135,8 +136,8 @@ impl Law for Cut {
     }
 }
 
-/// A pump that does not fill: the plunger carries its load down until it meets the liquid, loses it by
-/// an exponential, and the rods ring.
+/// Creates fluid pound of an incompletely filled pump: the plunger carries its load down until it meets the
+/// liquid, the load then decays exponentially, and the rods oscillate.
 pub(super) fn pound(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Pound {
         held: size,
@@ -154,7 +155,7 @@ struct Pound {
     blow: f64,
 }
 
-/// The rods' own frequency \[Hz\] and the time in which their ringing dies out \[s\].
+/// Natural frequency of the rods \[Hz\] and decay time of their oscillation \[s\].
 const RODS: (f64, f64) = (0.739, 2.0);
 
 impl Effect for Pound {
@@ -188,8 +189,8 @@ impl Effect for Pound {
 
 impl Law for Pound {}
 
-/// The rod string answers motion that the card does not know: by its impedance, the more the faster,
-/// and by a soft spring, for what comes back from its lower end.
+/// Creates the response of the rod string to motion that the card does not include: an impedance that grows
+/// with speed, and a soft spring for reflections from the lower end.
 pub(super) fn rods(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Rods {
         impedance: size,
@@ -227,7 +228,7 @@ struct Answer {
     cycle: Cycle,
 }
 
-/// Speed at which the impedance is a quarter more [m/s].
+/// Speed at which the impedance is a quarter larger [m/s].
 const FAST: f64 = 0.4;
 
 impl LineForce for Answer {

@@ -1,8 +1,8 @@
-//! Effects as they really are: laws of their own, not those of the program that is judged.
+//! Laws of the hidden effects, written independently of the effect library of the program under test.
 //!
-//! What the program's library takes as smooth, of first order or constant is hard, hysteretic,
-//! delayed or load-dependent here. [`CATALOGUE`] lists effects that the library names, with the
-//! size that machines like this one typically have; [`OUTSIDE`] lists some that it does not name.
+//! Effects that the program's library models as smooth, first-order or constant are hard, hysteretic, delayed
+//! or load-dependent here. [`CATALOGUE`] lists effects that the library contains, with the size that machines
+//! of this type typically have; [`OUTSIDE`] lists effects that the library does not contain.
 mod drive;
 mod friction;
 mod gauge;
@@ -19,7 +19,7 @@ pub use nuisance::{Nuisances, Tolerance};
 
 use kind::{at_most, kind, signed};
 
-/// Effects that the library names.
+/// Hidden effects that the library of the program under test also contains, with their typical sizes.
 #[rustfmt::skip]
 pub const CATALOGUE: [Kind; 24] = [
     at_most(3.0, kind("crank_speed_ripple", ("slip", "1"), 0.0267, drive::kloss)),
@@ -48,11 +48,11 @@ pub const CATALOGUE: [Kind; 24] = [
     at_most(3.0, kind("rod_string_reaction", ("impedance", "N.s/m"), 20500.0, load::rods)),
 ];
 
-/// What a delivered card may lack, whatever else is hidden: everything above so many harmonics. The library
-/// has another form of the same effect.
+/// Effect that truncates the delivered pump load card to its first harmonics; its size is the number of
+/// harmonics kept. A second form of `card_smoothing`, which is in [`CATALOGUE`] as a moving average.
 pub const CUT_CARD: Kind = kind("card_smoothing", ("harmonics", "1"), 1.0, load::cut);
 
-/// Effects that it does not name.
+/// Hidden effects that the library of the program under test does not contain.
 #[rustfmt::skip]
 pub const OUTSIDE: [Kind; 8] = [
     signed(kind("saddle_cubic_spring", ("moment", "N.m"), 4000.0, outside::cubic_spring)),
@@ -65,7 +65,7 @@ pub const OUTSIDE: [Kind; 8] = [
     at_most(3.0, kind("gear_eccentricity", ("angle", "deg"), 0.3, outside::gear)),
 ];
 
-/// The kind of an identifier.
+/// Returns the effect kind with the identifier `id`, from [`CATALOGUE`] or [`OUTSIDE`].
 pub fn by_id(id: &str) -> Option<Kind> {
     let all = CATALOGUE.iter().chain(&OUTSIDE);
     all.copied().find(|kind| kind.id == id)

@@ -1,7 +1,8 @@
-//! What no test is free of: instruments, a bearing and a balance that are a little off, constant over the
-//! test and the same under every condition.
+//! Nuisance parameters of every test: small errors of instruments, saddle bearing and beam balance, constant
+//! over the test and equal in all conditions.
 //!
-//! It knows how good each is (what a data sheet states), not what a diagnosis makes of it.
+//! [`Tolerance`] holds their standard deviations, as a data sheet states them; how a diagnosis treats them is
+//! not modelled here.
 use super::drive::late_index;
 use super::friction::sliding;
 use super::gauge::delay;
@@ -13,29 +14,30 @@ use simulation::effect::Effect;
 use simulation::model::description::Description;
 use std::sync::Arc;
 
-/// How good each is, one standard deviation; the keys are those of a sheet's `[tolerance]`.
+/// Standard deviations of the nuisance parameters; the serialised keys are those of the `[tolerance]` table
+/// of a data sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Tolerance {
-    /// Of the reading of each gauge.
+    /// Standard deviation of the relative gain error of each strain gauge.
     pub gauge_factor: f64,
-    /// Place of the index mark \[deg\].
+    /// Standard deviation of the position of the crank's index mark \[deg\].
     pub index_deg: f64,
-    /// Of the card's load.
+    /// Standard deviation of the relative error of the card's load.
     pub load_cell: f64,
-    /// Never negative \[s\].
+    /// Scale of the delay of the gauge amplifiers, drawn as a half-normal value \[s\].
     pub amplifier_lag_s: f64,
-    /// Of the reading.
+    /// Standard deviation of the relative gain error of the position sensor.
     pub position: f64,
-    /// Of the reading.
+    /// Standard deviation of the relative gain error of the torque sensor.
     pub torque: f64,
-    /// Saddle bearing, never negative [N m].
+    /// Scale of the friction moment of the saddle bearing, drawn as a half-normal value [N m].
     pub bearing_friction_nm: f64,
-    /// Moment of the beam's own weight [N m].
+    /// Standard deviation of the moment of the beam's own weight [N m].
     pub balance_nm: f64,
 }
 
 impl Tolerance {
-    /// What the sheets of the case's own records state.
+    /// Tolerances that the data sheets of the case's own records state.
     pub const USUAL: Self = Self {
         gauge_factor: 0.005,
         index_deg: 0.06,
@@ -47,7 +49,7 @@ impl Tolerance {
         balance_nm: 200.0,
     };
 
-    /// So many times as bad.
+    /// Returns all tolerances multiplied by `factor`.
     #[must_use]
     pub const fn times(self, factor: f64) -> Self {
         Self {
@@ -63,20 +65,20 @@ impl Tolerance {
     }
 }
 
-/// By how much they are off in one test.
+/// Values of the nuisance parameters in one test.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Nuisances {
-    /// Share that each gauge reads too much.
+    /// Relative gain error of each gauge.
     pub gauge_factor: [f64; 4],
-    /// By how much angles are late \[deg\].
+    /// Delay of the recorded crank angle \[deg\].
     pub index_deg: f64,
-    /// Share that the delivered card is too large.
+    /// Relative excess of the delivered card's load.
     pub load_cell: f64,
-    /// Delay of the gauges \[s\].
+    /// Delay of the gauge amplifiers \[s\].
     pub amplifier_lag_s: f64,
-    /// Share that the position reads too much.
+    /// Relative gain error of the position.
     pub position: f64,
-    /// Share that the torque reads too much.
+    /// Relative gain error of the torque.
     pub torque: f64,
     /// Friction of the saddle bearing [N m].
     pub bearing_friction_nm: f64,
@@ -85,7 +87,7 @@ pub struct Nuisances {
 }
 
 impl Nuisances {
-    /// Draws them; what a hidden effect of the same kind stands for is left to that.
+    /// Draws the nuisance parameters; sets to zero those that a hidden effect of the same kind replaces.
     pub fn draw(tolerance: &Tolerance, draw: &mut Draw, hidden: &[&str]) -> Self {
         let mut drawn = Self {
             gauge_factor: [0.0; 4].map(|_: f64| tolerance.gauge_factor * draw.normal()),
@@ -109,7 +111,7 @@ impl Nuisances {
         drawn
     }
 
-    /// As laws of the machine and its instruments.
+    /// Returns the nuisance parameters as laws that act on the machine and its instruments.
     pub fn laws(&self) -> [Arc<dyn Law>; 4] {
         let none = (&mut Draw::new(0, "nothing"), &mut Shape::new());
         [

@@ -1,4 +1,4 @@
-//! Effects that nobody has put into a library.
+//! Hidden effects that the library of the program under test does not contain.
 use super::friction::{Scheduled, curve};
 use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
@@ -10,10 +10,11 @@ use simulation::model::description::{AddedMode, Description};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// Beam angle at the ends of the stroke \[rad\], and its greatest rate at 5 turns a minute [rad/s].
+/// Beam angle at the ends of the stroke \[rad\], and greatest beam angular velocity at 5 crank revolutions
+/// per minute [rad/s].
 const FULL: [f64; 2] = [0.55, 0.29];
 
-/// A spring at the saddle that hardens: `-M (theta / theta_full)^3`.
+/// Creates a hardening cubic spring at the saddle: `-M (theta / theta_full)^3`.
 pub(super) fn cubic_spring(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
     Arc::new(OnBeam {
         moment: size,
@@ -21,7 +22,7 @@ pub(super) fn cubic_spring(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn La
     })
 }
 
-/// Drag of the beam with the square of its rate: `-M w |w| / w_full^2`.
+/// Creates a drag moment on the beam, quadratic in its angular velocity: `-M w |w| / w_full^2`.
 pub(super) fn drag(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
     Arc::new(OnBeam {
         moment: size,
@@ -74,7 +75,7 @@ impl LineForce for OnBeam {
     }
 }
 
-/// Something pushes the crosshead sideways, several times a turn of the crank.
+/// Creates a harmonic sideways force on the crosshead, of order 2 to 5 of the crank rotation.
 pub(super) fn crosshead(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Crosshead {
         force: size,
@@ -100,7 +101,8 @@ impl Effect for Crosshead {
 
 impl Law for Crosshead {}
 
-/// The beam comes out of the mast's lee once a turn and catches the wind for a while.
+/// Creates a gust: a wind moment on the beam around one crank angle per revolution, as the beam leaves the
+/// lee of the mast.
 pub(super) fn gust(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Gust {
         moment: size,
@@ -130,8 +132,8 @@ impl Effect for Gust {
 
 impl Law for Gust {}
 
-/// Ballast has come loose and swings on the beam: a degree of freedom that no drawing has, one more
-/// mode of the head that the beam's turning drives.
+/// Creates loose ballast swinging on the beam: one extra head mode of 0.25 to 0.6 Hz, excited by the beam's
+/// rotation.
 pub(super) fn ballast(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Ballast {
         mass: size,
@@ -171,8 +173,8 @@ impl Effect for Ballast {
 
 impl Law for Ballast {}
 
-/// A heavy part on a soft foot, as a guard or a platform on its brackets: the beam's turning drives it near
-/// its own frequency.
+/// Creates an attached mass on a soft mount, such as a guard or a platform on brackets: one extra head mode
+/// of 1.5 to 4 Hz, excited by the beam's rotation near resonance.
 pub(super) fn tuned_mass(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Ballast {
         mass: size,
@@ -181,7 +183,7 @@ pub(super) fn tuned_mass(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<d
     })
 }
 
-/// The carrier bar rubs along a stretch of its guide: friction there, and nowhere else.
+/// Creates Coulomb friction of the carrier bar on one section of its guide.
 pub(super) fn rub(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Rub {
         force: size,
@@ -193,7 +195,7 @@ pub(super) fn rub(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law>
 #[derive(Clone, Copy, Debug)]
 struct Rub {
     force: f64,
-    /// Middle of the stretch, a share of the stroke.
+    /// Centre of the rubbing section, as a share of the stroke.
     at: f64,
     width: f64,
 }
@@ -218,10 +220,10 @@ impl Effect for Rub {
 
 impl Law for Rub {}
 
-/// Angle of the beam per angle of the crank at which the rub is nearly whole.
+/// Rate of beam angle per crank angle at which the regularised friction nearly reaches its full value.
 const RUB: f64 = 0.01;
 
-/// A gear wheel off its centre: the crank runs ahead and behind several times a turn.
+/// Creates an eccentric gear wheel: a harmonic advance of the crank angle, of order 3 to 7.
 pub(super) fn gear(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Gear {
         angle: size,
@@ -232,7 +234,7 @@ pub(super) fn gear(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law
 
 #[derive(Clone, Copy, Debug)]
 struct Gear {
-    /// [deg].
+    /// Amplitude of the crank angle error \[deg\].
     angle: f64,
     order: f64,
     phase: f64,
@@ -249,7 +251,7 @@ impl Effect for Gear {
 
 impl Law for Gear {}
 
-/// Damping ratio of the swinging ballast.
+/// Damping ratio of the mode of the loose ballast or attached mass.
 const SLOSH: f64 = 0.08;
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
-//! A foundation that gives: the beam's pivot sinks under what rests on it, up and down alone.
+//! Compliance of the foundation: the beam's pivot sinks vertically under its load.
 //!
-//! The sinking is one more mode of the head, a rigid translation across the beam; the front side's
-//! pull hangs on it as a given force.
+//! The vertical motion is one additional mode of the head, a rigid translation across the beam; the load on
+//! the front side acts on it as a prescribed force.
 use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
 use libm::{cos, sin, sqrt};
@@ -76,8 +76,8 @@ impl Effect for Sinking {
 
 impl Law for Sinking {}
 
-/// Potential `P y cos(theta) / sqrt(m)` of the load on a pivot that is `y / sqrt(m)` out of its place
-/// across the beam.
+/// Force of the front load on the sinking pivot, with the potential `P y cos(theta) / sqrt(m)`, where `y /
+/// sqrt(m)` is the displacement of the pivot across the beam.
 #[derive(Clone, Copy, Debug)]
 struct FrontPull {
     weight: f64,
@@ -87,7 +87,7 @@ struct FrontPull {
 }
 
 impl FrontPull {
-    /// Pull per root of mass, `y sin(theta)`, `y cos(theta)`, sine, cosine.
+    /// Returns the load divided by `sqrt(m)`, `y sin(theta)`, `y cos(theta)`, `sin(theta)` and `cos(theta)`.
     fn parts(&self, at: &Instant<'_>) -> [f64; 5] {
         let (s, c) = (sin(at.q[self.beam]), cos(at.q[self.beam]));
         let y = at.q[self.mode];

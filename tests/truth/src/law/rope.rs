@@ -1,12 +1,13 @@
-//! Ropes that are no springs.
+//! Hidden effects in the rope: wire friction, bedding (toe region of the tension curve) and construction
+//! stretch.
 use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
 use simulation::effect::{Along, Axial, Effect, Hooks, Memory, Site, Strain};
 use simulation::model::description::Description;
 use std::sync::Arc;
 
-/// Friction between wires, Bouc-Wen with another exponent than 1:
-/// `dz/de = 1 - (b sgn(z de) + g) |z / z_y|^n`, integrated from step to step.
+/// Creates friction between wires: a Bouc-Wen model with an exponent other than 1, `dz/de = 1 - (b sgn(z
+/// de) + g) |z / z_y|^n`, integrated from step to step.
 pub(super) fn wires(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     let beta = note(shape, "beta_1", draw.between(0.5, 0.8));
     Arc::new(Wires {
@@ -44,7 +45,8 @@ impl Wires {
         1.0 - (against + 1.0 - self.beta) * libm::pow((z / self.yields).abs(), self.exponent)
     }
 
-    /// `z` after a strain that moved one way, by the classical Runge-Kutta method.
+    /// Integrates the hysteretic variable `z` over a monotonic change of strain by the classical Runge-Kutta
+    /// method.
     fn advanced(&self, [strain, z]: Memory, now: f64) -> f64 {
         let moved = now - strain;
         let sense = if moved < 0.0 { -1.0 } else { 1.0 };
@@ -91,8 +93,8 @@ impl Axial for Wires {
     }
 }
 
-/// A rope that beds itself over a range of tension and is straight beyond:
-/// `T / EA + e_0 (1 - (1 - T / T_b)^2)` up to `T_b`, `T / EA + e_0` from there on.
+/// Creates a rope with a toe region: the strain is `T / EA + e_0 (1 - (1 - T / T_b)^2)` up to the tension
+/// `T_b` and `T / EA + e_0` above.
 pub(super) fn bedding(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Bedding {
         strain: size,
@@ -115,7 +117,7 @@ impl Effect for Bedding {
 impl Law for Bedding {}
 
 impl Bedding {
-    /// Tension \[N\] at a strain, and its derivative.
+    /// Returns the tension \[N\] at a strain, and its derivative by the strain.
     fn tension_at(&self, strain: f64, stiffness: f64) -> [f64; 2] {
         let toe = self.strain / self.tension;
         let straight = 1.0 / stiffness;
@@ -131,7 +133,7 @@ impl Bedding {
         [2.0 * strain / (linear + root), 1.0 / root]
     }
 
-    /// Integral of the strain over the tension [J/m].
+    /// Returns the complementary energy per length: the integral of the strain over the tension [J/m].
     fn complementary(&self, tension: f64, stiffness: f64) -> f64 {
         let straight = 0.5 * tension * tension / stiffness;
         let u = tension / self.tension;
@@ -161,14 +163,14 @@ impl Axial for Bedding {
     }
 }
 
-/// Construction stretch, spread over all of the rope: every cylinder of both ropes is longer.
+/// Creates construction stretch, distributed over the ropes: every cylinder of both ropes is longer.
 pub(super) fn stretch(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Stretch { length: size })
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
-    /// Of the back rope \[m\].
+    /// Total stretch of the back rope \[m\].
     length: f64,
 }
 

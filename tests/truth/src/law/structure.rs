@@ -1,12 +1,13 @@
-//! Steel that is not as drawn.
+//! Hidden effects in the steel structure: a worn back head, a misplaced front arc, and mass carried by the
+//! beam.
 use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
 use simulation::effect::{Effect, Hollow, Hooks, Site};
 use simulation::model::description::Description;
 use std::sync::Arc;
 
-/// A worn place of the back head with straight flanks, one steeper than the other: a triangle, as a
-/// row of narrow hollows.
+/// Creates a worn area of the back head with an asymmetric triangular profile, composed of a row of narrow
+/// hollows.
 pub(super) fn worn_edge(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Worn {
         depth: size,
@@ -21,15 +22,15 @@ struct Worn {
     depth: f64,
     centre: f64,
     base: f64,
-    /// How far the deepest place is from the middle, in half bases.
+    /// Offset of the deepest point from the centre, in half widths of the base.
     lean: f64,
 }
 
-/// Half the number of hollows of a row.
+/// Half the number of intervals between the hollows of a row; the row has `2 HALF_ROW - 1` hollows.
 const HALF_ROW: i32 = 6;
 
 impl Worn {
-    /// The row: depth and place (deg) of each, and their reach (deg).
+    /// Returns the depth and the position (deg) of each hollow, and the width shared by all hollows (deg).
     fn row(&self) -> (Vec<(f64, f64)>, f64) {
         let half = 0.5 * self.base;
         let spacing = half / f64::from(HALF_ROW);
@@ -64,7 +65,8 @@ impl Effect for Worn {
 
 impl Law for Worn {}
 
-/// The front head's arc is out of place and out of measure, half as much.
+/// Creates a misplaced front head arc: its centre is displaced by `size` and its radius is wrong by half as
+/// much, with a drawn sign.
 pub(super) fn front_arc(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(FrontArc {
         centre: size,
@@ -87,8 +89,8 @@ impl Effect for FrontArc {
 
 impl Law for FrontArc {}
 
-/// Ice and fluid carried near both ends of the beam, a little more on one of them: inertia, and a
-/// weight out of balance.
+/// Creates ice and fluid carried near both ends of the beam, slightly uneven: additional inertia and an
+/// unbalanced weight.
 pub(super) fn carried(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Carried {
         share: size,

@@ -1,5 +1,5 @@
-//! Own laws, same effects: what the truth hides under a name changes the gauges about as the library's
-//! effect of that name does, in shape, sign and size.
+//! Comparison of hidden effects with the library: a hidden effect changes the gauge signals roughly as the
+//! library's effect with the same identifier, in shape, sign and size.
 use protocol::{case::EffectSetting, pumping_unit::PumpingUnit};
 use std::path::Path;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ fn unit() -> PumpingUnit {
     PumpingUnit::of(case).expect("the case")
 }
 
-/// The library's parameters that a drawn size and its shares stand for.
+/// Returns the parameters of the library's effect that correspond to a hidden effect.
 fn setting(hidden: &Hidden) -> EffectSetting {
     let id = hidden.kind.id;
     let own = &hidden.shape;
@@ -69,7 +69,7 @@ fn setting(hidden: &Hidden) -> EffectSetting {
     EffectSetting::new(id, &parameters)
 }
 
-/// Gauges without their means, one after the other.
+/// Returns the gauge curves without their means, concatenated.
 fn signal(turn: &Turn) -> Vec<f64> {
     let channel = |curve: &Vec<f64>| {
         let mean = curve.iter().sum::<f64>() / curve.len() as f64;
@@ -133,7 +133,7 @@ fn what_is_hidden_under_a_name_looks_like_the_effect_of_that_name() {
     }
 }
 
-/// The same machine with an effect of the library.
+/// Simulates the machine with an effect of the library.
 fn run_library(unit: &PumpingUnit, effect: &EffectSetting, values: &[f64]) -> Turn {
     use simulation::integrator::tableau::TR_BDF2;
     use simulation::run::{RunSettings, simulate};

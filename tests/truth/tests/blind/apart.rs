@@ -1,7 +1,7 @@
-//! The programs that are judged know nothing of the truth: no words of it are in them.
+//! Checks that the programs under test contain no string of this crate.
 use std::{fs, path::Path};
 
-/// What only this crate says; strings that a program keeps.
+/// Strings that only this crate contains and that remain in its compiled program.
 const WORDS: [&str; 5] = [
     "horsehead blind suite draws",
     "breakdown_over_rated_1",

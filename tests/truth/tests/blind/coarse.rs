@@ -1,4 +1,4 @@
-//! A coarse copy of the shipped machine, and sets of records made for it.
+//! Coarse copy of the shipped case, and sets of records made for it.
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -9,7 +9,7 @@ fn truth(arguments: &[&str]) -> String {
     run(Command::new(env!("CARGO_BIN_EXE_truth")).args(arguments))
 }
 
-/// Runs a program that must do well; what it printed.
+/// Runs a program, asserts that it succeeds and returns its standard output.
 pub(crate) fn run(command: &mut Command) -> String {
     let out = command
         .stderr(Stdio::inherit())
@@ -19,7 +19,8 @@ pub(crate) fn run(command: &mut Command) -> String {
     String::from_utf8(out.stdout).expect("text")
 }
 
-/// The judged program, where `cargo test --workspace` puts it and its worker: beside ours.
+/// Returns the path of the program under test, next to `truth` as `cargo test --workspace` builds it with its
+/// worker.
 fn horsehead() -> PathBuf {
     let program = Path::new(env!("CARGO_BIN_EXE_truth")).with_file_name("horsehead");
     let shown = program.display();
@@ -27,7 +28,7 @@ fn horsehead() -> PathBuf {
     program
 }
 
-/// The shipped case with fewer, longer cylinders.
+/// Copies the shipped case, with fewer and longer cylinders, into a folder.
 pub(crate) fn coarse_case(folder: &Path) -> PathBuf {
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/cyjs10-5-37hb");
     let case = folder.join("case");
@@ -53,8 +54,8 @@ pub(crate) fn coarse_case(folder: &Path) -> PathBuf {
     case
 }
 
-/// Where a calibration of the machine ended before: the optimised column of the paper's Table 3, with the
-/// axial damping of a steel rope.
+/// Coefficients from which the diagnosis starts: the optimised column of the paper's Table 3, with the axial
+/// damping of a steel rope.
 const START: &str = r#"
 kb1  = { value = 7.81e8, unit = "N/m" }
 kb23 = { value = 2.26e8, unit = "N/m" }
@@ -68,7 +69,7 @@ kc   = { value = 4.01e8, unit = "N/m^1.5" }
 cc   = { value = 1.02e3, unit = "N.s/m" }
 "#;
 
-/// What is considered of the library: pivot friction, what looks like it, and others of load, crank and
+/// Candidate effects of the diagnosis: pivot friction, one that resembles it, and others of load, crank and
 /// gauges.
 const CONSIDERED: [&str; 6] = [
     "pivot_friction",
@@ -79,7 +80,7 @@ const CONSIDERED: [&str; 6] = [
     "gauge_drift",
 ];
 
-/// All other effects of the library, as `--without` takes them.
+/// Returns all other named effects of the library, as an argument of `--without`.
 fn without() -> String {
     let library = worker::SIMULATORS[0].effects().into_iter();
     let named = library
@@ -89,7 +90,7 @@ fn without() -> String {
     others.collect::<Vec<_>>().join(",")
 }
 
-/// What to make where the saddle's friction is hidden, five times its typical size.
+/// Arguments of `truth make` for a set that hides saddle friction of five times its typical size.
 pub(crate) const FRICTION: [&str; 10] = [
     "--seed",
     "2",
@@ -103,17 +104,17 @@ pub(crate) const FRICTION: [&str; 10] = [
     "4",
 ];
 
-/// A set of records that hides something, with a case that is asked about it.
+/// Set of records in a scratch folder, with its case and its sealed answer.
 pub(crate) struct Trial {
     scratch: tempfile::TempDir,
-    /// The records.
+    /// Folder of the records.
     pub(crate) set: PathBuf,
-    /// What `truth make` commits itself to.
+    /// Commitment printed by `truth make`.
     commitment: String,
 }
 
 impl Trial {
-    /// Makes a set.
+    /// Makes a set of records with the given arguments of `truth make`.
     pub(crate) fn make(arguments: &[&str]) -> Self {
         let scratch = tempfile::tempdir().expect("a folder");
         coarse_case(scratch.path());
@@ -141,19 +142,19 @@ impl Trial {
         }
     }
 
-    /// A path in its folder.
+    /// Returns a path in the scratch folder.
     pub(crate) fn at(&self, name: &str) -> PathBuf {
         self.scratch.path().join(name)
     }
 
-    /// The judged program in its folder.
+    /// Returns a command of the program under test that runs in the scratch folder.
     pub(crate) fn horsehead(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(horsehead());
         command.args(arguments).current_dir(self.scratch.path());
         command
     }
 
-    /// One round of diagnosis of the set.
+    /// Returns the command that diagnoses the set in one round.
     pub(crate) fn diagnose(&self) -> Command {
         let mut command = self.horsehead(&["diagnose", "case", "--run", "run", "--rounds", "1"]);
         command.args(["--genes", "start.toml", "--output", "json"]);
@@ -162,7 +163,8 @@ impl Trial {
             .arg(&self.set);
         command
     }
-    /// Opens the answer beside a verdict: the table. Answers that were changed meanwhile are found out.
+    /// Opens the answers with a verdict and returns the score table. Also asserts that changed answers are
+    /// refused.
     pub(crate) fn open(&self, verdict: &str) -> String {
         let verdicts = self.at("verdicts");
         fs::create_dir(&verdicts).expect("a folder");

@@ -1,14 +1,14 @@
-//! A strong friction that is named by a diagnosis that is killed on the way, gone on with, judged, added
-//! to the case, told again and simulated: always the same numbers. One diagnosis, for it takes minutes.
+//! Diagnosis of a strong friction that is killed, resumed, judged, added to the case, reported again and
+//! simulated, with equal numbers throughout. One test with one diagnosis, since it takes minutes.
 use crate::coarse::{FRICTION, Trial, run};
 use protocol::{curve::rounded, pumping_unit::Sensor};
 use serde_json::Value;
 use std::{collections::BTreeMap, fs, path::Path, process::Stdio, thread::sleep, time::Duration};
 
-/// Results in the journal before the diagnosis is killed (bytes): far fewer than it needs.
+/// Size of the journal at which the diagnosis is killed (bytes), far less than a complete journal.
 const KILLED_AT: u64 = 500_000;
 
-/// What a diagnosis says, but for the times it took.
+/// Parses the JSON output of a diagnosis and removes the wall times.
 fn said(text: &str) -> Value {
     let mut all: Value = serde_json::from_str(text).expect("an object");
     let fields = all.as_object_mut().expect("an object");
@@ -19,7 +19,7 @@ fn said(text: &str) -> Value {
     all
 }
 
-/// What the instruments are off by, as a diagnosis says it, as effects of a case.
+/// Formats the nuisance parameters of a diagnosis as `[[effects]]` tables of a case.
 fn instruments(whole: &Value) -> String {
     let mut tables: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for own in whole["nuisances"].as_array().expect("a list") {
@@ -39,7 +39,7 @@ fn instruments(whole: &Value) -> String {
     tables.into_iter().map(table).collect()
 }
 
-/// What each gauge shows with what was found, every half degree.
+/// Reads the simulated stress of each gauge with the found effects from `curves.csv`, every half degree.
 fn after(curves: &Path, condition: &str) -> [Vec<f64>; 4] {
     let text = fs::read_to_string(curves).expect("curves");
     let mut gauges: [Vec<f64>; 4] = Default::default();

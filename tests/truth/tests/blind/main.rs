@@ -1,11 +1,11 @@
-//! The blind suite's own tests: laws that are its own and yet those of their names, programs that know
-//! nothing of it, and the whole way on a coarse machine, where records are made and sealed, diagnosed by
-//! the program, and opened.
+//! Tests of the blind suite itself: hidden effects resemble those of the same name in the library, the
+//! programs under test contain nothing of the suite, and the complete procedure (make, seal, diagnose, open)
+//! works on a coarse machine.
 //!
-//! That machine has ropes of 150 mm cylinders against a truth of 75 mm ones, and four times the noise of
-//! the full suite, which hides what that difference leaves. To take seconds, the diagnosis starts from
-//! Table 3's coefficients and considers a part of the library; the suite itself (README.md) does
-//! neither. The programs are those that `cargo test --workspace` built.
+//! The coarse case has cylinders of 150 mm against 75 mm in the truth simulation, and four times the noise of
+//! the full suite, which masks the discretisation error. To be quick, the diagnosis starts from Table 3's
+//! coefficients and considers part of the library; the suite itself (README.md) does neither. The programs
+//! are those that `cargo test --workspace` built.
 mod alike;
 mod apart;
 mod coarse;

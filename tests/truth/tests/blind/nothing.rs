@@ -1,4 +1,4 @@
-//! A record that hides nothing, and a diagnosis that says so.
+//! Record without a hidden effect, in which the diagnosis must detect nothing.
 use crate::coarse::{Trial, run};
 
 #[test]

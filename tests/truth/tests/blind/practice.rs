@@ -1,4 +1,4 @@
-//! The practice records are read as any other record of the case, and their answers belong to them.
+//! Checks that the practice records load as measured records of the case and have matching answers.
 use case::{Overrides, load};
 use serde_json::Value;
 use std::{collections::BTreeSet, fs, path::Path};

@@ -1,4 +1,4 @@
-//! Every effect there is.
+//! Catalogue of all effects.
 use super::descriptor::Descriptor;
 use super::{generic, named};
 use std::sync::LazyLock;
@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 static CATALOGUE: LazyLock<Vec<Descriptor>> =
     LazyLock::new(|| named::all().chain(generic::descriptors()).collect());
 
-/// Every effect there is: the named ones, then the generic forces.
+/// Returns the descriptors of all effects: first the named ones, then the generic forces.
 pub fn catalogue() -> &'static [Descriptor] {
     &CATALOGUE
 }

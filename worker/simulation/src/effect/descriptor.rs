@@ -1,7 +1,7 @@
-//! What an effect says of itself: its name, where it acts, and its free numbers with their units,
-//! bounds and sizes; and how it is made of their values.
+//! Descriptor of an effect: identifier, location, parameters with units, bounds and typical sizes, and the
+//! constructor from parameter values.
 //!
-//! All numbers are in the declared unit; [`Unit::to_si`] gives what the equations take.
+//! All numbers are in the declared unit; [`Unit::to_si`] converts them to the unit of the equations.
 use super::unit::Unit;
 use super::value::{Edit, Read, Values};
 use crate::model::description::Description;
@@ -13,26 +13,26 @@ use std::sync::Arc;
 /// One effect of the catalogue.
 #[derive(Clone, Debug)]
 pub struct Descriptor {
-    /// Fixed identifier.
+    /// Permanent identifier.
     pub id: Cow<'static, str>,
-    /// In words.
+    /// Title in plain words.
     pub title: Cow<'static, str>,
-    /// Joint or part of the machine that it acts at.
+    /// Joint or part of the machine at which the effect acts.
     pub joint: &'static str,
-    /// What of the model it changes.
+    /// Part of the model that the effect changes.
     pub place: Place,
-    /// Whether it is a form of force without a cause, for localisation alone.
+    /// Whether the effect is a generic force without a physical cause, used for localisation only.
     pub generic: bool,
-    /// Its free numbers.
+    /// Free parameters of the effect.
     pub parameters: Vec<Parameter>,
     build: Build,
 }
 
-/// How an effect is made of its values.
+/// Constructor of an effect from its parameter values.
 #[derive(Clone)]
 struct Build(Arc<Builder>);
 
-/// From values to the effect that has them.
+/// Function from parameter values to the effect that has them.
 type Builder = dyn Fn(&Values) -> Arc<dyn Effect> + Send + Sync;
 
 impl fmt::Debug for Build {
@@ -41,67 +41,67 @@ impl fmt::Debug for Build {
     }
 }
 
-/// What of the model an effect changes.
+/// Part of the model that an effect changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// Geometry, inertia or forces of the machine.
     Dynamics,
-    /// The motion of the crank, or where its angle is zero.
+    /// Motion of the crank, or the zero of its angle.
     Drive,
     /// The load at the suspension point.
     Load,
-    /// The chain from strain to reading.
+    /// Measuring chain from strain to gauge reading.
     Gauge,
 }
 
-/// One free number.
+/// Free parameter of an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
-    /// Name within the effect.
+    /// Name of the parameter within its effect.
     pub name: &'static str,
-    /// Unit of all its values.
+    /// Unit of the parameter's values and bounds.
     pub unit: Unit,
-    /// What it does for its effect.
+    /// Whether the parameter sets a size or a shape.
     pub role: Role,
-    /// Value at which the effect is not there; of a shape, its typical value.
+    /// Value at which the effect vanishes; for a shape, its typical value.
     pub absent: f64,
-    /// Value with which a signature is taken, and the default of a shape.
+    /// Value used to compute a signature, and the default of a shape.
     pub typical: f64,
-    /// Its physical size.
+    /// Characteristic magnitude of the parameter, used for scaling.
     pub scale: f64,
-    /// Least value.
+    /// Lower bound.
     pub lower: f64,
-    /// Greatest value.
+    /// Upper bound.
     pub upper: f64,
-    /// Whether its effect rounds it to a whole number: then nothing has a derivative by it.
+    /// Whether the effect rounds the parameter to a whole number, so that no derivative by it exists.
     pub whole: bool,
 }
 
-/// What a parameter does for its effect.
+/// Role of a parameter in its effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// At its absent value it contributes nothing.
+    /// Parameter whose contribution vanishes at its absent value.
     Size,
-    /// It forms what the sizes switch on.
+    /// Parameter that forms the contribution of the sizes.
     ///
-    /// A shape is dear: a diagnosis takes the signature of every size at six values of every shape,
-    /// so that one shape costs **six signatures per size**. It must change the *form* of what a size
-    /// does, never only how large that is: of a factor and a size no record tells more than their
-    /// product. What is a factor belongs into the size, or is a constant of the effect (a contract test
-    /// of the catalogue refuses it).
+    /// A shape is expensive: a diagnosis computes the signature of every size at six values of every shape,
+    /// so that one shape costs **six signatures per size**. A shape must change the *form* of a size's
+    /// contribution, never only its magnitude: a record determines only the product of a factor and a size. A
+    /// pure factor belongs into the size or is a constant of the effect (a contract test of the catalogue
+    /// refuses it as a shape).
     Shape,
 }
 
 impl Parameter {
-    /// Whether it can only be at or above its absent value.
+    /// Returns whether the parameter is a size that cannot fall below its absent value.
     pub fn is_one_sided(&self) -> bool {
         self.role == Role::Size && self.lower >= self.absent
     }
 }
 
 impl Descriptor {
-    /// An effect of this identifier and title that is nowhere yet and has no parameters. Those who
-    /// make one say [`Self::at`], its parameters, and last [`Self::builds`].
+    /// Creates a descriptor with an identifier and a title but without location, parameters and constructor.
+    /// Callers add [`Self::at`], the parameters, and last [`Self::builds`].
     pub(super) fn new(
         id: impl Into<Cow<'static, str>>,
         title: impl Into<Cow<'static, str>>,
@@ -117,7 +117,7 @@ impl Descriptor {
         }
     }
 
-    /// Joint or part that it acts at, and what of the model it changes.
+    /// Sets the joint or part at which the effect acts, and the part of the model that it changes.
     pub(super) fn at(self, joint: &'static str, place: Place) -> Self {
         Self {
             joint,
@@ -126,7 +126,7 @@ impl Descriptor {
         }
     }
 
-    /// A form of force without a cause.
+    /// Marks the effect as a generic force without a physical cause.
     pub(super) fn generic(self) -> Self {
         Self {
             generic: true,
@@ -134,7 +134,7 @@ impl Descriptor {
         }
     }
 
-    /// Adds a size: absent at 0. Bounds that exclude what is negative make it one-sided.
+    /// Adds a size, absent at 0. A lower bound of 0 makes it one-sided.
     pub(super) fn size(
         self,
         name: &'static str,
@@ -145,7 +145,7 @@ impl Descriptor {
         self.sizes([name], unit, typical, bounds)
     }
 
-    /// Adds sizes that are alike but for their names.
+    /// Adds sizes that differ only in their names.
     pub(super) fn sizes<const N: usize>(
         mut self,
         names: [&'static str; N],
@@ -189,7 +189,7 @@ impl Descriptor {
         self
     }
 
-    /// The parameter that was added last is rounded to a whole number.
+    /// Marks the parameter added last as rounded to a whole number.
     pub(super) fn whole(mut self) -> Self {
         if let Some(last) = self.parameters.last_mut() {
             last.whole = true;
@@ -197,7 +197,7 @@ impl Descriptor {
         self
     }
 
-    /// How it is made of its values.
+    /// Sets the constructor from parameter values.
     pub(super) fn builds<E: Effect + 'static>(
         mut self,
         build: impl Fn(&Values) -> E + Send + Sync + 'static,
@@ -206,7 +206,7 @@ impl Descriptor {
         self
     }
 
-    /// For an effect that edits the description and does nothing else: how.
+    /// Sets a function that edits the description, for an effect that does nothing else.
     pub(super) fn edits(self, edit: fn(&Values, &mut Description)) -> Self {
         self.builds(move |v| Edit {
             values: v.clone(),
@@ -214,7 +214,7 @@ impl Descriptor {
         })
     }
 
-    /// For an effect that changes single readings of the gauges and does nothing else: how.
+    /// Sets a function that changes gauge readings sample by sample, for an effect that does nothing else.
     pub(super) fn reads(self, read: fn(&Values, &Sampled, &mut [f64; 4])) -> Self {
         self.builds(move |v| Read {
             values: v.clone(),
@@ -222,20 +222,20 @@ impl Descriptor {
         })
     }
 
-    /// Position of a parameter by its name.
+    /// Returns the index of a parameter by its name.
     pub fn parameter(&self, name: &str) -> Option<usize> {
         self.parameters.iter().position(|p| p.name == name)
     }
 
-    /// The effect with a value for each parameter, in declared units and in the order of
-    /// [`Self::parameters`], be it absent or not.
+    /// Builds the effect from a value for each parameter, in declared units and in the order of
+    /// [`Self::parameters`], even if all values are absent.
     pub fn build(&self, values: &[f64]) -> Arc<dyn Effect> {
         let of = self.parameters.iter().zip(values);
         let si = of.map(|(p, value)| (p.name, p.unit.to_si(*value)));
         (self.build.0)(&Values(si.collect()))
     }
 
-    /// Whether values leave it absent: every size at its absent value.
+    /// Returns whether every size has exactly its absent value.
     pub fn is_absent(&self, values: &[f64]) -> bool {
         let mut of = self.parameters.iter().zip(values);
         #[expect(clippy::float_cmp, reason = "absent is exactly absent")]
@@ -243,7 +243,7 @@ impl Descriptor {
     }
 }
 
-/// What a descriptor builds before it is told what to build.
+/// Placeholder effect of a descriptor without a constructor.
 #[derive(Debug)]
 struct Nothing;
 

@@ -1,9 +1,9 @@
-//! Generic forces for localisation: a joint and a form of force, without a cause.
+//! Generic forces for localisation: combinations of a joint and a force law, without a physical cause.
 //!
-//! The catalogue is the product of two tables. A force of unit amplitude is a function of place
-//! `u` and rate `w`, both over their largest values in the ideal motion, and of the turn angle:
-//! constant, `sgn w` (as a steep `tanh`), `w`, `w |w|`, `u^2`, `u^3`, and cosine or sine of the first
-//! six harmonics of the crank. What depends on the motion resists it; the amplitude has either sign.
+//! The catalogue is the product of two tables. A force of unit amplitude is a function of displacement `u`
+//! and rate `w`, both relative to their largest values in the ideal motion, and of the turn angle: constant,
+//! `sgn w` (as a steep `tanh`), `w`, `w |w|`, `u^2`, `u^3`, and cosine or sine of the first six harmonics of
+//! the crank. Forces that depend on the motion resist it; the amplitude may have either sign.
 use super::descriptor::{Descriptor, Place};
 use super::unit::Unit;
 use crate::drive::DriveState;
@@ -13,18 +13,18 @@ use crate::model::hook::{Along, Axial, Effect, Hooks, LineForce, Site, Strain};
 use crate::model::strand::{BACK, FRONT};
 use std::f64::consts::TAU;
 
-/// A place where a generic force may act.
+/// Location where a generic force may act.
 #[derive(Debug)]
 struct Joint {
     name: &'static str,
     title: &'static str,
     line: Line,
     unit: Unit,
-    /// Typical amplitude.
+    /// Typical amplitude, in `unit`.
     typical: f64,
 }
 
-/// What is moved.
+/// Coordinate on which a generic force acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Line {
     Beam,
@@ -79,7 +79,7 @@ const JOINTS: [Joint; 6] = [
     },
 ];
 
-/// How a generic force depends on motion and time.
+/// Dependence of a generic force on motion and time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Form {
     Constant,
@@ -124,17 +124,18 @@ impl Form {
     fn words(self) -> String {
         match self {
             Self::Constant => "constant".to_owned(),
-            Self::SignOfRate => "by the sign of the speed".to_owned(),
-            Self::Rate => "with the speed".to_owned(),
-            Self::RateSquared => "with the square of the speed".to_owned(),
-            Self::PlaceSquared => "with the square of the displacement".to_owned(),
-            Self::PlaceCubed => "with the cube of the displacement".to_owned(),
+            Self::SignOfRate => "proportional to the sign of the speed".to_owned(),
+            Self::Rate => "proportional to the speed".to_owned(),
+            Self::RateSquared => "proportional to the square of the speed".to_owned(),
+            Self::PlaceSquared => "proportional to the square of the displacement".to_owned(),
+            Self::PlaceCubed => "proportional to the cube of the displacement".to_owned(),
             Self::Cosine(h) => format!("cosine of harmonic {h}"),
             Self::Sine(h) => format!("sine of harmonic {h}"),
         }
     }
 
-    /// Resistance of unit amplitude; energy per unit of `u`.
+    /// Computes the resistance of unit amplitude at relative displacement `u`, relative rate `w` and a turn
+    /// angle; its energy is per unit of `u`.
     fn resistance(self, u: f64, w: f64, turn: f64) -> Along {
         let mut along = Along::default();
         match self {
@@ -161,7 +162,7 @@ impl Form {
     }
 }
 
-/// Every generic force.
+/// Returns the descriptors of all generic forces.
 pub(super) fn descriptors() -> impl Iterator<Item = Descriptor> {
     JOINTS.iter().flat_map(|joint| {
         Form::all().map(move |form| {
@@ -187,7 +188,7 @@ struct Probe {
     amplitude: f64,
 }
 
-/// Middle, half range and largest rate of a motion.
+/// Middle, half range and largest rate of a coordinate in the ideal motion.
 #[derive(Clone, Copy, Debug)]
 struct Range {
     middle: f64,
@@ -195,11 +196,11 @@ struct Range {
     rate: f64,
 }
 
-/// Share of the largest rate at which three quarters of a dry friction are there.
+/// Share of the largest rate at which the regularised dry friction reaches three quarters of its full value.
 const CREEP: f64 = 0.02;
 
 impl Range {
-    /// Of a function of the turn, for a crank at `speed` [rad/s].
+    /// Computes the range of a function of the turn angle, for a crank at `speed` [rad/s].
     fn of(speed: f64, motion: impl Fn(f64) -> f64) -> Self {
         const NODES: u32 = 360;
         let at = |k: u32| motion(TAU * f64::from(k) / f64::from(NODES));
@@ -217,7 +218,7 @@ impl Range {
         }
     }
 
-    /// Resistance of an amplitude at a place and its rate.
+    /// Computes the resistance of a generic force with its amplitude, at a displacement and its rate.
     fn resistance(&self, probe: &Probe, place: f64, rate: f64, turn: f64) -> Along {
         let u = (place - self.middle) / self.reach;
         let unit = probe.form.resistance(u, rate / self.rate, turn);
@@ -326,17 +327,17 @@ impl LineForce for AlongLine {
     }
 }
 
-/// A pull along a rope; place and rate are those of the tension that the strain stands for.
+/// Generic force along a rope; displacement and rate are those of the tension that corresponds to the strain.
 ///
-/// What is not proportional to the rate goes by that of the ideal tension instead: cylinders swing
-/// against each other faster than the load stretches them, and would stick or be torn.
+/// Forms that are nonlinear in the rate use the rate of the ideal tension instead: cylinders vibrate against
+/// each other faster than the load stretches them, and would stick or be torn apart.
 #[derive(Clone, Debug)]
 struct AlongRope {
     probe: Probe,
     tension: Range,
     /// Ideal tension over the turn, up to a constant \[N\].
     slow: Splines,
-    /// Of rotation.
+    /// Sense of crank rotation, +1 or -1.
     sense: f64,
 }
 

@@ -1,13 +1,13 @@
-//! Effects that the plain model omits, one file each, and the catalogue of them.
+//! Effects that the plain model omits, one file each, and their catalogue.
 //!
-//! An effect edits the description before the machine is built ([`Effect::describe`]) or hangs
-//! pieces on the machine ([`Effect::install`]): forces, laws along a rope, a changed surface, a
-//! crank ahead of uniform rotation, links of the chain from strain to reading. **At its absent
-//! values an effect leaves every bit of a run unchanged**: it is not built at all. Effects act in
-//! the order of the catalogue, whatever order they are asked for in.
+//! An effect edits the description before the machine is built ([`Effect::describe`]) or attaches components
+//! to the machine ([`Effect::install`]): forces, laws along a rope, a changed surface, a deviation of the
+//! crank from uniform rotation, stages of the measuring chain from strain to reading. **At its absent values
+//! an effect leaves every bit of a run unchanged**: it is not built at all. Effects act in the order of the
+//! catalogue, independent of the order of the request.
 //!
-//! Equations are those of the machine's list of omitted effects; each file states its own. Nothing
-//! here knows which effect a measurement calls for. How to add one: `README.md` of this crate.
+//! Each file states its equations, which are those of the project's list of omitted effects. Nothing in this
+//! module depends on a particular measurement. How to add an effect: `README.md` of this crate.
 mod catalogue;
 mod descriptor;
 mod generic;

@@ -1,11 +1,11 @@
-//! Effects that were asked for by name, checked against the catalogue and put in its order.
+//! Selection of effects by name, checked against the catalogue and sorted into its order.
 use super::catalogue::catalogue;
 use super::descriptor::Descriptor;
 use crate::model::hook::Effect;
 use std::sync::Arc;
 
-/// An effect asked for by name, with values in declared units; what is not named stays absent
-/// (sizes) or typical (shapes).
+/// Requested effect with parameter values in declared units; omitted sizes are absent and omitted shapes
+/// typical.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Asked<'a> {
     /// Identifier of the effect.
@@ -14,62 +14,62 @@ pub struct Asked<'a> {
     pub parameters: Vec<(&'a str, f64)>,
 }
 
-/// Effects that a machine has: checked, in the order of the catalogue. An effect all of whose sizes
-/// are absent is left out, so that it cannot change a bit.
+/// Effects of a machine, checked and in the order of the catalogue. An effect whose sizes are all absent is
+/// left out, so that it cannot change a bit of the results.
 #[derive(Clone, Debug, Default)]
 pub struct Selection {
     effects: Vec<Arc<dyn Effect>>,
 }
 
-/// An effect that cannot be added; `effect` is its position among those asked for.
+/// Reason why a requested effect is refused; `effect` is its index in the request.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refused {
-    /// No effect of that name.
+    /// Unknown effect identifier.
     #[error("there is no effect `{id}`")]
     UnknownEffect {
-        /// Position.
+        /// Index of the effect in the request.
         effect: usize,
-        /// What was asked for.
+        /// Requested identifier.
         id: String,
     },
-    /// The effect has no parameter of that name.
+    /// Unknown parameter name of an effect.
     #[error("the effect `{id}` has no parameter `{name}`")]
     UnknownParameter {
-        /// Position.
+        /// Index of the effect in the request.
         effect: usize,
-        /// The effect.
+        /// Identifier of the effect.
         id: String,
-        /// What was asked for.
+        /// Requested parameter name.
         name: String,
     },
-    /// The same effect, or the same parameter, twice.
+    /// Effect or parameter that is given twice.
     #[error("`{name}` is given twice")]
     Twice {
-        /// Position.
+        /// Index of the effect in the request.
         effect: usize,
-        /// Effect or parameter.
+        /// Identifier of the effect, or `effect.parameter`.
         name: String,
     },
-    /// A value that is not a number, or not between the parameter's bounds.
+    /// Value that is not a number or outside the parameter's bounds.
     #[error("is {value}; it must lie between {lower} and {upper} {unit}")]
     OutOfBounds {
-        /// Position.
+        /// Index of the effect in the request.
         effect: usize,
-        /// The parameter.
+        /// Name of the parameter.
         name: &'static str,
-        /// Its value.
+        /// Refused value.
         value: f64,
-        /// Least value.
+        /// Lower bound.
         lower: f64,
-        /// Greatest value.
+        /// Upper bound.
         upper: f64,
-        /// Unit of all three.
+        /// Unit of the value and the bounds.
         unit: &'static str,
     },
 }
 
 impl Refused {
-    /// Position of the effect among those asked for.
+    /// Returns the index of the refused effect in the request.
     pub const fn effect(&self) -> usize {
         match self {
             Self::UnknownEffect { effect, .. }
@@ -79,7 +79,7 @@ impl Refused {
         }
     }
 
-    /// The parameter that is wrong, if it is one.
+    /// Returns the name of the refused parameter, if a single parameter is the reason.
     pub fn parameter(&self) -> Option<&str> {
         match self {
             Self::UnknownParameter { name, .. } => Some(name),
@@ -90,10 +90,10 @@ impl Refused {
 }
 
 impl Selection {
-    /// Checks what was asked for, and puts it in the order of the catalogue.
+    /// Checks the requested effects and sorts them into the order of the catalogue.
     ///
     /// # Errors
-    /// The first thing that is wrong; see [`Refused`].
+    /// The first error found; see [`Refused`].
     pub fn new(asked: &[Asked<'_>]) -> Result<Self, Refused> {
         let chosen = chosen(asked)?;
         let present = chosen.iter().filter(|one| !one.is_absent());
@@ -102,12 +102,12 @@ impl Selection {
         })
     }
 
-    /// The effects, for [`Machine::with_effects`](crate::model::Machine::with_effects).
+    /// Returns the effects, for [`Machine::with_effects`](crate::model::Machine::with_effects).
     pub fn effects(&self) -> &[Arc<dyn Effect>] {
         &self.effects
     }
 
-    /// Whether there are none.
+    /// Returns whether the selection has no effects.
     pub fn is_empty(&self) -> bool {
         self.effects.is_empty()
     }
@@ -116,38 +116,38 @@ impl Selection {
 /// An effect of the catalogue with a value for each of its parameters, in declared units.
 #[derive(Clone, Debug)]
 pub(crate) struct Chosen {
-    /// Place in the catalogue.
+    /// Index of the effect in the catalogue.
     at: usize,
     /// Values of all parameters, absent or not.
     pub(crate) values: Vec<f64>,
 }
 
 impl Chosen {
-    /// What it says of itself.
+    /// Returns the catalogue's descriptor of the effect.
     pub(crate) fn descriptor(&self) -> &'static Descriptor {
         &catalogue()[self.at]
     }
 
-    /// Place in the catalogue, which is the order in which effects act.
+    /// Returns the index in the catalogue, which is the order in which effects act.
     pub(crate) const fn place(&self) -> usize {
         self.at
     }
 
-    /// Whether its values leave it absent.
+    /// Returns whether every size has its absent value.
     pub(crate) fn is_absent(&self) -> bool {
         self.descriptor().is_absent(&self.values)
     }
 
-    /// The effect, be it absent or not.
+    /// Builds the effect, even if it is absent.
     pub(crate) fn build(&self) -> Arc<dyn Effect> {
         self.descriptor().build(&self.values)
     }
 }
 
-/// Checks what was asked for, and puts it in the order of the catalogue; what is absent stays.
+/// Checks the requested effects and sorts them into the order of the catalogue; absent effects are kept.
 ///
 /// # Errors
-/// The first thing that is wrong; see [`Refused`].
+/// The first error found; see [`Refused`].
 pub(crate) fn chosen(asked: &[Asked<'_>]) -> Result<Vec<Chosen>, Refused> {
     let mut chosen: Vec<Chosen> = Vec::new();
     for (effect, one) in asked.iter().enumerate() {
@@ -170,7 +170,7 @@ pub(crate) fn chosen(asked: &[Asked<'_>]) -> Result<Vec<Chosen>, Refused> {
     Ok(chosen)
 }
 
-/// Values of all parameters, in declared units.
+/// Returns the values of all parameters of a requested effect, in declared units.
 fn values(effect: usize, at: usize, asked: &Asked<'_>) -> Result<Vec<f64>, Refused> {
     let descriptor = &catalogue()[at];
     let mut values: Vec<f64> = descriptor.parameters.iter().map(|p| p.absent).collect();

@@ -1,9 +1,9 @@
-//! Units in which effects state their parameters, and what the equations take of them.
+//! Units of effect parameters, with their symbols and their conversion to SI.
 
-/// Units of parameters.
+/// Unit of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
-    /// A share, a ratio, a number of harmonics.
+    /// Dimensionless number: share, ratio, number of harmonics.
     One,
     /// Length.
     Metre,
@@ -15,9 +15,9 @@ pub enum Unit {
     Newton,
     /// Moment.
     NewtonMetre,
-    /// Damping of a motion along a line.
+    /// Damping coefficient of a translation.
     NewtonSecondPerMetre,
-    /// Damping of a turning motion.
+    /// Damping coefficient of a rotation.
     NewtonMetreSecondPerRadian,
     /// Compliance.
     MetrePerNewton,
@@ -27,7 +27,7 @@ pub enum Unit {
     RadianPerSecond,
     /// Frequency.
     Hertz,
-    /// Decay.
+    /// Decay rate.
     PerSecond,
     /// Mass.
     Kilogram,
@@ -44,7 +44,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// As written in tables and files.
+    /// Returns the symbol used in tables and files.
     pub const fn symbol(self) -> &'static str {
         match self {
             Self::One => "1",
@@ -69,7 +69,7 @@ impl Unit {
         }
     }
 
-    /// A value in SI, angles in radians, stress in pascals; hertz and revolutions stay.
+    /// Converts a value to SI with angles in radians and stress in pascals; hertz and revolutions are kept.
     pub const fn to_si(self, value: f64) -> f64 {
         match self {
             Self::Degree => value.to_radians(),

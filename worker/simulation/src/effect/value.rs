@@ -1,16 +1,16 @@
-//! Values of an effect's parameters, and effects that are no more than a function of them.
+//! Parameter values of an effect, and effects that consist of a single function of them.
 use crate::model::description::Description;
 use crate::model::hook::{Effect, Hooks, Reading, Sampled, Site};
 
-/// Values of an effect's parameters by name, in their order, SI.
+/// Parameter values of an effect by name, in declaration order and SI units.
 #[derive(Clone, Debug)]
 pub struct Values(pub(super) Vec<(&'static str, f64)>);
 
 impl Values {
-    /// The value of a parameter.
+    /// Returns the value of a parameter.
     ///
     /// # Panics
-    /// If the effect declares no parameter of that name: an error of the effect's own file.
+    /// If the effect declares no parameter of that name, which is an error in the effect's own file.
     #[expect(
         clippy::panic,
         reason = "a misspelt name must not become a number, in any build"
@@ -24,18 +24,18 @@ impl Values {
         *value
     }
 
-    /// The values of several parameters.
+    /// Returns the values of several parameters.
     pub fn each<const N: usize>(&self, names: [&str; N]) -> [f64; N] {
         names.map(|name| self.get(name))
     }
 
-    /// All of them, in the order of the parameters.
+    /// Returns all values in the order of the parameters.
     pub fn in_order(&self) -> impl Iterator<Item = f64> {
         self.0.iter().map(|(_, value)| *value)
     }
 }
 
-/// An effect that edits the description and does nothing else.
+/// Effect that only edits the description.
 #[derive(Clone, Debug)]
 pub(super) struct Edit {
     pub(super) values: Values,
@@ -48,7 +48,7 @@ impl Effect for Edit {
     }
 }
 
-/// An effect that changes single readings of the gauges and does nothing else.
+/// Effect that only changes gauge readings, sample by sample.
 #[derive(Clone, Debug)]
 pub(super) struct Read {
     pub(super) values: Values,

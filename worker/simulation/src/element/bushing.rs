@@ -1,26 +1,25 @@
-//! Six-component bushing between marker I and marker J (paper, Eqs. 1 and 2; its Eq. 3, the stiffness
-//! of a joint from the rope's material, is the case reader's).
+//! Six-component bushing between marker I and marker J (paper, Eqs. 1 and 2; the case reader implements its
+//! Eq. 3, the stiffness of a joint from the rope's material).
 //!
-//! In the frame of J with x along its axis `e`, the force and torque on I are
-//! `F = -K R - C V + F_0`, `T = -K Theta - C w` with `K_22 = K_33` and `K_55 = K_66`. Eq. 1 prints `K`
-//! without the minus sign that it gives `C`: a spring of that sign would drive its ends apart, so it
-//! is taken for a misprint and restored here. That isotropy
-//! across the axis means that only `e` is needed of J's frame, and the law can be written in
+//! In the frame of J with x along its axis `e`, the force and torque on I are `F = -K R - C V + F_0`, `T = -K
+//! Theta - C w` with `K_22 = K_33` and `K_55 = K_66`. Eq. 1 prints `K` without the minus sign that `C` has: a
+//! spring of that sign would drive its ends apart, so this is taken for a misprint and corrected here.
+//! Because of the isotropy across the axis, only `e` is needed of J's frame, and the law can be written in
 //! world axes:
 //!
-//! `F_I = -[k2 d + c2 V + e (f0 + (k1 - k2) e.d + (c1 - c2) e.V)]`, `d = r_I - r_J`,
-//! `V = v_I - v_J - w_J x d`, and the same for the torque with the rotation vector `Theta` and
-//! `w = w_I - w_J`. On J acts `F_J = -F_I`, `T_J = -T_I - d x F_I` (Eq. 2). Of Eq. 1's six preloads
-//! one is left, the tension `f0` along the axis: shear and bending ones would point in a direction
-//! across the rope, which has none, and a torque would turn cylinders out of the plane of a single
-//! rope, where nothing holds them (two ropes of opposite lay balance it).
+//! `F_I = -[k2 d + c2 V + e (f0 + (k1 - k2) e.d + (c1 - c2) e.V)]`, `d = r_I - r_J`, `V = v_I - v_J - w_J x
+//! d`, and the same for the torque with the rotation vector `Theta` and `w = w_I - w_J`. On J acts `F_J =
+//! -F_I`, `T_J = -T_I - d x F_I` (Eq. 2). Of Eq. 1's six preloads only the tension `f0` along the axis is
+//! kept: preloads in shear and bending need a preferred direction across the rope, which has none, and a
+//! torque would turn cylinders out of the plane of a single rope, where nothing holds them (two ropes of
+//! opposite lay balance it).
 use crate::math::rotation::{inverse_left_jacobian, rotation_vector, skew};
 use nalgebra::{Matrix3, Vector3};
 
 type V3 = Vector3<f64>;
 type M3 = Matrix3<f64>;
 
-/// Coefficients of a transversely isotropic bushing, SI, angles in radians.
+/// Coefficients of a transversely isotropic bushing, in SI units with angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bushing {
     /// Axial and shear stiffness `K_11`, `K_22 = K_33` [N/m].
@@ -31,22 +30,22 @@ pub struct Bushing {
     pub rotational_stiffness: [f64; 2],
     /// Torsional and bending damping `C_44`, `C_55 = C_66` [N m s/rad].
     pub rotational_damping: [f64; 2],
-    /// Preload: the pull at no deformation, positive where it draws the markers together \[N\].
+    /// Axial preload: the tension at zero extension, positive where it draws the markers together \[N\].
     pub preload: f64,
 }
 
-/// A marker: a frame fixed on a body, and the motion of that body.
+/// Marker: a frame fixed on a body, with the motion of that body.
 #[derive(Clone, Copy, Debug)]
 pub struct Marker {
-    /// Reference point of the body in W \[m\].
+    /// Position of the body's reference point in W \[m\].
     pub p: V3,
-    /// From there to the marker, in W \[m\].
+    /// Vector from the reference point to the marker, in W \[m\].
     pub rho: V3,
     /// Velocity of the reference point [m/s].
     pub v: V3,
     /// Angular velocity of the body, in W [rad/s].
     pub w: V3,
-    /// Orientation of the marker.
+    /// Orientation of the marker: rotation matrix whose columns are its axes in W.
     pub R: M3,
 }
 
@@ -60,10 +59,10 @@ impl Marker {
     }
 }
 
-/// Force and torque of a link on both bodies, torques about the bodies' reference points, in W.
+/// Force and torques of a link on its two bodies in W; torques about the bodies' reference points.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkLoad {
-    /// Force on body I \[N\]; body J feels the opposite.
+    /// Force on body I \[N\]; the opposite force acts on body J.
     pub force: V3,
     /// Torque on body I [N m].
     pub torque_i: V3,
@@ -71,12 +70,12 @@ pub struct LinkLoad {
     pub torque_j: V3,
     /// Component of the force along J's axis; negative where the link pulls \[N\].
     pub axial: f64,
-    /// Power that the damping takes \[W\].
+    /// Power dissipated by the damping \[W\].
     pub dissipated: f64,
 }
 
 impl LinkLoad {
-    /// No load.
+    /// Returns zero load.
     pub fn none() -> Self {
         Self {
             force: V3::zeros(),
@@ -88,12 +87,12 @@ impl LinkLoad {
     }
 }
 
-/// A pull along the axis of J beside that of a bushing.
+/// Additional tension along the axis of J, besides that of a bushing.
 #[derive(Clone, Copy, Debug)]
 pub struct Pull {
     /// Force, positive where it draws the markers together \[N\].
     pub force: f64,
-    /// Power that it takes out \[W\].
+    /// Dissipated power \[W\].
     pub dissipated: f64,
     /// Derivative of the force by the extension [N/m].
     pub by_extension: f64,
@@ -103,21 +102,22 @@ pub struct Pull {
 
 /// Derivatives of a [`LinkLoad`] by the motion of one body.
 ///
-/// Rows: force, torque on I, torque on J. Columns: displacement `p`, velocity `v`, rotation `a`,
-/// angular velocity `w` of the body, all in W.
+/// Each field holds three matrices: force, torque on I, torque on J. The fields differentiate by displacement
+/// `p`, velocity `v`, rotation `a` and angular velocity `w` of the body, all in W.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkTangent {
-    /// By displacement of the reference point.
+    /// Derivatives by the displacement of the reference point.
     pub p: [M3; 3],
-    /// By its velocity.
+    /// Derivatives by the velocity of the reference point.
     pub v: [M3; 3],
-    /// By a further rotation of the body.
+    /// Derivatives by a rotation of the body.
     pub a: [M3; 3],
-    /// By its angular velocity.
+    /// Derivatives by the angular velocity of the body.
     pub w: [M3; 3],
 }
 
-/// What load and tangent share.
+/// Relative position, velocity, rotation and angular velocity of the two markers, used by both load and
+/// tangent.
 struct Deformation {
     e: V3,
     d: V3,
@@ -127,7 +127,7 @@ struct Deformation {
 }
 
 impl Bushing {
-    /// The same bushing with every stiffness and damping multiplied, under the same preload.
+    /// Returns the bushing with every stiffness and damping multiplied by `factor`, under the same preload.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
@@ -139,18 +139,18 @@ impl Bushing {
         }
     }
 
-    /// Pull along the axis at an extension at rest \[N\].
+    /// Returns the static tension at an extension along the axis \[N\].
     pub fn pull_at(&self, extension: f64) -> f64 {
         extension * self.stiffness[0] + self.preload
     }
 
-    /// Extension along the axis under a tension at rest \[m\].
+    /// Returns the static extension under a tension along the axis \[m\].
     pub fn stretch(&self, tension: f64) -> f64 {
         (tension - self.preload) / self.stiffness[0]
     }
 
-    /// A revolute joint of the same axial coefficients: equally stiff in every direction, free to
-    /// turn.
+    /// Returns a revolute joint with this bushing's axial coefficients: equally stiff in every direction,
+    /// free to rotate.
     #[must_use]
     pub fn revolute(&self) -> Self {
         Self {
@@ -162,9 +162,9 @@ impl Bushing {
         }
     }
 
-    /// A pin of the same axial coefficients, for markers whose axes are the pin's: equally stiff in
-    /// every direction, free to turn about the axis, held against other turns as the joint holds
-    /// against bending.
+    /// Returns a pin joint with this bushing's axial coefficients, for markers whose axes are the pin's:
+    /// equally stiff in every direction, free to rotate about the axis, and with the bending stiffness about
+    /// the other axes.
     #[must_use]
     pub fn pinned(&self) -> Self {
         Self {
@@ -198,7 +198,7 @@ impl Bushing {
         }
     }
 
-    /// Force and torques at a motion.
+    /// Computes force and torques for the motion of both markers.
     #[inline]
     pub fn load(&self, i: &Marker, j: &Marker) -> LinkLoad {
         let [k1, k2] = self.stiffness;
@@ -219,13 +219,13 @@ impl Bushing {
         }
     }
 
-    /// Extension along the axis \[m\] and its rate [m/s].
+    /// Computes the extension along the axis \[m\] and its rate [m/s].
     pub fn extension(&self, i: &Marker, j: &Marker) -> [f64; 2] {
         let Deformation { e, d, V, .. } = self.deformation(i, j);
         [e.dot(&d), e.dot(&V)]
     }
 
-    /// Adds a further pull to a load.
+    /// Adds an additional axial tension to a load.
     pub fn add_pull(&self, (i, j): (&Marker, &Marker), pull: &Pull, load: &mut LinkLoad) {
         let Deformation { e, d, .. } = self.deformation(i, j);
         let force = e * -pull.force;
@@ -236,7 +236,7 @@ impl Bushing {
         load.dissipated += pull.dissipated;
     }
 
-    /// Stored energy \[J\]. Exact while torsion and bending do not mix (planar motion).
+    /// Computes the stored energy \[J\], exact while torsion and bending do not mix (planar motion).
     pub fn energy(&self, i: &Marker, j: &Marker) -> f64 {
         let [k1, k2] = self.stiffness;
         let [k4, k5] = self.rotational_stiffness;
@@ -247,12 +247,13 @@ impl Bushing {
             + 0.5 * (k5 * theta.norm_squared() + (k4 - k5) * twist * twist)
     }
 
-    /// Derivatives of [`Self::load`] by the motion of I and of J.
+    /// Computes the derivatives of [`Self::load`] by the motion of I and of J.
     pub fn tangent(&self, i: &Marker, j: &Marker, load: &LinkLoad) -> [LinkTangent; 2] {
         self.tangent_with(i, j, load, None)
     }
 
-    /// The same with a further pull, which `load` contains.
+    /// Computes the derivatives of a load by the motion of I and of J, including an additional tension that
+    /// `load` already contains.
     pub fn tangent_with(
         &self,
         i: &Marker,

@@ -1,4 +1,5 @@
-//! What the joints of a rope must keep.
+//! Contract tests of the joints of a rope: tangent, action and reaction, power balance, independence of the
+//! frame.
 use super::bushing::{Bushing, LinkLoad, Marker, Pull};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -9,7 +10,7 @@ fn rotation(theta: &V3) -> M3 {
     Rotation3::new(*theta).into_inner()
 }
 
-/// Pairs of markers in lopsided motion.
+/// Returns pairs of markers in motion without any symmetry.
 fn motions() -> Vec<[Marker; 2]> {
     let marker = |s: f64, depth: f64| Marker {
         p: V3::new(0.3 + s - depth, -0.2 * s, 0.5),
@@ -22,7 +23,8 @@ fn motions() -> Vec<[Marker; 2]> {
     pairs.to_vec()
 }
 
-/// Moves a marker's body: the marker is fixed on it, so arm and frame turn along.
+/// Changes one component of the motion of a marker's body by `h`; a rotation also turns the marker's arm and
+/// frame.
 fn moved(m: &Marker, kind: usize, k: usize, h: f64) -> Marker {
     let mut d = V3::zeros();
     d[k] = h;
@@ -48,8 +50,8 @@ const BUSHING: Bushing = Bushing {
     preload: 0.35,
 };
 
-/// The joints of a rope: between two cylinders, at its ends, and one that is alike all round in its
-/// turning, as are those whose forces at rest derive exactly from their energy.
+/// Returns the joints of a rope: between two cylinders, at a rope's ends, and one with equal torsional and
+/// bending stiffness, for which the static forces derive exactly from the energy.
 fn joints() -> [(&'static str, Bushing); 4] {
     let round = Bushing {
         rotational_stiffness: [2.3; 2],
@@ -63,7 +65,7 @@ fn joints() -> [(&'static str, Bushing); 4] {
     ]
 }
 
-/// Calls `check` for every joint that `of` wants, in every motion.
+/// Calls `check` in every motion for every joint that `of` selects.
 fn each(of: impl Fn(&Bushing) -> bool, check: impl Fn(&str, &Bushing, &[Marker; 2])) {
     let mut checked = 0;
     for (name, joint) in joints() {
@@ -81,7 +83,7 @@ fn each(of: impl Fn(&Bushing) -> bool, check: impl Fn(&str, &Bushing, &[Marker; 
     assert!(checked > 1);
 }
 
-/// All 24 inputs against central differences.
+/// Checks the tangent against central differences in all 24 inputs.
 #[test]
 fn tangent_is_the_derivative_of_the_load() {
     let rows = |l: LinkLoad| [l.force, l.torque_i, l.torque_j];
@@ -115,7 +117,8 @@ fn tangent_is_the_derivative_of_the_load() {
     );
 }
 
-/// `F_J = -F_I` is in the load's form; moments about the origin vanish: `T_J = -T_I - d x F_I`.
+/// Checks that the total moment about the origin vanishes, `T_J = -T_I - d x F_I`; `F_J = -F_I` holds by the
+/// definition of the load.
 #[test]
 fn moments_of_action_and_reaction_vanish() {
     each(
@@ -128,7 +131,7 @@ fn moments_of_action_and_reaction_vanish() {
     );
 }
 
-/// `dE/dt = -(power of the forces) - dissipation`, and damping takes.
+/// Checks the power balance `dE/dt = -(power of the forces) - dissipation`, and that damping dissipates.
 #[test]
 fn power_goes_into_energy_or_is_lost() {
     each(
@@ -155,7 +158,8 @@ fn power_goes_into_energy_or_is_lost() {
     );
 }
 
-/// Loads turn with the world and do not know its origin; axial force, losses and energy stay.
+/// Checks that loads rotate with the frame and are independent of its origin, and that axial force,
+/// dissipation and energy are invariant.
 #[test]
 fn nothing_depends_on_the_frame() {
     let turn = rotation(&V3::new(0.7, -1.3, 2.1));
@@ -186,7 +190,7 @@ fn nothing_depends_on_the_frame() {
     );
 }
 
-/// A pull `7 x^2 + 2 x' x` along the axis of a bushing, its tangent against differences.
+/// Checks the tangent with an additional tension `7 x^2 + 2 x' x` along the axis against differences.
 #[test]
 fn a_further_pull_has_its_tangent() {
     let element = BUSHING;

@@ -1,12 +1,13 @@
-//! IMPACT: one-sided contact with a power-law spring and a damper that is ramped in (paper,
-//! Eqs. 4 and 6).
+//! IMPACT: one-sided contact with a power-law spring and a damper whose coefficient grows with penetration
+//! (paper, Eqs. 4 and 6).
 //!
 //! `f = max(0, K d^n + STEP(d, 0, 0, d_max, C) d')` for penetration `d > 0`: the force never pulls. The
-//! paper's Eq. 4 has no `max(0, ..)` and would pull a rope that leaves its arc fast; `IMPACT` of the
-//! program that it used cuts the force off so, and the power balance has what is lost by it.
+//! paper's Eq. 4 has no `max(0, ..)` and would pull a rope that leaves its arc fast; the `IMPACT` function of
+//! the program used for the paper cuts the force off in the same way, and the power balance accounts for the
+//! energy lost by it.
 use crate::math::elementary::power_law;
 
-/// Coefficients of a contact, SI.
+/// Coefficients of a contact, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
     /// Spring coefficient K [N/m^n].
@@ -15,38 +16,39 @@ pub struct Impact {
     pub exponent: f64,
     /// Largest damping C [N s/m].
     pub damping: f64,
-    /// Penetration at which the damping is fully there, `d_max` \[m\].
+    /// Penetration from which the full damping acts, `d_max` \[m\].
     pub full_damping_penetration: f64,
 }
 
 /// Contact force and its derivatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImpactForce {
-    /// Force that pushes apart, never negative \[N\].
+    /// Repulsive force, never negative \[N\].
     pub force: f64,
-    /// Derivative by the penetration [N/m].
+    /// Derivative of the force by the penetration [N/m].
     pub by_penetration: f64,
-    /// Derivative by its rate [N s/m].
+    /// Derivative of the force by the penetration rate [N s/m].
     pub by_rate: f64,
-    /// Power that the damping takes \[W\]; negative on rebound only while the spring exceeds it.
+    /// Power dissipated by the damping \[W\]; on a rebound fast enough to cut the force off, the power that
+    /// the spring loses.
     pub dissipated: f64,
 }
 
-/// What the law says at one place.
+/// Intermediate results of the contact law at one penetration and rate.
 #[derive(Clone, Copy)]
 struct Pressed {
-    /// Force that pushes, never negative, and the power that the damping takes.
+    /// Repulsive force, never negative \[N\]; `lost` is the dissipated power \[W\].
     force: f64,
     lost: f64,
-    /// The spring's part of the force.
+    /// Part of the force from the spring.
     spring: f64,
-    /// Share of the damping that is there, and its derivative by the penetration.
+    /// Share of the damping coefficient that acts; `slope` is its derivative by the penetration.
     step: f64,
     slope: f64,
 }
 
 impl ImpactForce {
-    /// A share of it.
+    /// Returns the force, its derivatives and the dissipation multiplied by `share`.
     #[must_use]
     pub fn share(self, share: f64) -> Self {
         Self {
@@ -58,7 +60,7 @@ impl ImpactForce {
     }
 }
 
-/// What a contact force has a closed derivative by.
+/// Quantity by which the contact force has a closed-form derivative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum By {
     Stiffness,
@@ -67,8 +69,8 @@ pub(crate) enum By {
 }
 
 impl Impact {
-    /// The law at one place, without branches: where there is no contact, the penetration counts as
-    /// zero. `power` is the penetration to the law's exponent.
+    /// Evaluates the law at one penetration and rate without branches; without contact the penetration is
+    /// taken as zero. `power` raises the penetration to the law's exponent.
     #[expect(
         clippy::inline_always,
         reason = "loops over many places become vectors; what they do not ask for is never computed"
@@ -93,7 +95,7 @@ impl Impact {
         }
     }
 
-    /// Derivative of the force by one of what it depends on; zero where nothing is pressed.
+    /// Computes the derivative of the force by one quantity; zero without a force.
     pub(crate) fn derivative(&self, depth: f64, rate: f64, by: By) -> f64 {
         match by {
             By::Stiffness => self.force_by(depth, rate)[0],
@@ -102,7 +104,7 @@ impl Impact {
         }
     }
 
-    /// Derivatives of the force by stiffness and by damping; zero where nothing is pressed.
+    /// Computes the derivatives of the force by stiffness and by damping; zero without a force.
     pub fn force_by(&self, depth: f64, rate: f64) -> [f64; 2] {
         #[expect(clippy::float_cmp, reason = "selects the exact special case")]
         let root = self.exponent == 1.5;
@@ -119,8 +121,8 @@ impl Impact {
         }
     }
 
-    /// Force \[N\] and power that the damping takes \[W\] at many penetrations \[m\] and their rates
-    /// [m/s]: what [`Self::force`] gives one by one, to the bit.
+    /// Computes force \[N\] and dissipated power \[W\] at many penetrations \[m\] and rates [m/s], with the
+    /// same bits as [`Self::force`].
     pub fn push_all(&self, [depth, rate]: [&[f64]; 2], [force, lost]: [&mut [f64]; 2]) {
         let n = depth.len();
         let (rate, force, lost) = (&rate[..n], &mut force[..n], &mut lost[..n]);
@@ -146,7 +148,7 @@ impl Impact {
         }
     }
 
-    /// Force at penetration `depth` \[m\] and rate `rate` [m/s] with its derivatives.
+    /// Computes the force at penetration `depth` \[m\] and rate `rate` [m/s] with its derivatives.
     #[inline]
     pub fn force(&self, depth: f64, rate: f64) -> ImpactForce {
         let at = self.pressed(depth, rate, |x| power_law(x, self.exponent));
@@ -164,7 +166,7 @@ impl Impact {
         }
     }
 
-    /// Energy stored at penetration `depth` \[J\].
+    /// Computes the energy stored at penetration `depth` \[J\].
     pub fn energy(&self, depth: f64) -> f64 {
         if depth <= 0.0 {
             return 0.0;
@@ -172,7 +174,7 @@ impl Impact {
         self.stiffness * power_law(depth, self.exponent) * depth / (self.exponent + 1.0)
     }
 
-    /// Penetration at which the spring alone carries `force` \[m\].
+    /// Computes the penetration at which the spring alone carries `force` \[m\].
     pub fn depth_under(&self, force: f64) -> f64 {
         crate::math::elementary::powf(force.max(0.0) / self.stiffness, 1.0 / self.exponent)
     }

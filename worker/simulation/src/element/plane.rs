@@ -1,35 +1,36 @@
-//! The bushing between markers that move in one plane: the same law with what vanishes left out.
+//! Planar bushing: the law of [`Bushing`] between markers that move in one plane, without the vanishing
+//! terms.
 //!
-//! All axes lie in the plane and all rotations are about its normal, so that a force has two
-//! components, a torque one, and the rotation vector is a difference of angles. Torsion does not
-//! occur: `K_44` and `C_44` have no part in it.
+//! All axes lie in the plane and all rotations are about its normal, so that a force has two components, a
+//! torque one, and the rotation vector is a difference of angles. Torsion does not occur: `K_44` and `C_44`
+//! have no influence.
 use super::bushing::{Bushing, Pull};
 use nalgebra::Vector2;
 use std::f64::consts::{PI, TAU};
 
 type V2 = Vector2<f64>;
 
-/// A frame fixed on a body, and the motion of that body, in the plane.
+/// Planar marker: a frame fixed on a body, with the motion of that body.
 #[derive(Clone, Copy, Debug)]
 pub struct PlaneMarker {
-    /// Reference point of the body \[m\].
+    /// Position of the body's reference point \[m\].
     pub p: V2,
-    /// From there to the marker \[m\].
+    /// Vector from the reference point to the marker \[m\].
     pub rho: V2,
     /// Velocity of the reference point [m/s].
     pub v: V2,
     /// Angular velocity of the body [rad/s].
     pub w: f64,
-    /// Direction of the marker's axis, and its angle from +x \[rad\].
+    /// Unit vector along the marker's axis.
     pub axis: V2,
-    /// Angle of the axis \[rad\].
+    /// Angle of the marker's axis from +x \[rad\].
     pub angle: f64,
 }
 
-/// Force and torque of a link on both bodies, torques about the bodies' reference points.
+/// Planar force and torques of a link on its two bodies; torques about the bodies' reference points.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlaneLoad {
-    /// Force on body I \[N\]; body J feels the opposite.
+    /// Force on body I \[N\]; the opposite force acts on body J.
     pub force: V2,
     /// Torque on body I [N m].
     pub torque_i: f64,
@@ -37,39 +38,39 @@ pub struct PlaneLoad {
     pub torque_j: f64,
     /// Component of the force along J's axis; negative where the link pulls \[N\].
     pub axial: f64,
-    /// Power that the damping takes \[W\].
+    /// Power dissipated by the damping \[W\].
     pub dissipated: f64,
 }
 
-/// Coefficients that a joint in the plane asks for, its preload among them.
+/// Number of coefficients of a planar joint: stiffnesses, dampings and the preload.
 pub const PLANE_UNITS: usize = 7;
-/// Which of them is the preload: a pull along the axis.
+/// Index of the preload (tension along the axis) among the coefficients of a planar joint.
 pub const PLANE_PULL: usize = 6;
 
 /// Derivatives of force, torque on I and torque on J by one coordinate.
 #[derive(Clone, Copy, Debug)]
 pub struct PlaneColumn {
-    /// Of the force on I.
+    /// Derivative of the force on I.
     pub force: V2,
-    /// Of the torque on I.
+    /// Derivative of the torque on I.
     pub torque_i: f64,
-    /// Of the torque on J.
+    /// Derivative of the torque on J.
     pub torque_j: f64,
 }
 
-/// `z x r`.
+/// Computes `z x r`, the vector rotated by +90 degrees.
 #[inline]
 fn across(r: &V2) -> V2 {
     V2::new(-r.y, r.x)
 }
 
-/// The z component of `a x b`.
+/// Computes the z component of `a x b`.
 #[inline]
 fn moment(a: &V2, b: &V2) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// Difference of two angles, within half a turn \[rad\].
+/// Computes the difference of two angles, reduced to half a turn \[rad\].
 #[inline]
 fn turned(i: f64, j: f64) -> f64 {
     let turn = i - j;
@@ -80,7 +81,7 @@ fn turned(i: f64, j: f64) -> f64 {
     }
 }
 
-/// What load and tangent share: distance, its rate in J's frame, turn and its rate.
+/// Relative position, its rate in J's frame, relative angle and its rate, used by both load and tangent.
 struct Deformation {
     d: V2,
     V: V2,
@@ -111,7 +112,7 @@ impl PlaneColumn {
 }
 
 impl PlaneLoad {
-    /// Adds a further pull between two markers.
+    /// Adds an additional axial tension between two markers.
     #[inline]
     pub fn add_pull(&mut self, (i, j): (&PlaneMarker, &PlaneMarker), pull: &Pull) {
         let Deformation { d, .. } = deformation(i, j);
@@ -129,7 +130,7 @@ impl PlaneLoad {
     reason = "the law in the plane is a file of its own"
 )]
 impl Bushing {
-    /// [`Self::load`] of a motion in the plane.
+    /// Computes [`Self::load`] for planar motion.
     #[inline]
     pub fn plane_load(&self, i: &PlaneMarker, j: &PlaneMarker) -> PlaneLoad {
         let [k1, k2] = self.stiffness;
@@ -150,14 +151,14 @@ impl Bushing {
         }
     }
 
-    /// [`Self::extension`] of a motion in the plane: along the axis \[m\], and its rate [m/s].
+    /// Computes [`Self::extension`] for planar motion: extension along the axis \[m\] and its rate [m/s].
     #[inline]
     pub fn plane_extension(&self, i: &PlaneMarker, j: &PlaneMarker) -> [f64; 2] {
         let Deformation { d, V, .. } = deformation(i, j);
         [j.axis.dot(&d), j.axis.dot(&V)]
     }
 
-    /// [`Self::energy`] of a motion in the plane \[J\].
+    /// Computes [`Self::energy`] for planar motion \[J\].
     pub fn plane_energy(&self, i: &PlaneMarker, j: &PlaneMarker) -> f64 {
         let [k1, k2] = self.stiffness;
         let Deformation { d, theta, .. } = deformation(i, j);
@@ -167,8 +168,9 @@ impl Bushing {
             + 0.5 * self.rotational_stiffness[1] * theta * theta
     }
 
-    /// Derivatives of [`Self::plane_load`] by x, y and angle of I and of J, whose rates change
-    /// `gamma` times as much; with a further pull, which `force` contains.
+    /// Computes the derivatives of [`Self::plane_load`] by x, y and angle of I and of J, where each rate
+    /// changes `gamma` times as much as its coordinate; includes an additional tension that `force` already
+    /// contains.
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
     pub fn plane_tangent(
@@ -224,7 +226,7 @@ impl Bushing {
         ]
     }
 
-    /// The same without what rates change, then with it, of both at once.
+    /// Computes [`Self::plane_tangent`] for `gamma = 0` and for the given `gamma` at once.
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
     pub fn plane_tangents(
@@ -280,15 +282,16 @@ impl Bushing {
         [columns(by_place, k5), columns(whole, k5 + gamma * c5)]
     }
 
-    /// The coefficients that [`Self::plane_units`] are multiplied by.
+    /// Returns the coefficients by which [`Self::plane_units`] are multiplied.
     pub const fn plane_coefficients(&self) -> [f64; PLANE_UNITS] {
         let ([k1, k2], [c1, c2]) = (self.stiffness, self.damping);
         let [[_, k5], [_, c5]] = [self.rotational_stiffness, self.rotational_damping];
         [k1, k2, k5, c1, c2, c5, self.preload]
     }
 
-    /// What a joint does per unit of `K_11`, `K_22`, `K_55`, `C_11`, `C_22`, `C_55` and preload to the
-    /// coordinates of J, then to those of I: forces are linear in them.
+    /// Computes the generalised forces of a joint per unit of `K_11`, `K_22`, `K_55`, `C_11`, `C_22`, `C_55`
+    /// and preload, first on the three coordinates of J, then on those of I: forces are linear in the
+    /// coefficients.
     #[inline]
     pub fn plane_units((i, j): (&PlaneMarker, &PlaneMarker)) -> [[f64; PLANE_UNITS]; 6] {
         let Deformation { d, V, theta, w } = deformation(i, j);

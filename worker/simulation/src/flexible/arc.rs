@@ -1,8 +1,8 @@
-//! The rope arc: what a rope at an angle feels of a displacement field, averaged over the width.
+//! Rope arc: the displacement of the rim below a rope at an angle, averaged over the width.
 //!
-//! At an angle psi about the arc's centre the rope crosses the rim along a line of constant psi.
-//! Every face that the line crosses is cut from edge to edge, with the face's own shape functions.
-//! The same weights spread a force over the rim. Knows nothing of ropes or modes.
+//! At an angle psi about the arc's centre the rope crosses the rim along a line of constant psi. Every face
+//! crossed by the line is cut from edge to edge, with the face's own shape functions. The same weights
+//! distribute a force over the rim. Independent of ropes and modes.
 use super::{
     element::{Crossing, Cut},
     error::ReductionError,
@@ -11,16 +11,16 @@ use super::{
 use crate::math::elementary::{atan2, sin_cos};
 use std::collections::BTreeMap;
 
-/// Weights of nodes at one station, summing to 1.
+/// Station on the rim: an angle, its directions, and nodal weights that sum to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Station {
     /// Angle about the arc's centre \[rad\].
     pub(super) psi: f64,
-    /// Outward radial direction.
+    /// Unit vector of the outward radial direction.
     pub(super) radial: [f64; 2],
-    /// Direction of increasing psi.
+    /// Unit vector of the direction of increasing psi.
     pub(super) tangential: [f64; 2],
-    /// Nodes and their weights.
+    /// Node indices with their weights.
     pub(super) weights: Vec<(usize, f64)>,
 }
 
@@ -35,7 +35,7 @@ impl Station {
         }
     }
 
-    /// Mean displacement \[m\] along `direction` in the plane.
+    /// Computes the mean displacement \[m\] along `direction` in the plane.
     pub(super) fn mean(&self, field: &[[f64; 3]], direction: [f64; 2]) -> f64 {
         let along = |u: &[f64; 3]| u[0] * direction[0] + u[1] * direction[1];
         self.weights
@@ -44,20 +44,20 @@ impl Station {
             .sum()
     }
 
-    /// Mean displacement \[m\] along z.
+    /// Computes the mean displacement \[m\] along z.
     pub(super) fn mean_along_z(&self, field: &[[f64; 3]]) -> f64 {
         let weights = self.weights.iter();
         weights.map(|&(node, weight)| weight * field[node][2]).sum()
     }
 
-    /// A force \[N\] along `direction` over the width, as forces on all nodes.
+    /// Distributes a force \[N\] along `direction` over the width, as forces on all nodes.
     pub(super) fn force(&self, nodes: usize, direction: [f64; 2], size: f64) -> Vec<[f64; 3]> {
         let mut forces = vec![[0.0; 3]; nodes];
         self.add_force(&mut forces, direction, size);
         forces
     }
 
-    /// Adds such a force.
+    /// Adds a force \[N\] along `direction`, distributed over the width, to nodal forces.
     pub(super) fn add_force(&self, forces: &mut [[f64; 3]], direction: [f64; 2], size: f64) {
         for &(node, weight) in &self.weights {
             forces[node][0] += size * weight * direction[0];
@@ -66,17 +66,17 @@ impl Station {
     }
 }
 
-/// The rim of a mesh, seen from the arc's centre.
+/// Rim of a mesh in polar angles about the arc's centre.
 #[derive(Clone, Debug)]
 pub(super) struct Rim<'a> {
     mesh: &'a Mesh,
-    /// Angle of every node of the rim \[rad\], 0 to 2 pi.
+    /// Angle of every rim node by its index \[rad\], 0 to 2 pi.
     angles: BTreeMap<usize, f64>,
     span: [f64; 2],
 }
 
 impl<'a> Rim<'a> {
-    /// The rim of a mesh about a centre \[m\]. It must not cross the positive x direction.
+    /// Creates the rim of a mesh about a centre \[m\]. The rim must not cross the positive x direction.
     pub(super) fn new(mesh: &'a Mesh, center: [f64; 2]) -> Self {
         let mut span = [f64::INFINITY, f64::NEG_INFINITY];
         let mut angles = BTreeMap::new();
@@ -89,10 +89,10 @@ impl<'a> Rim<'a> {
         Self { mesh, angles, span }
     }
 
-    /// The station at an angle \[rad\].
+    /// Computes the station at an angle \[rad\], averaged over the width.
     ///
     /// # Errors
-    /// [`ReductionError::Station`] if the rim does not reach it.
+    /// [`ReductionError::Station`] if the rim does not reach the angle.
     pub(super) fn station(&self, psi: f64) -> Result<Station, ReductionError> {
         let at = self.within(psi)?;
         let mut weights = BTreeMap::new();
@@ -113,10 +113,10 @@ impl<'a> Rim<'a> {
         ))
     }
 
-    /// The one point of the station at an angle \[rad\] that lies at a height z \[m\].
+    /// Computes the single point at an angle \[rad\] and a height z \[m\], as a station.
     ///
     /// # Errors
-    /// As [`Self::station`]; [`ReductionError::Beside`] if the rim is not so wide.
+    /// As [`Self::station`]; [`ReductionError::Beside`] if the rim is narrower than z.
     pub(super) fn station_beside(&self, psi: f64, z: f64) -> Result<Station, ReductionError> {
         let at = self.within(psi)?;
         let spans = |cut: &Cut| {
@@ -134,7 +134,7 @@ impl<'a> Rim<'a> {
         Ok(Station::new(psi, weights.into_iter()))
     }
 
-    /// An angle within the rim; an end that a rounding error puts outside is still the end.
+    /// Clamps an angle to the rim; accepts an angle outside by a rounding error.
     fn within(&self, psi: f64) -> Result<f64, ReductionError> {
         let [from, to] = self.span;
         let slack = 1e-6;
@@ -153,7 +153,7 @@ impl<'a> Rim<'a> {
         }
     }
 
-    /// Where faces are cut by the line at an angle.
+    /// Cuts the faces of the rim along the line at an angle.
     fn cuts(&self, psi: f64) -> impl Iterator<Item = Cut> + '_ {
         let kind = self.mesh.law().face();
         let seen = |node: usize| [self.angles[&node], self.mesh.nodes[node][2]];
@@ -162,7 +162,7 @@ impl<'a> Rim<'a> {
     }
 }
 
-/// Adds a share of a point to the weights of its nodes.
+/// Adds the nodal weights of a point, multiplied by a share.
 fn add(weights: &mut BTreeMap<usize, f64>, point: &Crossing, share: f64) {
     for &(node, of_point) in &point.nodes {
         *weights.entry(node).or_insert(0.0) += share * of_point;

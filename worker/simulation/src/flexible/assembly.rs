@@ -1,14 +1,14 @@
-//! Sparse stiffness and mass of a mesh.
+//! Assembly of the sparse stiffness and mass matrices of a mesh.
 //!
-//! Both matrices are symmetric; the lower triangle is kept column by column, so that every sum runs
-//! in a fixed order. Knows nothing of rims, gauges or modes.
+//! Both matrices are symmetric; the lower triangle is stored column by column, so that every sum has a fixed
+//! order. Independent of rims, gauges and modes.
 use super::{element::Steel, error::ReductionError, mesh::Mesh};
 use std::collections::BTreeSet;
 
-/// Which displacements are unknown, and their numbers.
+/// Numbering of the unknown nodal displacements (degrees of freedom).
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Unknowns {
-    /// Number of each node's displacements in x, y, z; none where it is held.
+    /// Number of each node's displacements in x, y and z; `None` for a fixed displacement.
     numbers: Vec<[Option<usize>; 3]>,
     count: usize,
 }
@@ -30,17 +30,17 @@ impl Unknowns {
         Self { numbers, count }
     }
 
-    /// How many there are.
+    /// Returns the number of unknowns.
     pub(super) const fn len(&self) -> usize {
         self.count
     }
 
-    /// The number of a node's displacement; none where it is held.
+    /// Returns the number of a node's displacement; `None` if it is fixed.
     pub(super) fn number(&self, node: usize, axis: usize) -> Option<usize> {
         self.numbers[node][axis]
     }
 
-    /// A vector of unknowns as displacements of all nodes, zero where held.
+    /// Expands a vector of unknowns to displacements of all nodes, zero where fixed.
     pub(super) fn spread(&self, vector: &[f64]) -> Vec<[f64; 3]> {
         let value = |number: &Option<usize>| number.map_or(0.0, |number| vector[number]);
         self.numbers
@@ -49,7 +49,7 @@ impl Unknowns {
             .collect()
     }
 
-    /// The unknown ones of a field over all nodes.
+    /// Collects the unknown displacements of a field over all nodes.
     pub(super) fn gather(&self, field: &[[f64; 3]]) -> Vec<f64> {
         let pairs = self.numbers.iter().flatten().zip(field.iter().flatten());
         pairs
@@ -59,7 +59,7 @@ impl Unknowns {
     }
 }
 
-/// A sparse symmetric matrix: the lower triangle, column by column, rows ascending.
+/// Sparse symmetric matrix: the lower triangle in compressed columns, rows ascending.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Symmetric {
     starts: Vec<usize>,
@@ -68,12 +68,12 @@ pub(super) struct Symmetric {
 }
 
 impl Symmetric {
-    /// Order.
+    /// Returns the order of the matrix.
     pub(super) const fn len(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// `self * vector`.
+    /// Computes the product `self * vector`.
     pub(super) fn times(&self, vector: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; vector.len()];
         for column in 0..self.len() {
@@ -90,12 +90,12 @@ impl Symmetric {
         product
     }
 
-    /// Where each column's entries begin, and the row of every entry.
+    /// Returns the start index of each column, followed by the total, and the row of every entry.
     pub(super) fn pattern(&self) -> (&[usize], &[usize]) {
         (&self.starts, &self.rows)
     }
 
-    /// Row, column and value of every entry.
+    /// Returns row, column and value of every stored entry.
     pub(super) fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> {
         (0..self.len()).flat_map(move |column| {
             let range = self.starts[column]..self.starts[column + 1];
@@ -111,20 +111,20 @@ impl Symmetric {
     }
 }
 
-/// Stiffness [N/m] and mass \[kg\] over the unknowns.
+/// Assembled stiffness [N/m] and mass \[kg\] matrices over the unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Assembly {
-    /// Stiffness.
+    /// Stiffness matrix.
     pub(super) stiffness: Symmetric,
-    /// Consistent mass.
+    /// Consistent mass matrix.
     pub(super) mass: Symmetric,
 }
 
 impl Assembly {
-    /// Sums the elements of a mesh in their order.
+    /// Assembles the elements of a mesh in their order.
     ///
     /// # Errors
-    /// [`ReductionError::InsideOut`] naming the element.
+    /// [`ReductionError::InsideOut`] with the index of an inverted element.
     pub(super) fn new(
         mesh: &Mesh,
         steel: &Steel,
@@ -149,12 +149,12 @@ impl Assembly {
     }
 }
 
-/// Unknowns of an element: (place in the element, number).
+/// Returns the unknowns of an element as pairs: index within the element, number.
 fn each(nodes: &[usize], unknowns: &Unknowns) -> impl Iterator<Item = (usize, usize)> {
     (0..3 * nodes.len()).filter_map(|i| Some((i, unknowns.number(nodes[i / 3], i % 3)?)))
 }
 
-/// An empty matrix with a place for every pair of unknowns that share an element.
+/// Creates a zero matrix with an entry for every pair of unknowns that share an element.
 fn pattern(mesh: &Mesh, unknowns: &Unknowns) -> Symmetric {
     let mut neighbours = vec![BTreeSet::new(); mesh.nodes.len()];
     for element in mesh.elements() {

@@ -1,10 +1,10 @@
-//! Sparse Cholesky factorisation with the same bits on every processor.
+//! Sparse Cholesky factorisation with bit-identical results on every processor.
 //!
-//! faer finds the order of elimination and the supernodes, columns of the factor that share one
-//! pattern: whole numbers, alike everywhere. Its numeric kernels choose their instructions by the
-//! processor that they find, and a fused product rounds once where two instructions round twice. So
-//! the numbers are worked out here, in plain loops whose sums have one order: left-looking, supernode
-//! by supernode, every product in tiles of registers.
+//! faer computes the elimination order and the supernodes (columns of the factor that share one sparsity
+//! pattern), which are integers and equal on every processor. Its numeric kernels choose their instructions
+//! by the processor, and a fused multiply-add rounds once where two instructions round twice. The numeric
+//! factorisation is therefore implemented here, in plain loops with a fixed order of summation: left-looking,
+//! supernode by supernode, with products in register tiles.
 use super::{assembly::Symmetric, error::ReductionError};
 use faer::{
     Side,
@@ -21,33 +21,33 @@ use faer::{
 };
 use std::cmp::Ordering;
 
-/// Rows and columns of a tile.
+/// Number of rows and columns of a register tile.
 const TILE: usize = 4;
-/// Columns of a panel that are eliminated before the rest of the panel hears of them.
+/// Number of panel columns that are eliminated before the rest of the panel is updated.
 const BLOCK: usize = 32;
-/// A pivot below this share of its diagonal entry is what rounding leaves of zero.
+/// Ratio of a pivot to its diagonal entry below which the pivot counts as zero up to rounding.
 const LEAST_PIVOT: f64 = 1e-12;
 
 /// Cholesky factor of a positive definite matrix.
 #[derive(Debug)]
 pub(super) struct Factor {
-    /// The unknown that is eliminated at each place; n.
+    /// Number of the unknown eliminated at each step; length n.
     order: Vec<usize>,
     shape: Shape,
-    /// Panel by panel, column by column; entries above the diagonal are zero.
+    /// Values of the factor, panel by panel and column by column; entries above the diagonal are zero.
     values: Vec<f64>,
 }
 
-/// Supernodes of a factor.
+/// Sparsity structure of a factor with s supernodes.
 #[derive(Debug)]
 struct Shape {
-    /// First column of each, and the number of columns; s + 1.
+    /// First column of each supernode, followed by the number of columns; length s + 1.
     columns: Vec<usize>,
-    /// Where each one's rows begin, and the number of rows; s + 1.
+    /// Start in `rows` of each supernode, followed by the number of rows; length s + 1.
     row_starts: Vec<usize>,
-    /// Rows below each one's own columns, ascending.
+    /// Row indices below each supernode's own columns, ascending.
     rows: Vec<usize>,
-    /// Where each one's values begin, and the number of values; s + 1.
+    /// Start in the factor's values of each supernode, followed by their number; length s + 1.
     value_starts: Vec<usize>,
 }
 
@@ -72,7 +72,7 @@ impl Shape {
         &values[self.value_starts[node]..self.value_starts[node + 1]]
     }
 
-    /// The supernode of every column; n.
+    /// Returns the index of the supernode of every column; length n.
     fn owners(&self) -> Vec<usize> {
         let owned = (0..self.len()).map(|node| std::iter::repeat_n(node, self.width(node)));
         owned.flatten().collect()
@@ -80,11 +80,11 @@ impl Shape {
 }
 
 impl Factor {
-    /// Factors with a fill-reducing order of unknowns.
+    /// Factorises a matrix with a fill-reducing elimination order.
     ///
     /// # Errors
-    /// [`ReductionError::NotHeld`] if the matrix is not positive definite,
-    /// [`ReductionError::TooLarge`] if its factor does not fit into memory.
+    /// [`ReductionError::NotHeld`] if the matrix is not positive definite, [`ReductionError::TooLarge`] if
+    /// its factor does not fit into memory.
     pub(super) fn new(matrix: &Symmetric) -> Result<Self, ReductionError> {
         let too_large = ReductionError::TooLarge {
             unknowns: matrix.len(),
@@ -111,7 +111,7 @@ impl Factor {
         Ok(factor)
     }
 
-    /// Writes the matrix into the panels.
+    /// Copies the matrix entries into the panels.
     fn scatter(&mut self, matrix: &Symmetric) {
         let Self {
             order,
@@ -137,7 +137,7 @@ impl Factor {
         }
     }
 
-    /// Turns the matrix in the panels into its factor.
+    /// Computes the Cholesky factor in place from the matrix in the panels.
     fn eliminate(&mut self) -> Result<(), ReductionError> {
         let Self { shape, values, .. } = self;
         let owners = shape.owners();
@@ -184,7 +184,7 @@ impl Factor {
         Ok(())
     }
 
-    /// Overwrites a right-hand side by its solution.
+    /// Solves the linear system, overwriting the right-hand side with the solution.
     pub(super) fn solve(&self, vector: &mut [f64]) {
         let Self {
             order,
@@ -227,7 +227,7 @@ impl Factor {
     }
 }
 
-/// Order of elimination and supernodes; none if they do not fit into memory.
+/// Computes the elimination order and the supernodes; `None` if the factor does not fit into memory.
 fn plan(matrix: &Symmetric) -> Option<SymbolicCholesky<usize>> {
     let (starts, rows) = matrix.pattern();
     let order = matrix.len();
@@ -239,8 +239,8 @@ fn plan(matrix: &Symmetric) -> Option<SymbolicCholesky<usize>> {
     factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, always).ok()
 }
 
-/// Copies a panel's rows from `from` on in strips of [`TILE`] rows, each column by column, so that a
-/// product reads them in order; zeros fill the last one up.
+/// Copies a panel's rows from index `from` on into strips of [`TILE`] rows, each stored column by column, so
+/// that a product reads them sequentially; the last strip is padded with zeros.
 fn pack(panel: &[f64], height: usize, from: usize, strips: &mut Vec<f64>) {
     let depth = panel.len() / height;
     let count = (height - from).div_ceil(TILE);
@@ -254,7 +254,7 @@ fn pack(panel: &[f64], height: usize, from: usize, strips: &mut Vec<f64>) {
     }
 }
 
-/// Hands every entry on and below the diagonal of `R S'` to `take`, with its row and column: R are the
+/// Passes every entry on and below the diagonal of `R S'` to `take`, with its row and column: R are the
 /// packed rows, S the first of them. `size` is the number of rows and of columns.
 fn products(
     strips: &[f64],
@@ -279,7 +279,8 @@ fn products(
     }
 }
 
-/// Products of two strips: columns of the right one's rows by the left one's rows, summed in order.
+/// Computes the tile of products of two strips, summed in order: one column for each row of `right`, with the
+/// rows of `left`.
 fn tile(left: &[f64], right: &[f64]) -> [[f64; TILE]; TILE] {
     let mut sums = [[0.0; TILE]; TILE];
     let (left, _) = left.as_chunks::<TILE>();
@@ -294,7 +295,8 @@ fn tile(left: &[f64], right: &[f64]) -> [[f64; TILE]; TILE] {
     sums
 }
 
-/// What the pivot of every column must exceed, of the matrix in the panels; n.
+/// Computes the lower limit of the pivot of every column from the unfactorised matrix in the panels; length
+/// n.
 fn least_pivots(shape: &Shape, values: &[f64]) -> Vec<f64> {
     let mut least = Vec::new();
     for node in 0..shape.len() {
@@ -308,7 +310,8 @@ fn least_pivots(shape: &Shape, values: &[f64]) -> Vec<f64> {
     least
 }
 
-/// Factors a panel that nothing else changes any more, if every pivot exceeds its `least`.
+/// Factorises a panel that has received all updates from earlier supernodes; fails unless every pivot exceeds
+/// its limit in `least`.
 fn factor_panel(
     panel: &mut [f64],
     least: &[f64],
@@ -346,14 +349,14 @@ fn factor_panel(
     Ok(())
 }
 
-/// `vector -= factor * column`, entry by entry.
+/// Computes `vector -= factor * column`, entry by entry.
 fn subtract(vector: &mut [f64], column: &[f64], factor: f64) {
     for (entry, value) in vector.iter_mut().zip(column) {
         *entry -= factor * value;
     }
 }
 
-/// Inner product in [`TILE`] sums side by side, which are added in order.
+/// Computes the inner product with [`TILE`] parallel partial sums, which are then added in order.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (heads, tail) = a.as_chunks::<TILE>();
     let (others, rest) = b.as_chunks::<TILE>();

@@ -1,11 +1,11 @@
-//! Which modes are worth keeping: those that answer the loads which the head will bear.
+//! Selection of the modes to keep: those with the most response to the expected loads of the head.
 //!
-//! Under a load pattern `f` the head at rest holds the energy `f . K^-1 f / 2`, and the modes share it:
-//! mode k, of unit mass and angular frequency `w_k`, has `(phi_k . f)^2 / w_k^2` of `f . K^-1 f`, and
+//! Under a load pattern `f` the head in equilibrium stores the energy `f . K^-1 f / 2`, shared among the
+//! modes: mode k, of unit mass and angular frequency `w_k`, has `(phi_k . f)^2 / w_k^2` of `f . K^-1 f`, and
 //! the shares of all modes add up to one, since `K^-1 = sum phi_k phi_k^T / w_k^2`. Patterns are ropes
-//! wrapped as they lie in a turn and the three accelerations of the beam. All of them mirror in z = 0,
-//! so antisymmetric modes take no part. What a gauge reads is not asked here: static readings are
-//! exact with whatever modes (influence lines).
+//! wrapped as they lie in a revolution, and the three accelerations of the beam. All of them are symmetric
+//! about z = 0, so antisymmetric modes do not take part. Gauge readings are not considered here: static
+//! readings are exact with any set of modes (influence lines).
 use super::{
     answer::{LeftOut, Mode},
     arc::Rim,
@@ -15,25 +15,26 @@ use super::{
     request::Wrap,
 };
 
-/// How many modes of a family are looked at for each one that is asked for.
+/// Number of candidate modes of a family computed per requested mode.
 pub(super) const CANDIDATES: usize = 4;
 
-/// A load on the half, and the product with the displacement under it.
+/// Load pattern on the symmetric half, and its work `f . K^-1 f` on the displacement under it.
 #[derive(Debug)]
 struct Pattern {
     force: Vec<[f64; 3]>,
     compliance: f64,
 }
 
-/// Load patterns of a head.
+/// Load patterns of a head, used to rank its modes.
 #[derive(Debug)]
 pub(super) struct Patterns(Vec<Pattern>);
 
 impl Patterns {
-    /// Ropes wrapped around the arc of a symmetric problem, and the base's accelerations.
+    /// Creates the patterns of ropes wrapped around the arc of a symmetric problem, and of the base's
+    /// accelerations.
     ///
     /// # Errors
-    /// [`ReductionError`] where a rope lies beside the mesh.
+    /// [`ReductionError`] if a rope lies outside the mesh.
     pub(super) fn new(
         symmetric: &Problem<'_>,
         rim: &Rim<'_>,
@@ -53,7 +54,8 @@ impl Patterns {
             .map(Self)
     }
 
-    /// Share of each pattern's energy that a symmetric mode of unit mass of the whole holds.
+    /// Computes the share of each pattern's energy held by a symmetric mode that has unit mass on the whole
+    /// head.
     pub(super) fn shares(&self, frequency: f64, field: &[[f64; 3]]) -> impl Iterator<Item = f64> {
         self.0.iter().map(move |pattern| {
             // work and energy of both halves: (2 w)^2 over 2 c
@@ -63,7 +65,7 @@ impl Patterns {
     }
 }
 
-/// The `count` modes that couple most, lowest first, and the others, lowest first.
+/// Returns the `count` modes with the largest coupling and the remaining modes, both sorted by frequency.
 pub(super) fn pick(mut modes: Vec<Mode>, count: usize) -> (Vec<Mode>, Vec<LeftOut>) {
     modes.sort_by(|a, b| {
         let lower = a.frequency.total_cmp(&b.frequency);

@@ -1,31 +1,31 @@
-//! The lowest natural modes, by Lanczos iteration on the inverse stiffness.
+//! Computes the lowest natural modes by Lanczos iteration on the inverse stiffness.
 //!
-//! `K x = lambda M x` becomes `(K^-1 M) x = x / lambda`, whose largest eigenvalues converge first.
-//! The iteration runs in the inner product of M, with full orthogonalisation twice over, from a
-//! fixed start: no luck, no threads, the same bits every time.
+//! `K x = lambda M x` becomes `(K^-1 M) x = x / lambda`, whose largest eigenvalues converge first. The
+//! iteration runs in the inner product of M, with full orthogonalisation applied twice, single-threaded and
+//! from a fixed start vector, so that results are bitwise reproducible.
 use super::{assembly::Assembly, cholesky::Factor, error::ReductionError};
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// A mode is found when its residual is below this share of its eigenvalue.
+/// Convergence tolerance of a mode: ratio of its residual to its eigenvalue.
 const TOLERANCE: f64 = 1e-11;
-/// How often the small problem is solved.
+/// Number of Lanczos steps between solutions of the projected (tridiagonal) eigenvalue problem.
 const LOOK_EVERY: usize = 8;
 
-/// Modes in ascending order.
+/// Natural modes in ascending order of frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Modes {
-    /// Squared angular frequencies [rad2/s2]; n.
+    /// Squared angular frequencies [rad2/s2], one per mode.
     pub(super) eigenvalues: Vec<f64>,
-    /// Shapes with unit modal mass, over the unknowns; n.
+    /// Mode shapes with unit modal mass, one vector over the unknowns per mode.
     pub(super) shapes: Vec<Vec<f64>>,
-    /// Solves that it took.
+    /// Number of Lanczos steps (one linear solve each).
     pub(super) steps: usize,
 }
 
-/// Finds the `count` lowest modes.
+/// Computes the `count` lowest modes.
 ///
 /// # Errors
-/// [`ReductionError::Modes`] if the body has fewer, or if they do not converge.
+/// [`ReductionError::Modes`] if the body has fewer modes or they do not converge.
 pub(super) fn lowest(
     assembly: &Assembly,
     factor: &Factor,
@@ -63,7 +63,8 @@ pub(super) fn lowest(
     })
 }
 
-/// A start vector that is orthogonal to nothing by symmetry: no two entries are alike.
+/// Returns a pseudo-random start vector, the same on every machine; being without symmetry, it has a
+/// component along every mode.
 fn start(order: usize) -> Vec<f64> {
     let mut state: u64 = 0x9e37_79b9_7f4a_7c15;
     (0..order)
@@ -77,11 +78,11 @@ fn start(order: usize) -> Vec<f64> {
         .collect()
 }
 
-/// The Krylov space so far: `K^-1 M Q = Q T + remainder`.
+/// Krylov space of the Lanczos iteration: `K^-1 M Q = Q T + remainder`.
 #[derive(Debug, Default)]
 struct Space {
     basis: Vec<Vec<f64>>,
-    /// The basis times the mass.
+    /// Basis vectors multiplied by the mass matrix.
     weighed: Vec<Vec<f64>>,
     diagonal: Vec<f64>,
     beside: Vec<f64>,
@@ -89,7 +90,7 @@ struct Space {
 }
 
 impl Space {
-    /// Makes a vector orthogonal to the basis in the mass's inner product.
+    /// Orthogonalises a vector against the basis in the inner product of the mass matrix.
     fn purge(&self, vector: &mut [f64]) {
         for (direction, weighed) in self.basis.iter().zip(&self.weighed) {
             let part = dot(vector, weighed);
@@ -99,7 +100,7 @@ impl Space {
         }
     }
 
-    /// Takes a direction of known length in; returns the operator's answer to it.
+    /// Normalises the direction `next` by its length, appends it to the basis and returns `K^-1 M` times it.
     fn grow(&mut self, next: &[f64], weighed: &[f64], length: f64, factor: &Factor) -> Vec<f64> {
         let scaled = |vector: &[f64]| vector.iter().map(|x| x / length).collect::<Vec<f64>>();
         if !self.basis.is_empty() {
@@ -115,8 +116,8 @@ impl Space {
         answer
     }
 
-    /// The lowest modes if all of them have converged; `remainder` is the length of what the
-    /// operator adds to the space.
+    /// Returns the `count` lowest modes if all of them have converged, else `None`; `remainder` is the norm
+    /// of the Lanczos remainder, the next off-diagonal entry.
     fn modes(&self, count: usize, remainder: f64) -> Option<Modes> {
         let size = self.basis.len();
         if size < count {
@@ -157,7 +158,7 @@ impl Space {
     }
 }
 
-/// Inner product, summed in order.
+/// Returns the inner product, summed in index order.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

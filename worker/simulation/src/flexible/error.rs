@@ -1,76 +1,90 @@
-//! Why a head cannot be reduced.
+//! Errors of the reduction of a head to modes and influence lines.
 
-/// Why a head cannot be reduced.
+/// Reason why a head cannot be reduced.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReductionError {
-    /// The mesh is not usable.
+    /// The mesh is incomplete or inconsistent.
     #[error("the mesh cannot be used: {what}")]
     Mesh {
-        /// What is wrong with it.
+        /// Description of the defect.
         what: &'static str,
     },
-    /// The mesh is not its own mirror image in z = 0.
+    /// The mesh is not symmetric with respect to the plane z = 0.
     #[error(
         "the mesh is not its own mirror image in the plane z = 0: nothing stands opposite \
          ({x:.4}, {y:.4}, {z:.4}) m. Free meshers do not mirror: mesh the half z >= 0 alone, \
          with its cut face as physical group `symmetry`, or mirror that half's mesh"
     )]
     NotMirrored {
-        /// Position of the lonely node \[m\].
+        /// x coordinate of the node without a mirror image \[m\].
         x: f64,
-        /// Position of the lonely node \[m\].
+        /// y coordinate of the node without a mirror image \[m\].
         y: f64,
-        /// Position of the lonely node \[m\].
+        /// z coordinate of the node without a mirror image \[m\].
         z: f64,
     },
-    /// An element has no volume at some integration point.
-    #[error("element {element} of the mesh (of the half z > 0, from 0) is inside out")]
+    /// The Jacobian of an element is not positive at some integration point.
+    #[error(
+        "element {element} (counted from 0 in the half z > 0 of the mesh) is inverted or has no volume: its Jacobian is not positive"
+    )]
     InsideOut {
-        /// Its index.
+        /// Index of the element.
         element: usize,
     },
-    /// The stiffness is not positive definite.
-    #[error("the body can move without strain: the held nodes do not hold it")]
+    /// The stiffness matrix is not positive definite: the held nodes leave a rigid motion free.
+    #[error(
+        "the held nodes of the mesh leave a rigid motion of the head free: hold at least three nodes that are not on one line"
+    )]
     NotHeld,
-    /// The factor does not fit into memory.
-    #[error("a factor over {unknowns} unknowns does not fit into memory")]
+    /// The Cholesky factor does not fit into memory.
+    #[error(
+        "the stiffness factor for {unknowns} unknowns does not fit into memory: use a coarser mesh"
+    )]
     TooLarge {
-        /// Unknown displacements.
+        /// Number of unknown displacements.
         unknowns: usize,
     },
-    /// Too few modes.
-    #[error("{wanted} modes were asked for; they did not converge within {steps} steps")]
+    /// Fewer modes converged than were requested.
+    #[error(
+        "the {wanted} requested modes did not converge within {steps} Lanczos steps: request fewer modes"
+    )]
     Modes {
-        /// How many were asked for.
+        /// Number of requested modes.
         wanted: usize,
-        /// Steps that were tried.
+        /// Number of Lanczos steps made.
         steps: usize,
     },
-    /// The rope surface does not reach a station.
-    #[error("the rope surface has nothing at {psi_deg} deg; it spans {from_deg} to {to_deg} deg")]
+    /// A station lies outside the angular range of the rope surface.
+    #[error(
+        "the rope surface does not reach the station at {psi_deg} deg: it spans {from_deg} to {to_deg} deg"
+    )]
     Station {
-        /// The station \[deg\].
+        /// Angle of the station \[deg\].
         psi_deg: f64,
-        /// Where the surface begins \[deg\].
+        /// Angle where the rope surface begins \[deg\].
         from_deg: f64,
-        /// Where it ends \[deg\].
+        /// Angle where the rope surface ends \[deg\].
         to_deg: f64,
     },
-    /// The rope surface is not wide enough for a rope beside the middle.
-    #[error("the rope surface at {psi_deg} deg has nothing {offset} m beside the plane z = 0")]
+    /// The rope surface is too narrow for a rope at the given distance from the plane of symmetry.
+    #[error(
+        "the rope surface at {psi_deg} deg is too narrow for a rope {offset} m from the plane z = 0"
+    )]
     Beside {
-        /// The station \[deg\].
+        /// Angle of the station \[deg\].
         psi_deg: f64,
-        /// Distance of the rope from the plane \[m\].
+        /// Distance of the rope from the plane z = 0 \[m\].
         offset: f64,
     },
-    /// A gauge is not on the steel.
-    #[error("gauge {gauge} lies {distance_mm:.2} mm beside the steel")]
+    /// An end of a gauge lies in no element.
+    #[error(
+        "an end of gauge {gauge} lies {distance_mm:.2} mm outside the mesh: check the gauge's position and length"
+    )]
     Gauge {
-        /// Its number, from 1.
+        /// Number of the gauge, from 1.
         gauge: usize,
-        /// How far \[mm\], about.
+        /// Approximate distance of the gauge's end from the nearest element \[mm\].
         distance_mm: f64,
     },
 }

@@ -1,29 +1,32 @@
-//! Strain gauges: from a place on the steel to a row that reads stress off a displacement field.
+//! Strain gauges: linear map from the displacement field to the stress reading of a gauge at a given
+//! position.
 //!
-//! A gauge reads `E (u_y(p + l/2) - u_y(p - l/2)) / l`: the mean vertical strain over its length,
-//! times Young's modulus, by the displacement of the elements that hold its ends. That is what a
-//! glued strip feels, for elements of any kind; it is also more exact than stress at a point, which
+//! A gauge reads `E (u_y(p + l/2) - u_y(p - l/2)) / l`: the mean vertical strain over its length times
+//! Young's modulus, from the displacements of the elements that contain its ends. This is the quantity that a
+//! bonded strip measures, for elements of any kind; it is also more accurate than stress at a point, which
 //! jumps between elements.
 use super::{error::ReductionError, mesh::Mesh};
 use nalgebra::Vector3;
 
-/// A gauge that measures vertical strain.
+/// Strain gauge that measures vertical strain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gauge {
-    /// Its middle in the beam frame \[m\].
+    /// Position of the gauge's middle in the beam frame \[m\].
     pub position: [f64; 3],
-    /// Its length along y \[m\].
+    /// Length of the gauge along y \[m\].
     pub length: f64,
 }
 
-/// How far outside the reference body a point may lie and still belong to the element.
+/// Largest distance, in reference coordinates, by which a point may lie outside an element and still be
+/// assigned to it.
 const SLACK: f64 = 1e-3;
 
 impl Gauge {
-    /// Factors of `u_y` per node: their sum of products is the reading \[Pa\].
+    /// Returns pairs of a node and a factor [Pa/m]; the reading \[Pa\] is the sum of factor times `u_y` of
+    /// the node.
     ///
     /// # Errors
-    /// [`ReductionError::Gauge`], with `number`, if an end is not on the steel.
+    /// [`ReductionError::Gauge`], with `number`, if an end of the gauge lies in no element.
     pub(super) fn row(
         &self,
         mesh: &Mesh,
@@ -43,7 +46,7 @@ impl Gauge {
     }
 }
 
-/// The element that holds a point, and where.
+/// Finds the element that contains a position and the reference coordinates in it.
 fn locate<'a>(
     mesh: &'a Mesh,
     place: &Vector3<f64>,

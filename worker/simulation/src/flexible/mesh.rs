@@ -1,39 +1,41 @@
-//! A mesh as plain numbers, and its half on one side of the symmetry plane.
+//! Mesh of a head as plain numbers, and its half on one side of the symmetry plane.
 //!
-//! A head that is its own mirror image in z = 0 vibrates either symmetrically (`u_z = 0` on the
-//! plane) or antisymmetrically (`u_x = u_y = 0` there), so half the mesh is enough for both. It may
-//! come as that half: free meshers do not mirror. Knows nothing of stiffness, files or groups.
+//! A head that is symmetric about z = 0 vibrates either symmetrically (`u_z = 0` on the plane) or
+//! antisymmetrically (`u_x = u_y = 0` there), so half the mesh is enough for both. The mesh may be given as
+//! that half, because free meshers do not produce symmetric meshes. This module knows nothing of stiffness,
+//! files or groups.
 use super::{
     element::{Element, ElementKind},
     error::ReductionError,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Two positions closer than this are one \[m\].
+/// Distance below which two positions are treated as equal \[m\].
 const TOLERANCE: f64 = 1e-6;
 
-/// A head as it was meshed, in the beam frame.
+/// Finite element mesh of a head, in the beam frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// Positions \[m\].
+    /// Positions of the nodes \[m\].
     pub nodes: Vec<[f64; 3]>,
-    /// What all elements are.
+    /// Element kind, common to all elements.
     pub kind: ElementKind,
-    /// Indices of nodes, element after element, in Gmsh's order.
+    /// Node indices of all elements, element after element, each in Gmsh's order.
     pub elements: Vec<usize>,
-    /// Nodes that are held in all directions: the pin holes.
+    /// Indices of the nodes held in all directions: the pin holes.
     pub held: Vec<usize>,
-    /// Indices of nodes, face after face, of the surface that the rope lies on.
+    /// Node indices of all faces of the surface under the rope, face after face.
     pub rim: Vec<usize>,
-    /// Whether this is the half z >= 0 of the head; it is the whole otherwise.
+    /// Whether the mesh is only the half z >= 0 of the head instead of the whole.
     pub half: bool,
 }
 
 impl Mesh {
-    /// Every index names a node, every position is finite, and there is something to reduce.
+    /// Checks that every index refers to a node, that every position is finite, and that elements, rope
+    /// surface and held nodes exist.
     ///
     /// # Errors
-    /// [`ReductionError::Mesh`] saying what is missing.
+    /// [`ReductionError::Mesh`] with a description of the defect.
     pub(super) fn check(&self) -> Result<(), ReductionError> {
         let count = self.nodes.len();
         let inside = |node: &usize| *node < count;
@@ -45,14 +47,18 @@ impl Mesh {
         if !(self.elements.len().is_multiple_of(law.nodes())
             && self.rim.len().is_multiple_of(law.face().nodes()))
         {
-            return wrong("an element or a face of the rope surface lacks nodes");
+            return wrong(
+                "the number of node indices is not a multiple of the nodes per element or per face of the rope surface",
+            );
         }
         if ![&self.elements, &self.rim, &self.held]
             .into_iter()
             .flatten()
             .all(inside)
         {
-            return wrong("an element names a node that does not exist");
+            return wrong(
+                "an element, a face of the rope surface or the list of held nodes refers to a node that does not exist",
+            );
         }
         if !self.nodes.iter().flatten().all(|x| x.is_finite()) {
             return wrong("a position is not a finite number");
@@ -60,44 +66,45 @@ impl Mesh {
         Ok(())
     }
 
-    /// How its elements behave.
+    /// Returns the implementation of the mesh's element kind.
     pub(super) fn law(&self) -> &'static dyn Element {
         self.kind.law()
     }
 
-    /// Nodes of every element.
+    /// Iterates over the elements as slices of node indices.
     pub(super) fn elements(&self) -> impl Iterator<Item = &[usize]> {
         self.elements.chunks_exact(self.law().nodes())
     }
 
-    /// Nodes of every face of the rim.
+    /// Iterates over the faces of the rope surface as slices of node indices.
     pub(super) fn faces(&self) -> impl Iterator<Item = &[usize]> {
         self.rim.chunks_exact(self.law().face().nodes())
     }
 
-    /// Positions of an element's nodes.
+    /// Returns the positions of an element's nodes \[m\].
     pub(super) fn places(&self, element: &[usize]) -> Vec<[f64; 3]> {
         element.iter().map(|&node| self.nodes[node]).collect()
     }
 }
 
-/// The half of a mesh with z >= 0.
+/// Half of a mesh with z >= 0, and its relation to the whole mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Half {
-    /// The half.
+    /// Mesh of the half.
     pub(super) mesh: Mesh,
-    /// Whether a node of the half lies on the plane.
+    /// Per node of the half: whether it lies on the plane z = 0.
     pub(super) on_plane: Vec<bool>,
-    /// For every node of the whole mesh its node of the half, and whether it is an image.
+    /// Per node of the whole mesh: the corresponding node of the half, and whether the node is its mirror
+    /// image (z < 0).
     pub(super) source: Vec<(usize, bool)>,
 }
 
 impl Half {
-    /// Cuts a mesh at z = 0, unless it is the half already.
+    /// Cuts a mesh at z = 0; a mesh that is already the half is taken as it is.
     ///
     /// # Errors
-    /// [`ReductionError::Mesh`] as [`Mesh::check`] does, or for a half that is none;
-    /// [`ReductionError::NotMirrored`] if the whole is not its own mirror image.
+    /// [`ReductionError::Mesh`] if [`Mesh::check`] fails or a mesh marked as half does not lie in z >= 0 and
+    /// end on z = 0; [`ReductionError::NotMirrored`] if the whole mesh is not symmetric about z = 0.
     pub(super) fn new(whole: &Mesh) -> Result<Self, ReductionError> {
         whole.check()?;
         let here = |node: &usize| whole.nodes[*node][2] > -TOLERANCE;
@@ -134,7 +141,7 @@ impl Half {
         })
     }
 
-    /// Elements of the half; each must have its image.
+    /// Returns the node indices of the half's elements, after checking that each has a mirror image.
     fn elements(whole: &Mesh, source: &[(usize, bool)]) -> Result<Vec<usize>, ReductionError> {
         let mut here = Vec::new();
         let mut images = BTreeSet::new();
@@ -166,7 +173,8 @@ impl Half {
         }
     }
 
-    /// A displacement field of the whole mesh from that of its half.
+    /// Extends a displacement field of the half to the whole mesh; `image` holds the signs of the mirrored
+    /// components.
     pub(super) fn unfold(&self, half: &[[f64; 3]], image: [f64; 3]) -> Vec<[f64; 3]> {
         let unfolded = |&(node, is_image): &(usize, bool)| {
             let [x, y, z] = half[node];
@@ -180,7 +188,8 @@ impl Half {
     }
 }
 
-/// For every node of a whole mesh its node among those of the half, and whether it is an image.
+/// Returns, for every node of the whole mesh, the corresponding node of the half and whether it is a mirror
+/// image.
 fn images(whole: &Mesh, half: &[[f64; 3]]) -> Result<Vec<(usize, bool)>, ReductionError> {
     let places: BTreeMap<[i64; 3], usize> = half.iter().map(cell).zip(0..).collect();
     let source = whole.nodes.iter().map(|node| {
@@ -196,7 +205,7 @@ fn not_mirrored(&[x, y, z]: &[f64; 3]) -> ReductionError {
     ReductionError::NotMirrored { x, y, z }
 }
 
-/// The cell of a grid of tolerances that a position lies in.
+/// Returns the integer cell, in a grid of spacing `TOLERANCE`, that contains a position.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "positions of a machine part in millionths of a metre"
@@ -205,7 +214,7 @@ fn cell(node: &[f64; 3]) -> [i64; 3] {
     node.map(|x| (x / TOLERANCE).round() as i64)
 }
 
-/// A node at a place, in its cell or one beside it.
+/// Finds the node at a position, searching its cell and the 26 neighbouring cells.
 fn find(places: &BTreeMap<[i64; 3], usize>, place: &[f64; 3]) -> Option<usize> {
     let [x, y, z] = cell(place);
     (0..27).find_map(|k| {

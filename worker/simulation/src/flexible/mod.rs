@@ -1,8 +1,9 @@
-//! The flexible back head: from a mesh of bricks or tetrahedra to modes and static influence lines.
+//! Model reduction of the flexible back head: from a mesh of bricks or tetrahedra to modes and static
+//! influence lines.
 //!
-//! Linear elasticity with the pin holes held. What comes out is all that the dynamics need of the
-//! head: natural modes seen along the rope arc, gauge stress, inertial coupling, exact statics.
-//! Plain numbers in SI units come in and go out; nothing here knows of files or of the machine.
+//! Linear elasticity with the pin holes held. The result is all that the dynamics needs of the head: natural
+//! modes evaluated along the rope arc, gauge stress, inertial coupling, exact statics. Input and output are
+//! plain numbers in SI units; the module knows neither files nor the rest of the machine.
 mod answer;
 mod arc;
 mod assembly;

@@ -1,6 +1,6 @@
-//! One family's equations over the half, factored once: its modes, and all statics.
+//! Equations of one symmetry family over the half mesh, factored once, for modes and static solutions.
 //!
-//! Statics: one solve per gauge, `K w_g = row_g`; then the reading under any load `f` is `w_g . f`.
+//! Statics takes one solve per gauge, `K w_g = row_g`; the reading under any load `f` is then `w_g . f`.
 use super::{
     answer::{Mode, Reduction, Row},
     arc::{Rim, Station},
@@ -14,7 +14,7 @@ use super::{
 };
 use nalgebra::DVector;
 
-/// Motions of the whole body per unit base acceleration: along x, along y, about the origin.
+/// Returns the rigid displacement fields for a unit base acceleration along x, along y, and about the origin.
 fn rigid(mesh: &Mesh) -> [Vec<[f64; 3]>; 3] {
     [
         mesh.nodes.iter().map(|_| [1.0, 0.0, 0.0]).collect(),
@@ -26,23 +26,23 @@ fn rigid(mesh: &Mesh) -> [Vec<[f64; 3]>; 3] {
 /// Displacement of every node \[m\] and stress at every element's centre \[Pa\].
 type Fields = (Vec<[f64; 3]>, Vec<[f64; 6]>);
 
-/// Where modes are looked at.
+/// Positions at which modes are evaluated.
 pub(super) struct Seen<'a> {
     pub(super) stations: &'a [Station],
-    /// Of the gauges.
+    /// Rows that give the gauge readings.
     pub(super) rows: &'a [Row],
     /// Whether whole displacement fields are wanted.
     pub(super) fields: bool,
 }
 
-/// Stiffness and mass of the half under one family's conditions.
+/// Stiffness and mass of the half mesh under the boundary conditions of one symmetry family.
 pub(super) struct Problem<'a> {
     half: &'a Half,
     family: Family,
     unknowns: Unknowns,
     pub(super) assembly: Assembly,
     pub(super) factor: Factor,
-    /// Consistent mass times the rigid motions, over all nodes of the half.
+    /// Consistent mass times each of the three rigid motions, over all nodes of the half.
     pub(super) inertia: [Vec<[f64; 3]>; 3],
 }
 
@@ -75,8 +75,8 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// The lowest modes of this family, so many, and the solves they took; `coupling` is what a mode
-    /// of a frequency and a field of the half couples to the load patterns by.
+    /// Computes the `count` lowest modes of this family and the number of solves; `coupling` maps the angular
+    /// frequency and the field of a mode on the half to its coupling with the load patterns.
     pub(super) fn modes(
         &self,
         count: usize,
@@ -94,7 +94,7 @@ impl<'a> Problem<'a> {
         Ok((modes.collect(), found.steps))
     }
 
-    /// A shape of the half as a field of unit mass of the whole.
+    /// Returns the field of a mode on the half, scaled so that the modal mass of the whole body is one.
     pub(super) fn unit_mass(&self, shape: &[f64]) -> Vec<[f64; 3]> {
         let scale = std::f64::consts::FRAC_1_SQRT_2;
         let mut field = self.unknowns.spread(shape);
@@ -102,8 +102,8 @@ impl<'a> Problem<'a> {
         field
     }
 
-    /// A mode's field and readings. It has no sign of its own: the gauge that feels it most reads
-    /// tension.
+    /// Returns a mode's field and gauge readings, with the sign chosen such that the gauge with the largest
+    /// reading is in tension.
     pub(super) fn signed(
         &self,
         rows: &[Row],
@@ -157,19 +157,21 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Reading of a gauge \[Pa\] under a field of the half.
+    /// Returns the reading of a gauge \[Pa\] for a displacement field of the half.
     fn reading(&self, row: &Row, field: &[[f64; 3]]) -> f64 {
         let factors = row.0.iter();
         let sum: f64 = factors.map(|&(n, factor)| factor * field[n][1]).sum();
         self.sign(row) * sum
     }
 
-    /// What a gauge reads on the image over what it would read on the half.
+    /// Returns the sign of a gauge's reading: that of the family's mirror image if the gauge lies at z < 0,
+    /// else 1.
     pub(super) const fn sign(&self, (_, image): &Row) -> f64 {
         if *image { self.family.image()[1] } else { 1.0 }
     }
 
-    /// One solve per gauge: readings on the half are products with these.
+    /// Solves once per gauge for its influence field; the reading under a load on the half is the inner
+    /// product with the field.
     pub(super) fn lines(&self, rows: &[Row]) -> Vec<Vec<[f64; 3]>> {
         let line = |(row, _): &Row| {
             let mut load = vec![[0.0; 3]; self.half.mesh.nodes.len()];
@@ -181,7 +183,8 @@ impl<'a> Problem<'a> {
         rows.iter().map(line).collect()
     }
 
-    /// Everything static; the modes are left empty.
+    /// Computes all static results (influence lines, compliance, wrapped rope, mass properties); the modes
+    /// are left empty.
     pub(super) fn answer(
         &self,
         request: &Request<'_>,
@@ -229,7 +232,7 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// Displacement of the half under a load on the half.
+    /// Returns the displacement of the half under a load on the half.
     pub(super) fn solve(&self, load: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut vector = self.unknowns.gather(load);
         self.factor.solve(&mut vector);
@@ -251,7 +254,7 @@ impl<'a> Problem<'a> {
         Ok(probes.iter().map(row).collect())
     }
 
-    /// Forces of a wrapped rope on the half.
+    /// Returns the nodal forces of a wrapped rope on the half \[N\].
     pub(super) fn wrap_force(
         &self,
         rim: &Rim<'_>,
@@ -268,7 +271,7 @@ impl<'a> Problem<'a> {
         Ok(force)
     }
 
-    /// Displacement and stress of the whole mesh under a wrapped rope.
+    /// Returns displacement and stress of the whole mesh under a wrapped rope.
     fn wrapped(
         &self,
         request: &Request<'_>,
@@ -288,7 +291,7 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Consistent mass times fields over all nodes.
+/// Multiplies fields over all nodes by the consistent mass matrix.
 fn mass_times<const N: usize>(
     mesh: &Mesh,
     steel: &Steel,

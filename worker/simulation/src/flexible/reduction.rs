@@ -1,9 +1,9 @@
-//! The whole reduction: mesh in, modes along the rope arc and static influence lines out.
+//! Reduction of a head: from a mesh to modes along the rope arc and static influence lines.
 //!
-//! Every computation runs on the half z >= 0. A rope over the whole width pulls symmetrically, so
-//! antisymmetric modes move the rim by nothing on the mean and couple to no plane motion; a gauge
-//! feels them. Two ropes beside each other do drive them (`sway.rs`). Here is the order of the work;
-//! `problem.rs` does it.
+//! Every computation runs on the half z >= 0. A rope over the whole width pulls symmetrically: antisymmetric
+//! modes do not move the rope surface in the mean and do not couple to plane motion, though gauges measure
+//! them. Two ropes beside each other do excite them (`sway.rs`). This file defines the sequence of the work;
+//! `problem.rs` implements it.
 use super::answer::{Reduction, Row};
 use super::arc::{Rim, Station};
 use super::coupling::{CANDIDATES, Patterns, pick};
@@ -13,10 +13,11 @@ use super::mesh::Half;
 use super::problem::{Problem, Seen};
 use super::request::{Family, Request};
 
-/// Reduces a head.
+/// Reduces a head to modes and static influence lines.
 ///
 /// # Errors
-/// [`ReductionError`]: a mesh that is not usable, stations or gauges beside it, too few modes.
+/// [`ReductionError`] for a mesh that is not usable, stations or gauges outside it, or too few converged
+/// modes.
 pub fn reduce(request: &Request<'_>) -> Result<Reduction, ReductionError> {
     let half = Half::new(request.mesh)?;
     let rim = Rim::new(&half.mesh, request.center);

@@ -1,17 +1,18 @@
-//! What to reduce, and to what.
+//! Input of the reduction: head, gauges, stations and loads.
 use super::{element::Steel, gauge::Gauge, mesh::Mesh};
 
-/// How a field mirrors in the plane z = 0.
+/// Symmetry of a displacement field about the plane z = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
-    /// `u_z` changes sign; it is zero on the plane.
+    /// Symmetric field: the mirror image has `u_z` of opposite sign; `u_z` is zero on the plane.
     Symmetric,
-    /// `u_x` and `u_y` change sign; they are zero on the plane.
+    /// Antisymmetric field: the mirror image has `u_x` and `u_y` of opposite sign; both are zero on the
+    /// plane.
     Antisymmetric,
 }
 
 impl Family {
-    /// Signs of an image's displacements.
+    /// Returns the signs of the displacement components x, y, z in the mirror image.
     pub const fn image(self) -> [f64; 3] {
         match self {
             Self::Symmetric => [1.0, 1.0, -1.0],
@@ -20,51 +21,51 @@ impl Family {
     }
 }
 
-/// What to reduce, and to what.
+/// Input of the reduction of a head.
 #[derive(Clone, Debug)]
 pub struct Request<'a> {
-    /// The head with its held nodes.
+    /// Mesh of the head, including its held nodes.
     pub mesh: &'a Mesh,
-    /// Its material.
+    /// Material of the head.
     pub steel: Steel,
-    /// Where stress is read; g.
+    /// Gauges at which stress is computed; g of them.
     pub gauges: &'a [Gauge],
     /// Centre of the rope arc \[m\].
     pub center: [f64; 2],
-    /// Stations of shapes and influence lines \[rad\]; s.
+    /// Angles at which mode shapes and influence lines are computed \[rad\]; s of them.
     pub stations: &'a [f64],
-    /// Stations of the compliance \[rad\]; p.
+    /// Angles at which the static compliance is computed \[rad\]; p of them.
     pub probes: &'a [f64],
-    /// A static load whose displacement and stress are wanted everywhere.
+    /// Wrapped rope as a static load, for which displacement and stress of the whole mesh are computed.
     pub wrap: Option<Wrap>,
-    /// Two ropes beside the plane of symmetry, if that is what there are.
+    /// Pair of ropes beside the plane of symmetry; `None` for a single rope.
     pub pair: Option<Pair>,
-    /// Number of modes n.
+    /// Number of modes to return, n.
     pub modes: usize,
-    /// Families to take them from.
+    /// Symmetry families from which modes are taken.
     pub families: &'a [Family],
-    /// Ropes as they lie in a turn: the modes that couple most to them and to the beam's motion are
-    /// taken. Without any, the lowest.
+    /// Rope configurations of a revolution: the modes that couple most to these loads and to the beam's
+    /// motion are kept. If empty, the lowest modes are kept.
     pub patterns: &'a [Wrap],
-    /// Whether whole displacement fields are returned.
+    /// Whether the displacement fields of the modes are returned.
     pub fields: bool,
 }
 
-/// A rope wrapped around the arc: normal line load `tension / radius` between its fixed end and the
-/// point where it leaves, and the tension along the tangent at the fixed end.
+/// Rope wrapped around the arc: normal line load `tension / radius` between its fixed end and the point where
+/// it leaves the arc, and the tension along the tangent at the fixed end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wrap {
     /// Rope tension \[N\].
     pub tension: f64,
     /// Angle of the fixed end \[rad\].
     pub anchor: f64,
-    /// Angle where the rope leaves \[rad\], above `anchor`.
+    /// Angle where the rope leaves the arc \[rad\], greater than `anchor`.
     pub leaves: f64,
 }
 
 impl Wrap {
-    /// The normal line load as `pieces` forces \[N\] at the middles of equal pieces: the load per
-    /// angle is the tension, whatever the radius.
+    /// Returns the normal line load as `pieces` pairs of angle \[rad\] and force \[N\], at the middles of
+    /// equal intervals; the load per angle equals the tension for any radius.
     pub(super) fn line(&self, pieces: u32) -> impl Iterator<Item = (f64, f64)> {
         let step = (self.leaves - self.anchor) / f64::from(pieces);
         let (first, force) = (self.anchor + 0.5 * step, self.tension * step);
@@ -72,11 +73,11 @@ impl Wrap {
     }
 }
 
-/// Two ropes on a head.
+/// Pair of ropes on a head, symmetric about the plane z = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
-    /// Distance of either rope from the plane z = 0 \[m\].
+    /// Distance of each rope from the plane z = 0 \[m\].
     pub offset: f64,
-    /// Number of antisymmetric modes a.
+    /// Number of antisymmetric modes to compute, a.
     pub modes: usize,
 }

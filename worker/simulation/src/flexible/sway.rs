@@ -1,9 +1,9 @@
-//! The head's answer to two ropes that pull unequally: antisymmetric modes and influence lines at a
+//! Response of the head to two ropes with unequal tension: antisymmetric modes and influence lines at a
 //! distance from the plane of symmetry.
 //!
-//! A rope beside the plane is a line, not a mean over the width: shapes hold where it lies on the rim,
-//! at `z = +offset`, and forces act there. Every force has its image at `z = -offset`: opposite for one
-//! in the plane of motion, equal for one along z.
+//! A rope beside the plane is treated as a line, not as a mean over the width: shapes are evaluated where it
+//! lies on the rope surface, at `z = +offset`, and forces act there. Every force has an image at `z =
+//! -offset`: opposite for a force in the plane of motion, equal for a force along z.
 use super::{
     answer::{Row, SwayTables},
     arc::{Rim, Station},
@@ -14,7 +14,7 @@ use super::{
 };
 
 impl Problem<'_> {
-    /// Everything that two ropes ask for, of antisymmetric equations.
+    /// Computes the tables for a pair of ropes from the antisymmetric equations.
     pub(super) fn sway(
         &self,
         request: &Request<'_>,

@@ -1,37 +1,38 @@
-//! Steps of a size that follows the local error: tries one after the other, counts what fails.
+//! Adaptive step size control: tries steps of a size that follows the local error, and counts failed ones.
 use super::method::Method;
 use super::step_control::StepControl;
 use super::stepper::{Stages, Step, Stepper};
 use crate::system::{Equations, State, System};
 
-/// A method with its step size.
+/// Integration method with adaptive step size.
 #[derive(Debug)]
 pub struct Adaptive<E> {
     method: Box<dyn Stepper<E>>,
     control: StepControl,
     /// Size of the next step \[s\].
     step: f64,
-    /// Largest step that Newton's method is trusted with after it failed \[s\].
+    /// Largest step allowed after a failure of Newton's method \[s\].
     trusted: f64,
-    /// Steps accepted since then, up to [`LONG_AGO`].
+    /// Number of steps accepted since the last failure of Newton's method, up to [`LONG_AGO`].
     since: u32,
 }
 
-/// The step size fell below its limit.
+/// Error: the step size fell below the shortest allowed step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepUnderflow;
 
-/// Where Newton's method fails again within so many steps, steps stay below this share of the one
-/// that failed, and may grow again by this factor with every step that succeeds: the error estimate
-/// alone, which sees nothing of a contact that chatters, would lead straight back into the failure.
+/// Number of accepted steps after which a failure of Newton's method counts as unrelated to the previous one.
+/// After repeated failures within so many steps, steps stay below `TRUST` times the failed one, and the limit
+/// grows by `REGAIN` with every accepted step: the error estimate alone does not see a chattering contact and
+/// would lead straight back into the failure.
 const LONG_AGO: u32 = 4;
 const TRUST: f64 = 0.6;
 const REGAIN: f64 = 1.1;
-/// Shortest step; a run that needs shorter ones ends \[s\].
+/// Shortest step \[s\]; a run that needs shorter ones ends with an error.
 const SHORTEST_STEP: f64 = 1e-9;
 
 impl<E: Equations> Adaptive<E> {
-    /// For a system, local error `tolerance` and steps of at most `longest` \[s\].
+    /// Creates an integrator for a system with local error `tolerance` and steps of at most `longest` \[s\].
     pub fn new(method: Method, system: &System<E>, tolerance: f64, longest: f64) -> Self {
         let method = method.stepper(system, tolerance);
         Self {
@@ -48,11 +49,11 @@ impl<E: Equations> Adaptive<E> {
         }
     }
 
-    /// One step from `from` to a time that is given, whatever it errs: what differences of whole runs
-    /// are taken on, so that no controller's decision is differenced.
+    /// Makes one step from `from` to the given time `end` without error control. Finite differences of whole
+    /// runs use it, so that decisions of the step size controller are not differenced.
     ///
     /// # Errors
-    /// [`StepUnderflow`] when the step could not be made.
+    /// [`StepUnderflow`] if the step fails.
     pub fn forced(
         &mut self,
         system: &mut System<E>,
@@ -68,16 +69,16 @@ impl<E: Equations> Adaptive<E> {
         Ok(step)
     }
 
-    /// The stages of the last step, of a method that has such.
+    /// Returns the stages of the last step, if the method has stages.
     pub fn stages(&self) -> Option<Stages<'_>> {
         self.method.stages()
     }
 
-    /// Tries one step from `from` towards `stop`, which is met exactly; a failed try gives `None`
-    /// and leaves `to` meaningless.
+    /// Tries one step from `from` towards `stop`, which is met exactly; returns `None` if the step is
+    /// rejected, in which case `to` is meaningless.
     ///
     /// # Errors
-    /// [`StepUnderflow`] when failures have made the step too short.
+    /// [`StepUnderflow`] if failures have made the step too short.
     pub fn attempt(
         &mut self,
         system: &mut System<E>,

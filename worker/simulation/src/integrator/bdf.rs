@@ -1,61 +1,63 @@
 //! Backward differentiation formulas of variable step and order, the class of GSTIFF and DASSL.
 //!
-//! The corrector has a fixed leading coefficient: its polynomial passes through the new state and
-//! through the predictor's values at equal distances `h` back, so that a step of order `k` is the
-//! stage `q = base_q + c v` with `c = h / (1 + 1/2 + ... + 1/k)`. Brenan, Campbell and Petzold (1996),
-//! chapter 5. Work is integrated by the same formula.
+//! The corrector has a fixed leading coefficient: its polynomial passes through the new state and through the
+//! predictor's values at equal distances `h` back, so that a step of order `k` is the stage `q = base_q + c
+//! v` with `c = h / (1 + 1/2 + ... + 1/k)`. Brenan, Campbell and Petzold (1996), chapter 5. Work is
+//! integrated by the same formula.
 //!
-//! Orders above 2 are no longer A-stable: modes inside the instability wedge along the imaginary
-//! axis grow until the error test cuts the step down to where they are resolved. The head's modes
-//! (0.5 % damping) and the ropes' axial modes lie in it, so that higher orders cost more steps, not
-//! fewer: 434 with orders up to 2, 77,911 up to 4 on the shipped unit (this crate's README). The default
-//! cap is therefore 2.
+//! Orders above 2 are not A-stable: modes inside the instability wedge along the imaginary axis grow until
+//! the error test cuts the step down to where they are resolved. The head's modes (0.5 % damping) and the
+//! ropes' axial modes lie in it, so that higher orders cost more steps, not fewer: 434 with orders up to 2,
+//! 77,911 up to 4 on the shipped unit (this crate's README). The default highest order is therefore 2.
 use super::newton::{Newton, Stage};
 use super::step_control::StepControl;
 use super::stepper::{Step, Stepper, Tried};
 use crate::system::{Equations, Powers, State, System};
 
-/// Highest order that is stable at all steps for a real decaying mode and in use (6 hardly is).
+/// Highest order offered. It is stable at all steps for a real decaying mode; order 6 is stable only barely
+/// and not in use.
 const HIGHEST: usize = 5;
-/// Points that a predictor of the highest order passes through.
+/// Number of past states that a predictor of the highest order interpolates.
 const KEPT: usize = HIGHEST + 1;
 
-/// An accepted state.
+/// Accepted state with its accumulated work.
 #[derive(Clone, Debug)]
 struct Point {
     t: f64,
     q: Vec<f64>,
     v: Vec<f64>,
-    /// Work done since the start \[J\].
+    /// Work done since the start \[J\]: input, output, dissipated.
     work: [f64; 3],
 }
 
-/// Local error of a formula, and its order.
+/// Order of a formula and its local error.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     order: usize,
     error: f64,
 }
 
-/// The method with its past.
+/// Variable-order BDF method with its history of accepted states.
 #[derive(Clone, Debug)]
 pub struct Bdf {
     highest: usize,
     order: usize,
     newton: Newton,
-    /// Accepted states, the latest first; `points` of them are in use.
+    /// Accepted states, the latest first; the first `points` of them are valid.
     past: Vec<Point>,
     points: usize,
-    /// Steps made at the present order, and failures since the last accepted one.
+    /// Number of steps made at the present order; `failures` counts rejections since the last accepted step.
     at_order: usize,
     failures: u32,
-    /// Work since the start at the end of the step at hand.
+    /// Work since the start at the end of the present step \[J\].
     work: [f64; 3],
-    /// Neighbouring orders that the last step could have been made with.
+    /// Lower and higher neighbouring orders with the local errors that the last step would have had with
+    /// them.
     others: [Option<Candidate>; 2],
     base_q: Vec<f64>,
     base_v: Vec<f64>,
-    /// Predicted coordinates, then what was wrong with them.
+    /// Predicted coordinates; later the scaled difference between corrected and predicted coordinates (local
+    /// error).
     error: Vec<f64>,
 }
 
@@ -64,8 +66,8 @@ const fn components(powers: &Powers) -> [f64; 3] {
 }
 
 impl Bdf {
-    /// For a highest order (clamped to 1..5), `n` coordinates and the local error that steps may
-    /// make.
+    /// Creates the method for a highest order (clamped to 1..5), `n` coordinates and the local error allowed
+    /// per step.
     pub fn new(highest: usize, n: usize, tolerance: f64) -> Self {
         let point = Point {
             t: 0.0,
@@ -89,8 +91,8 @@ impl Bdf {
         }
     }
 
-    /// For a motion that is known already: steps of `order` (clamped to 1..5) that go on from `past`,
-    /// the latest state first, at least `order` + 1 of them.
+    /// Creates the method with a given history `past`, latest state first, of at least `order` + 1 states;
+    /// its steps have `order` (clamped to 1..5).
     pub fn continuing(order: usize, past: &[State], tolerance: f64) -> Self {
         let n = past.first().map_or(0, |state| state.q.len());
         let mut method = Self::new(order, n, tolerance);
@@ -104,12 +106,13 @@ impl Bdf {
         method
     }
 
-    /// The order of the next step.
+    /// Returns the order of the next step.
     pub const fn order(&self) -> usize {
         self.order
     }
 
-    /// The first step's past: the start, and where the motion would have come from along its tangent.
+    /// Initialises the history for the first step: the start and a fictitious state `h` earlier, extrapolated
+    /// along the tangent.
     fn begin(&mut self, from: &State, h: f64) {
         let [now, before, ..] = self.past.as_mut_slice() else {
             return;
@@ -124,7 +127,7 @@ impl Bdf {
         }
     }
 
-    /// Weights of the past in the predictor's value and rate at time `t`.
+    /// Returns the weights of the past states in the predictor's value and rate at time `t`.
     fn predictor(&self, t: f64) -> [[f64; KEPT]; 2] {
         let mut weights = [[0.0; KEPT]; 2];
         let points = &self.past[..=self.order];
@@ -142,7 +145,7 @@ impl Bdf {
         weights
     }
 
-    /// Fills the stage's bases and the predicted coordinates, and the predicted rates into `v`;
+    /// Fills the stage's bases, the predicted coordinates (into `error`) and the predicted rates (into `v`);
     /// returns the bases of the work.
     fn predict(&mut self, t: f64, c: f64, v: &mut [f64]) -> [f64; 3] {
         let [value, rate] = self.predictor(t);
@@ -170,7 +173,8 @@ impl Bdf {
         })
     }
 
-    /// Constant of the local error over what was wrong with the prediction, for a step to `t`.
+    /// Returns the error constant for a step to `t`: ratio of the local error to the difference between
+    /// corrector and predictor.
     fn constant(&self, t: f64, h: f64) -> f64 {
         let last = h / (t - self.past[self.order].t);
         let mut own = 0.0;
@@ -182,7 +186,7 @@ impl Bdf {
         last.max((last + own - fixed).abs())
     }
 
-    /// Local error of the formula of `order` at the new state, from divided differences.
+    /// Estimates the local error of the formula of `order` at the new state from divided differences.
     fn error_at<E: Equations>(&mut self, order: usize, equations: &E, to: &State) -> Candidate {
         let h = to.t - self.past[0].t;
         let earlier = &self.past[..=order];

@@ -1,19 +1,19 @@
 //! Dense output: cubic Hermite interpolation between two accepted states.
 use crate::system::State;
 
-/// Weights with which a step's two ends enter a state between them.
+/// Weights of the two ends of a step in the interpolated state between them.
 #[derive(Clone, Copy, Debug)]
 pub struct Weights {
-    /// Of what is interpolated, at either end.
+    /// Weights of the interpolated quantity at both ends.
     pub value: [f64; 2],
-    /// Of its derivatives by time, at either end \[s\].
+    /// Weights of the quantity's time derivative at both ends \[s\].
     pub slope: [f64; 2],
-    /// Of what is linear between the ends.
+    /// Weights of linearly interpolated quantities at both ends.
     pub linear: [f64; 2],
 }
 
 impl Weights {
-    /// At time `t` of a step between two times.
+    /// Returns the weights at time `t` of a step between the times `from` and `to`.
     pub fn at([from, to]: [f64; 2], t: f64) -> Self {
         let h = to - from;
         let s = (t - from) / h;
@@ -26,9 +26,9 @@ impl Weights {
     }
 }
 
-/// Interpolates at time `t` between `from` and `to` into `out`.
+/// Interpolates the state at time `t` between `from` and `to` into `out`.
 ///
-/// Coordinates use coordinates and rates of both ends, rates use rates and accelerations,
+/// Coordinates are interpolated from coordinates and rates of both ends, rates from rates and accelerations;
 /// accelerations are linear.
 pub fn interpolate(from: &State, to: &State, t: f64, out: &mut State) {
     let Weights {

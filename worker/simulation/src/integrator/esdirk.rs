@@ -8,12 +8,12 @@ use super::stepper::{Stages, Step, Stepper, Tried};
 use super::tableau::Tableau;
 use crate::system::{Equations, Powers, State, System};
 
-/// A method with its buffers.
+/// ESDIRK method with its buffers.
 #[derive(Clone, Debug)]
 pub struct Esdirk {
     tableau: &'static Tableau,
     newton: Newton,
-    /// Rates and accelerations of the stages but the last.
+    /// Rates and accelerations of all stages except the last.
     stages: Vec<(Vec<f64>, Vec<f64>)>,
     powers: Vec<Powers>,
     base_q: Vec<f64>,
@@ -22,7 +22,7 @@ pub struct Esdirk {
 }
 
 impl Esdirk {
-    /// For `n` coordinates and the local error that steps may make.
+    /// Creates the method for a tableau, `n` coordinates and the local error allowed per step.
     pub fn new(tableau: &'static Tableau, n: usize, tolerance: f64) -> Self {
         Self {
             tableau,
@@ -35,7 +35,8 @@ impl Esdirk {
         }
     }
 
-    /// What coordinates and rates of stage `i` are without its own rate and acceleration.
+    /// Computes the bases of stage `i`: its coordinates and rates without the contributions of its own rate
+    /// and acceleration.
     fn bases(&mut self, i: usize, h: f64, from: &State) {
         self.base_q.copy_from_slice(&from.q);
         self.base_v.copy_from_slice(&from.v);

@@ -1,17 +1,17 @@
-//! Generalised-alpha: one implicit stage a step, of second order, damping what a step does not
-//! resolve. Chung and Hulbert (1993).
+//! Generalised-alpha method of Chung and Hulbert (1993): one implicit stage per step, second order, with
+//! numerical damping of modes that the step does not resolve.
 //!
-//! The equations of motion hold at a time between the ends of a step,
-//! `M(q_f) a_m = Q(q_f, v_f, t_f)` with `x_f = (1 - alpha_f) x_1 + alpha_f x_0` and
-//! `a_m = (1 - alpha_m) a_1 + alpha_m a_0`, where the *algorithmic* acceleration `a_n` is that of the
-//! motion at `t_n + (alpha_m - alpha_f) h`. It stays inside: a [`State`] carries the acceleration at
-//! its own time. When the step size changes, `a_0` is moved to where the new step wants it, without
-//! which the order would fall to one.
+//! The equations of motion hold at a time between the ends of a step, `M(q_f) a_m = Q(q_f, v_f, t_f)` with
+//! `x_f = (1 - alpha_f) x_1 + alpha_f x_0` and `a_m = (1 - alpha_m) a_1 + alpha_m a_0`, where the
+//! *algorithmic* acceleration `a_n` is that of the motion at `t_n + (alpha_m - alpha_f) h`. The algorithmic
+//! acceleration is internal to the method: a [`State`] carries the acceleration at its own time. When the
+//! step size changes, `a_0` is shifted to the time that the new step size implies; without the shift the
+//! order would fall to one.
 use super::newton::{Newton, Stage};
 use super::stepper::{Step, Stepper, Tried};
 use crate::system::{Equations, Powers, State, System};
 
-/// The method with its buffers.
+/// Generalised-alpha method with its buffers.
 #[derive(Clone, Debug)]
 pub struct GeneralizedAlpha {
     alpha_m: f64,
@@ -19,12 +19,13 @@ pub struct GeneralizedAlpha {
     beta: f64,
     gamma: f64,
     newton: Newton,
-    /// Algorithmic accelerations where the last accepted step ended, and their rate.
+    /// Size of the last accepted step, the algorithmic accelerations at its end, and their rate of change.
     settled: Option<(f64, Vec<f64>, Vec<f64>)>,
-    /// Algorithmic accelerations at both ends of the step at hand.
+    /// Algorithmic accelerations at both ends of the present step.
     ends: [Vec<f64>; 2],
     step: f64,
-    /// Powers where the equations held, in the last accepted step and in the one at hand.
+    /// Powers at the time where the equations of motion hold, in the last accepted step and in the present
+    /// one.
     powers: [Option<Powers>; 2],
     base_q: Vec<f64>,
     base_v: Vec<f64>,
@@ -32,8 +33,8 @@ pub struct GeneralizedAlpha {
 }
 
 impl GeneralizedAlpha {
-    /// For a spectral radius at infinite frequency (clamped to 0..1), `n` coordinates and the local
-    /// error that steps may make.
+    /// Creates the method for a spectral radius at infinite frequency (clamped to 0..1), `n` coordinates and
+    /// the local error allowed per step.
     pub fn new(spectral_radius: f64, n: usize, tolerance: f64) -> Self {
         let r = spectral_radius.clamp(0.0, 1.0);
         let alpha_m = (2.0 * r - 1.0) / (r + 1.0);
@@ -55,7 +56,7 @@ impl GeneralizedAlpha {
         }
     }
 
-    /// Algorithmic accelerations at the start of a step of size `h`.
+    /// Computes the algorithmic accelerations at the start of a step of size `h`.
     fn start(&mut self, from: &State, h: f64) {
         let Some((before, a, rate)) = &self.settled else {
             self.ends[0].copy_from_slice(&from.a);
@@ -67,7 +68,8 @@ impl GeneralizedAlpha {
         }
     }
 
-    /// Fills the bases of the stage `x_f = base + coefficient x'`; returns both coefficients.
+    /// Fills the bases of the stage `x_f = base + coefficient x'`; returns the coefficients of rates and
+    /// accelerations.
     fn bases(&mut self, from: &State, h: f64) -> (f64, f64) {
         let (f, m) = (1.0 - self.alpha_f, 1.0 - self.alpha_m);
         let old = self.alpha_m / m;

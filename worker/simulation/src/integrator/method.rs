@@ -1,4 +1,4 @@
-//! The methods that a run can be integrated with: one line each.
+//! Selectable integration methods.
 use super::bdf::Bdf;
 use super::esdirk::Esdirk;
 use super::generalized_alpha::GeneralizedAlpha;
@@ -7,16 +7,18 @@ use super::stepper::Stepper;
 use super::tableau::{ESDIRK4, TR_BDF2, Tableau};
 use crate::system::{Equations, System};
 
-/// A method of integration, by choice.
+/// Selectable integration method.
 #[derive(Clone, Copy, Debug)]
 pub enum Method {
     /// Singly diagonally implicit Runge-Kutta method with an explicit first stage.
     RungeKutta(&'static Tableau),
-    /// RODAS: a Rosenbrock method of order 4, linear solutions instead of Newton's method.
+    /// RODAS: a Rosenbrock method of order 4, which solves linear systems instead of iterating with Newton's
+    /// method.
     Rosenbrock,
     /// Generalised-alpha of Chung and Hulbert, order 2.
     GeneralizedAlpha {
-        /// Spectral radius at infinite frequency, 0 (annihilates) to 1 (keeps).
+        /// Spectral radius at infinite frequency, from 0 (unresolved modes are annihilated in one step) to 1
+        /// (no damping).
         spectral_radius: f64,
     },
     /// Backward differentiation formulas of variable step and order.
@@ -26,10 +28,11 @@ pub enum Method {
     },
 }
 
-/// Spectral radius that damps what is not resolved within a few steps and leaves the rest alone.
+/// Default spectral radius at infinite frequency: damps unresolved modes within a few steps and hardly
+/// affects resolved ones.
 pub const SPECTRAL_RADIUS: f64 = 0.5;
 
-/// Every method as it is used by default.
+/// All methods with their default settings.
 pub static CATALOGUE: [Method; 5] = [
     Method::RungeKutta(&TR_BDF2),
     Method::RungeKutta(&ESDIRK4),
@@ -41,7 +44,7 @@ pub static CATALOGUE: [Method; 5] = [
 ];
 
 impl Method {
-    /// Name in tables.
+    /// Returns the method's name for tables.
     pub const fn name(self) -> &'static str {
         match self {
             Self::RungeKutta(tableau) => tableau.name,
@@ -55,7 +58,7 @@ impl Method {
         }
     }
 
-    /// Order of the result, the highest one of a method that varies it.
+    /// Returns the order of accuracy; for a variable-order method, the highest one.
     pub const fn order(self) -> usize {
         match self {
             Self::RungeKutta(tableau) => tableau.order as usize,
@@ -65,7 +68,7 @@ impl Method {
         }
     }
 
-    /// The method with its buffers for a system, and with the local error that its steps may make.
+    /// Creates the method with buffers for a system and the local error allowed per step.
     pub fn stepper<E: Equations>(self, system: &System<E>, tolerance: f64) -> Box<dyn Stepper<E>> {
         let n = system.len();
         match self {

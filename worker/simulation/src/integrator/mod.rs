@@ -1,8 +1,8 @@
 //! Integration of `M(q) a = Q(q, v, t)` in time.
 //!
-//! A method ([`stepper::Stepper`]) advances a [`State`](crate::system::State) by one step and knows nothing of what is
-//! recorded. Step size control and Newton's method with its refactorisation policy are small objects
-//! of their own. A new method costs one file and one line in [`method`].
+//! A method ([`stepper::Stepper`]) advances a [`State`](crate::system::State) by one step and knows nothing
+//! of what is recorded. Step size control and Newton's method with its refactorisation policy are separate
+//! objects. A new method takes one file and one line in [`method`].
 pub mod adaptive;
 pub mod bdf;
 pub mod dense;

@@ -1,10 +1,11 @@
-//! Newton's method for one implicit stage, with a factorisation that is kept while it serves.
+//! Newton's method for one implicit stage, reusing a factorisation of the iteration matrix while it converges
+//! fast enough.
 use crate::system::{Equations, Loads, Powers, Shift, StateRef, System};
 
-/// When a factorisation is made anew: a small state machine without numerics of its own.
+/// Policy for renewing the factorisation of the iteration matrix: a small state machine without numerics.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RefactorPolicy {
-    /// Coefficient (gamma) of the factorisation at hand.
+    /// Coefficient (gamma) for which the present factorisation was made.
     made_for: Option<f64>,
     slow: bool,
 }
@@ -12,10 +13,10 @@ pub struct RefactorPolicy {
 impl RefactorPolicy {
     /// Convergence rate above which the next stage starts with a new factorisation.
     pub const SLOW: f64 = 0.15;
-    /// Relative change of the coefficient that a factorisation survives.
+    /// Largest relative change of the coefficient for which a factorisation is reused.
     pub const DRIFT: f64 = 0.25;
 
-    /// Whether a stage with coefficient `gamma` needs a new factorisation.
+    /// Returns whether a stage with coefficient `gamma` needs a new factorisation.
     pub fn wants(&self, gamma: f64) -> bool {
         self.slow
             || self
@@ -23,49 +24,49 @@ impl RefactorPolicy {
                 .is_none_or(|made| (gamma / made - 1.0).abs() > Self::DRIFT)
     }
 
-    /// A factorisation was made.
+    /// Records that a factorisation was made for the coefficient `gamma`.
     pub const fn made(&mut self, gamma: f64) {
         self.made_for = Some(gamma);
         self.slow = false;
     }
 
-    /// A stage converged at this rate.
+    /// Records the convergence rate of a stage.
     pub fn observed(&mut self, rate: f64) {
         self.slow = rate > Self::SLOW;
     }
 
-    /// The factorisation failed or misled.
+    /// Discards the factorisation, after it failed or Newton's method diverged with it.
     pub const fn spoiled(&mut self) {
         self.made_for = None;
     }
 
-    /// Scaling of a correction solved with a factorisation for another coefficient.
+    /// Returns the factor for a correction that was solved with a factorisation for another coefficient.
     pub fn relaxation(&self, gamma: f64) -> f64 {
         self.made_for
             .map_or(1.0, |made| 2.0 / (1.0 + (gamma / made) * (gamma / made)))
     }
 }
 
-/// One stage `q = base_q + c v`, `v = base_v + d a`, `M a = Q`, at time `t`.
+/// Implicit stage `q = base_q + c v`, `v = base_v + d a`, `M a = Q`, at time `t`.
 #[derive(Clone, Copy, Debug)]
 pub struct Stage<'a> {
     /// Time of the stage \[s\].
     pub t: f64,
     /// Coefficient c \[s\].
     pub c: f64,
-    /// Coefficient d \[s\], the same as c for most methods; d/c must not change from stage to stage.
+    /// Coefficient d \[s\], equal to c for most methods; the ratio d/c must be the same for all stages.
     pub d: f64,
-    /// What the coordinates are without this stage's rate.
+    /// Coordinates without the contribution of this stage's rate.
     pub base_q: &'a [f64],
-    /// What the rates are without this stage's acceleration.
+    /// Rates without the contribution of this stage's acceleration.
     pub base_v: &'a [f64],
 }
 
-/// The stage equations could not be solved.
+/// Error: Newton's method did not converge, or the iteration matrix is singular.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotConverged;
 
-/// Newton's method with its buffers and its policy.
+/// Newton's method with its buffers and its refactorisation policy.
 #[derive(Clone, Debug)]
 pub struct Newton {
     policy: RefactorPolicy,
@@ -76,15 +77,17 @@ pub struct Newton {
 /// Accuracy of a stage in units of the Newton norm, at a tolerance of 1.
 const ACCURACY: f64 = 0.3;
 const ITERATIONS: u32 = 10;
-/// Iterations of a stage that is solved to rounding; a change beyond which the next one is rounding,
-/// where each is the square of the last; and what rounding may leave.
+/// Largest number of iterations of a stage that is solved to rounding. `QUADRATIC` is the correction below
+/// which the next one is rounding, by quadratic convergence; `ROUNDING` is the largest correction that
+/// rounding may leave.
 const EXHAUSTED: u32 = 40;
 const QUADRATIC: f64 = 1e-7;
 const ROUNDING: f64 = 1e-4;
 
 impl Newton {
-    /// For `n` coordinates and a step tolerance: what Newton's method leaves must stay below what
-    /// a step may err. At a tolerance of 0 stages are solved to rounding.
+    /// Creates the solver for `n` coordinates and a step tolerance, from which the accuracy of stages
+    /// follows: the remaining error of Newton's method must stay below the local error of a step. At a
+    /// tolerance of 0, stages are solved to rounding.
     pub fn new(n: usize, tolerance: f64) -> Self {
         Self {
             policy: RefactorPolicy::default(),
@@ -93,13 +96,14 @@ impl Newton {
         }
     }
 
-    /// Solves a stage from the rates predicted in `v`; coordinates and accelerations follow.
+    /// Solves a stage, starting from the rates predicted in `v`; coordinates and accelerations are computed
+    /// from them.
     ///
-    /// Gives the powers of the solution under the loads of the last evaluation: what is corrected last
-    /// is smaller than Newton's accuracy, and is not evaluated again.
+    /// Returns the powers of the solution under the loads of the last evaluation: the last correction is
+    /// smaller than Newton's accuracy, and the loads are not evaluated again after it.
     ///
     /// # Errors
-    /// [`NotConverged`] after a fresh factorisation did not help either.
+    /// [`NotConverged`] if the iteration fails with a fresh factorisation too.
     pub fn solve<E: Equations>(
         &mut self,
         system: &mut System<E>,
@@ -169,7 +173,7 @@ impl Newton {
         Err(NotConverged)
     }
 
-    /// Solves a stage to rounding, with a factorisation per iteration.
+    /// Solves a stage to rounding, with a new factorisation in every iteration.
     fn exhaust<E: Equations>(
         &mut self,
         system: &mut System<E>,
@@ -216,8 +220,8 @@ impl Newton {
 }
 
 impl Stage<'_> {
-    /// Of its iteration matrix: rates change `damping`, accelerations `mass` times as much as
-    /// coordinates.
+    /// Returns the shift of the stage's iteration matrix: rates change `damping` times and accelerations
+    /// `mass` times as much as coordinates.
     fn shift(&self) -> Shift {
         let damping = 1.0 / self.c;
         Shift {
@@ -227,7 +231,7 @@ impl Stage<'_> {
     }
 }
 
-/// Coordinates and accelerations that belong to the predicted rates.
+/// Computes the coordinates and accelerations that correspond to the predicted rates.
 fn predict(stage: &Stage<'_>, q: &mut [f64], v: &[f64], a: &mut [f64]) {
     for i in 0..q.len() {
         q[i] = stage.base_q[i] + stage.c * v[i];
@@ -239,8 +243,8 @@ fn predict(stage: &Stage<'_>, q: &mut [f64], v: &[f64], a: &mut [f64]) {
 mod tests {
     use super::*;
 
-    /// The first stage, a coefficient that moved by more than a quarter, slow convergence and a
-    /// failure want a new factorisation; nothing else does.
+    /// Checks that a new factorisation is requested for the first stage, after a change of the coefficient by
+    /// more than a quarter, after slow convergence and after a failure, and in no other case.
     #[test]
     fn a_factorisation_is_kept_while_it_serves() {
         let mut policy = RefactorPolicy::default();
@@ -262,8 +266,8 @@ mod tests {
         assert!(policy.wants(100.0));
     }
 
-    /// Where the factorisation is for `made` and inertia (gamma squared) and stiffness weigh alike, the
-    /// factor makes the error of a correction the same for both, of opposite sign.
+    /// Checks the relaxation factor: if inertia (gamma squared) and stiffness have equal weight at the
+    /// coefficient `made`, the relative errors of a correction are equal for both and of opposite sign.
     #[test]
     fn a_correction_is_scaled_for_another_coefficient() {
         let mut policy = RefactorPolicy::default();

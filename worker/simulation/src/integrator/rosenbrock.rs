@@ -1,11 +1,11 @@
-//! RODAS: a Rosenbrock method of order 4 (3) with six stages, stiffly accurate and L-stable. Hairer
-//! and Wanner (1996), section VI.4.
+//! RODAS: a Rosenbrock method of order 4 (3) with six stages, stiffly accurate and L-stable. Hairer and
+//! Wanner (1996), section VI.4.
 //!
-//! The equations are taken as `q' = v`, `v' = a`, `0 = Q(q, v, t) - M(q) a`, for whose kind the method
-//! was made; accelerations are unknowns like the others. Eliminating rates and accelerations of a
-//! stage leaves one solution with `S = g^2 M - g D - K`, `g = 1 / (gamma h)`, the matrix of all other
-//! methods, and one product with `K`. The order needs the exact tangent: this is the one method that
-//! adds what Newton's method can do without ([`Equations::add_spin_tangent`]).
+//! The equations are taken as `q' = v`, `v' = a`, `0 = Q(q, v, t) - M(q) a`, a differential-algebraic system
+//! of the kind the method was designed for; accelerations are unknowns like the others. Eliminating rates and
+//! accelerations of a stage leaves one solution with `S = g^2 M - g D - K`, `g = 1 / (gamma h)`, the
+//! iteration matrix of all other methods, and one product with `K`. The order needs the exact tangent: this
+//! is the only method that adds the terms that Newton's method can omit ([`Equations::add_spin_tangent`]).
 use super::dense::interpolate;
 use super::newton::NotConverged;
 use super::stepper::{Step, Stepper, Tried};
@@ -14,12 +14,12 @@ use crate::system::{Equations, Powers, Shift, State, StateRef, System};
 
 const STAGES: usize = 6;
 const GAMMA: f64 = 0.25;
-/// Nodes.
+/// Nodes of the stages, as shares of the step.
 const NODES: [f64; STAGES] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
-/// Factors of the derivative by time.
+/// Coefficients of the forces' time derivative, per stage.
 const BY_TIME: [f64; STAGES] = [0.25, -0.1043, 0.1035, -0.036_200_000_000_000_23, 0.0, 0.0];
-/// Weights of earlier stages in a stage's argument; the sixth continues the fifth, and the result
-/// the sixth.
+/// Weights of earlier stages in a stage's argument. The sixth argument is the fifth plus the fifth increment;
+/// the result is the sixth argument plus the sixth increment.
 const ARGUMENT: [&[f64]; STAGES] = [
     &[],
     &[1.544],
@@ -43,7 +43,7 @@ const ARGUMENT: [&[f64]; STAGES] = [
         1.0,
     ],
 ];
-/// Weights over `h` of earlier stages in a stage's right side.
+/// Weights (to be divided by `h`) of earlier stages in a stage's right-hand side.
 const RIGHT: [&[f64]; STAGES] = [
     &[],
     &[-5.6688],
@@ -68,8 +68,8 @@ const RIGHT: [&[f64]; STAGES] = [
     ],
 ];
 
-/// Share of the step over which the derivative by time is differenced: its error is this share of a
-/// term of the step's own order.
+/// Share of the step over which the time derivative is taken by a forward difference; the difference errs by
+/// this share of a term of the step's own order.
 const TIME_SHARE: f64 = 1e-5;
 
 /// Increments of coordinates, rates and accelerations of one stage.
@@ -80,18 +80,18 @@ struct Increment {
     a: Vec<f64>,
 }
 
-/// The method with its buffers.
+/// RODAS method with its buffers.
 #[derive(Clone, Debug)]
 pub struct Rosenbrock {
-    /// `-K`.
+    /// Negative stiffness matrix `-K`.
     stiffness: Bordered,
     increments: Vec<Increment>,
     powers: [Powers; 2],
-    /// Derivative of the forces by time.
+    /// Time derivative of the forces.
     by_time: Vec<f64>,
-    /// Rates of the stage's argument with the right side's share.
+    /// Rates of the stage's argument plus the contribution of the right-hand side.
     rates: Vec<f64>,
-    /// Accelerations likewise.
+    /// Accelerations of the stage's argument plus the contribution of the right-hand side.
     inertial: Vec<f64>,
     right: Vec<f64>,
     product: Vec<f64>,
@@ -99,7 +99,7 @@ pub struct Rosenbrock {
 }
 
 impl Rosenbrock {
-    /// `matrix` is an empty one of the system's shape.
+    /// Creates the method; `matrix` is an empty matrix with the system's structure.
     pub fn new(matrix: Bordered) -> Self {
         let n = matrix.len();
         let zeros = || vec![0.0; n];
@@ -121,7 +121,7 @@ impl Rosenbrock {
         }
     }
 
-    /// Fills derivative by time and `-K`, factorises `S`.
+    /// Computes the time derivative of the forces and `-K`, and factorises `S`.
     fn linearize<E: Equations>(
         &mut self,
         system: &mut System<E>,
@@ -146,7 +146,7 @@ impl Rosenbrock {
             .map_err(|_| NotConverged)
     }
 
-    /// Fills the argument of stage `i` into `to`.
+    /// Computes the argument of stage `i` into `to`.
     fn argument(&self, i: usize, from: &State, to: &mut State) {
         to.q.copy_from_slice(&from.q);
         to.v.copy_from_slice(&from.v);
@@ -200,7 +200,7 @@ impl Rosenbrock {
     }
 }
 
-/// `to += weight x`.
+/// Adds `weight` times `x` to `to`.
 fn add(to: &mut [f64], weight: f64, x: &[f64]) {
     for (to, x) in to.iter_mut().zip(x) {
         *to += weight * x;

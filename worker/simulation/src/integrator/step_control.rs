@@ -1,4 +1,4 @@
-//! Step size control by the local error; knows nothing of the method but its order.
+//! Step size control by the local error; knows only the order of the method.
 use crate::math::elementary::powf;
 
 /// Controller of a method whose error estimate is of order `order` in the step.
@@ -6,22 +6,23 @@ use crate::math::elementary::powf;
 pub struct StepControl {
     /// Order of the error estimate.
     pub order: f64,
-    /// Error that is aimed at, in units of the error norm.
+    /// Target local error, in units of the error norm.
     pub tolerance: f64,
     /// Longest step \[s\].
     pub longest: f64,
-    /// Shortest step; below it the run ends \[s\].
+    /// Shortest step \[s\]; the run ends with an error if a shorter one is needed.
     pub shortest: f64,
 }
 
 impl StepControl {
-    /// Factor for the next step after an error of `error`.
+    /// Returns the factor for the size of the next step after a local error of `error`.
     pub fn factor(&self, error: f64) -> f64 {
         let ratio = self.tolerance / error.max(1e-10 * self.tolerance);
         (0.9 * powf(ratio, 1.0 / self.order)).clamp(0.2, 3.0)
     }
 
-    /// The next step; small changes are not made, so that a factorisation can be used again.
+    /// Returns the size of the next step; small changes are suppressed, so that a factorisation can be
+    /// reused.
     pub fn next(&self, step: f64, error: f64) -> f64 {
         let factor = self.factor(error);
         let factor = if (0.85..=1.25).contains(&factor) {

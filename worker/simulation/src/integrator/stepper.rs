@@ -1,4 +1,4 @@
-//! What all methods of integration have in common: a step of a given size, and what it may be told.
+//! Interface of all integration methods: a step of a given size, and its acceptance or rejection.
 use super::{newton::NotConverged, step_control::StepControl, tableau::Tableau};
 use crate::system::{Equations, Powers, State, System};
 use std::fmt::Debug;
@@ -8,52 +8,52 @@ use std::fmt::Debug;
 pub struct Step {
     /// Local error in units of the error norm.
     pub error: f64,
-    /// Work done during the step: input, output, dissipated \[J\].
+    /// Work done during the step \[J\]: input, output, dissipated.
     pub work: Powers,
 }
 
-/// The stages of a step with an explicit first stage: what the discrete trajectory is differentiated
-/// through.
+/// Stages of a step of a method with an explicit first stage, for differentiating the discrete trajectory.
 #[derive(Clone, Copy, Debug)]
 pub struct Stages<'a> {
-    /// The method.
+    /// Coefficients of the method.
     pub tableau: &'static Tableau,
-    /// Rates and accelerations of the stages but the last, which is where the step ended.
+    /// Rates and accelerations of all stages except the last, which is the end of the step.
     pub rates: &'a [(Vec<f64>, Vec<f64>)],
 }
 
-/// A step that was made, or could not be.
+/// Result of a step, or the failure of Newton's method.
 pub type Tried = Result<Step, NotConverged>;
 
-/// A method of integration with its buffers and whatever it remembers of earlier steps.
+/// Integration method with its buffers and its history of earlier steps.
 ///
-/// It knows neither what is recorded nor which size a step should have, unless it says so in
+/// It knows neither what is recorded nor which size a step should have, except where it overrides
 /// [`Stepper::next`].
 pub trait Stepper<E: Equations>: Debug {
-    /// One step of size `h` from `from`, where the last accepted step ended, into `to`.
+    /// Makes one step of size `h` from `from`, the end of the last accepted step, into `to`.
     ///
-    /// The loads that the equations keep afterwards are those of the method's last evaluation: of `to`,
-    /// up to Newton's accuracy. Who needs those of `to` itself asks [`System::forces`].
+    /// The loads that the equations keep afterwards are those of the method's last evaluation, which equal
+    /// the loads of `to` up to Newton's accuracy. [`System::forces`] evaluates the loads of `to` itself.
     ///
     /// # Errors
-    /// [`NotConverged`] when the step could not be made; `to` is then meaningless.
+    /// [`NotConverged`] if the step could not be made; `to` is then meaningless.
     fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> Tried;
 
-    /// The last step was accepted; it ends in `to`.
+    /// Accepts the last step, which ends in `to`.
     fn accept(&mut self, equations: &E, to: &State);
 
-    /// The last step failed or erred too much: another one from the same state will follow.
+    /// Rejects the last step, which failed or exceeded the tolerance; another step from the same state
+    /// follows.
     fn reject(&mut self) {}
 
-    /// The stages of the last step, of a method that has such.
+    /// Returns the stages of the last step, if the method has stages.
     fn stages(&self) -> Option<Stages<'_>> {
         None
     }
 
-    /// Order of the last step's error estimate in its size.
+    /// Returns the order of the last step's error estimate with respect to the step size.
     fn error_order(&self) -> f64;
 
-    /// Size of the step after the accepted one \[s\].
+    /// Returns the size of the step after the accepted one \[s\].
     fn next(&mut self, control: &StepControl, step: f64, error: f64) -> f64 {
         control.next(step, error)
     }

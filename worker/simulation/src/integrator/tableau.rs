@@ -1,29 +1,29 @@
 //! Coefficients of singly diagonally implicit Runge-Kutta methods with an explicit first stage.
 
-/// A stiffly accurate method: the last stage is the result.
+/// Coefficients of a stiffly accurate method, whose last stage is the result.
 #[derive(Debug)]
 pub struct Tableau {
-    /// Name in case files.
+    /// Name of the method in case files.
     pub name: &'static str,
-    /// Order of the result.
+    /// Order of accuracy.
     pub order: u32,
-    /// Nodes; the first is 0, the last 1.
+    /// Nodes of the stages; the first is 0, the last 1.
     pub nodes: &'static [f64],
-    /// Rows of the stage matrix below the diagonal; the first is empty, the last holds the weights
-    /// of the result but the last.
+    /// Rows of the stage matrix below the diagonal; the first row is empty, the last one holds the weights of
+    /// the result except the last weight.
     pub rows: &'static [&'static [f64]],
-    /// The diagonal, the same for every implicit stage.
+    /// Diagonal entry of the stage matrix, equal for all implicit stages.
     pub diagonal: f64,
     /// Weights of the embedded formula that estimates the error.
     pub embedded: &'static [f64],
-    /// Order of the error estimate in the step.
+    /// Order of the error estimate with respect to the step size.
     pub error_order: f64,
 }
 
 const GAMMA: f64 = 2.0 - std::f64::consts::SQRT_2;
 const W: f64 = 0.25 * std::f64::consts::SQRT_2;
 
-/// TR-BDF2: trapezoidal to `t + (2 - sqrt 2) h`, then BDF2; L-stable, second order, third-order
+/// TR-BDF2: trapezoidal rule to `t + (2 - sqrt 2) h`, then BDF2; L-stable, second order, third-order error
 /// estimate. Hosea and Shampine (1996).
 pub static TR_BDF2: Tableau = Tableau {
     name: "tr-bdf2",
@@ -35,8 +35,8 @@ pub static TR_BDF2: Tableau = Tableau {
     error_order: 3.0,
 };
 
-/// The implicit part of ARK4(3)6L\[2\]SA: L-stable, fourth order, third-order estimate.
-/// Kennedy and Carpenter (2003).
+/// Implicit part of ARK4(3)6L\[2\]SA: L-stable, fourth order, embedded third-order formula. Kennedy and
+/// Carpenter (2003).
 pub static ESDIRK4: Tableau = Tableau {
     name: "esdirk4",
     order: 4,
@@ -76,11 +76,11 @@ pub static ESDIRK4: Tableau = Tableau {
     error_order: 4.0,
 };
 
-/// Every method of this family.
+/// All singly diagonally implicit Runge-Kutta methods offered.
 pub static CATALOGUE: [&Tableau; 2] = [&TR_BDF2, &ESDIRK4];
 
 impl Tableau {
-    /// Weight of stage `i` in the result.
+    /// Returns the weight of stage `i` in the result.
     pub fn weight(&self, i: usize) -> f64 {
         let last = self.nodes.len() - 1;
         if i == last {
@@ -90,7 +90,7 @@ impl Tableau {
         }
     }
 
-    /// Number of stages, the explicit first one included.
+    /// Returns the number of stages, including the explicit first one.
     pub const fn stages(&self) -> usize {
         self.nodes.len()
     }

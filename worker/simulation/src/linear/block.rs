@@ -1,22 +1,23 @@
-//! Dense blocks of three or six: inversion by elimination with partial pivoting, products.
+//! Dense blocks of three or six rows: inversion by elimination with partial pivoting, and products.
 //!
-//! A factorisation is used for some twenty solutions, and a product with an explicit inverse is six
-//! independent columns where a triangular solution is a chain: it is worth its making.
+//! An explicit inverse costs more to compute than triangular factors, but a factorisation serves some twenty
+//! solutions, and a product with the inverse is six independent columns where a triangular solution is a
+//! chain of dependent operations.
 use nalgebra::{SMatrix, SVector};
 
-/// Coordinates of a rigid body in space, and the width of its block.
+/// Number of coordinates of a rigid body in space, and width of its block.
 pub const BLOCK: usize = 6;
 
-/// One block, column-major.
+/// Dense block of a matrix, column-major.
 pub type Block<const N: usize = BLOCK> = SMatrix<f64, N, N>;
 
-/// One body's entries of a vector of unknowns.
+/// Entries of one body in a vector of unknowns.
 pub(super) type Column<const N: usize> = SVector<f64, N>;
 
 /// Replaces a block by its inverse (Gauss-Jordan with row exchanges).
 ///
 /// # Errors
-/// The column whose pivot vanished or is not finite.
+/// Index of the column whose pivot is zero or not finite.
 pub(super) fn invert<const N: usize>(a: &mut Block<N>) -> Result<(), usize> {
     let mut exchanged = [0; N];
     for k in 0..N {
@@ -56,7 +57,7 @@ pub(super) fn invert<const N: usize>(a: &mut Block<N>) -> Result<(), usize> {
     Ok(())
 }
 
-/// `A x`.
+/// Returns `A x`.
 #[inline]
 pub(super) fn product<const N: usize>(a: &Block<N>, x: &Column<N>) -> Column<N> {
     let mut y = Column::<N>::zeros();
@@ -69,7 +70,7 @@ pub(super) fn product<const N: usize>(a: &Block<N>, x: &Column<N>) -> Column<N> 
     y
 }
 
-/// `y -= A x`.
+/// Subtracts `A x` from `y`.
 #[inline]
 pub(super) fn subtract_product<const N: usize>(a: &Block<N>, x: &Column<N>, y: &mut Column<N>) {
     for k in 0..N {

@@ -1,25 +1,26 @@
 //! Block-tridiagonal chains with a common border: storage, factorisation, solution.
 //!
-//! Every chain is eliminated from its free end towards its anchored end, so a column of the border
-//! fills in only from the first block that touches it or one behind it on. Cost O(blocks).
+//! Every chain is eliminated from its free end towards its anchored end, so a border column fills in only
+//! from the first block that couples to it, or to a border column behind it. Cost O(blocks).
 //!
-//! The border has two parts: unknowns of bodies that more than one chain hangs on (the lead), then
-//! those of whatever carries the chains' other ends, which are counted from there.
+//! The border has two parts: first the unknowns of bodies to which more than one chain is attached (the
+//! lead), then the unknowns of the structure that carries the chains' other ends (the counted part, whose
+//! indices start after the lead).
 use super::block::{Block, Column, invert, product, subtract_product};
 use super::entry::Entry;
 
-/// A pivot vanished: the matrix is singular or holds a value that is not finite.
+/// Error: a pivot is zero or not finite, so the matrix is singular or holds a value that is not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SingularPivot {
     /// Global index of the unknown.
     pub unknown: usize,
 }
 
-/// A square matrix of `blocks * N + border` unknowns: chains one after the other, border last.
+/// Square matrix of `blocks * N + border` unknowns: chains one after the other, border last.
 #[derive(Clone, Debug)]
 pub struct Blocks<const N: usize> {
     pub(super) chains: Vec<usize>,
-    /// Unknowns of the border, and how many of them come before those that are counted.
+    /// Number of unknowns of the border, the lead included; `lead` is the size of the lead alone.
     pub(super) border: usize,
     lead: usize,
     pub(super) diagonal: Vec<Block<N>>,
@@ -27,22 +28,24 @@ pub struct Blocks<const N: usize> {
     pub(super) upper: Vec<Block<N>>,
     /// Coupling of block i + 1 (row) with block i (column).
     pub(super) lower: Vec<Block<N>>,
-    /// Border columns of block rows: `blocks * border` columns of N.
+    /// Couplings of block rows with border columns: `blocks * border` columns of N.
     pub(super) right: Vec<Column<N>>,
-    /// Border rows of block columns: `blocks * border` rows of N.
+    /// Couplings of border rows with block columns: `blocks * border` rows of N.
     pub(super) bottom: Vec<Column<N>>,
-    /// Border by border, column-major.
+    /// Couplings within the border, `border * border`, column-major.
     pub(super) corner: Vec<f64>,
-    /// Per block, how many of the border's first unknowns it touches.
+    /// Per block: number of leading border unknowns that may couple to the block (one more than the highest
+    /// index).
     pub(super) touches: Vec<usize>,
-    /// Per block, how many of them fill it: as many as it or a block before it in its chain touches.
+    /// Per block: number of leading border unknowns filled by the factorisation, the maximum of `touches`
+    /// over the block and the blocks before it in its chain.
     pub(super) filled: Vec<usize>,
     corner_pivots: Vec<usize>,
 }
 
 impl<const N: usize> Blocks<N> {
-    /// An empty matrix for chains of the given numbers of blocks; `lead` unknowns of the border are
-    /// not counted, `counted` are.
+    /// Creates an empty matrix for chains of the given numbers of blocks; `lead` and `counted` are the sizes
+    /// of the two parts of the border.
     pub fn new(chains: &[usize], [lead, counted]: [usize; 2]) -> Self {
         let blocks: usize = chains.iter().sum();
         let border = lead + counted;
@@ -62,17 +65,17 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    /// Number of unknowns.
+    /// Returns the number of unknowns.
     pub fn len(&self) -> usize {
         self.diagonal.len() * N + self.border
     }
 
-    /// Whether there are no unknowns.
+    /// Returns whether there are no unknowns.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Counted unknowns of the border.
+    /// Returns the number of border unknowns without the lead.
     pub const fn border(&self) -> usize {
         self.border - self.lead
     }
@@ -92,26 +95,27 @@ impl<const N: usize> Blocks<N> {
         self.filled.fill(0);
     }
 
-    /// Where the border of block `b` may hold anything but zeros: what touched it, and what a
-    /// factorisation filled beyond that.
+    /// Returns the range of border entries of block `b` that may be nonzero: those added, and those filled by
+    /// a factorisation.
     fn used(&self, b: usize) -> std::ops::Range<usize> {
         let used = self.touches[b].max(self.filled[b]);
         b * self.border..b * self.border + used
     }
 
-    /// Diagonal block.
+    /// Returns the diagonal block.
     #[inline]
     pub fn diagonal_mut(&mut self, block: usize) -> &mut Block<N> {
         &mut self.diagonal[block]
     }
 
-    /// Coupling of `block` (rows) with the next one (columns), and of the next with this one.
+    /// Returns the couplings of `block` (rows) with the next block (columns), and of the next block (rows)
+    /// with `block` (columns).
     #[inline]
     pub fn coupling_mut(&mut self, block: usize) -> (&mut Block<N>, &mut Block<N>) {
         (&mut self.upper[block], &mut self.lower[block])
     }
 
-    /// Adds `value` to row `row` of `block`, counted column `k` of the border.
+    /// Adds `value` to the coupling of row `row` of `block` with border column `k`, counted after the lead.
     #[inline]
     pub fn add_right(&mut self, block: usize, row: usize, k: usize, value: f64) {
         let k = self.lead + k;
@@ -119,7 +123,8 @@ impl<const N: usize> Blocks<N> {
         self.right[block * self.border + k][row] += value;
     }
 
-    /// Adds `value` to counted row `k` of the border, column `column` of `block`.
+    /// Adds `value` to the coupling of border row `k`, counted after the lead, with column `column` of
+    /// `block`.
     #[inline]
     pub fn add_bottom(&mut self, block: usize, k: usize, column: usize, value: f64) {
         let k = self.lead + k;
@@ -127,8 +132,8 @@ impl<const N: usize> Blocks<N> {
         self.bottom[block * self.border + k][column] += value;
     }
 
-    /// Adds to some rows and columns of `block`, to those rows in the border's first `reach` counted
-    /// columns, and to those columns in its first counted rows.
+    /// Adds the matrix `own` to the given rows and columns of `block`, `right` to these rows in the first
+    /// `reach` border columns after the lead, and `bottom` to these columns in the corresponding border rows.
     pub(crate) fn add_touching<const R: usize, const B: usize>(
         &mut self,
         block: usize,
@@ -154,16 +159,16 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    /// Adds `value` within the counted border.
+    /// Adds `value` to an entry within the border; row and column are counted after the lead.
     #[inline]
     pub fn add_corner(&mut self, row: usize, column: usize, value: f64) {
         self.corner[(self.lead + column) * self.border + self.lead + row] += value;
     }
 
-    /// Adds `value` at any place of the shape: within a block, between neighbours, in the border.
+    /// Adds `value` at global indices: within a block, between neighbouring blocks, or in the border.
     ///
     /// # Panics
-    /// In debug builds, between blocks that are not neighbours of one chain.
+    /// In debug builds, for blocks that are not neighbours of one chain.
     pub fn add(&mut self, row: usize, column: usize, value: f64) {
         let base = self.diagonal.len() * N;
         let split = |i: usize| (i / N, i % N);
@@ -194,7 +199,7 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    /// `y = A x` of the assembled (not factorised) matrix; for tests and checks.
+    /// Computes `y = A x` with the assembled (not factorised) matrix.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         y.fill(0.0);
         let base = self.diagonal.len() * N;
@@ -224,7 +229,7 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    /// Factorises in place; the assembled entries are lost.
+    /// Factorises in place; the assembled entries are overwritten.
     ///
     /// # Errors
     /// [`SingularPivot`] with the unknown whose pivot vanished.
@@ -232,7 +237,8 @@ impl<const N: usize> Blocks<N> {
         self.factorize_by(invert)
     }
 
-    /// The same by closed inverses of blocks in the plane: other bits in half of the time.
+    /// Factorises with closed-form inverses of the blocks, for blocks in the plane: takes half of the time
+    /// and differs from [`Self::factorize`] in rounding.
     pub(super) fn factorize_closed(&mut self) -> Result<(), SingularPivot> {
         self.factorize_by(|block| {
             *block = block.try_inverse().ok_or(0_usize)?;
@@ -240,7 +246,8 @@ impl<const N: usize> Blocks<N> {
         })
     }
 
-    /// Factorises with inverses that are made so, or the column of a block that cannot be inverted.
+    /// Factorises with the given function for inverting a block; the function returns the column index if a
+    /// block cannot be inverted.
     #[inline]
     fn factorize_by(
         &mut self,
@@ -277,8 +284,8 @@ impl<const N: usize> Blocks<N> {
         self.factorize_corner()
     }
 
-    /// Eliminates from the border one block, whose inverse is there and which the border's first `reach`
-    /// unknowns fill: `right` becomes `D^-1 right`.
+    /// Eliminates one block, whose inverse is already stored and which fills the first `reach` border
+    /// unknowns, from the border: `right` becomes `D^-1 right`.
     fn eliminate(&mut self, b: usize, has_next: bool, reach: usize) {
         let m = self.border;
         for k in 0..reach {
@@ -408,11 +415,12 @@ impl<const N: usize> Blocks<N> {
     }
 }
 
-/// Runs through chains of so many blocks by twos, a block of one, then a block of the other: each block
-/// waits for the one before it in its own chain, so one chain alone leaves most of a processor idle.
+/// Iterates over chains of the given lengths in pairs, alternating between a block of one chain and a block
+/// of the other. Each block depends on the one before it in its own chain, so that a single chain leaves most
+/// of a processor's pipeline idle.
 ///
-/// `step` gets which of the two a chain is, its first block and length, and how many of its blocks are
-/// done; it says whether there are more.
+/// `step` receives the chain's index in the pair (0 or 1), its first block and length, and the number of its
+/// blocks already processed; it returns whether blocks remain.
 #[inline]
 fn side_by_side(chains: &[usize], mut step: impl FnMut(usize, [usize; 2], usize) -> bool) {
     let mut first = 0;
@@ -435,7 +443,7 @@ fn side_by_side(chains: &[usize], mut step: impl FnMut(usize, [usize; 2], usize)
     }
 }
 
-/// Entries of block `b`.
+/// Returns the entries of block `b`.
 #[inline]
 fn column<const N: usize>(blocks: &[f64], b: usize) -> Column<N> {
     Column::from_column_slice(&blocks[b * N..(b + 1) * N])
@@ -445,7 +453,7 @@ fn column<const N: usize>(blocks: &[f64], b: usize) -> Column<N> {
 mod tests {
     use super::*;
 
-    /// A well-conditioned matrix with no symmetry and no zeros where the structure allows any.
+    /// Returns a well-conditioned matrix without symmetry, with nonzeros wherever the structure allows.
     fn example(lead: usize, touch_from: &[usize]) -> Blocks<6> {
         let chains = [4, 7];
         let mut a = Blocks::<6>::new(&chains, [lead, 3]);

@@ -1,16 +1,16 @@
-//! One matrix for bodies in the plane or in space: chains of three- or six-wide blocks with a border.
+//! Bordered matrix for bodies in the plane or in space: chains of blocks of width three or six with a border.
 use super::{BLOCK, Block, Blocks, SingularPivot};
 
-/// Chains of blocks with a common border, of one of two widths.
+/// Bordered block-tridiagonal matrix with blocks of width three or six.
 #[derive(Clone, Debug)]
 pub enum Bordered {
-    /// Three unknowns per body.
+    /// Matrix with three unknowns per body.
     Plane(Blocks<3>),
-    /// Six unknowns per body.
+    /// Matrix with six unknowns per body.
     Space(Blocks<BLOCK>),
 }
 
-/// Calls the same method on whichever width there is.
+/// Calls the same method on the matrix of either block width.
 macro_rules! either {
     ($self:expr, $blocks:ident => $call:expr) => {
         match $self {
@@ -21,28 +21,28 @@ macro_rules! either {
 }
 
 impl Bordered {
-    /// An empty matrix of three-wide blocks for chains of the given numbers of blocks; of the border
-    /// so many unknowns are in the lead, so many counted.
+    /// Creates an empty matrix of blocks of width three for chains of the given numbers of blocks; `border`
+    /// holds the numbers of border unknowns in the lead and after it.
     pub fn plane(chains: &[usize], border: [usize; 2]) -> Self {
         Self::Plane(Blocks::new(chains, border))
     }
 
-    /// The same of six-wide blocks.
+    /// Creates an empty matrix of blocks of width six; arguments as for [`Self::plane`].
     pub fn space(chains: &[usize], border: [usize; 2]) -> Self {
         Self::Space(Blocks::new(chains, border))
     }
 
-    /// Number of unknowns.
+    /// Returns the number of unknowns.
     pub fn len(&self) -> usize {
         either!(self, blocks => blocks.len())
     }
 
-    /// Whether there are no unknowns.
+    /// Returns whether there are no unknowns.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Counted unknowns of the border.
+    /// Returns the number of border unknowns without the lead.
     pub const fn border(&self) -> usize {
         either!(self, blocks => blocks.border())
     }
@@ -58,7 +58,7 @@ impl Bordered {
         either!(self, blocks => blocks.diagonal_mut(block)[(row, column)] += value);
     }
 
-    /// Makes every unknown of `block` but the first one its own: `1` on the diagonal.
+    /// Decouples all unknowns of `block` but the first by setting their diagonal entries to 1.
     pub fn lock_rest(&mut self, block: usize) {
         fn lock<const N: usize>(block: &mut Block<N>) {
             for k in 1..N {
@@ -68,45 +68,46 @@ impl Bordered {
         either!(self, blocks => lock(blocks.diagonal_mut(block)));
     }
 
-    /// Adds `value` to row `row` of `block`, counted column `k` of the border.
+    /// Adds `value` to the coupling of row `row` of `block` with border column `k`, counted after the lead.
     #[inline]
     pub fn add_right(&mut self, block: usize, row: usize, k: usize, value: f64) {
         either!(self, blocks => blocks.add_right(block, row, k, value));
     }
 
-    /// Adds `value` to counted row `k` of the border, column `column` of `block`.
+    /// Adds `value` to the coupling of border row `k`, counted after the lead, with column `column` of
+    /// `block`.
     #[inline]
     pub fn add_bottom(&mut self, block: usize, k: usize, column: usize, value: f64) {
         either!(self, blocks => blocks.add_bottom(block, k, column, value));
     }
 
-    /// Adds `value` within the counted border.
+    /// Adds `value` to an entry within the border; row and column are counted after the lead.
     #[inline]
     pub fn add_corner(&mut self, row: usize, column: usize, value: f64) {
         either!(self, blocks => blocks.add_corner(row, column, value));
     }
 
-    /// Adds `value` at any place of the shape: within a block, between neighbours, in the border.
+    /// Adds `value` at global indices: within a block, between neighbouring blocks, or in the border.
     ///
     /// # Panics
-    /// In debug builds, between blocks that are not neighbours of one chain.
+    /// In debug builds, for blocks that are not neighbours of one chain.
     pub fn add(&mut self, row: usize, column: usize, value: f64) {
         either!(self, blocks => blocks.add(row, column, value));
     }
 
-    /// `A x` of the assembled (not factorised) matrix.
+    /// Returns `A x` with the assembled (not factorised) matrix.
     pub fn product(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; self.len()];
         self.multiply(x, &mut y);
         y
     }
 
-    /// `y = A x` of the assembled (not factorised) matrix.
+    /// Computes `y = A x` with the assembled (not factorised) matrix.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         either!(self, blocks => blocks.multiply(x, y));
     }
 
-    /// Factorises in place; the assembled entries are lost.
+    /// Factorises in place; the assembled entries are overwritten.
     ///
     /// # Errors
     /// [`SingularPivot`] with the unknown whose pivot vanished.
@@ -114,7 +115,8 @@ impl Bordered {
         either!(self, blocks => blocks.factorize())
     }
 
-    /// The same with inverses of blocks in the plane in closed form: other bits in less time.
+    /// Factorises with closed-form inverses of the blocks in the plane: faster, and different from
+    /// [`Self::factorize`] in rounding.
     ///
     /// # Errors
     /// [`SingularPivot`] with an unknown of the block that is singular.

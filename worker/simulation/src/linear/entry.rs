@@ -1,17 +1,17 @@
-//! Entries of vectors of unknowns: of one column, or of several side by side.
+//! Entry types for vectors of unknowns: a scalar for one column, or several lanes for several columns.
 use pulp::Simd;
 use std::ops::{Add, AddAssign, Div, Mul, Sub, SubAssign};
 
-/// Columns that are solved side by side.
+/// Number of columns that are solved simultaneously.
 pub const LANES: usize = 4;
 
-/// One unknown of [`LANES`] columns.
+/// Values of one unknown in [`LANES`] columns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(32))]
 pub struct Lanes(pub [f64; LANES]);
 
-/// What the terms that are linear in a vector of unknowns ask of its entries: a number of one column,
-/// or those of several.
+/// Arithmetic required of an entry by terms that are linear in a vector of unknowns; implemented by a scalar
+/// (one column) and by lanes (several columns).
 pub trait Entry:
     Copy
     + Add<Output = Self>
@@ -27,7 +27,8 @@ impl Entry for f64 {}
 impl Entry for Lanes {}
 
 impl Lanes {
-    /// `self + factor x`, product and sum rounded apart, in vectors of the processor.
+    /// Adds `factor x` with SIMD instructions; product and sum are rounded separately (no fused
+    /// multiply-add).
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
@@ -42,7 +43,8 @@ impl Lanes {
         }
     }
 
-    /// `self - factor x`, product and difference rounded apart, in vectors of the processor.
+    /// Subtracts `factor x` with SIMD instructions; product and difference are rounded separately (no fused
+    /// multiply-add).
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
@@ -53,7 +55,7 @@ impl Lanes {
         self.add_scaled(simd, x, -factor);
     }
 
-    /// `factor self`.
+    /// Returns `factor` times the lanes.
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"

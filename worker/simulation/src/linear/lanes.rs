@@ -1,18 +1,18 @@
-//! Many right-hand sides side by side: what is done for one vector of unknowns, done for several.
+//! Solution and product for several right-hand sides simultaneously, one per SIMD lane.
 //!
-//! A factor is read once for several columns, and what waits for itself along a chain in one column waits
-//! no longer in several. No lane knows of its neighbours: a column has the same bits whatever stands
-//! beside it.
+//! A factor is read once for several columns, and the dependent operations along a chain in one column
+//! overlap with those of the other columns. Lanes are independent: a column has the same bits whatever
+//! columns are solved with it.
 use super::block::{Block, Column};
 use super::blocks::Blocks;
 use super::bordered::Bordered;
 use super::entry::Lanes;
 use pulp::Simd;
 
-/// The entries of one block of unknowns.
+/// Entries of one block of unknowns, in all lanes.
 type Part<const N: usize> = [Lanes; N];
 
-/// `y -= A x`.
+/// Subtracts `A x` from `y`.
 #[expect(
     clippy::inline_always,
     reason = "compiled for each set of instructions"
@@ -26,7 +26,7 @@ fn subtract_product<const N: usize, S: Simd>(simd: S, a: &Block<N>, x: &Part<N>,
     }
 }
 
-/// `A x`.
+/// Returns `A x`.
 #[expect(
     clippy::inline_always,
     reason = "compiled for each set of instructions"
@@ -42,7 +42,7 @@ fn product<const N: usize, S: Simd>(simd: S, a: &Block<N>, x: &Part<N>) -> Part<
     y
 }
 
-/// The border's columns, or rows transposed, of block `b`, as far as there are any.
+/// Iterates over the first `reach` border columns (or transposed border rows) of block `b`.
 #[expect(
     clippy::inline_always,
     reason = "compiled for each set of instructions"
@@ -61,7 +61,7 @@ fn touching<const N: usize>(
     reason = "what is done for many columns is a file of its own"
 )]
 impl<const N: usize> Blocks<N> {
-    /// [`Blocks::solve`] for `LANES` columns.
+    /// Solves for `LANES` columns in place, like [`Blocks::solve`].
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
@@ -107,7 +107,7 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    /// `y -= A x` of the assembled (not factorised) matrix for `LANES` columns.
+    /// Subtracts `A x` from `y` with the assembled (not factorised) matrix, for `LANES` columns.
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
@@ -153,7 +153,7 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    /// First block and length of every chain.
+    /// Iterates over the chains, as pairs of first block and length.
     fn spans(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
         self.chains.iter().scan(0, |first, &count| {
             let span = [*first, count];
@@ -168,7 +168,7 @@ impl<const N: usize> Blocks<N> {
     reason = "what is done for many columns is a file of its own"
 )]
 impl Bordered {
-    /// [`Bordered::solve`] for `LANES` columns.
+    /// Solves for `LANES` columns in place, like [`Bordered::solve`].
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
@@ -181,7 +181,7 @@ impl Bordered {
         }
     }
 
-    /// `y -= A x` of the assembled matrix for `LANES` columns.
+    /// Subtracts `A x` from `y` with the assembled (not factorised) matrix, for `LANES` columns.
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
@@ -201,7 +201,7 @@ mod tests {
     use crate::linear::LANES;
     use pulp::{Arch, Scalar, WithSimd};
 
-    /// Product with a matrix, then solution with its factor.
+    /// Test computation: product with a matrix, and solution with its factor.
     struct Work<'a>([&'a Bordered; 2], &'a [Lanes]);
 
     impl WithSimd for Work<'_> {
@@ -216,8 +216,7 @@ mod tests {
         }
     }
 
-    /// What is done side by side is done as one by one, and to the bit the same in whatever vectors the
-    /// processor has.
+    /// Checks that lanes give the results of single columns, and the same bits for every SIMD width.
     #[test]
     fn columns_are_solved_and_multiplied_as_one_by_one() {
         let mut a = Bordered::plane(&[3, 5], [1, 2]);

@@ -1,5 +1,5 @@
-//! Linear solvers for chains of blocks (three or six wide) that share a thin border. No knowledge of
-//! time, bodies or forces.
+//! Linear solvers for chains of blocks (three or six wide) that share a thin border. Independent of time,
+//! bodies and forces.
 mod block;
 mod blocks;
 mod bordered;

@@ -1,20 +1,20 @@
-//! Elementary functions that give the same bits on every machine.
+//! Elementary functions with bitwise equal results on every machine.
 //!
-//! The C library's `sin`, `pow` and friends differ by one unit in the last place between CPUs with
-//! and without fused multiply-add; `libm` is pure Rust and does not. `sqrt` is exact everywhere.
+//! The C library's `sin`, `pow` and related functions differ by one unit in the last place between CPUs with
+//! and without fused multiply-add; `libm` is pure Rust and does not. `sqrt` is correctly rounded everywhere.
 
-/// Sine and cosine.
+/// Returns sine and cosine of an angle \[rad\].
 #[inline]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     libm::sincos(x)
 }
 
-/// Sines and cosines of many angles; as accurate as [`sin_cos`], to the last bit or two,
-/// and to 1e-24 where they vanish.
+/// Computes sines and cosines of many angles \[rad\], equal to those of [`sin_cos`] to the last bit or two,
+/// and to 1e-24 near their zeros.
 ///
-/// One plain loop without branches, which compilers turn into vectors: the angle less the nearest
-/// multiple of a quarter turn, in two pieces (Cody and Waite), and the polynomials of fdlibm's
-/// kernels there. Angles beyond a few thousand turns go one by one.
+/// A single loop without branches, which compilers vectorise: the angle is reduced by the nearest multiple of
+/// a quarter turn, in two pieces (Cody and Waite), and the polynomials of fdlibm's kernels are evaluated. If
+/// any angle exceeds 1e4 rad, all are computed one by one.
 pub fn sin_cos_all(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
     let n = angles.len();
     let (sines, cosines) = (&mut sines[..n], &mut cosines[..n]);
@@ -53,10 +53,10 @@ pub fn sin_cos_all(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
 const FAR: f64 = 1e4;
 const ROUND: f64 = 6_755_399_441_055_744.0;
 const QUARTERS: f64 = std::f64::consts::FRAC_2_PI;
-/// The first 33 bits of a quarter turn, and the rest (fdlibm).
+/// Leading 33 bits of a quarter turn (fdlibm); `QUARTER_REST` is the remainder.
 const QUARTER: f64 = 1.570_796_326_734_125_6;
 const QUARTER_REST: f64 = 6.077_100_506_506_192e-11;
-/// Coefficients of fdlibm's kernels for sine and cosine up to an eighth of a turn.
+/// Coefficients of fdlibm's kernels for sine (S) and cosine (C) up to an eighth of a turn.
 const S1: f64 = -1.666_666_666_666_663_2e-1;
 const S2: f64 = 8.333_333_333_322_49e-3;
 const S3: f64 = -1.984_126_982_985_795e-4;
@@ -70,31 +70,32 @@ const C4: f64 = -2.755_731_435_139_066_3e-7;
 const C5: f64 = 2.087_572_321_298_175e-9;
 const C6: f64 = -1.135_964_755_778_819_5e-11;
 
-/// Angle of the vector `(x, y)` from the x axis, in (-pi, pi].
+/// Returns the angle of the vector `(x, y)` from the x axis, in (-pi, pi].
 #[inline]
 pub fn atan2(y: f64, x: f64) -> f64 {
     libm::atan2(y, x)
 }
 
-/// `e^x`.
+/// Returns `e^x`.
 #[inline]
 pub fn exp(x: f64) -> f64 {
     libm::exp(x)
 }
 
-/// Hyperbolic tangent.
+/// Returns the hyperbolic tangent.
 #[inline]
 pub fn tanh(x: f64) -> f64 {
     libm::tanh(x)
 }
 
-/// `base^exponent`.
+/// Returns `base^exponent`.
 #[inline]
 pub fn powf(base: f64, exponent: f64) -> f64 {
     libm::pow(base, exponent)
 }
 
-/// `x^exponent` for a penetration law: the usual exponent 3/2 costs one square root.
+/// Returns `x^exponent` for a contact penetration law; the usual exponent 3/2 takes one square root instead
+/// of a power.
 #[inline]
 pub fn power_law(x: f64, exponent: f64) -> f64 {
     #[expect(clippy::float_cmp, reason = "selects the exact special case")]
@@ -107,7 +108,8 @@ pub fn power_law(x: f64, exponent: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    /// In all quadrants, at their borders, and where the angles are too large for the loop.
+    /// Checks agreement with single evaluations in all quadrants, at their borders, and for angles too large
+    /// for the loop.
     #[test]
     fn many_sines_and_cosines_agree_with_single_ones() {
         let mut angles: Vec<f64> = (-40_000..40_000).map(|k| f64::from(k) * 7.3e-4).collect();
@@ -137,7 +139,7 @@ mod tests {
         assert_eq!([s[1], c[1]].map(f64::to_bits), [0.0, 1.0].map(f64::to_bits));
     }
 
-    /// One reduction of the argument serves both, to the bit.
+    /// Checks that the joint evaluation equals libm's separate sine and cosine bitwise.
     #[test]
     fn sine_and_cosine_are_those_of_libm() {
         for k in -40_000..40_000 {

@@ -1,13 +1,14 @@
-//! Fourier analysis of a periodic table, by direct sums: tables are short and are cut once.
+//! Fourier filtering of a periodic table by direct sums, which suffice because tables are short and filtered
+//! once.
 use crate::math::elementary::sin_cos;
 
-/// Keeps the mean and the first `kept` harmonics of a periodic table.
+/// Returns the table reduced to its mean and its first `kept` harmonics.
 pub fn low_pass(values: &[f64], kept: u32) -> Vec<f64> {
     filter(values, kept, |_| [1.0, 0.0])
 }
 
-/// Multiplies harmonic `h` of a periodic table, as an amplitude of `exp(i h phi)`, by a complex gain
-/// (real and imaginary part); the mean stays, harmonics above `highest` are dropped.
+/// Returns the table with harmonic `h`, as an amplitude of `exp(i h phi)`, multiplied by the complex
+/// `gain(h)` (real and imaginary part); the mean is kept, harmonics above `highest` are dropped.
 pub fn filter(values: &[f64], highest: u32, gain: impl Fn(u32) -> [f64; 2]) -> Vec<f64> {
     let n = values.len();
     let count = n.max(1) as f64;

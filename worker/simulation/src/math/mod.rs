@@ -1,5 +1,5 @@
-//! Mathematics of the dynamics: elementary functions with the same bits everywhere, rotations,
-//! splines. Knows nothing of machines.
+//! Mathematics of the dynamics: bitwise reproducible elementary functions, harmonics, rotations, splines.
+//! Independent of the machine model.
 pub mod elementary;
 pub mod harmonics;
 pub mod rotation;

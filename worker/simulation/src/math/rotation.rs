@@ -2,20 +2,20 @@
 use crate::math::elementary::atan2;
 use nalgebra::{Matrix3, Vector3};
 
-/// Matrix of the cross product: `skew(a) b = a x b`.
+/// Returns the matrix of the cross product: `skew(a) b = a x b`.
 #[inline]
 pub fn skew(a: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -a.z, a.y, a.z, 0.0, -a.x, -a.y, a.x, 0.0)
 }
 
-/// Rotation about z whose x axis is `(cosine, sine)`.
+/// Returns the rotation about z whose x axis is `(cosine, sine)`.
 pub fn about_z(sine: f64, cosine: f64) -> Matrix3<f64> {
     Matrix3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0)
 }
 
-/// Rotation vector (axis times angle, |.| <= pi) of the rotation `R_WI R_WJ^T`, in W \[rad\].
+/// Returns the rotation vector (axis times angle, |.| <= pi) of the rotation `R_WI R_WJ^T`, in W \[rad\].
 ///
-/// Taken through the quaternion of the rotation, so that small angles keep full precision.
+/// Computed from the skew-symmetric part of the matrix, so that small angles keep full precision.
 pub fn rotation_vector(R_WI: &Matrix3<f64>, R_WJ: &Matrix3<f64>) -> Vector3<f64> {
     let R = R_WI * R_WJ.transpose();
     let axial = Vector3::new(
@@ -51,7 +51,7 @@ pub fn rotation_vector(R_WI: &Matrix3<f64>, R_WJ: &Matrix3<f64>) -> Vector3<f64>
     axis * (angle / axis.norm().max(1e-300))
 }
 
-/// Inverse of the left Jacobian of the rotation vector `theta`: `d theta = J^-1 d alpha` for a
+/// Returns the inverse of the left Jacobian of the rotation vector `theta`: `d theta = J^-1 d alpha` for a
 /// further rotation `d alpha` in W. Its transpose is the inverse of the right Jacobian.
 pub fn inverse_left_jacobian(theta: &Vector3<f64>) -> Matrix3<f64> {
     let a2 = theta.norm_squared();

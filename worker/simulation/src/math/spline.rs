@@ -1,7 +1,7 @@
 //! Cubic splines on equal spacing, several curves on one grid.
 //!
-//! Twice continuously differentiable, so that a force interpolated from a table does not make an
-//! adaptive integrator stumble at the table's points.
+//! Twice continuously differentiable, so that an adaptive integrator need not reduce its steps at the grid
+//! points of a tabulated force.
 
 pub mod sum;
 
@@ -13,14 +13,14 @@ pub struct Splines {
     per_step: f64,
     periodic: bool,
     curves: usize,
-    /// Value and second derivative times step^2 / 6, per point and curve.
+    /// Value and second derivative times step^2 / 6, point by point, all curves of a point together.
     knots: Vec<[f64; 2]>,
 }
 
 /// Value and first two derivatives of one curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Jet {
-    /// Value.
+    /// Value of the curve.
     pub value: f64,
     /// First derivative.
     pub first: f64,
@@ -28,7 +28,7 @@ pub struct Jet {
     pub second: f64,
 }
 
-/// A place on the grid, found once for all curves.
+/// Position on the grid: enclosing knots and local coordinate, computed once for all curves.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Place {
     left: usize,
@@ -38,7 +38,8 @@ pub struct Place {
 }
 
 impl Place {
-    /// Weights of the values and of the bends at the left and the right knot.
+    /// Returns the weights of the values, then of the scaled second derivatives, at the left and the right
+    /// knot.
     #[inline]
     const fn weights(&self) -> [f64; 4] {
         let b = self.t;
@@ -48,15 +49,13 @@ impl Place {
 }
 
 impl Splines {
-    /// Natural splines through `curves[c][i]` at `start + i * step`; constant beyond the ends.
-    ///
-    /// # Panics
-    /// Never: fewer than two points give a constant.
+    /// Creates natural splines through `curves[c][i]` at `start + i * step`, constant beyond the ends. Fewer
+    /// than two points give a constant.
     pub fn natural(start: f64, step: f64, curves: &[Vec<f64>]) -> Self {
         Self::new(start, step, curves, false)
     }
 
-    /// Periodic splines; the point after the last is the first.
+    /// Creates periodic splines; the point after the last is the first.
     pub fn periodic(start: f64, step: f64, curves: &[Vec<f64>]) -> Self {
         Self::new(start, step, curves, true)
     }
@@ -84,17 +83,17 @@ impl Splines {
         }
     }
 
-    /// Number of curves.
+    /// Returns the number of curves.
     pub const fn curves(&self) -> usize {
         self.curves
     }
 
-    /// Number of points on the grid.
+    /// Returns the number of points on the grid.
     fn points(&self) -> usize {
         self.knots.len() / self.curves.max(1)
     }
 
-    /// Finds `x` on the grid.
+    /// Locates `x` on the grid.
     #[inline]
     pub fn place(&self, x: f64) -> Place {
         let points = self.points();
@@ -122,7 +121,7 @@ impl Splines {
         }
     }
 
-    /// Value and derivatives of `curve` at a place.
+    /// Returns value and derivatives of `curve` at a place.
     #[inline]
     pub fn jet(&self, place: &Place, curve: usize) -> Jet {
         let [y0, m0] = self.knots[place.left * self.curves + curve];
@@ -146,7 +145,7 @@ impl Splines {
         }
     }
 
-    /// Values of the first curves at a place.
+    /// Computes the values of the first `values.len()` curves at a place.
     pub fn values(&self, place: &Place, values: &mut [f64]) {
         let left = &self.knots[place.left * self.curves..];
         let right = &self.knots[place.right * self.curves..];
@@ -156,7 +155,7 @@ impl Splines {
         }
     }
 
-    /// Values and slopes of the first curves at a place.
+    /// Computes the values and first derivatives of the first `values.len()` curves at a place.
     pub fn slopes(&self, place: &Place, values: &mut [f64], slopes: &mut [f64]) {
         let left = &self.knots[place.left * self.curves..];
         let right = &self.knots[place.right * self.curves..];
@@ -170,7 +169,7 @@ impl Splines {
         }
     }
 
-    /// Value of `curve` at `x`.
+    /// Returns the value of `curve` at `x`.
     pub fn value(&self, x: f64, curve: usize) -> f64 {
         self.jet(&self.place(x), curve).value
     }
@@ -185,7 +184,7 @@ fn index(u: f64) -> usize {
     u as usize
 }
 
-/// Second derivatives times step^2 of the natural spline (Thomas algorithm).
+/// Returns the second derivatives times step^2 of the natural spline (Thomas algorithm).
 fn natural_bends(y: &[f64]) -> Vec<f64> {
     let n = y.len();
     let mut bends = vec![0.0; n];
@@ -205,10 +204,10 @@ fn natural_bends(y: &[f64]) -> Vec<f64> {
     bends
 }
 
-/// Second derivatives times step^2 of the periodic spline.
+/// Returns the second derivatives times step^2 of the periodic spline.
 ///
-/// The circulant system (1, 4, 1) is solved by its decaying Green's function, which is exact to
-/// rounding after 30 neighbours.
+/// The circulant system (1, 4, 1) is solved with its decaying Green's function, which is exact to rounding
+/// after 30 neighbours.
 fn periodic_bends(y: &[f64]) -> Vec<f64> {
     let n = y.len();
     if n < 3 {

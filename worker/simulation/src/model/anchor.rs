@@ -1,10 +1,10 @@
-//! Tangent of the joint that holds a rope on its head: the one joint that couples a cylinder with the
-//! beam angle and the head's modes.
+//! Tangent of the joint that fixes a rope to its head: the one joint that couples a cylinder with the beam
+//! angle and the head's modes.
 //!
-//! The end moves by `P = B (a + sum u_k q_k)` and turns by the beam's rotation `B` and by
-//! `R_t(sum t_k q_k) R_r(sum r_k q_k)`. With `S_k = B u_k` and `W_k = t_k d_t + r_k d_r`, the axes `d`
-//! of `EndRotation::axes`, its force and torque do the work `Q_k = F . S_k + tau . W_k` on a mode and
-//! `Q = (P x F + tau) . z` on the beam.
+//! The rope's end moves by `P = B (a + sum u_k q_k)` and turns by the beam's rotation `B` and by `R_t(sum t_k
+//! q_k) R_r(sum r_k q_k)`. With `S_k = B u_k` and `W_k = t_k d_t + r_k d_r`, the axes `d` of
+//! `EndRotation::axes`, its force and torque do the work `Q_k = F . S_k + tau . W_k` on a mode and `Q = (P x
+//! F + tau) . z` on the beam.
 use crate::element::bushing::{LinkLoad, LinkTangent};
 use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
@@ -18,15 +18,15 @@ use nalgebra::Vector3;
 
 type V3 = Vector3<f64>;
 
-/// The joint between the last cylinder (J) and the head (I).
+/// Joint between the last cylinder (J) and the head (I), with its load and derivatives.
 pub(super) struct Anchor<'a> {
     pub(super) chain: usize,
-    /// Block of the last cylinder.
+    /// Matrix block of the last cylinder.
     pub(super) block: usize,
     pub(super) end: &'a EndTangent,
-    /// On the head.
+    /// Load of the joint on the head.
     pub(super) load: &'a LinkLoad,
-    /// The last cylinder.
+    /// Pose of the last cylinder.
     pub(super) pose: &'a Pose,
 }
 
@@ -121,8 +121,8 @@ impl Machine {
         }
     }
 
-    /// Shapes of the modes at the anchor in W, the deflected place of its reference point from the pivot,
-    /// and the modes' part of its rate.
+    /// Returns the mode shapes at the anchor in W, the displacement of its reference point from the pivot due
+    /// to the modes, and its velocity due to the modes.
     fn anchor_shapes(&self, face: Option<&Face>, at: &Instant<'_>) -> ([V3; MAX_MODES], V3, V3) {
         let (s, c) = sin_cos(at.q[self.layout.beam()]);
         let mut shapes = [V3::zeros(); MAX_MODES];
@@ -153,20 +153,20 @@ impl Machine {
     }
 }
 
-/// How the reference point of the anchor moves.
+/// Motion of the anchor's reference point.
 struct Moving {
-    /// In W from the pivot \[m\].
+    /// Position from the pivot, in W \[m\].
     p: V3,
-    /// Rate of the modes' part, in W [m/s].
+    /// Velocity due to the modes, in W [m/s].
     deflection_rate: V3,
-    /// Rate of the beam [rad/s].
+    /// Angular velocity of the beam [rad/s].
     rate: f64,
-    /// Rates by coordinates.
+    /// Derivative of rates with respect to coordinates in the implicit stage [1/s].
     gamma: f64,
 }
 
 impl Moving {
-    /// Derivative of the joint's load by the beam's angle.
+    /// Returns the derivative of the joint's load with respect to the beam angle.
     fn by_angle(&self, by_head: &LinkTangent, turning: Option<&Turning<'_>>) -> Column {
         let &Self {
             p,
@@ -193,25 +193,25 @@ impl Moving {
     }
 }
 
-/// How the modes turn a rope's fixed end.
+/// Rotation of a rope's fixed end by the modes.
 struct Turning<'a> {
     shapes: &'a [AnchorShape],
-    /// `W_k`.
+    /// Rotation axes `W_k` of the modes, in W.
     axes: [V3; MAX_MODES],
-    /// Angular velocity in the beam [rad/s].
+    /// Angular velocity relative to the beam [rad/s].
     velocity: V3,
-    /// Derivative of the second axis by the first angle.
+    /// Derivative of the second axis with respect to the first angle.
     by_tilt: V3,
     second_rate: f64,
 }
 
 impl Turning<'_> {
-    /// Derivative of `W_row` by a modal coordinate.
+    /// Returns the derivative of `W_row` with respect to a modal coordinate.
     fn bend(&self, row: usize, mode: usize) -> V3 {
         self.by_tilt * (self.shapes[row].turns[1] * self.shapes[mode].turns[0])
     }
 
-    /// Derivative of the angular velocity by a modal coordinate at constant rates.
+    /// Returns the derivative of the angular velocity with respect to a modal coordinate at constant rates.
     fn drift(&self, mode: usize) -> V3 {
         self.by_tilt * (self.second_rate * self.shapes[mode].turns[0])
     }

@@ -1,9 +1,10 @@
-//! Contact of a rope cylinder with an arc on the beam: the arc, and where the law is evaluated.
+//! Contact of a rope cylinder with an arc on the beam: geometry of the arc, and points at which the contact
+//! law is evaluated.
 //!
-//! Penetration of the point `g` on the cylinder's axis:
-//! `d = R + sum_k q_k phi_k(s) - |g - C(theta)|`, `s = arg(g - C) - theta`; the rope's radius is
-//! part of `R`. The generalised force is `-f grad d`. A cylinder touches along its length: the law
-//! is integrated by three Gauss points, whose weights share the cylinder's coefficients.
+//! Penetration of the point `g` on the cylinder's axis: `d = R + sum_k q_k phi_k(s) - |g - C(theta)|`, `s =
+//! arg(g - C) - theta`; the rope's radius is part of `R`. The generalised force is `-f grad d`. A cylinder
+//! touches along its length: the law is integrated with three Gauss points, whose weights divide the
+//! cylinder's coefficients.
 use crate::math::elementary::{atan2, sin_cos};
 use crate::math::spline::sum::Sum;
 use crate::math::spline::{Place, Splines};
@@ -13,58 +14,59 @@ use nalgebra::{Matrix2, Vector2};
 
 type V2 = Vector2<f64>;
 
-/// Points of a cylinder where its contact is evaluated.
+/// Number of contact evaluation points per cylinder.
 pub const POINTS: usize = 3;
 
-/// Places along a cylinder in half lengths, and their shares of its coefficients.
+/// Gauss points along a cylinder, in half lengths, and their shares of the contact coefficients.
 pub const GAUSS: [(f64, f64); POINTS] = [
     (-0.774_596_669_241_483_4, 5.0 / 18.0),
     (0.0, 8.0 / 18.0),
     (0.774_596_669_241_483_4, 5.0 / 18.0),
 ];
 
-/// An arc at an instant: rigid placement and deflection.
+/// Surface of an arc at one instant: rigid placement and deflection.
 #[derive(Clone, Debug)]
 pub struct Surface<'a> {
-    /// Centre \[m\].
+    /// Centre of the arc \[m\].
     pub center: V2,
-    /// Derivative of the centre by the beam angle \[m\].
+    /// Derivative of the centre with respect to the beam angle \[m\].
     pub center_by_beam: V2,
     /// Radius of the rope's centre line \[m\].
     pub radius: f64,
     /// Beam angle \[rad\] and rate [rad/s].
     pub beam: [f64; 2],
-    /// Distance from the centre beyond which nothing touches, however the arc is deflected \[m\].
+    /// Distance from the centre beyond which no contact is considered, with room for deflection of the arc
+    /// \[m\].
     pub reach: f64,
-    /// What bends it, if anything does.
+    /// Deflection of the arc by modes; `None` for a rigid arc.
     pub bend: Option<Bend<'a>>,
-    /// Where it is not the circle, if anywhere.
+    /// Permanent deviation of the surface from a circle; `None` for a circular arc.
     pub profile: Option<&'a Profile>,
 }
 
 /// Deflection of an arc by modes.
 #[derive(Clone, Copy, Debug)]
 pub struct Bend<'a> {
-    /// Radial shapes of the modes over the arc angle \[rad\].
+    /// Radial mode shapes as functions of the arc angle \[rad\].
     pub shapes: &'a Splines,
-    /// Their sum under the modal coordinates, and under their rates.
+    /// Sums of the shapes weighted by the modal coordinates, and by their rates.
     pub sum: &'a Sum,
     /// Rates of the modal coordinates.
     pub modal_rate: &'a [f64],
 }
 
-/// How far beyond the rigid arc the head's own deflection may reach for contact \[m\].
+/// Largest deflection of the head beyond the rigid arc that contact detection allows for \[m\].
 const LARGEST_BULGE: f64 = 0.01;
 
-/// Where a cylinder's centre lies, seen from the arc's centre: one arc tangent serves all of its
-/// Gauss points.
+/// Direction of a cylinder's centre from the arc's centre; one arc tangent serves all of the cylinder's Gauss
+/// points.
 #[derive(Clone, Copy, Debug)]
 pub struct Bearing {
     toward: V2,
     angle: f64,
 }
 
-/// Whether the angle between two vectors is below 0.06 rad.
+/// Returns whether the angle between two vectors is below 0.06 rad.
 #[inline]
 fn near(a: &V2, b: &V2) -> bool {
     let (along, across) = (a.dot(b), a.x * b.y - a.y * b.x);
@@ -72,19 +74,19 @@ fn near(a: &V2, b: &V2) -> bool {
 }
 
 impl Bearing {
-    /// From the arc's centre to the cylinder's \[m\].
+    /// Returns the vector from the arc's centre to the cylinder's centre \[m\].
     pub const fn toward(&self) -> V2 {
         self.toward
     }
 
-    /// Arc angle there, in the beam frame \[rad\]; 0 where the surface is a circle.
+    /// Returns the arc angle of the cylinder's centre, in the beam frame \[rad\]; 0 for a circular surface.
     pub const fn angle(&self) -> f64 {
         self.angle
     }
 }
 
-/// Angle from `a` to `b` \[rad\], by the arc tangent's series: Gauss points of one cylinder lie
-/// within a few hundredths of a radian, where the first term left out is below 1e-17.
+/// Returns the angle from `a` to `b` \[rad\] by the arc tangent's series: Gauss points of one cylinder lie
+/// within a few hundredths of a radian, where the first omitted term is below 1e-17.
 #[inline]
 pub(crate) fn small_angle(a: [f64; 2], b: [f64; 2]) -> f64 {
     let t = (a[0] * b[1] - a[1] * b[0]) / (a[0] * b[0] + a[1] * b[1]);
@@ -94,22 +96,22 @@ pub(crate) fn small_angle(a: [f64; 2], b: [f64; 2]) -> f64 {
             - u * (0.2 - u * (1.0 / 7.0 - u * (1.0 / 9.0 - u * (1.0 / 11.0 - u / 13.0))))))
 }
 
-/// Second derivatives of a penetration.
+/// Second derivatives of a contact point's penetration.
 #[derive(Clone, Copy, Debug)]
 pub struct Curvature {
-    /// By the point twice.
+    /// Second derivatives with respect to the point's position.
     pub point: Matrix2<f64>,
-    /// By the point and the beam angle.
+    /// Mixed derivatives with respect to the point's position and the beam angle.
     pub mixed: V2,
-    /// By the beam angle twice.
+    /// Second derivative with respect to the beam angle.
     pub beam: f64,
-    /// Derivatives of the arc angle by the point and by the beam angle: with the slope of a mode
-    /// they give its mixed derivatives.
+    /// Derivatives of the arc angle with respect to the point and the beam angle; multiplied by the slope of
+    /// a mode's shape they give the mixed derivatives of the penetration with respect to that mode.
     pub angle_by: (V2, f64),
 }
 
 impl<'a> Surface<'a> {
-    /// Places an arc.
+    /// Places an arc at a beam angle \[rad\] and rate [rad/s], with an optional deflection.
     pub fn new(arc: &Arc, beam: [f64; 2], bend: Option<Bend<'a>>) -> Self {
         let (s, c) = sin_cos(beam[0]);
         let [x, y] = arc.center;
@@ -125,18 +127,18 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Whether it is more than a circle.
+    /// Returns whether the surface deviates from a circle, so that arc angles are needed.
     pub(crate) const fn asks_for_angle(&self) -> bool {
         self.bend.is_some() || self.profile.is_some()
     }
 
-    /// Number of modes that bend it.
+    /// Returns the number of modes that deflect the arc.
     pub fn modes(&self) -> usize {
         self.bend.map_or(0, |bend| bend.shapes.curves())
     }
 
-    /// The bearing of a cylinder of half length `half` centred at `g`, if it may touch at all: from
-    /// that of a neighbour, if there is one, by a few products in place of an arc tangent.
+    /// Returns the bearing of a cylinder of half length `half` centred at `g`, or `None` if it cannot touch;
+    /// computed from the bearing of a neighbouring cylinder, if given and near, which saves the arc tangent.
     #[inline]
     pub fn bearing(&self, before: Option<&Bearing>, g: &V2, half: f64) -> Option<Bearing> {
         let reach = self.reach + half;
@@ -154,16 +156,16 @@ impl<'a> Surface<'a> {
         Some(Bearing { toward: w, angle })
     }
 
-    /// Arc angle of a direction in the beam frame, in [0, 2 pi).
+    /// Returns the arc angle of a direction in the beam frame, in [0, 2 pi).
     fn arc_angle(&self, direction: &V2) -> f64 {
         let turn = std::f64::consts::TAU;
         let angle = atan2(direction.y, direction.x) - self.beam[0];
         angle - turn * (angle / turn).floor()
     }
 
-    /// Second derivatives of the penetration of a point that lies `toward` from the centre, at arc
-    /// angle `angle` and at `place` on the grid of the shapes, where the surface has the slope `s1`
-    /// over the arc [m/rad].
+    /// Returns the second derivatives of the penetration of a point at the vector `toward` from the centre,
+    /// at arc angle `angle` and at `place` on the grid of the shapes, where the surface has the slope `s1`
+    /// with respect to the arc angle [m/rad].
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
     pub fn curvature(&self, toward: &V2, angle: f64, place: &Place, s1: f64) -> Curvature {
@@ -192,7 +194,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Second derivative of the surface's height over the arc angle [m/rad^2].
+    /// Returns the second derivative of the surface's height with respect to the arc angle [m/rad^2].
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
     fn bent(&self, angle: f64, place: &Place) -> f64 {

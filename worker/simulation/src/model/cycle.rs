@@ -1,38 +1,40 @@
-//! One turn of the ideal mechanism: inextensible ropes, slow motion, uniform crank.
+//! Kinematics and rope tension of the ideal mechanism over one turn of the crank: inextensible ropes,
+//! quasi-static motion, uniform crank speed.
 //!
-//! What effects refer to that are defined by a reference motion or by the tension that the load
-//! alone gives: `T = (F A + J theta'' + M_g cos theta) / h` and the crank's net torque
-//! `T h dtheta/dturn + M_cw cos(phi + tau)`.
+//! Effects use these curves where they are defined by a reference motion or by the tension that the load
+//! alone causes: `T = (F A + J theta'' + M_g cos theta) / h`, and the net crank torque is `T h dtheta/dturn +
+//! M_cw cos(phi + tau)`.
 use crate::math::elementary::sin_cos;
 use crate::math::spline::{Jet, Splines};
 use crate::model::description::{Crank, Description};
 use crate::model::kinematics::{DoesNotClose, Mechanism, Position};
 use std::f64::consts::TAU;
 
-/// Samples of the turn.
+/// Number of samples over one turn of the crank.
 const NODES: usize = 360;
 
-/// Curves of the ideal mechanism over the turn angle.
+/// Curves of the ideal mechanism as functions of the turn angle.
 #[derive(Clone, Debug)]
 pub struct Cycle {
     curves: Splines,
     tension: Splines,
     /// Pin angle at turn 0 \[rad\].
     bottom: f64,
-    /// Crank, for the torque.
+    /// Crank parameters that the torque is computed from.
     crank: Crank,
 }
 
-/// Places among the curves.
+/// Index of the beam angle among the splines of the cycle; [`TANGENT`] and [`ARM`] index the tangent point
+/// and the effective back arm.
 const BEAM: usize = 0;
 const TANGENT: usize = 1;
 const ARM: usize = 2;
 
 impl Cycle {
-    /// Solves one turn, from a position at turn 0.
+    /// Solves one turn of the mechanism, starting from the position at turn angle 0.
     ///
     /// # Errors
-    /// [`DoesNotClose`] where the mechanism does.
+    /// [`DoesNotClose`] if the mechanism cannot be closed at some turn angle.
     pub fn new(
         d: &Description,
         mechanism: &Mechanism,
@@ -77,17 +79,17 @@ impl Cycle {
         })
     }
 
-    /// One turn of a description from its own bottom dead centre.
+    /// Solves one turn of the mechanism of a description, starting from its own bottom dead centre.
     ///
     /// # Errors
-    /// [`DoesNotClose`] where the mechanism does.
+    /// [`DoesNotClose`] if the mechanism cannot be closed at some turn angle.
     pub fn of(d: &Description) -> Result<Self, DoesNotClose> {
         let mechanism = Mechanism::of(d);
         Self::new(d, &mechanism, &mechanism.bottom_dead_centre()?)
     }
 
-    /// Turn angle of the downstroke at which the front has come down by a share of its stroke
-    /// \[rad\].
+    /// Returns the turn angle \[rad\] during the downstroke at which the front head has descended by the
+    /// given share (0 to 1) of its stroke.
     pub fn descent(&self, share: f64) -> f64 {
         let beam = |turn: f64| self.curves.value(turn, BEAM);
         let step = TAU / NODES as f64;
@@ -107,33 +109,34 @@ impl Cycle {
         low
     }
 
-    /// Beam angle \[rad\] with its derivatives by the turn angle.
+    /// Returns the beam angle \[rad\] and its first and second derivatives with respect to the turn angle.
     pub fn beam(&self, turn: f64) -> Jet {
         self.curves.jet(&self.curves.place(turn), BEAM)
     }
 
-    /// Where the rope leaves the back head, arc angle in the beam frame \[rad\].
+    /// Returns the arc angle \[rad\], in the beam frame, of the point where the rope leaves the back head,
+    /// with derivatives with respect to the turn angle.
     pub fn tangent(&self, turn: f64) -> Jet {
         self.curves.jet(&self.curves.place(turn), TANGENT)
     }
 
-    /// Effective back arm \[m\].
+    /// Returns the effective back arm \[m\] at a turn angle.
     pub fn arm(&self, turn: f64) -> f64 {
         self.curves.value(turn, ARM)
     }
 
-    /// Tension of the back rope under the load alone \[N\].
+    /// Returns the tension of the back rope \[N\] caused by the load alone, at a turn angle.
     pub fn tension(&self, turn: f64) -> f64 {
         self.tension.value(turn, 0)
     }
 
-    /// The same as a curve over the turn.
+    /// Returns the tension of the back rope \[N\] caused by the load alone, as a spline over the turn angle.
     pub const fn tensions(&self) -> &Splines {
         &self.tension
     }
 
-    /// Net torque that the reducer must give in the sense of rotation [N m], the counterweight's
-    /// phase \[rad\] and moment [N m] being what is given.
+    /// Returns the net torque [N m] that the reducer must supply in the sense of rotation, for a
+    /// counterweight with the given phase \[rad\] and moment [N m].
     pub fn torque(&self, turn: f64, phase: f64, moment: f64) -> f64 {
         let place = self.curves.place(turn);
         let rope = self.tension.value(turn, 0)
@@ -144,7 +147,7 @@ impl Cycle {
         rope + sense * moment * sin_cos(angle).1
     }
 
-    /// The crank.
+    /// Returns the crank parameters.
     pub const fn crank(&self) -> &Crank {
         &self.crank
     }

@@ -1,6 +1,6 @@
-//! Generalised forces, inertia, and the powers that the energy ledger adds up.
+//! Generalised forces, inertia, energies, and the powers that the energy balance integrates.
 //!
-//! The equations of motion are `M(q) a = Q(q, v, t)`; this file gives `Q` and `M a`.
+//! The equations of motion are `M(q) a = Q(q, v, t)`; this module computes `Q` and `M a`.
 use crate::element::impact::By;
 use crate::element::plane::{PLANE_PULL, PLANE_UNITS};
 use crate::linear::Entry;
@@ -20,30 +20,31 @@ use nalgebra::{Vector2, Vector3};
 type V2 = Vector2<f64>;
 type V3 = Vector3<f64>;
 
-/// Terms of the generalised forces: what a difference of forces asks for of a machine that differs from
-/// another in some of them.
+/// Selection of terms of the generalised forces. A difference of forces between two machines needs only the
+/// terms in which they differ.
 #[expect(
     clippy::struct_excessive_bools,
     reason = "a set of terms, each there or not"
 )]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Terms {
-    /// Weights of and loads on the rigid bodies, the head's own forces, forces of effects.
+    /// Weights of and loads on the rigid bodies, elastic and damping forces of the head's modes, and forces
+    /// added by effects.
     pub(crate) rigid: bool,
-    /// Weights of the cylinders and their velocity terms.
+    /// Weights of the cylinders and their velocity-dependent inertia terms.
     pub(crate) weights: bool,
-    /// Joints at the ends of the ropes.
+    /// Joints at the ends of the ropes only.
     pub(crate) ends: bool,
-    /// All joints, with laws along the ropes.
+    /// All joints, including the axial laws of effects.
     pub(crate) joints: bool,
-    /// Laws along the ropes alone.
+    /// Axial laws of effects only, without the joints.
     pub(crate) pulls: bool,
-    /// Contact with the back head and with the front head.
+    /// Contact with the back head (first) and with the front head (second).
     pub(crate) contact: [bool; 2],
 }
 
 impl Terms {
-    /// Every one.
+    /// Selection of all terms.
     pub(crate) const ALL: Self = Self {
         rigid: true,
         weights: true,
@@ -52,7 +53,7 @@ impl Terms {
         pulls: false,
         contact: [true; 2],
     };
-    /// None.
+    /// Selection of no term.
     pub(crate) const NONE: Self = Self {
         rigid: false,
         weights: false,
@@ -68,7 +69,7 @@ impl Terms {
     reason = "one file per term of the equations"
 )]
 impl Machine {
-    /// Fills the poses of all cylinders and the deflection of the back head's arc.
+    /// Computes the poses of all cylinders and the deflection of the back head's arc into `scratch`.
     pub(crate) fn pose(&self, q: &[f64], v: &[f64], scratch: &mut Scratch) {
         self.deflect(q, v, scratch);
         for (chain, state) in self.chains.iter().zip(&mut scratch.chains) {
@@ -76,7 +77,7 @@ impl Machine {
         }
     }
 
-    /// Fills the deflection of the back head's arc.
+    /// Computes the deflection of the back head's arc into `scratch`.
     fn deflect(&self, q: &[f64], v: &[f64], scratch: &mut Scratch) {
         let modal = self.layout.beam() + 1..;
         let (q, v) = (&q[modal.clone()], &v[modal]);
@@ -85,7 +86,8 @@ impl Machine {
         }
     }
 
-    /// Generalised forces `Q(q, v, t)` into `force`; joint and contact loads stay in `scratch`.
+    /// Computes the generalised forces `Q(q, v, t)` into `force`; joint and contact loads remain in
+    /// `scratch`.
     pub(super) fn forces(&self, at: &Instant<'_>, scratch: &mut Scratch, force: &mut [f64]) {
         for (chain, state) in self.chains.iter().zip(&mut scratch.chains) {
             chain.pose(at.q, at.v, state);
@@ -93,7 +95,8 @@ impl Machine {
         self.posed_forces(at, Terms::ALL, scratch, force);
     }
 
-    /// Some of the terms of `Q(q, v, t)`, with poses of the cylinders that are in `scratch`.
+    /// Computes the selected terms of `Q(q, v, t)` into `force`, using the cylinder poses already in
+    /// `scratch`.
     pub(super) fn posed_forces(
         &self,
         at: &Instant<'_>,
@@ -142,7 +145,8 @@ impl Machine {
         }
     }
 
-    /// Forces of pieces that hang on no machine, at poses that are in `scratch`: of laws without a past.
+    /// Computes into `force` the generalised forces of hooks that are not part of this machine, at the poses
+    /// in `scratch`. Valid for axial laws without memory.
     pub(super) fn forces_of(
         &self,
         hooks: &Hooks,
@@ -169,8 +173,8 @@ impl Machine {
         }
     }
 
-    /// Derivative of the forces of the contact with either head, or with both, into `force`: of the points
-    /// that are in `scratch`, where they are pressed.
+    /// Computes into `force` the derivative of the contact forces on the selected heads with respect to `by`,
+    /// using the contact points in `scratch` that are in compression.
     pub(super) fn contact_by(
         &self,
         at: &Instant<'_>,
@@ -190,8 +194,8 @@ impl Machine {
         }
     }
 
-    /// What presses and pulls on the back head at an instant, without the rest of the loads:
-    /// contact and anchor of the back ropes, in `scratch` as [`Self::forces`] leaves them.
+    /// Computes the loads on the back head alone, contact and anchor forces of the back ropes, into
+    /// `scratch`, where [`Self::forces`] would leave them as well.
     pub(crate) fn back_head_loads(
         &self,
         at: &Instant<'_>,
@@ -210,12 +214,13 @@ impl Machine {
         }
     }
 
-    /// Acceleration of gravity as a vector [m/s2].
+    /// Returns the acceleration of gravity as a vector in W [m/s2].
     pub(crate) fn gravity(&self) -> V3 {
         V3::new(0.0, -self.description.gravity, 0.0)
     }
 
-    /// Weight of and load on the rigid bodies, and the head's own stiffness and damping.
+    /// Adds the weights of and loads on the rigid bodies, and the elastic, damping and weight forces of the
+    /// head's modes, to `force`.
     fn weights(&self, at: &Instant<'_>, force: &mut [f64]) {
         let &Instant { q, v, drive, .. } = at;
         let d = &self.description;
@@ -240,7 +245,8 @@ impl Machine {
         }
     }
 
-    /// What the end joints of a chain do to rod or suspension, to the beam and to the modes.
+    /// Adds the forces that the end joints of a chain exert on the rod or suspension, on the beam and on the
+    /// modes of the back head.
     fn end_forces(
         &self,
         chain: usize,
@@ -279,7 +285,8 @@ impl Machine {
         }
     }
 
-    /// The arc of a chain at an instant, with the deflection that [`Self::pose`] left behind.
+    /// Returns the contact surface of a chain at an instant, with the head deflection computed by
+    /// [`Self::pose`].
     pub(crate) fn surface<'a>(
         &'a self,
         chain: usize,
@@ -303,7 +310,7 @@ impl Machine {
         surface
     }
 
-    /// `out -= M(q) a`.
+    /// Subtracts the inertia forces: `out -= M(q) a`.
     pub(super) fn subtract_inertia<T: Entry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
         let d = &self.description;
         let rod = self.layout.rod();
@@ -323,20 +330,22 @@ impl Machine {
         }
     }
 
-    /// Moment of inertia of the rod about the crank pin [kg m2].
+    /// Returns the moment of inertia of the rod about the crank pin [kg m2].
     pub(crate) fn rod_inertia(&self) -> f64 {
         let rod = &self.description.rod;
         rod.inertia + rod.mass * rod.center_of_mass * rod.center_of_mass
     }
 
-    /// Force that the crank pin exerts on the rod, given joint loads and accelerations \[N\].
+    /// Returns the force that the crank pin exerts on the rod \[N\], from the accelerations and the joint
+    /// loads in `scratch`.
     pub(crate) fn pin_force(&self, at: &Instant<'_>, a: &[f64], scratch: &Scratch) -> V2 {
         let back = &scratch.chains[..self.faces.len()];
         let pull = back.iter().map(|chain| chain.joints[0].force);
         self.pin_force_under(at, a, pull.fold(V3::zeros(), |sum, force| sum + force))
     }
 
-    /// The same where the back ropes' bases are pulled by this force.
+    /// Returns the force that the crank pin exerts on the rod \[N\], given the force `rope` on the first
+    /// cylinders of the back ropes.
     pub(super) fn pin_force_under(&self, at: &Instant<'_>, a: &[f64], rope: V3) -> V2 {
         let rod = &self.description.rod;
         let i = self.layout.rod();
@@ -350,7 +359,7 @@ impl Machine {
         )
     }
 
-    /// Powers at an instant whose loads are in `scratch`.
+    /// Returns input, output and dissipated power at an instant whose loads are in `scratch`.
     pub(super) fn powers(&self, at: &Instant<'_>, a: &[f64], scratch: &Scratch) -> Powers {
         let v = at.v;
         let pin = self.pin_force(at, a, scratch);
@@ -368,7 +377,7 @@ impl Machine {
         }
     }
 
-    /// Evaluates the points of contact at the poses that [`Self::pose`] left behind.
+    /// Evaluates the contact points at the poses computed by [`Self::pose`].
     pub(crate) fn touch(&self, at: &Instant<'_>, scratch: &mut Scratch) {
         for (k, chain) in self.chains.iter().enumerate() {
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
@@ -376,13 +385,13 @@ impl Machine {
         }
     }
 
-    /// Kinetic plus potential energy without the load's \[J\]; `scratch` holds poses and points of
-    /// contact.
+    /// Returns kinetic plus potential energy \[J\], without the potential of the load; `scratch` must hold
+    /// poses and contact points.
     pub(super) fn energy(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
         self.potential(at, scratch) + self.kinetic(at)
     }
 
-    /// Elastic and gravitational energy \[J\].
+    /// Returns the elastic and gravitational potential energy \[J\].
     pub(super) fn potential(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
         let &Instant { q, drive, .. } = at;
         let d = &self.description;
@@ -410,7 +419,7 @@ impl Machine {
         sum + self.hooks.energy(at)
     }
 
-    /// What of the potential at rest that effects add is no stored energy \[J\].
+    /// Returns the part of the potential at rest, added by effects, that is not stored energy \[J\].
     pub(crate) fn potential_beyond_energy(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
         if self.hooks.is_empty() {
             return 0.0;

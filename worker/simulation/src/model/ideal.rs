@@ -1,4 +1,4 @@
-//! A machine as an inextensible mechanism, and what drives it over time.
+//! Inextensible mechanism of a machine, and its drive over time.
 use crate::drive::{Drive, DriveState};
 use crate::math::elementary::sin_cos;
 use crate::model::description::Arc;
@@ -13,7 +13,7 @@ type V2 = Vector2<f64>;
     reason = "one file per term of the equations"
 )]
 impl Machine {
-    /// Range of the beam on the inextensible mechanism \[rad\].
+    /// Returns the range of the beam angle of the inextensible mechanism \[rad\]: lowest, highest.
     pub fn swing(&self) -> [f64; 2] {
         let mechanism = self.mechanism(self.description.back_arc.radius, self.back_length());
         let mut at = self.bottom;
@@ -28,7 +28,7 @@ impl Machine {
         [self.bottom.beam, highest]
     }
 
-    /// The inextensible mechanism with another effective radius and length.
+    /// Returns the inextensible mechanism with the given effective back-arc radius and path length.
     pub fn mechanism(&self, radius: f64, length: f64) -> Mechanism {
         Mechanism {
             crank: self.description.crank,
@@ -40,13 +40,13 @@ impl Machine {
         }
     }
 
-    /// Length from crank pin to back anchor along rod and unstretched rope \[m\].
+    /// Returns the length from crank pin to back anchor along the rod and the unstretched rope \[m\].
     pub fn back_length(&self) -> f64 {
         self.description.rope.back as f64 * self.description.rope.pitch
             + self.description.rod.length
     }
 
-    /// Crank and load at time `t` under a drive.
+    /// Returns the state of crank and load at time `t` under a drive.
     pub fn drive_state(&self, drive: &Drive, t: f64) -> DriveState {
         let [turn, rate, acceleration] = self.hooks.turn(drive.turn(t));
         let crank = &self.description.crank;

@@ -1,4 +1,4 @@
-//! A machine with one individual's ropes under its drive: equations of motion.
+//! Equations of motion of a machine with the ropes and the drive of one individual.
 use crate::drive::{Drive, DriveState};
 use crate::element::impact::By;
 use crate::element::plane::PLANE_UNITS;
@@ -14,7 +14,7 @@ use crate::norm::{ANGLE, LENGTH, MODAL, cylinders_error, cylinders_newton, squar
 use crate::system::{Equations, Loaded, Loads, Powers, Shift, State, StateRef, Static};
 use nalgebra::{Vector2, Vector3};
 
-/// Machine, ropes, drive and the loads of the last evaluation.
+/// Machine, ropes and drive of one individual, with the loads of the last evaluation.
 #[derive(Debug)]
 pub struct Individual<'a> {
     /// The machine.
@@ -23,19 +23,20 @@ pub struct Individual<'a> {
     pub ropes: Ropes,
     /// Crank and load over time.
     pub drive: Drive,
-    /// Loads and poses of the last evaluation.
+    /// Poses and loads of the last evaluation.
     pub scratch: Scratch,
     load_share: f64,
     at: (f64, DriveState),
 }
 
 impl<'a> Individual<'a> {
-    /// Joins machine, ropes and drive; allocates the loads.
+    /// Combines machine, ropes and drive, and allocates the buffers.
     pub fn new(machine: &'a Machine, ropes: Ropes, drive: Drive) -> Self {
         Self::within(machine, ropes, drive, Scratch::new(machine))
     }
 
-    /// The same with the loads of another of the same layout, which are given back by the field.
+    /// Combines machine, ropes and drive, reusing the buffers of an individual with the same layout; the
+    /// caller may take the buffers back from the field `scratch`.
     pub(crate) fn within(
         machine: &'a Machine,
         ropes: Ropes,
@@ -53,7 +54,7 @@ impl<'a> Individual<'a> {
         }
     }
 
-    /// Crank and load at time `t`.
+    /// Returns the state of crank and load at time `t`.
     pub fn drive_state(&mut self, t: f64) -> DriveState {
         self.move_to(t);
         self.at.1
@@ -67,21 +68,22 @@ impl<'a> Individual<'a> {
         }
     }
 
-    /// The machine at the time of the last evaluation.
+    /// Returns the machine's state at the time of the last evaluation, with the coordinates and rates of
+    /// `at`.
     fn instant<'s>(&'s self, at: StateRef<'s>) -> Instant<'s> {
         instant(&self.ropes, &self.at.1, at)
     }
 
-    /// From now on only a share of the load hangs at the suspension point.
+    /// Scales the load at the suspension point by a share from now on.
     pub fn share_load(&mut self, share: f64) {
         self.load_share = share;
         self.at.0 = f64::NAN;
     }
 
-    /// Force of the back ropes on their head, contact and anchor together, in W \[N\].
+    /// Returns the force of the back ropes on the back head, contact and anchor together, in W \[N\].
     ///
-    /// From the balance of rope and load path: the wrapped rope and the head together are pulled by
-    /// the joint before the first cylinder that touches.
+    /// Computed from the balance of forces along the load path: wrapped rope and head together are pulled by
+    /// the joint before the first cylinder in contact.
     pub fn head_push(&self) -> [f64; 2] {
         let mut push = [0.0; 2];
         for back in &self.scratch.chains[..self.machine.faces.len()] {
@@ -95,7 +97,8 @@ impl<'a> Individual<'a> {
         push
     }
 
-    /// Force of the end of the rope on the back head at coordinates and rates, in the beam frame \[N\].
+    /// Returns the force of the rope end on the back head, at given coordinates and rates, in the beam frame
+    /// \[N\].
     pub(crate) fn anchor_pull(&mut self, at: StateRef<'_>) -> [f64; 2] {
         self.move_to(at.t);
         let instant = instant(&self.ropes, &self.at.1, at);
@@ -108,7 +111,8 @@ impl<'a> Individual<'a> {
         })
     }
 
-    /// Force of the back ropes on their first cylinders at coordinates and rates \[N\].
+    /// Returns the force of the back ropes' base joints on the first cylinders, at given coordinates and
+    /// rates \[N\].
     pub(crate) fn base_pull(&mut self, at: StateRef<'_>) -> Vector3<f64> {
         self.move_to(at.t);
         let machine = self.machine;
@@ -118,22 +122,23 @@ impl<'a> Individual<'a> {
             .fold(Vector3::zeros(), |sum, load| sum + load.force)
     }
 
-    /// Force of the crank pin on the rod at a state \[N\], whatever loads were left behind.
+    /// Returns the force of the crank pin on the rod at a state \[N\]; independent of the loads of the last
+    /// evaluation.
     pub(crate) fn pin_force(&mut self, state: &State) -> Vector2<f64> {
         let pull = self.base_pull(state.motion());
         let at = instant(&self.ropes, &self.at.1, state.motion());
         self.machine.pin_force_under(&at, &state.a, pull)
     }
 
-    /// Tensions at the bases of the ropes on the back head (0) or the front head (1) \[N\].
+    /// Returns the tensions at the bases of the ropes on the back head (0) or the front head (1) \[N\].
     pub fn base_tensions(&self, rope: usize) -> impl Iterator<Item = f64> + '_ {
         let all = self.machine.strands.iter().zip(&self.scratch.chains);
         let on_head = all.filter(move |(strand, _)| strand.rope == rope);
         on_head.map(|(_, state)| state.joints[0].force.norm())
     }
 
-    /// Fills the loads that the back head's stress asks for; the others remain as they were. `force`
-    /// is room for generalised forces.
+    /// Computes the loads that the back head's stress depends on; all other loads keep their values. `force`
+    /// is workspace for generalised forces.
     pub fn back_head_loads<'s>(
         &'s mut self,
         at: StateRef<'s>,
@@ -149,7 +154,7 @@ impl<'a> Individual<'a> {
         }
     }
 
-    /// Fills all loads, those among them that the back head's stress asks for; `force` gets the
+    /// Computes all loads, including those that the back head's stress depends on; `force` receives the
     /// generalised forces.
     pub(crate) fn all_loads<'s>(
         &'s mut self,
@@ -163,7 +168,7 @@ impl<'a> Individual<'a> {
         }
     }
 
-    /// Some terms of the generalised forces, with the poses of the last evaluation.
+    /// Computes the selected terms of the generalised forces, using the poses of the last evaluation.
     pub(crate) fn posed_forces(&mut self, at: StateRef<'_>, terms: Terms, force: &mut [f64]) {
         self.move_to(at.t);
         let instant = instant(&self.ropes, &self.at.1, at);
@@ -171,8 +176,8 @@ impl<'a> Individual<'a> {
             .posed_forces(&instant, terms, &mut self.scratch, force);
     }
 
-    /// Forces of pieces that hang on no machine, with the poses of the last evaluation.
-    /// `units` are those of [`Self::joint_units`], or none.
+    /// Computes the generalised forces of hooks that are not part of this machine, using the poses of the
+    /// last evaluation. `units` are the result of [`Self::joint_units`], or empty.
     pub(crate) fn forces_of(
         &mut self,
         hooks: &Hooks,
@@ -186,8 +191,8 @@ impl<'a> Individual<'a> {
             .forces_of(hooks, &instant, (&self.scratch, units), force);
     }
 
-    /// What all joints between cylinders do to each coordinate per unit of their coefficients, at the poses
-    /// of the last evaluation in the plane; zeros in space.
+    /// Computes the generalised forces of all joints between cylinders per unit of each joint coefficient, at
+    /// the poses of the last evaluation in the plane; zeros for motion in space.
     pub(crate) fn joint_units(&self, units: &mut [[f64; PLANE_UNITS]]) {
         units.fill([0.0; PLANE_UNITS]);
         for (chain, state) in self.machine.chains.iter().zip(&self.scratch.chains) {
@@ -195,7 +200,7 @@ impl<'a> Individual<'a> {
         }
     }
 
-    /// Derivative of the forces of the contact with either head, or with both, at the points of the last
+    /// Computes the derivative of the contact forces on the selected heads, at the contact points of the last
     /// evaluation.
     pub(crate) fn contact_by(&mut self, at: StateRef<'_>, by: (By, [bool; 2]), force: &mut [f64]) {
         self.move_to(at.t);
@@ -204,7 +209,7 @@ impl<'a> Individual<'a> {
             .contact_by(&instant, by, &mut self.scratch, force);
     }
 
-    /// Lets laws with a past remember an accepted state.
+    /// Updates the memory of axial laws from an accepted state.
     pub fn remember(&mut self, state: &State) {
         if !self.machine.hooks.has_axial() {
             return;
@@ -218,7 +223,7 @@ impl<'a> Individual<'a> {
         }
     }
 
-    /// Kinetic plus potential energy without the load's \[J\].
+    /// Returns kinetic plus potential energy \[J\], without the potential of the load.
     pub fn energy(&mut self, state: &State) -> f64 {
         self.move_to(state.t);
         self.machine.pose(&state.q, &state.v, &mut self.scratch);
@@ -228,7 +233,7 @@ impl<'a> Individual<'a> {
     }
 }
 
-/// An individual with the loads that the stress of its back head asks for.
+/// Individual whose loads on the back head are up to date at a state, as required for stress recovery.
 #[derive(Debug)]
 pub struct BackHeadLoads<'s, 'a> {
     individual: &'s Individual<'a>,
@@ -236,7 +241,7 @@ pub struct BackHeadLoads<'s, 'a> {
 }
 
 impl<'s, 'a> BackHeadLoads<'s, 'a> {
-    /// Those among all loads.
+    /// Wraps a state at which all loads have been evaluated.
     pub fn of(loads: &'s Loads<'_, 's, Individual<'a>>) -> Self {
         Self {
             individual: loads.equations(),
@@ -244,12 +249,12 @@ impl<'s, 'a> BackHeadLoads<'s, 'a> {
         }
     }
 
-    /// The individual.
+    /// Returns the individual.
     pub const fn individual(&self) -> &'s Individual<'a> {
         self.individual
     }
 
-    /// The state that they belong to.
+    /// Returns the state at which the loads were evaluated.
     pub const fn state(&self) -> StateRef<'s> {
         self.at
     }
@@ -311,7 +316,8 @@ impl Equations for Individual<'_> {
         norm
     }
 
-    /// Root mean square over what is measured, largest over the cylinders (loosely).
+    /// Returns the larger of the root mean square of the scaled errors in rod, suspension, beam and modal
+    /// coordinates and the largest scaled error of a cylinder, which has a looser tolerance.
     fn error_norm(&self, error: &[f64]) -> f64 {
         let layout = self.machine.layout;
         let width = layout.motion.width();
@@ -341,7 +347,8 @@ impl Static for Individual<'_> {
             + at.drive.load * at.q[self.machine.layout.suspension()]
     }
 
-    /// A metre of a cylinder, of the beam's tip or of the suspension count alike.
+    /// Adds a weight `lambda` to the diagonal for each coordinate, scaled so that a metre of displacement of
+    /// a cylinder, of the beam's tip or of the suspension counts equally.
     fn add_static_weight(&self, lambda: f64, matrix: &mut Bordered) {
         let layout = self.machine.layout;
         for base in [layout.rod(), layout.suspension()] {

@@ -1,16 +1,16 @@
-//! An individual's machine at one instant: what every term of the equations is asked with.
+//! State of an individual's machine at one instant, the argument of every term of the equations of motion.
 use crate::drive::DriveState;
 use crate::model::ropes::Ropes;
 
-/// An individual's machine at one instant.
+/// State of an individual's machine at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Instant<'a> {
     /// The individual's ropes.
     pub ropes: &'a Ropes,
-    /// Crank and load.
+    /// State of crank and load.
     pub drive: &'a DriveState,
-    /// Coordinates.
+    /// Generalised coordinates.
     pub q: &'a [f64],
-    /// Their rates.
+    /// Rates of the generalised coordinates.
     pub v: &'a [f64],
 }

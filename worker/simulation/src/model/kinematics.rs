@@ -8,7 +8,7 @@
 use crate::math::elementary::sin_cos;
 use crate::model::description::{Arc, Crank, Description};
 
-/// One solved position.
+/// Solved position of the mechanism at one crank angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
     /// Angle of the crank pin \[rad\].
@@ -19,31 +19,31 @@ pub struct Position {
     pub tangent: f64,
     /// Effective back arm \[m\].
     pub arm: f64,
-    /// Derivative of the beam angle by the pin angle \[1\].
+    /// Derivative of the beam angle with respect to the pin angle \[1\].
     pub ratio: f64,
 }
 
-/// The planar mechanism of crank, rod, rope and back arc.
+/// Planar mechanism of crank, rod, rope and back arc.
 #[derive(Clone, Copy, Debug)]
 pub struct Mechanism {
-    /// Crank.
+    /// Crank parameters.
     pub crank: Crank,
-    /// Back arc; its radius may be reduced by a penetration.
+    /// Back arc; its radius may be reduced by a contact penetration.
     pub arc: Arc,
-    /// Length from the crank pin to the rope's anchor along the path \[m\].
+    /// Length from the crank pin to the rope's anchor along rod and rope \[m\].
     pub length: f64,
 }
 
-/// No position of the beam closes the mechanism.
+/// Error: the mechanism cannot be closed at some pin angle.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("rope and rod cannot reach from the crank pin to the head at pin angle {pin_deg:.1} deg")]
 pub struct DoesNotClose {
-    /// Pin angle \[deg\].
+    /// Pin angle at which the mechanism cannot be closed \[deg\].
     pub pin_deg: f64,
 }
 
 impl Mechanism {
-    /// That of a description, rope and rod of their unstretched length.
+    /// Builds the mechanism of a description, with the unstretched lengths of rope and rod.
     pub fn of(d: &Description) -> Self {
         Self {
             crank: d.crank,
@@ -52,7 +52,7 @@ impl Mechanism {
         }
     }
 
-    /// The crank pin at an angle \[m\].
+    /// Returns the position of the crank pin at an angle \[m\].
     pub fn pin(&self, angle: f64) -> [f64; 2] {
         let (s, c) = sin_cos(angle);
         [
@@ -61,10 +61,10 @@ impl Mechanism {
         ]
     }
 
-    /// Solves the position at a pin angle, starting from `beam` and `tangent`.
+    /// Solves the position at a pin angle by Newton's method, starting from `beam` and `tangent`.
     ///
     /// # Errors
-    /// [`DoesNotClose`] when Newton's method does not converge.
+    /// [`DoesNotClose`] if Newton's method does not converge.
     pub fn position(&self, pin: f64, beam: f64, tangent: f64) -> Result<Position, DoesNotClose> {
         let p = self.pin(pin);
         let (mut theta, mut world) = (beam, beam + tangent);
@@ -111,10 +111,10 @@ impl Mechanism {
         })
     }
 
-    /// The position with the lowest beam angle: bottom dead centre.
+    /// Solves the position with the lowest beam angle: bottom dead centre.
     ///
     /// # Errors
-    /// [`DoesNotClose`] when the mechanism cannot turn through.
+    /// [`DoesNotClose`] if the crank cannot make a full turn.
     pub fn bottom_dead_centre(&self) -> Result<Position, DoesNotClose> {
         let turn = std::f64::consts::TAU;
         let mut at = self.position(0.0, 0.0, std::f64::consts::PI)?;

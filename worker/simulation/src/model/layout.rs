@@ -1,33 +1,33 @@
-//! Where each coordinate lives in a state vector.
+//! Layout of the state vector: the index of each coordinate.
 //!
-//! Blocks of three (motion in the plane) or six (in space): `[rod | back cylinders, crossbeam to anchor | suspension | front cylinders,
-//! suspension to anchor]`, then the border `[beam angle | modal coordinates]`. Rod and suspension
-//! use only their first entry; the others are locked.
+//! Blocks of three (motion in the plane) or six (in space): `[rod | back cylinders, crossbeam to anchor |
+//! suspension | front cylinders, suspension to anchor]`, then the border `[beam angle | modal coordinates]`.
+//! Rod and suspension use only the first entry of their block; the others are locked.
 //!
-//! With twin ropes rod and suspension carry two chains each, so that neither can be a block of one:
-//! `[back cylinders at +b | at -b | front cylinders at +b | at -b]`, then the border
-//! `[suspension height, rod angle | beam angle | modal coordinates]`. The suspension comes first
-//! because the longest chains touch nothing else before they reach the front head.
+//! With twin ropes, rod and suspension each carry two chains and therefore cannot belong to the blocks of one
+//! chain: `[back cylinders at +b | at -b | front cylinders at +b | at -b]`, then the border `[suspension
+//! height, rod angle | beam angle | modal coordinates]`. The suspension comes first in the border because the
+//! longest chains couple to nothing else before they reach the front head.
 use crate::linear::{BLOCK, Bordered};
 
-/// Most modes a head may have in a simulation.
+/// Maximum number of head modes in a simulation.
 pub(crate) const MAX_MODES: usize = 24;
 
-/// Which coordinates a cylinder has.
+/// Set of coordinates of a cylinder.
 ///
-/// A machine that is symmetric about its plane, and loaded in it, stays in it exactly: every force
-/// out of the plane is a product with zero. Then three coordinates per cylinder tell the same as
-/// six, at a quarter of the work.
+/// A machine that is symmetric about its plane, and loaded in it, stays in it exactly: every force out of the
+/// plane has a factor that is zero. Three coordinates per cylinder then give the same result as six, at a
+/// quarter of the cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
-    /// Place and angle in the machine's plane: `(x, y, psi)`.
+    /// Motion in the machine's plane: position and angle `(x, y, psi)`.
     Plane,
-    /// Place and three angles: `(x, y, z, phi, theta, psi)`.
+    /// Motion in space: position and three angles `(x, y, z, phi, theta, psi)`.
     Space,
 }
 
 impl Motion {
-    /// Number of coordinates of a cylinder.
+    /// Returns the number of coordinates of a cylinder.
     pub const fn width(self) -> usize {
         match self {
             Self::Plane => 3,
@@ -35,7 +35,7 @@ impl Motion {
         }
     }
 
-    /// Which of the six coordinates a cylinder has, in their order.
+    /// Returns which of the six coordinates a cylinder has, in their order.
     pub const fn kept(self) -> &'static [usize] {
         match self {
             Self::Plane => &[0, 1, 5],
@@ -44,30 +44,31 @@ impl Motion {
     }
 }
 
-/// Sizes of a model and the indices that follow from them.
+/// Sizes of a model, from which the indices of its coordinates follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// Cylinders of the back rope.
+    /// Number of cylinders of each back rope.
     pub back: usize,
-    /// Cylinders of the front rope.
+    /// Number of cylinders of each front rope.
     pub front: usize,
-    /// Modes of the back head, those out of its plane included.
+    /// Number of modes of the back head, including out-of-plane modes.
     pub modes: usize,
-    /// How many of those, the last ones, lead out of the plane.
+    /// Number of out-of-plane modes, which are the last of `modes`.
     pub sway: usize,
-    /// Ropes that lie side by side on each head: one or two.
+    /// Number of parallel ropes on each head: one or two.
     pub ropes: usize,
-    /// Coordinates of a cylinder.
+    /// Set of coordinates of each cylinder: in the plane or in space.
     pub motion: Motion,
 }
 
 impl Layout {
-    /// Whether two ropes lie side by side.
+    /// Returns whether each head carries two parallel ropes.
     pub const fn twins(&self) -> bool {
         self.ropes > 1
     }
 
-    /// Blocks per chain: the rigid body at its free end, unless that has two chains; its cylinders.
+    /// Returns the number of blocks of each chain: its cylinders, and for a single rope the rigid body at its
+    /// base end.
     pub fn chains(&self) -> Vec<usize> {
         if self.twins() {
             vec![self.back, self.back, self.front, self.front]
@@ -76,7 +77,7 @@ impl Layout {
         }
     }
 
-    /// Block of the first cylinder of a chain: those of the back ropes come first.
+    /// Returns the block index of the first cylinder of a chain; the chains of the back head come first.
     pub const fn first(&self, chain: usize) -> usize {
         if self.twins() {
             [0, self.back, 2 * self.back, 2 * self.back + self.front][chain]
@@ -85,12 +86,12 @@ impl Layout {
         }
     }
 
-    /// Unknowns of the border before the beam angle.
+    /// Returns the number of border coordinates before the beam angle.
     const fn lead(&self) -> usize {
         if self.twins() { 2 } else { 0 }
     }
 
-    /// An empty matrix of this shape: allocates.
+    /// Allocates a zero matrix of this layout.
     pub fn matrix(&self) -> Bordered {
         let border = 1 + self.modes;
         match self.motion {
@@ -99,7 +100,7 @@ impl Layout {
         }
     }
 
-    /// Number of blocks.
+    /// Returns the number of blocks.
     pub const fn blocks(&self) -> usize {
         if self.twins() {
             2 * (self.back + self.front)
@@ -108,17 +109,17 @@ impl Layout {
         }
     }
 
-    /// Number of coordinates, locked ones included.
+    /// Returns the number of coordinates, including locked ones.
     pub const fn len(&self) -> usize {
         self.beam() + 1 + self.modes
     }
 
-    /// Whether there is nothing.
+    /// Returns `false`: a layout always has coordinates.
     pub const fn is_empty(&self) -> bool {
         false
     }
 
-    /// Blocks of rod and suspension, where they are blocks.
+    /// Returns the block indices of rod and suspension; `None` for twin ropes, where both are in the border.
     pub const fn base_blocks(&self) -> Option<[usize; 2]> {
         if self.twins() {
             None
@@ -127,7 +128,8 @@ impl Layout {
         }
     }
 
-    /// Whether a coordinate is none: it fills up the block of rod or suspension.
+    /// Returns whether an entry is locked: padding in the block of rod or suspension, without a degree of
+    /// freedom.
     pub fn is_locked(&self, index: usize) -> bool {
         let width = self.motion.width();
         let base = self
@@ -136,7 +138,7 @@ impl Layout {
         base && index < self.beam() && !index.is_multiple_of(width)
     }
 
-    /// Index of the rod angle.
+    /// Returns the index of the rod angle.
     pub const fn rod(&self) -> usize {
         if self.twins() {
             self.blocks() * self.motion.width() + 1
@@ -145,7 +147,7 @@ impl Layout {
         }
     }
 
-    /// Index of the suspension height.
+    /// Returns the index of the suspension height.
     pub const fn suspension(&self) -> usize {
         if self.twins() {
             self.blocks() * self.motion.width()
@@ -154,22 +156,22 @@ impl Layout {
         }
     }
 
-    /// Index of the beam angle.
+    /// Returns the index of the beam angle.
     pub const fn beam(&self) -> usize {
         self.blocks() * self.motion.width() + self.lead()
     }
 
-    /// Modes that stay in the plane: the first ones.
+    /// Returns the number of in-plane modes, which are the first of `modes`.
     pub const fn plane_modes(&self) -> usize {
         self.modes - self.sway
     }
 
-    /// Index of modal coordinate `k`.
+    /// Returns the index of modal coordinate `k`.
     pub const fn mode(&self, k: usize) -> usize {
         self.beam() + 1 + k
     }
 
-    /// What a coordinate is called in messages.
+    /// Returns the name of a coordinate for messages.
     pub fn describe(&self, index: usize) -> String {
         const NAMES: [&str; BLOCK] = ["x", "y", "z", "twist", "pitch angle", "plane angle"];
         if index >= self.beam() {

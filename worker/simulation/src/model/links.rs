@@ -1,5 +1,5 @@
-//! Who holds the machine's rope chains: rod or suspension point at the base (revolute), the heads at
-//! the other end.
+//! End supports of the rope chains: rod or suspension point at the base (revolute joint), the heads at the
+//! other end.
 use crate::element::bushing::Marker;
 use crate::math::elementary::sin_cos;
 use crate::math::rotation::{about_z, skew};
@@ -20,7 +20,7 @@ type M3 = Matrix3<f64>;
     reason = "one file per term of the equations"
 )]
 impl Machine {
-    /// The arc that a chain wraps.
+    /// Returns the arc around which a chain wraps.
     pub(crate) fn arc(&self, chain: usize) -> &Arc {
         if self.strands[chain].rope == BACK {
             &self.description.back_arc
@@ -29,7 +29,8 @@ impl Machine {
         }
     }
 
-    /// The joints of a chain at an instant.
+    /// Returns the joints of a chain at an instant: inner joints, both end joints, and the axial laws of
+    /// effects.
     pub(crate) fn joints<'a>(&'a self, chain: usize, at: &Instant<'a>) -> Joints<'a> {
         Joints {
             inner: &at.ropes.joint,
@@ -47,7 +48,7 @@ impl Machine {
         }
     }
 
-    /// The laws that effects have hung along a chain.
+    /// Returns the axial laws that effects have added to a chain; `None` if there are none.
     pub(crate) fn axial<'a>(
         &self,
         hooks: &'a Hooks,
@@ -65,7 +66,8 @@ impl Machine {
         hooks.axial(self.strands[chain].rope, at.drive, carrier)
     }
 
-    /// The joint on the crossbeam end of the rod, or on the suspension point.
+    /// Returns the marker of a chain's base joint, on the crossbeam end of the rod or on the suspension
+    /// point.
     fn base_marker(&self, strand: &Strand, at: &Instant<'_>) -> Marker {
         let (q, v) = (at.q, at.v);
         if strand.rope == BACK {
@@ -91,9 +93,11 @@ impl Machine {
         }
     }
 
-    /// The fixed end of a rope on its head. The reference point carries the head's deflection, so
-    /// that the arm stays rigid; where the end also turns with the head ([`EndRotation`]), the reference
-    /// point is the end itself, so that it turns in its place.
+    /// Returns the marker of the fixed end of a rope on its head.
+    ///
+    /// The reference point includes the head's deflection, so that the arm remains rigid. If the end also
+    /// rotates with the head ([`EndRotation`]), the reference point is the end itself, so that it rotates in
+    /// place.
     pub(crate) fn anchor_marker(&self, chain: usize, at: &Instant<'_>) -> Marker {
         let beam = self.layout.beam();
         let (theta, rate) = (at.q[beam], at.v[beam]);
@@ -136,7 +140,7 @@ impl Machine {
         marker
     }
 
-    /// How the modes turn a rope's fixed end, if they do.
+    /// Returns the rotation of a rope's fixed end caused by the modes; `None` for a single rope.
     pub(crate) fn end_rotation(
         &self,
         face: &Face,
@@ -161,18 +165,18 @@ impl Machine {
     }
 }
 
-/// Turn of a rope's fixed end by the head's modes: first about the radius, then about the tangent of
-/// the arc, both carried along by the beam; in W.
+/// Rotation of a rope's fixed end caused by the head's modes, in W: first about the radius, then about the
+/// tangent of the arc, both axes rotating with the beam.
 pub(crate) struct EndRotation {
     tangent: V3,
     radial: V3,
-    /// About tangent and radius \[rad\], and their rates.
+    /// Rotation angles about the tangent and about the radius \[rad\].
     angles: [f64; 2],
     rates: [f64; 2],
 }
 
 impl EndRotation {
-    /// The rotation `R_t R_r`.
+    /// Returns the rotation matrix `R_t R_r`.
     fn rotation(&self) -> M3 {
         let about = |axis: &V3, angle: f64| {
             let (s, c) = sin_cos(angle);
@@ -181,25 +185,25 @@ impl EndRotation {
         about(&self.tangent, self.angles[0]) * about(&self.radial, self.angles[1])
     }
 
-    /// Axes about which rising angles turn the end: the tangent, and `R_t r`.
+    /// Returns the axes of rotation of the two angles: the tangent, and `R_t r`.
     pub(crate) fn axes(&self) -> [V3; 2] {
         let (s, c) = sin_cos(self.angles[0]);
         [self.tangent, self.radial * c - V3::z() * s]
     }
 
-    /// Angular velocity that the rates give.
+    /// Returns the angular velocity that results from the rates of the two angles [rad/s].
     pub(crate) fn velocity(&self) -> V3 {
         let [t, r] = self.axes();
         t * self.rates[0] + r * self.rates[1]
     }
 
-    /// Derivative of the second axis by the first angle.
+    /// Returns the derivative of the second rotation axis with respect to the first angle.
     pub(crate) fn axis_by_tilt(&self) -> V3 {
         let (s, c) = sin_cos(self.angles[0]);
         -self.radial * s - V3::z() * c
     }
 
-    /// Rate of the second angle [rad/s].
+    /// Returns the rate of the second angle [rad/s].
     pub(crate) const fn second_rate(&self) -> f64 {
         self.rates[1]
     }

@@ -1,4 +1,4 @@
-//! A machine ready to be simulated: constants derived once from a description.
+//! Machine ready for simulation, with constants derived once from a description.
 use crate::math::spline::Splines;
 use crate::model::chain::parts::Chain;
 use crate::model::cycle::Cycle;
@@ -10,29 +10,29 @@ use crate::model::ropes::Ropes;
 use crate::model::strand::{BACK, Face, Strand, faces, strands};
 use crate::model::valid::{InvalidDescription, check};
 
-/// A machine under one working condition; immutable and shared by every individual.
+/// Machine under one working condition; immutable and shared by all individuals.
 #[derive(Clone, Debug)]
 pub struct Machine {
-    /// What it was made from.
+    /// Description that the machine was built from.
     pub description: Description,
-    /// Where its coordinates live.
+    /// Indices of the machine's coordinates.
     pub layout: Layout,
-    /// Bottom dead centre of the inextensible mechanism: where the turn angle is zero.
+    /// Bottom dead centre of the inextensible mechanism, where the turn angle is zero.
     pub bottom: Position,
-    /// Height in W of the suspension point's lowest design position \[m\]: bottom dead centre without
-    /// effects, the front rope unstretched.
+    /// Height in W of the suspension point at its lowest design position \[m\]: bottom dead centre without
+    /// effects, front rope unstretched.
     pub lowest_suspension: f64,
-    /// Horizontal place of the guided suspension point \[m\].
+    /// Horizontal position of the guided suspension point \[m\].
     pub suspension_x: f64,
     pub(crate) card: Splines,
-    /// Back ropes, then front ropes: what they are made of, and where they hang.
+    /// Rope chains: those of the back head, then those of the front head. `strands` gives their positions.
     pub(crate) chains: Vec<Chain>,
     pub(crate) strands: Vec<Strand>,
-    /// The back head as each back rope sees it.
+    /// Back-head mode shapes for each back rope.
     pub(crate) faces: Vec<Face>,
-    /// What effects add.
+    /// Hooks added by effects.
     pub(crate) hooks: Hooks,
-    /// The effects, and the ideal turn that they refer to.
+    /// Effects, and the cycle of the ideal mechanism that they refer to.
     effects: Option<(Vec<std::sync::Arc<dyn Effect>>, Cycle)>,
 }
 
@@ -54,8 +54,8 @@ impl Machine {
         Ok(Self::assemble(description, modes, bottom, lowest))
     }
 
-    /// As [`Self::new`], with effects. Turn 0 stays where the machine without them has its bottom
-    /// dead centre: that is where its crank is marked.
+    /// Builds a machine as [`Self::new`] does, with effects. The turn angle is zero at the bottom dead centre
+    /// of the machine without effects, because the crank is marked there.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -84,7 +84,8 @@ impl Machine {
         Ok(machine)
     }
 
-    /// Hangs the effects' pieces, which know where in the layout they act.
+    /// Installs the hooks of the effects again; required after a change of the layout, since hooks hold
+    /// coordinate indices.
     fn install_effects(&mut self) {
         let mut hooks = Hooks::default();
         if let Some((effects, cycle)) = &self.effects {
@@ -96,7 +97,7 @@ impl Machine {
         self.hooks = hooks;
     }
 
-    /// The pieces that an effect would hang on the machine as it is.
+    /// Returns the hooks that an effect would add to the machine in its present form.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -173,10 +174,10 @@ impl Machine {
         }
     }
 
-    /// The same machine with six coordinates per cylinder.
+    /// Converts the machine to six coordinates per cylinder.
     ///
-    /// [`Self::new`] takes three, because a symmetric machine stays in its plane; this one shows
-    /// that it does.
+    /// [`Self::new`] uses three, because a symmetric machine stays in its plane; the conversion serves to
+    /// verify this.
     #[must_use]
     pub fn in_space(mut self) -> Self {
         self.layout.motion = Motion::Space;
@@ -187,23 +188,24 @@ impl Machine {
         self
     }
 
-    /// Share of one rope in what a description states of the rope on a head.
+    /// Returns the share of one rope in the properties that a description states for all ropes on a head.
     pub(crate) fn share(&self) -> f64 {
         1.0 / self.layout.ropes as f64
     }
 
-    /// A chain on the back head (0) or on the front head (1).
+    /// Returns a chain on the back head (0) or on the front head (1).
     pub(crate) fn chain_on(&self, rope: usize) -> &Chain {
         &self.chains[if rope == BACK { 0 } else { self.layout.ropes }]
     }
 
-    /// An individual's coefficients for this chain's pitch, and for one rope of two.
+    /// Returns an individual's coefficients scaled to the pitch of the chains and to one of the ropes on a
+    /// head.
     pub fn ropes(&self, law: &RopeLaw) -> Ropes {
         Ropes::new(law, &self.description.rope, self.layout.ropes)
     }
 }
 
-/// Puts the modes out of the plane behind those that are kept; returns how many there are.
+/// Appends the out-of-plane modes to the in-plane modes that are kept, and returns their number.
 fn join_families(d: &mut Description, modes: usize) -> usize {
     let Some(twins) = &d.twins else { return 0 };
     d.head.keep(modes);

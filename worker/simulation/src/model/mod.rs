@@ -1,5 +1,5 @@
-//! The machine as a model: what it is made of, where its coordinates live, its forces, its
-//! inertia and their tangent, and where effects take hold of it.
+//! Model of the machine: description, coordinate layout, forces, inertia, tangent matrix, and the hooks of
+//! effects.
 mod anchor;
 pub mod chain;
 pub mod contact;

@@ -1,9 +1,9 @@
-//! Kinematics of one cylinder from its coordinates: six, `(x, y, z, phi, theta, psi)`, or those three
-//! that it has in the plane, `(x, y, psi)`.
+//! Kinematics of one cylinder from its coordinates: six in space, `(x, y, z, phi, theta, psi)`, or three in
+//! the plane, `(x, y, psi)`.
 //!
-//! `R_WB = Rz(psi) Ry(theta) Rx(phi)`, axis `e = R_WB e_x`. Angular velocity
-//! `w = phi' e + theta' c + psi' z = E eta'` with `c = Rz e_y`. The angles are singular only where
-//! the axis points out of the machine's plane (|theta| = 90 deg), which is a verdict of its own.
+//! `R_WB = Rz(psi) Ry(theta) Rx(phi)`, axis `e = R_WB e_x`. Angular velocity `w = phi' e + theta' c + psi' z
+//! = E eta'` with `c = Rz e_y`. The angles are singular only where the axis points out of the machine's plane
+//! (|theta| = 90 deg), which has its own verdict.
 use crate::math::elementary::sin_cos;
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -11,7 +11,7 @@ type V2 = Vector2<f64>;
 type V3 = Vector3<f64>;
 type M3 = Matrix3<f64>;
 
-/// Everything about a cylinder that several forces need.
+/// Pose and velocity of a cylinder in space, with derivatives that several forces share.
 #[derive(Clone, Copy, Debug)]
 pub struct Pose {
     /// Centre \[m\].
@@ -24,18 +24,18 @@ pub struct Pose {
     pub w: V3,
     /// Rates of the angles [rad/s].
     pub rate: V3,
-    /// Derivatives of the axis by theta and psi.
+    /// Derivatives of the axis with respect to theta and psi.
     pub axis_by: [V3; 2],
-    /// Second angular direction `c`.
+    /// Axis `c` about which theta rotates.
     pub c: V3,
-    /// Derivative of `c` by psi.
+    /// Derivative of `c` with respect to psi.
     pub c_by_psi: V3,
     /// Sine and cosine of theta.
     pub tilt: [f64; 2],
 }
 
 impl Pose {
-    /// From the six coordinates and their rates.
+    /// Computes a pose from the six coordinates and their rates.
     pub fn new(q: &[f64], v: &[f64]) -> Self {
         let (s1, c1) = sin_cos(q[3]);
         let (s2, c2) = sin_cos(q[4]);
@@ -57,17 +57,18 @@ impl Pose {
         }
     }
 
-    /// Axis of the cylinder.
+    /// Returns the axis of the cylinder.
     pub fn axis(&self) -> V3 {
         self.R.column(0).into_owned()
     }
 
-    /// `E`: angular velocity per rate of the angles; also rotation per change of the angles.
+    /// Returns the matrix `E`: angular velocity per rate of the angles, and rotation per change of the
+    /// angles.
     pub fn angular(&self) -> M3 {
         M3::from_columns(&[self.axis(), self.c, V3::z()])
     }
 
-    /// Derivative of the angular velocity by the angles at constant rates.
+    /// Returns the derivative of the angular velocity with respect to the angles, at constant rates.
     pub fn angular_rate(&self) -> M3 {
         M3::from_columns(&[
             V3::zeros(),
@@ -76,7 +77,8 @@ impl Pose {
         ])
     }
 
-    /// Derivative by the angles of the generalised torque `E^T tau` at constant `tau`.
+    /// Returns the derivative of the generalised torque `E^T tau` with respect to the angles, at constant
+    /// `tau`.
     pub fn torque_by_angles(&self, tau: &V3) -> M3 {
         M3::new(
             0.0,
@@ -91,14 +93,14 @@ impl Pose {
         )
     }
 
-    /// Second derivatives of the axis: by theta twice, theta and psi, psi twice.
+    /// Returns the second derivatives of the axis: twice by theta, by theta and psi, twice by psi.
     pub fn axis_by_twice(&self) -> [V3; 3] {
         let e = self.axis();
         let n = -self.axis_by[0];
         [-e, V3::new(n.y, -n.x, 0.0), V3::new(-e.x, -e.y, 0.0)]
     }
 
-    /// Derivatives of the axis' velocity by theta and psi.
+    /// Returns the derivatives of the velocity of the axis with respect to theta and psi.
     pub fn axis_velocity_by(&self) -> [V3; 2] {
         let [tt, tp, pp] = self.axis_by_twice();
         [
@@ -107,13 +109,13 @@ impl Pose {
         ]
     }
 
-    /// Velocity of the axis.
+    /// Returns the time derivative of the axis direction.
     pub fn axis_velocity(&self) -> V3 {
         self.axis_by[0] * self.rate.y + self.axis_by[1] * self.rate.z
     }
 }
 
-/// A cylinder that moves in the machine's plane.
+/// Pose and velocity of a cylinder that moves in the machine's plane.
 #[derive(Clone, Copy, Debug)]
 pub struct PlanePose {
     /// Centre \[m\].
@@ -124,12 +126,12 @@ pub struct PlanePose {
     pub axis: V2,
     /// Angle of the axis from +x \[rad\].
     pub angle: f64,
-    /// Its rate [rad/s].
+    /// Rate of the angle [rad/s].
     pub rate: f64,
 }
 
 impl PlanePose {
-    /// From the three coordinates, their rates, and the direction of the angle.
+    /// Builds a pose from the three coordinates, their rates, and the axis direction of the angle.
     #[inline]
     pub fn new(q: &[f64], v: &[f64], axis: V2) -> Self {
         Self {
@@ -141,7 +143,7 @@ impl PlanePose {
         }
     }
 
-    /// The same cylinder seen in space.
+    /// Converts the pose to one in space.
     pub fn in_space(&self) -> Pose {
         let e = V3::new(self.axis.x, self.axis.y, 0.0);
         let c = V3::new(-e.y, e.x, 0.0);
@@ -159,22 +161,22 @@ impl PlanePose {
     }
 }
 
-/// What contact in the machine's plane asks of a cylinder, whose axis turns with the last `A` of
-/// its coordinates.
+/// Kinematic quantities of a cylinder needed for contact in the machine's plane; the axis depends on the last
+/// `A` coordinates.
 pub(crate) trait InPlane<const A: usize> {
-    /// Centre \[m\].
+    /// Returns the centre \[m\].
     fn center(&self) -> V2;
-    /// Its velocity [m/s].
+    /// Returns the velocity of the centre [m/s].
     fn velocity(&self) -> V2;
-    /// Axis, in the plane.
+    /// Returns the projection of the axis onto the plane.
     fn axis(&self) -> V2;
-    /// Its derivatives by the angles.
+    /// Returns the derivatives of the axis with respect to the angles.
     fn axis_by(&self) -> [V2; A];
-    /// Its second derivative by angles `a` and `b`.
+    /// Returns the second derivative of the axis with respect to the angles `a` and `b`.
     fn axis_by_twice(&self, a: usize, b: usize) -> V2;
-    /// Its velocity.
+    /// Returns the time derivative of the axis.
     fn sweep(&self) -> V2;
-    /// Derivatives of its velocity by the angles.
+    /// Returns the derivatives of the axis's time derivative with respect to the angles.
     fn sweep_by(&self) -> [V2; A];
 }
 

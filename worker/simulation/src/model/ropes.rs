@@ -1,24 +1,24 @@
-//! Every rope of one individual: where its searched coefficients enter, linearly throughout.
+//! Coefficients of all ropes of an individual, in which the searched coefficients enter linearly.
 use crate::element::{bushing::Bushing, impact::Impact};
 use crate::model::description::{Rope, RopeLaw};
 
-/// Every rope of one individual: coefficients scaled to the pitch of the chain, and to the rope's share
-/// of them where it is one of two.
+/// Coefficients of all ropes of an individual, scaled to the pitch of the chain and to the share of one of
+/// the ropes on a head.
 #[derive(Clone, Copy, Debug)]
 pub struct Ropes {
-    /// Between two cylinders.
+    /// Joint between two cylinders.
     pub joint: Bushing,
-    /// Between crossbeam or suspension and the first cylinder.
+    /// Joint between crossbeam or suspension and the first cylinder.
     pub base: Bushing,
-    /// Between the last cylinder and the head.
+    /// Joint between the last cylinder and the head.
     pub anchor: Bushing,
-    /// Between a cylinder and a head.
+    /// Contact between a cylinder and a head.
     pub contact: Impact,
 }
 
 impl Ropes {
-    /// Scales an individual's coefficients to a rope's pitch, so that the rope stays the same, and to
-    /// one of so many ropes on a head.
+    /// Scales an individual's coefficients to the pitch of a rope, so that the stiffness per length is
+    /// unchanged, and to one of `ropes` ropes on a head.
     pub fn new(law: &RopeLaw, rope: &Rope, ropes: usize) -> Self {
         let per_length = rope.reference_pitch / rope.pitch;
         let share = 1.0 / ropes as f64;
@@ -32,7 +32,8 @@ impl Ropes {
         Self::of(joint, contact, rope, ropes)
     }
 
-    /// Ropes of a joint between two cylinders and of a contact; the joints at their ends follow.
+    /// Builds the coefficients from those of a joint between two cylinders and of a contact; the end joints
+    /// are derived from the inner joint.
     pub(crate) fn of(joint: Bushing, contact: Impact, rope: &Rope, ropes: usize) -> Self {
         let anchor = joint.scaled(1.0 / rope.end_pitches);
         Self {

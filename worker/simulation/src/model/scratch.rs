@@ -1,19 +1,19 @@
-//! What one evaluation of a machine's forces leaves behind: poses, joint loads, contact.
+//! Buffers of one evaluation of a machine's forces: poses, joint loads, contact.
 use crate::math::spline::sum::Sum;
 use crate::model::chain::state::ChainState;
 use crate::model::machine::Machine;
 
-/// Buffers of a simulation.
+/// Buffers of a force evaluation: poses, loads and head deflection.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
-    /// Poses and loads of the back ropes, then of the front ropes.
+    /// Poses and loads of the back chains, then of the front chains.
     pub chains: Vec<ChainState>,
     /// Deflection of the back head's arc under each back rope.
     pub deflection: Vec<Sum>,
 }
 
 impl Scratch {
-    /// Buffers for a machine.
+    /// Allocates the buffers for a machine.
     pub fn new(machine: &Machine) -> Self {
         Self {
             chains: machine.chains.iter().map(ChainState::new).collect(),
@@ -21,7 +21,7 @@ impl Scratch {
         }
     }
 
-    /// Deepest penetration of a rope into a head \[m\].
+    /// Returns the deepest penetration of a rope into a head \[m\].
     pub(crate) fn deepest(&self) -> f64 {
         self.chains
             .iter()

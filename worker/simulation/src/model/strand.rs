@@ -1,77 +1,79 @@
-//! Which ropes there are, where each hangs, and the back head as each of them sees it.
+//! Rope strands: their number and position, and the back-head mode shapes for each of them.
 //!
-//! One rope on each head lies in the machine's plane. Twin ropes lie side by side at `z = +b` and
-//! `z = -b` (frame W) and are cut to lengths that may differ. **All coefficients, masses and inertias
-//! that a description states of a rope belong to the pair**, half of each to either rope: twins of
-//! equal length are one load path and move as the single rope does.
+//! One rope on each head lies in the machine's plane. Twin ropes lie side by side at `z = +b` and `z = -b`
+//! (frame W), and their lengths may differ. **All coefficients, masses and inertias that a description states
+//! of a rope belong to the pair**, half of each to either rope: twins of equal length form one load path and
+//! move as the single rope does.
 //!
-//! What twins do together the head answers as it answers a single rope, by the modes that are
-//! symmetric about the plane, whose tables are means over the width of the rim. What they do against
-//! each other it answers by the antisymmetric ones ([`Sway`]), whose tables hold at `z = +b`: at
-//! `z = -b` radial and tangential displacement have the other sign, the lateral one has the same.
-//! So `u_j = sum_sym q phi + j sum_anti q psi` for the rope at side `j = +1, -1`.
+//! The head responds to equal loads of twins as to those of a single rope, by the modes that are symmetric
+//! about the plane, whose tables are means over the width of the rim. It responds to opposite loads of twins
+//! by the antisymmetric modes ([`Sway`]), whose tables hold at `z = +b`: at `z = -b` radial and tangential
+//! displacement have the opposite sign, the lateral displacement has the same sign. Hence `u_j = sum_sym q
+//! phi + j sum_anti q psi` for the rope at side `j = +1, -1`.
 //!
-//! The fixed ends of a pair sit on one clamp across the rim, which turns with the line between its
-//! ends: by `psi_r / b` about the tangent of the arc and by `-psi_t / b` about the radius, per unit of
-//! a mode. That turn and the lateral displacement are what leads a rope out of its plane, and what
-//! its torsion acts on. At the other end a pin along z holds it, on a crossbeam and a carrier bar
-//! that stay in the plane as the beam does. Contact has no friction, so it presses a rope in the plane
-//! and holds it nowhere along z.
+//! The fixed ends of a pair are held by one clamp across the rim, which rotates with the line between its
+//! ends: by `psi_r / b` about the tangent of the arc and by `-psi_t / b` about the radius, per unit of a
+//! mode. This rotation and the lateral displacement are what moves a rope out of its plane and loads it in
+//! torsion. At the other end the rope is held by a pin along z, on a crossbeam and a carrier bar that stay in
+//! the plane as the beam does. Contact has no friction, so it acts in the plane and does not restrain a rope
+//! along z.
 use crate::math::spline::Splines;
 use crate::model::description::{Description, Twins};
 use crate::model::layout::Layout;
 
-/// The back head's ropes, and the front head's.
+/// Index of the back head's ropes; [`FRONT`] is the index of the front head's ropes.
 pub(crate) const BACK: usize = 0;
 pub(crate) const FRONT: usize = 1;
 
-/// One rope.
+/// Rope of a machine: its head, side and position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Strand {
-    /// Head that it lies on: back (0) or front (1).
+    /// Head around which the rope wraps: back (0) or front (1).
     pub(crate) rope: usize,
-    /// +1 and -1 for the two of a pair, 0 for a single rope.
+    /// Side of the rope: +1 or -1 in a pair, 0 for a single rope.
     pub(crate) side: f64,
-    /// Place out of the plane \[m\].
+    /// Out-of-plane position (z) \[m\].
     pub(crate) z: f64,
-    /// What it is longer than drawn, put before the first cylinder \[m\].
+    /// Excess of the rope's length over its nominal length, inserted before the first cylinder \[m\].
     pub(crate) longer: f64,
 }
 
-/// The back head's elasticity as one rope sees it.
+/// Elastic response of the back head for one rope: mode shapes along the arc and at the anchor, and influence
+/// lines of gauge stress.
 #[derive(Clone, Debug)]
 pub(crate) struct Face {
-    /// Outward shapes along the arc, mode by mode.
+    /// Radial mode shapes along the arc, positive outwards.
     pub(crate) radial: Splines,
-    /// How the rope's fixed end moves, mode by mode.
+    /// Motion of the rope's fixed end for each mode.
     pub(crate) anchor: Vec<AnchorShape>,
-    /// Gauge stress per inward normal force along the arc, gauge by gauge.
+    /// Gauge stress per unit of inward normal force along the arc, for each gauge.
     pub(crate) normal_influence: Splines,
-    /// The same per tangential force.
+    /// Gauge stress per unit of tangential force along the arc, for each gauge.
     pub(crate) tangential_influence: Splines,
-    /// What is there beside that where there are two ropes.
+    /// Gauge stress caused by out-of-plane loads at the fixed end; `None` for a single rope.
     pub(crate) beside: Option<Beside>,
 }
 
-/// Gauge stress under what pulls and turns the fixed end of one of two ropes out of its plane.
+/// Gauge stress per unit of out-of-plane force and moment at the fixed end of one of two ropes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Beside {
-    /// Per force along z [Pa/N].
+    /// Gauge stress per unit of force along z [Pa/N].
     pub(crate) lateral: [f64; 4],
-    /// Per moment about the tangent and about the radius [Pa/(N m)].
+    /// Gauge stress per unit of moment about the tangent and about the radius [Pa/(N m)].
     pub(crate) turning: [[f64; 4]; 2],
 }
 
-/// Motion of a fixed end per unit of a mode, in the beam frame.
+/// Motion of a rope's fixed end per unit of a modal coordinate, in the beam frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct AnchorShape {
     /// Displacement along x, y and z.
     pub(crate) moves: [f64; 3],
-    /// Turn about the tangent and about the radius of the arc there.
+    /// Rotation about the tangent and about the radius of the arc at the fixed end.
     pub(crate) turns: [f64; 2],
 }
 
-/// The ropes of a machine in the order of its chains: back ones, then front ones.
+/// Returns the ropes of a machine in the order of its chains: those of the back head, then those of the front
+/// head.
 pub(super) fn strands(d: &Description) -> Vec<Strand> {
     let of = |rope: usize| match &d.twins {
         None => vec![Strand {
@@ -92,8 +94,8 @@ pub(super) fn strands(d: &Description) -> Vec<Strand> {
     [of(BACK), of(FRONT)].concat()
 }
 
-/// The back head's faces, one per back rope; `modes` of the description's are kept, and `sway` are
-/// added to them.
+/// Returns the elastic response of the back head for each back rope: the in-plane modes of the description
+/// that are kept, followed by the out-of-plane modes.
 pub(super) fn faces(d: &Description, layout: &Layout) -> Vec<Face> {
     let back = strands(d).into_iter().filter(|strand| strand.rope == BACK);
     back.map(|strand| face(d, layout, strand.side)).collect()
@@ -156,8 +158,8 @@ fn face(d: &Description, layout: &Layout, side: f64) -> Face {
     }
 }
 
-/// A force along z on one rope is half a newton on both; a moment is a pair of opposite forces at the
-/// two ends of the clamp.
+/// Computes the gauge stress of out-of-plane loads at a fixed end. A unit force along z on one rope equals
+/// half a newton on each rope; a moment equals a pair of opposite forces at the two ends of the clamp.
 fn beside(d: &Description, twins: &Twins) -> Beside {
     let at_anchor = |curves: &[Vec<f64>]| -> [f64; 4] {
         let lines = Splines::natural(d.head.influence_start, d.head.influence_step, curves);

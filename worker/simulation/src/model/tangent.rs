@@ -1,9 +1,9 @@
-//! The iteration matrix `S = mass M - damping D - K` with `K = dQ/dq`, `D = dQ/dv`, analytic.
+//! Analytic iteration matrix `S = mass M - damping D - K` with `K = dQ/dq`, `D = dQ/dv`.
 //!
-//! The integrator chooses the [`Shift`]; elements do not know them. Left out are the derivatives
-//! of the cylinders' velocity terms and of their inertia by the angles: a cylinder's moment of
-//! inertia is 1e-6 kg m2, so they change the speed of Newton's method by nothing measurable and
-//! its answer not at all.
+//! The integrator chooses the [`Shift`], which elements do not depend on. The derivatives of the cylinders'
+//! velocity terms and of their inertia with respect to the angles are omitted: a cylinder's moment of inertia
+//! is 1e-6 kg m2, so the omission has no measurable effect on the convergence of Newton's method and none on
+//! its solution.
 use crate::element::bushing::LinkTangent;
 use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
@@ -21,7 +21,7 @@ use crate::state::Shift;
     reason = "one file per term of the equations"
 )]
 impl Machine {
-    /// Fills `matrix` with `mass M - damping D - K` at a state whose loads and poses are in `scratch`.
+    /// Computes `mass M - damping D - K` into `matrix` at a state whose loads and poses are in `scratch`.
     pub(super) fn tangent(
         &self,
         at: &Instant<'_>,
@@ -43,8 +43,8 @@ impl Machine {
         self.hooks.add_tangent(at, damping, matrix);
     }
 
-    /// Fills `stiffness` with `-K` and `matrix` with `mass M - damping D - K` in one pass over what moves
-    /// in the plane.
+    /// Computes `-K` into `stiffness` and `mass M - damping D - K` into `matrix`, in a single pass for chains
+    /// that move in the plane.
     pub(super) fn tangents(
         &self,
         at: &Instant<'_>,
@@ -76,8 +76,8 @@ impl Machine {
         }
     }
 
-    /// Adds the tangent of the joints that hold a chain's ends to each matrix, in which rates change so
-    /// many times as much as coordinates.
+    /// Adds the tangent of a chain's end joints to each matrix. The number paired with a matrix is the factor
+    /// by which rates change with coordinates.
     fn end_tangents(
         &self,
         chain: usize,
@@ -129,7 +129,7 @@ impl Machine {
         }
     }
 
-    /// Weights, the head's own stiffness and damping.
+    /// Adds the tangent of weights and of the head's modal stiffness and damping to `matrix`.
     fn rigid_tangent(&self, at: &Instant<'_>, damping: f64, matrix: &mut Bordered) {
         let &Instant { q, drive, .. } = at;
         let d = &self.description;
@@ -157,7 +157,7 @@ impl Machine {
         }
     }
 
-    /// The joint between rod or suspension and the first cylinder.
+    /// Adds the tangent of the joint between rod or suspension and the first cylinder to `matrix`.
     fn base_tangent(
         &self,
         chain: usize,
@@ -189,7 +189,8 @@ impl Machine {
     }
 }
 
-/// Derivatives by the one coordinate of the rod (its angle) or the suspension (its height).
+/// Returns the derivatives of a base joint's load with respect to the coordinate of the rod (its angle) or of
+/// the suspension (its height).
 fn base_column(rod: bool, by: &LinkTangent, damping: f64) -> Column {
     std::array::from_fn(|r| {
         if rod {

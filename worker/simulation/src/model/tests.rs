@@ -9,13 +9,13 @@ fn machine() -> Machine {
     Machine::new(reference::description(), 2).unwrap()
 }
 
-/// With three and with six coordinates per cylinder, and with twin ropes.
+/// Returns the reference machine with three and with six coordinates per cylinder, and with twin ropes.
 fn machines() -> [Machine; 3] {
     let twins = Machine::new(reference::twins([0.002, -0.003]), 2).unwrap();
     [machine(), machine().in_space(), twins]
 }
 
-/// A state near the working position, disturbed in every coordinate so that nothing vanishes.
+/// Returns a state near the working position, perturbed in every coordinate so that no term vanishes.
 pub(crate) fn disturbed(machine: &Machine) -> (Vec<f64>, Vec<f64>) {
     let layout = machine.layout;
     let law = reference::law();
@@ -89,13 +89,14 @@ fn drive(t: f64) -> DriveState {
     machine().drive_state(&drive, t)
 }
 
-/// Coordinates that are not locked.
+/// Returns the indices of the coordinates that are not locked.
 pub(crate) fn free(machine: &Machine) -> impl Iterator<Item = usize> {
     let layout = machine.layout;
     (0..layout.len()).filter(move |&i| !layout.is_locked(i))
 }
 
-/// Derivative of the forces along one coordinate, whose rate moves `gamma` times as far.
+/// Returns the central difference of the forces along coordinate `i`, with its rate varied by `gamma` times
+/// the step.
 fn difference(machine: &Machine, at: &Instant<'_>, i: usize, gamma: f64) -> Vec<f64> {
     let h = 1e-7;
     let step = |h: f64| {
@@ -191,8 +192,9 @@ fn assert_gradient(machine: &Machine) {
     }
 }
 
-/// What all forces do at a crank that stands still is taken from the stored energy or lost, in a moving
-/// state with contact: what acts on one body acts back on another, dampers included.
+/// Checks the energy balance at a stationary crank: the power of all forces equals the rate of change of
+/// stored energy plus dissipation, in a moving state with contact. Hence every force, including damping, has
+/// its reaction.
 #[test]
 fn power_of_the_forces_is_what_is_stored_and_lost() {
     for machine in machines() {
@@ -226,7 +228,7 @@ fn power_of_the_forces_is_what_is_stored_and_lost() {
     }
 }
 
-/// Where each coordinate of a machine in the plane lives in the same machine in space.
+/// Returns, for each coordinate of a machine in the plane, its index in the same machine in space.
 fn in_space(plane: &Machine) -> Vec<usize> {
     let layout = plane.layout;
     (0..layout.len())
@@ -239,14 +241,15 @@ fn in_space(plane: &Machine) -> Vec<usize> {
         .collect()
 }
 
-/// Three coordinates per cylinder tell the same as six whose others are zero: forces, tangent,
-/// energy and losses, in a moving state with contact.
+/// Checks that three coordinates per cylinder give the same forces, tangent, energy and losses as six with
+/// the remaining ones zero, in a moving state with contact.
 #[test]
 fn plane_and_space_agree() {
     assert_plane_is_space(&machine(), "");
 }
 
-/// As [`plane_and_space_agree`]; laws with a past have one.
+/// Checks the property stated in [`plane_and_space_agree`] for a given machine, whose laws with memory have
+/// stored a previous state.
 pub(crate) fn assert_plane_is_space(plane: &Machine, name: &str) {
     let space = plane.clone().in_space();
     let place = in_space(plane);

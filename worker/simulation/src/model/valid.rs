@@ -1,46 +1,46 @@
-//! What a description must have to be a machine.
+//! Validation of a machine description.
 use crate::model::description::{Description, Twins};
 use crate::model::kinematics::DoesNotClose;
 use crate::model::layout::MAX_MODES;
 
-/// A description that cannot be a machine.
+/// Error: a description from which no machine can be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InvalidDescription {
-    /// A number that must be positive and finite is not.
+    /// Number that must be positive and finite, but is not.
     #[error("{what} is {value}; it must be a positive number")]
     NotPositive {
-        /// Which number.
+        /// Name of the number.
         what: &'static str,
-        /// Its value, SI.
+        /// Value of the number, in SI units.
         value: f64,
     },
-    /// A table has the wrong size.
-    #[error("{what} has {found} entries; expected {expected}")]
+    /// Table of the wrong size.
+    #[error("{what}: {found} entries found, {expected} expected")]
     Shape {
-        /// Which table.
+        /// Name of the table.
         what: &'static str,
-        /// Entries found.
+        /// Number of entries found.
         found: usize,
-        /// Entries expected.
+        /// Number of entries expected.
         expected: usize,
     },
-    /// There is more of something than a simulation takes.
-    #[error("{what} are {found}; at most {most} can be simulated")]
+    /// Quantity that exceeds the maximum that a simulation supports.
+    #[error("{what}: {found} given, at most {most} can be simulated")]
     TooMany {
-        /// Of what.
+        /// Name of the quantity.
         what: &'static str,
-        /// Entries found.
+        /// Number of entries found.
         found: usize,
-        /// The most there may be.
+        /// Maximum number of entries.
         most: usize,
     },
-    /// The mechanism does not turn through.
-    #[error("the crank cannot turn through: {0}")]
+    /// Mechanism whose crank cannot make a full turn.
+    #[error("the crank cannot make a full turn: {0}")]
     Mechanism(#[from] DoesNotClose),
 }
 
-/// Whether a description with so many modes in the plane is a machine.
+/// Checks that a machine with `modes` in-plane modes can be built from a description.
 pub(super) fn check(d: &Description, modes: usize) -> Result<(), InvalidDescription> {
     let positive: [(&'static str, f64); 14] = [
         ("gravity", d.gravity),
@@ -85,7 +85,7 @@ fn check_size(what: &'static str, found: usize, expected: usize) -> Result<(), I
     })
 }
 
-/// The head has what its modes and its gauges need.
+/// Checks the tables of the head, the number of cylinders and the number of card samples.
 fn check_tables(d: &Description, modes: usize) -> Result<(), InvalidDescription> {
     let head = &d.head;
     for (what, found, least) in [
@@ -108,14 +108,14 @@ fn check_tables(d: &Description, modes: usize) -> Result<(), InvalidDescription>
     shapes.try_for_each(|shape| check_size("mode shape", shape.len(), stations))
 }
 
-/// A pair of ropes, and a head that has tables for it.
+/// Checks the parameters of twin ropes and the antisymmetric tables of the head.
 fn check_twins(d: &Description, twins: &Twins, modes: usize) -> Result<(), InvalidDescription> {
     check_positive("distance of twin ropes from the plane", twins.offset)?;
     let sway = &twins.sway;
     let count = sway.frequencies.len();
     if modes + count > MAX_MODES {
         return Err(InvalidDescription::TooMany {
-            what: "head modes of both families",
+            what: "in-plane and out-of-plane head modes together",
             found: modes + count,
             most: MAX_MODES,
         });
@@ -135,8 +135,8 @@ fn check_twins(d: &Description, twins: &Twins, modes: usize) -> Result<(), Inval
         ),
         (
             [
-                "normal influence lines of a pair",
-                "tangential influence lines of a pair",
+                "normal influence lines of twin ropes",
+                "tangential influence lines of twin ropes",
                 "lateral influence lines",
             ],
             [4, lines],

@@ -1,16 +1,15 @@
-//! Curves of one revolution, and the machine at a sample: plain data.
+//! Curves recorded over one revolution, and the machine's shape at a sample, as plain data.
 
-/// Curves of one revolution, one entry per sample reached.
+/// Curves recorded over one revolution, with one entry per sample reached.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curves {
     /// Stress at gauges 1 to 4 \[Pa\].
     pub gauge: [Vec<f64>; 4],
-    /// Tension of the back rope at the crossbeam, of both where there are two \[N\].
+    /// Tension of the back rope at the crossbeam \[N\]; the sum for twin ropes.
     pub back_tension: Vec<f64>,
-    /// Tension of the front rope at the suspension point, of both where there are two \[N\].
+    /// Tension of the front rope at the suspension point \[N\]; the sum for twin ropes.
     pub front_tension: Vec<f64>,
-    /// By how much the rope at +z pulls more than the one at -z, back and front \[N\]; empty where
-    /// there is one.
+    /// Tension of the rope at +z minus that of the rope at -z, back and front \[N\]; empty for single ropes.
     pub tension_difference: [Vec<f64>; 2],
     /// Beam angle \[rad\].
     pub beam: Vec<f64>,
@@ -18,29 +17,30 @@ pub struct Curves {
     pub suspension: [Vec<f64>; 3],
     /// Net crank torque [N m].
     pub torque: Vec<f64>,
-    /// Modal coordinates, mode by mode.
+    /// Modal coordinates of the back head, for each mode.
     pub modal: Vec<Vec<f64>>,
-    /// Shapes at every `shape_every`-th sample.
+    /// Machine shapes at every `shape_every`-th sample.
     pub shapes: Vec<Shape>,
 }
 
-/// The machine at one sample, in W.
+/// Position of the machine's parts and loads of its ropes at one sample, in W.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
     /// Index of the sample.
     pub sample: usize,
-    /// Crank pin \[m\].
+    /// Position of the crank pin \[m\].
     pub pin: [f64; 2],
-    /// Rope end of the rod \[m\].
+    /// Position of the rod's rope end \[m\].
     pub crossbeam: [f64; 2],
     /// Beam angle \[rad\].
     pub beam: f64,
-    /// Suspension point \[m\].
+    /// Position of the suspension point \[m\].
     pub suspension: [f64; 2],
-    /// Cylinder centres of back and front rope from the free end on, of two ropes those at +z \[m\].
+    /// Cylinder centres of the back and front rope, starting at the base end; of twin ropes, those of the
+    /// rope at +z \[m\].
     pub centers: [Vec<[f64; 2]>; 2],
-    /// Tension in the joint before each cylinder, of both ropes where there are two \[N\].
+    /// Tension in the joint before each cylinder \[N\]; the sum for twin ropes.
     pub tension: [Vec<f64>; 2],
-    /// Contact force on each cylinder, of both where there are two \[N\].
+    /// Contact force on each cylinder \[N\]; the sum for twin ropes.
     pub contact: [Vec<f64>; 2],
 }

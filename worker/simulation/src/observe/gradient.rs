@@ -1,9 +1,10 @@
-//! Derivatives of the gauges' stress by the state, of a head under one rope in the plane.
+//! Derivatives of the gauge stress with respect to the state, for a head under one rope in the plane.
 //!
-//! Stress is linear in the forces that press and pull on the head: a point of contact at arc angle `s`
-//! counts `W_g(s) = N_g(s) + sum_m s_mg phi_m(s) / w_m^2`, its influence line and what the modes'
-//! static answer leaves of it. So `d stress = sum W_g df + f W_g' ds` over the points, the like of the
-//! rope's end, and modes and beam themselves. Derivatives of the end's pull are differences of one joint.
+//! Stress is linear in the contact and anchor forces on the head: a contact point at arc angle `s` has the
+//! weight `W_g(s) = N_g(s) + sum_m s_mg phi_m(s) / w_m^2`, its influence line minus the static response of
+//! the modes that is included in the modal part. Hence `d stress = sum W_g df + f W_g' ds` over the contact
+//! points, plus the corresponding terms of the rope's end, of the modes and of the beam. Derivatives of the
+//! end's force are differences of one joint.
 use crate::math::elementary::sin_cos;
 use crate::model::chain::contact_point::{BORDER, FEW, Reached, each_reached};
 use crate::model::description::StressRecovery;
@@ -11,26 +12,27 @@ use crate::model::layout::{MAX_MODES, Motion};
 use crate::model::{Individual, Machine};
 use crate::system::State;
 
-/// Four gauges.
+/// Values at the four gauges.
 type Each = [f64; 4];
 
-/// Derivatives of the stress at four gauges.
+/// Derivatives of the stress at the four gauges with respect to state and contact law.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Gradient {
-    /// By so many coordinates: which, by the coordinate, by its rate \[Pa\] per unit.
+    /// Nonzero derivatives: index of the coordinate, derivatives with respect to the coordinate and to its
+    /// rate \[Pa\] per unit.
     pub(crate) entries: Vec<(usize, [Each; 2])>,
-    /// By the beam's acceleration.
+    /// Derivative with respect to the beam's acceleration.
     pub(crate) by_acceleration: Each,
-    /// By stiffness and by damping of the contact's law.
+    /// Derivatives with respect to stiffness and damping of the contact law.
     pub(crate) by_contact: [Each; 2],
-    /// By the end's pull in the beam frame [Pa/N].
+    /// Derivatives with respect to the force of the rope's end along x and y of the beam frame [Pa/N].
     pub(crate) by_pull: [Each; 2],
-    /// Entry of each coordinate, or none.
+    /// Index in `entries` for each coordinate; `None` if the derivative is zero.
     places: Vec<Option<usize>>,
 }
 
-/// Steps by which the joint at the rope's end is differenced: of coordinates, and of rates, in which its
-/// force is linear.
+/// Difference steps for the joint at the rope's end: of coordinates, and of rates, in which its force is
+/// linear.
 const STEPS: [f64; 2] = [1e-7, 1e-4];
 
 fn add(to: &mut Each, weight: f64, x: &Each) {
@@ -39,7 +41,8 @@ fn add(to: &mut Each, weight: f64, x: &Each) {
     }
 }
 
-/// Stress per static force on a mode: what the modes move beyond, less.
+/// Returns the gauge stress that mode `m` contributes per unit of static modal force, which mode acceleration
+/// subtracts.
 fn modal(machine: &Machine, m: usize) -> Each {
     let head = &machine.description.head;
     let w = head.frequencies[m];
@@ -47,7 +50,7 @@ fn modal(machine: &Machine, m: usize) -> Each {
 }
 
 impl Gradient {
-    /// Room for that of `n` coordinates.
+    /// Allocates the derivatives for `n` coordinates.
     pub(crate) fn new(n: usize) -> Self {
         Self {
             entries: Vec::with_capacity(n),
@@ -56,7 +59,8 @@ impl Gradient {
         }
     }
 
-    /// Whether a machine's gauges have one.
+    /// Returns whether analytic stress derivatives are available for a machine: motion in the plane, one back
+    /// rope, no reading hooks, mode-acceleration recovery.
     pub(crate) fn serves(machine: &Machine) -> bool {
         machine.layout.motion == Motion::Plane
             && machine.faces.len() == 1
@@ -64,7 +68,8 @@ impl Gradient {
             && machine.description.head.recovery == StressRecovery::ModeAcceleration
     }
 
-    /// Works it out at a state whose loads on the back head the individual has; `room` is for a state.
+    /// Computes the derivatives at a state for which the individual holds the loads on the back head; `room`
+    /// is workspace for a state.
     pub(crate) fn fill(
         &mut self,
         individual: &mut Individual<'_>,
@@ -102,7 +107,7 @@ impl Gradient {
         &mut self.entries[at].1
     }
 
-    /// Weight and acceleration of the head, and its modes.
+    /// Adds the derivatives due to the head's weight and acceleration, and due to its modes.
     fn by_rigid(&mut self, machine: &Machine, state: &State) {
         let head = &machine.description.head;
         let layout = machine.layout;
@@ -172,7 +177,8 @@ impl Gradient {
         );
     }
 
-    /// What the rope's end pulls more when coordinate `k` of `state` or its rate grows.
+    /// Adds the derivatives through the force of the rope's end with respect to coordinate `k` of `state` and
+    /// its rate, by differences.
     fn by_end(&mut self, individual: &mut Individual<'_>, state: &mut State, k: usize) {
         let by_pull = self.by_pull;
         let was = [state.q[k], state.v[k]];
@@ -194,7 +200,7 @@ impl Gradient {
     }
 }
 
-/// Stress per pull of the rope's end along x and y of the beam frame.
+/// Returns the gauge stress per unit of force of the rope's end along x and y of the beam frame.
 fn by_pull(machine: &Machine) -> [Each; 2] {
     let face = &machine.faces[0];
     let anchor = machine.description.back_arc.anchor;

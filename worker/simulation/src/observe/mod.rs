@@ -1,4 +1,4 @@
-//! What is recorded of a revolution: gauge stress, rope tension, motion, torque.
+//! Recording of a revolution: gauge stress, rope tension, motion, torque.
 mod curves;
 mod gradient;
 mod readings;

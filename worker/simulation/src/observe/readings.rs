@@ -1,14 +1,14 @@
-//! What the gauges read of a state: stress of the back head, and the chain from there to the record.
+//! Gauge readings at a state: stress of the back head, and the measuring chain from stress to recorded value.
 use super::stress::gauge_stress;
 use crate::model::Individual;
 use crate::model::hook::Sampled;
 use crate::model::strand::BACK;
 use crate::system::State;
 
-/// Readings of the four gauges \[Pa\] at a sample of the recorded revolution.
+/// Returns the readings of the four gauges \[Pa\] at a sample of the recorded revolution.
 ///
-/// `part`: only the loads that the head's stress asks for are filled; what readings and curves ask for
-/// beyond that is unknown. `force` is room for generalised forces.
+/// With `part` only the loads that the head's stress depends on are computed; all other loads, needed for
+/// reading hooks and curves, are undefined. `force` is workspace for generalised forces.
 pub(crate) fn readings(
     individual: &mut Individual<'_>,
     state: &State,
@@ -29,7 +29,7 @@ pub(crate) fn readings(
     stress
 }
 
-/// What readings may know of a state, all of whose loads an individual has.
+/// Returns the quantities available to readings at a state for which the individual holds all loads.
 pub(crate) fn sampled(individual: &Individual<'_>, state: &State) -> Sampled {
     let machine = individual.machine;
     let recorded = individual.drive.turn(state.t)[0] - machine.hooks.index_offset();

@@ -1,4 +1,4 @@
-//! Records a run: the gauges alone for a score, or everything.
+//! Recorder of a run: gauge stress alone for scoring, or all curves.
 use super::curves::Curves;
 use super::readings::readings;
 use super::shaft::crank_torque;
@@ -8,10 +8,10 @@ use crate::model::{Individual, Instant, Machine};
 use crate::run::Observe;
 use crate::system::{State, System};
 
-/// Records the gauges alone (for scoring), or everything.
+/// Recorder of gauge stress alone (for scoring), or of all curves.
 #[derive(Clone, Debug, Default)]
 pub struct Recorder {
-    /// What was recorded.
+    /// Recorded curves.
     pub curves: Curves,
     gauges_only: bool,
     shape_every: usize,
@@ -19,7 +19,7 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Records gauge stress alone: what a score needs.
+    /// Creates a recorder of gauge stress alone, which is sufficient for scoring.
     pub fn gauges_only() -> Self {
         Self {
             gauges_only: true,
@@ -27,7 +27,7 @@ impl Recorder {
         }
     }
 
-    /// Records everything, and the machine's shape at every `shape_every`-th sample.
+    /// Creates a recorder of all curves, and of the machine's shape at every `shape_every`-th sample.
     pub fn everything(shape_every: usize) -> Self {
         Self {
             shape_every,

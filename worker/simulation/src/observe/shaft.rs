@@ -1,11 +1,13 @@
-//! What is read beside the gauges: the height of the suspension point and the net torque at the crank shaft.
+//! Measured quantities other than gauge stress: height of the suspension point and net torque at the crank
+//! shaft.
 use crate::drive::DriveState;
 use crate::math::elementary::sin_cos;
 use crate::model::{Individual, Machine};
 use crate::system::State;
 use nalgebra::Vector2;
 
-/// Net torque that the reducer must give in the sense of rotation, counterweight included [N m].
+/// Returns the net torque that the reducer must supply in the sense of rotation, counterweight included [N
+/// m].
 pub(super) fn crank_torque(machine: &Machine, drive: &DriveState, pin: &Vector2<f64>) -> f64 {
     let crank = &machine.description.crank;
     // the counterweight hangs opposite the pin and falls while the rope is pulled
@@ -14,14 +16,15 @@ pub(super) fn crank_torque(machine: &Machine, drive: &DriveState, pin: &Vector2<
     turning(machine, drive, pin) + crank.sense * weight
 }
 
-/// Torque of a force at the crank pin in the sense of rotation [N m].
+/// Returns the torque of a force at the crank pin in the sense of rotation [N m].
 fn turning(machine: &Machine, drive: &DriveState, force: &Vector2<f64>) -> f64 {
     let crank = &machine.description.crank;
     let (s, c) = sin_cos(drive.pin_angle);
     crank.radius * crank.sense * (force.y * c - force.x * s)
 }
 
-/// Height of the suspension point above its lowest design position \[m\] and torque [N m] at a state.
+/// Returns the height of the suspension point above its lowest design position \[m\] and the net crank torque
+/// [N m] at a state.
 pub(crate) fn shaft(individual: &mut Individual<'_>, state: &State) -> [f64; 2] {
     let pin = individual.pin_force(state);
     let machine = individual.machine;
@@ -30,24 +33,24 @@ pub(crate) fn shaft(individual: &mut Individual<'_>, state: &State) -> [f64; 2] 
     [height, crank_torque(machine, &drive, &pin)]
 }
 
-/// What the back ropes' pull alone turns the crank with at a state [N m].
+/// Returns the crank torque at a state caused by the force of the back ropes alone [N m].
 pub(crate) fn turned_by_ropes(individual: &mut Individual<'_>, state: &State) -> f64 {
     let pull = individual.base_pull(state.motion());
     let drive = individual.drive_state(state.t);
     turning(individual.machine, &drive, &pull.xy())
 }
 
-/// Steps by which torque is differenced: of coordinates, of rates, and of accelerations, in which it is
-/// linear.
+/// Difference steps for the torque: of coordinates, of rates, and of accelerations, in which it is linear.
 const STEPS: [f64; 3] = [1e-7, 1e-4, 1e-2];
 
-/// Derivatives of the torque by the state: by so many coordinates, by their rates and accelerations.
+/// Derivatives of the torque with respect to the state: index of the coordinate, derivatives with respect to
+/// coordinate, rate and acceleration.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct TorqueBy(pub(crate) Vec<(usize, [f64; 3])>);
 
 impl TorqueBy {
-    /// Works it out at a state; `room` is for a state. What turns the crank knows of the rod and of the
-    /// first cylinders alone.
+    /// Computes the derivatives at a state; `room` is workspace for a state. The torque depends on the rod
+    /// and on the first cylinders of the back ropes only.
     pub(crate) fn fill(
         &mut self,
         individual: &mut Individual<'_>,

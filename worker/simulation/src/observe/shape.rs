@@ -1,4 +1,4 @@
-//! The machine's shape at a sample, with what pulls and presses.
+//! Shape of the machine at a sample, with rope tensions and contact forces.
 use super::curves::Shape;
 use crate::drive::DriveState;
 use crate::math::elementary::sin_cos;
@@ -6,7 +6,7 @@ use crate::model::Individual;
 use crate::model::chain::ChainState;
 use crate::system::State;
 
-/// The machine's shape with the loads of a sample.
+/// Returns the machine's shape and loads at a sample.
 pub(super) fn shape(
     sample: usize,
     system: &Individual<'_>,

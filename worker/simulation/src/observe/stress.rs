@@ -1,4 +1,4 @@
-//! Gauge stress of a state, from modes and forces.
+//! Gauge stress of a state, recovered from modes and forces.
 use crate::math::elementary::sin_cos;
 use crate::model::chain::ChainState;
 use crate::model::description::StressRecovery;
@@ -7,14 +7,14 @@ use crate::model::strand::Face;
 use crate::model::{BackHeadLoads, Machine};
 use crate::system::StateRef;
 
-/// Stress at the four gauges \[Pa\] of a state under accelerations `a`.
+/// Returns the stress at the four gauges \[Pa\] of a state under accelerations `a`.
 ///
-/// Mode acceleration: exact static stress of the contact and anchor forces (influence lines) and of
-/// the base acceleration, plus what the modes move beyond their own static answer,
-/// `sum_k s_k (q_k - f_k / w_k^2)`. So a truncated set of modes costs no static accuracy.
+/// Mode acceleration: exact static stress of the contact and anchor forces (influence lines) and of the base
+/// acceleration, plus the modal response beyond its static part, `sum_k s_k (q_k - f_k / w_k^2)`. A truncated
+/// set of modes thus keeps the full static accuracy.
 ///
-/// Mode displacement: `sum_k s_k q_k` alone. The strain beside a pin is local, and six modes miss
-/// much of it; it is here to compare with programs that recover stress so.
+/// Mode displacement: `sum_k s_k q_k` alone. The strain near a pin is local, and six modes miss much of it;
+/// this option serves for comparison with programs that recover stress in this way.
 pub fn gauge_stress(loads: &BackHeadLoads<'_, '_>, a: &[f64]) -> [f64; 4] {
     let machine = loads.individual().machine;
     match machine.description.head.recovery {
@@ -77,14 +77,15 @@ fn mode_acceleration(loads: &BackHeadLoads<'_, '_>, a: &[f64]) -> [f64; 4] {
     stress
 }
 
-/// What one back rope does to the head.
+/// Loads of one back rope on the head.
 struct HeadLoad<'a> {
     machine: &'a Machine,
     face: &'a Face,
     back: &'a ChainState,
     /// Force of the rope's end, in the beam frame \[N\].
     pull: [f64; 3],
-    /// Its moment about the tangent of the arc and about the radius, where it turns the head [N m].
+    /// Moment of the rope's end about the tangent of the arc and about the radius, where it rotates the head
+    /// [N m].
     moments: Option<[f64; 2]>,
 }
 
@@ -113,7 +114,7 @@ impl<'a> HeadLoad<'a> {
         }
     }
 
-    /// Adds its static stress: influence lines.
+    /// Adds the static stress of the loads, from influence lines.
     fn add_stress(&self, stress: &mut [f64; 4]) {
         let Self { face, pull, .. } = self;
         for (angle, force) in self.back.points.forces() {
@@ -144,7 +145,7 @@ impl<'a> HeadLoad<'a> {
         }
     }
 
-    /// Adds what it does to the modes.
+    /// Adds the generalised forces of the loads on the modes.
     fn add_modal(&self, modal_force: &mut [f64]) {
         let Self { face, pull, .. } = self;
         let mut pressed = [0.0; MAX_MODES];

@@ -1,11 +1,11 @@
-//! The two ways of stress recovery.
+//! Tests of both methods of stress recovery.
 use super::{Curves, Recorder};
 use crate::model::Machine;
 use crate::model::description::StressRecovery;
 use crate::reference;
 use crate::run::{RunSettings, simulate};
 
-/// Gauge curves and modal coordinates of the reference machine.
+/// Returns the reference machine and its gauge and modal curves under a method of stress recovery.
 fn curves(recovery: StressRecovery) -> (Machine, Curves) {
     let mut description = reference::description();
     description.head.recovery = recovery;

@@ -1,4 +1,5 @@
-//! A column that is worked out: where its derivatives come from, and what the gauges read more of.
+//! Columns that must be computed: source of their derivatives, and explicit derivatives of the gauge
+//! readings.
 use super::column::{Changes, Coefficient};
 use super::differences::Difference;
 use super::plan::Way;
@@ -14,22 +15,22 @@ use crate::run::RunSettings;
 use crate::system::State;
 use std::f64::consts::LN_10;
 
-/// A sample of the recorded revolution.
+/// Sample of the recorded revolution, as needed for the columns.
 pub(super) struct Sample<'s> {
     pub(super) state: &'s State,
-    /// Ends of the step that it lies in.
+    /// States at both ends of the step that contains the sample.
     pub(super) ends: [&'s State; 2],
-    /// What the gauges read.
+    /// Gauge readings at the sample \[Pa\].
     pub(super) own: [f64; 4],
-    /// What is read beside them.
+    /// Suspension height \[m\] and net crank torque [N m] at the sample.
     pub(super) shaft: [f64; 2],
-    /// What further readings may know, where there are none.
+    /// Quantities available to additional reading hooks, if the machine has none of its own.
     pub(super) known: Option<Sampled>,
-    /// Which sample.
+    /// Run settings and index of the sample.
     pub(super) turned: (&'s RunSettings, usize),
 }
 
-/// Derivative of the front head's radius by a parameter.
+/// Returns the derivative of the front head's radius with respect to a parameter, by differences.
 fn raised(own: &Machine, beside: &[Machine; 2], difference: &Difference) -> f64 {
     let radius = |machine: &Machine| machine.description.front_arc.radius;
     let each = beside.iter().zip(difference.weights);
@@ -37,7 +38,8 @@ fn raised(own: &Machine, beside: &[Machine; 2], difference: &Difference) -> f64 
     difference.own * radius(own) + change.sum::<f64>()
 }
 
-/// How the derivative of the forces by the decimal logarithm of a coefficient comes about.
+/// Chooses how the derivative of the forces with respect to the decimal logarithm of a coefficient is
+/// computed.
 fn by_coefficient<'a>(
     (machine, law): (&'a Machine, &RopeLaw),
     settings: &RunSettings,
@@ -76,21 +78,21 @@ fn by_coefficient<'a>(
     }
 }
 
-/// A column that is worked out.
+/// Column whose derivatives must be computed.
 pub(super) struct Active<'a> {
-    /// Its place in the plan.
+    /// Index of the column in the plan.
     pub(super) column: usize,
     pub(super) source: Source<'a>,
-    /// The machines beside, two or none.
+    /// Machines with perturbed parameters, from which differences are taken; two or none.
     pub(super) sides: Vec<Side<'a>>,
     pub(super) difference: Difference,
-    /// Whether the gauges know of the parameter where the state is as it was.
+    /// Whether the gauge readings depend on the parameter explicitly, at a fixed state.
     explicit: bool,
     pub(super) curves: Changes,
 }
 
 impl<'a> Active<'a> {
-    /// Nothing where there is nothing to work out.
+    /// Prepares a column; returns `None` if its derivatives are known to be zero or unavailable.
     pub(super) fn new(
         (machine, law): (&'a Machine, &RopeLaw),
         settings: &RunSettings,
@@ -151,7 +153,7 @@ impl<'a> Active<'a> {
         }
     }
 
-    /// What the gauges read more of at a sample whose state is as it was.
+    /// Returns the explicit derivative of the gauge readings at a sample, at a fixed state.
     pub(super) fn explicit(
         &mut self,
         sample: &Sample<'_>,
@@ -199,7 +201,7 @@ impl<'a> Active<'a> {
         sum
     }
 
-    /// What is read more beside the gauges at a sample whose state is as it was.
+    /// Returns the explicit derivative of suspension height and crank torque at a sample, at a fixed state.
     pub(super) fn explicit_shaft(
         &mut self,
         sample: &Sample<'_>,
@@ -235,8 +237,9 @@ impl<'a> Active<'a> {
         sum
     }
 
-    /// Place in the order in which columns are worked out: the contact's own need its points, which other
-    /// machines move; those without a motion come last and are not in the blocks.
+    /// Returns the rank of the column in the order of computation. Contact columns and those with a changed
+    /// front radius come first, because they need the machine's own contact points, which evaluations of
+    /// other machines overwrite; columns that do not move the state come last and are not in the blocks.
     pub(super) const fn order(&self) -> u8 {
         match self.source {
             Source::Contact { .. } | Source::Difference(.., Some(_)) => 0,

@@ -1,11 +1,11 @@
-//! Columns at a place between the ends of a step: of the state, and of what is read there.
+//! Interpolation of columns within a step: derivatives of the state, of shaft quantities and of gauge stress.
 use super::block::Motion;
 use crate::integrator::dense::Weights;
 use crate::linear::Lanes;
 use crate::observe::{Gradient, TorqueBy};
 use crate::system::State;
 
-/// Adds `step` times a column to a state: at a place between two ends.
+/// Adds `step` times a column, interpolated within a step, to a state.
 pub(super) fn add_column(
     [from, to]: [&Motion; 2],
     lane: usize,
@@ -26,7 +26,7 @@ pub(super) fn add_column(
     }
 }
 
-/// Columns of coordinate `i` at a place between two ends: of itself and of its rate.
+/// Returns the interpolated columns of coordinate `i` and of its rate.
 fn at([from, to]: [&Motion; 2], weights: &Weights, i: usize) -> [Lanes; 2] {
     let [f0, f1] = weights.value;
     let [g0, g1] = weights.slope;
@@ -36,14 +36,13 @@ fn at([from, to]: [&Motion; 2], weights: &Weights, i: usize) -> [Lanes; 2] {
     ]
 }
 
-/// The same of its acceleration.
+/// Returns the interpolated columns of the acceleration of coordinate `i`.
 fn acceleration([from, to]: [&Motion; 2], weights: &Weights, i: usize) -> Lanes {
     let [r, s] = weights.linear;
     from.a[i] * r + to.a[i] * s
 }
 
-/// Derivatives of the suspension's coordinate `height` and of the torque along the columns between two
-/// ends.
+/// Returns the interpolated columns of the suspension's coordinate `height` and of the torque.
 pub(super) fn shaft(
     ends: [&Motion; 2],
     weights: &Weights,
@@ -60,7 +59,7 @@ pub(super) fn shaft(
     [height, sum]
 }
 
-/// Derivatives of the gauges' stress along the columns between two ends.
+/// Returns the interpolated columns of the gauge stress.
 pub(super) fn stress(
     ends: [&Motion; 2],
     weights: &Weights,

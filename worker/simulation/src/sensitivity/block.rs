@@ -1,11 +1,11 @@
-//! Columns of the state, several side by side, through the stages of a step.
+//! Propagation of several columns of the state, side by side in SIMD lanes, through the stages of a step.
 use super::linearized::Linearized;
 use crate::integrator::tableau::Tableau;
 use crate::linear::Lanes;
 use crate::system::Equations;
 use pulp::{Arch, Scalar, Simd, WithSimd};
 
-/// Derivatives of coordinates, rates and accelerations; n each.
+/// Derivatives of the n coordinates, rates and accelerations.
 #[derive(Clone, Debug)]
 pub(super) struct Motion {
     pub(super) q: Vec<Lanes>,
@@ -13,18 +13,19 @@ pub(super) struct Motion {
     pub(super) a: Vec<Lanes>,
 }
 
-/// Columns of a state and of the stages of the step that begins there.
+/// Columns of a state, and of the stages of the step that begins there.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
-    /// Where the step began, and where it ended.
+    /// Columns at the start and at the end of the step.
     pub(super) ends: [Motion; 2],
-    /// Rates of the stages between.
+    /// Columns of the rates at the intermediate stages.
     rates: Vec<Vec<Lanes>>,
-    /// Nothing has moved any of the columns yet.
+    /// Whether all columns are still zero.
     still: bool,
 }
 
-/// Room for what a stage is without its own rate: its coordinates, and `-v / c` of its rates.
+/// Workspace for the part of a stage that is independent of its own rate: its coordinates, and `-v / c` of
+/// its rates.
 #[derive(Clone, Debug)]
 pub(super) struct Bases {
     q: Vec<Lanes>,
@@ -41,20 +42,20 @@ impl Motion {
         }
     }
 
-    /// Largest derivative of a coordinate in a column.
+    /// Returns the largest absolute derivative of a coordinate in a column.
     pub(super) fn size(&self, lane: usize) -> f64 {
         self.q.iter().fold(0.0, |size, q| q.0[lane].abs().max(size))
     }
 }
 
 impl Bases {
-    /// For `n` coordinates.
+    /// Allocates the workspace for `n` coordinates.
     pub(super) fn new(n: usize) -> Self {
         let Motion { q, v, .. } = Motion::new(n);
         Self { q, scaled: v }
     }
 
-    /// What stage `i` of a step is without its own rate.
+    /// Computes the part of a stage that is independent of its own rate.
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
@@ -82,11 +83,11 @@ impl Bases {
     }
 }
 
-/// Most stages of a method.
+/// Maximum number of stages of a method.
 const STAGES: usize = 8;
 
-/// With what weights the start of a step and the rates of its earlier stages enter a stage's coordinates,
-/// and `-v / c` of its rates: accelerations of stages are differences of rates, and are not kept.
+/// Weights with which the start of a step and the rates of earlier stages enter the coordinates of a stage
+/// and `-v / c` of its rates. Accelerations of stages are differences of rates and are not stored.
 struct Parts {
     first: [f64; 2],
     acceleration: f64,
@@ -94,7 +95,7 @@ struct Parts {
 }
 
 impl Parts {
-    /// Of stage `i` of a step of size `h`.
+    /// Computes the weights of stage `i` of a step of size `h`.
     fn new(tableau: &Tableau, i: usize, h: f64) -> Self {
         // base_j = x_j v_0 + y_j a_0 + sum z_jk v_k, and a_j = (v_j - base_j) / c
         let (mut x, mut y) = ([1.0; STAGES], [0.0; STAGES]);
@@ -126,14 +127,14 @@ impl Parts {
     }
 }
 
-/// A stage of a block of columns.
+/// Computation of one stage of a block of columns.
 struct Advance<'a, E> {
     block: &'a mut Block,
     equations: &'a E,
     tangents: &'a Linearized,
-    /// Method, stage, size of the step.
+    /// Method, index of the stage, size of the step.
     at: (&'a Tableau, usize, f64),
-    /// `dR/dp`.
+    /// Right-hand side `dR/dp`, overwritten by the solution.
     right: &'a mut [Lanes],
     bases: &'a mut Bases,
 }
@@ -184,7 +185,7 @@ impl<E: Equations> WithSimd for Advance<'_, E> {
 }
 
 impl Block {
-    /// Zeros for `n` coordinates and a method of so many stages between a step's start and its end.
+    /// Creates zero columns for `n` coordinates and a method with `stages` intermediate stages.
     pub(super) fn new(n: usize, stages: usize) -> Self {
         Self {
             ends: [Motion::new(n), Motion::new(n)],
@@ -193,13 +194,13 @@ impl Block {
         }
     }
 
-    /// Whether the columns stay where they are: they are zero, and so is their `dR/dp`.
+    /// Returns whether the columns remain zero: they are zero, and so is `dR/dp`.
     fn stays(&mut self, right: &[Lanes]) -> bool {
         self.still = self.still && right.iter().all(|x| *x == Lanes::default());
         self.still
     }
 
-    /// Columns of an equilibrium, whose `dR/dp` is in `right`.
+    /// Computes the columns of an equilibrium from its `dR/dp` in `right`.
     pub(super) fn rest(&mut self, tangents: &Linearized, right: &mut [Lanes]) {
         if self.stays(right) {
             return;
@@ -208,7 +209,7 @@ impl Block {
         self.ends[0].q.copy_from_slice(right);
     }
 
-    /// Columns of stage `i` of a step of size `h`, whose `dR/dp` is in `right`.
+    /// Computes the columns of stage `i` of a step of size `h` from its `dR/dp` in `right`.
     pub(super) fn stage<E: Equations>(
         &mut self,
         equations: &E,
@@ -231,7 +232,7 @@ impl Block {
         Arch::new().dispatch(stage);
     }
 
-    /// The step is over: it ended where the next one begins.
+    /// Accepts the step: its end becomes the start of the next step.
     pub(super) const fn accept(&mut self) {
         let [from, to] = &mut self.ends;
         std::mem::swap(from, to);

@@ -1,8 +1,8 @@
-//! What may be varied, and what is known of it afterwards: plain data.
+//! Quantities that may be varied, and the derivatives computed for them, as plain data.
 use crate::model::description::RopeLaw;
 use std::f64::consts::LN_10;
 
-/// A searched coefficient of the ropes.
+/// Coefficient of rope or contact that the search varies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coefficient {
     /// Axial stiffness `K_11`.
@@ -21,14 +21,14 @@ pub enum Coefficient {
     Cb4,
     /// Bending damping `C_55`.
     Cb56,
-    /// Stiffness of the contact.
+    /// Contact stiffness.
     Kc,
-    /// Damping of the contact.
+    /// Contact damping.
     Cc,
 }
 
 impl Coefficient {
-    /// All of them.
+    /// All coefficients.
     pub const ALL: [Self; 10] = [
         Self::Kb1,
         Self::Kb23,
@@ -42,7 +42,7 @@ impl Coefficient {
         Self::Cc,
     ];
 
-    /// The coefficient among those of a law.
+    /// Returns a mutable reference to this coefficient in a rope law.
     pub const fn of(self, law: &mut RopeLaw) -> &mut f64 {
         let RopeLaw { bushing, contact } = law;
         match self {
@@ -59,7 +59,7 @@ impl Coefficient {
         }
     }
 
-    /// The law with a coefficient of 1 and no other, and no preload.
+    /// Returns the law with this coefficient equal to 1, all others zero, and no preload.
     pub(super) const fn unit(self, law: &RopeLaw) -> RopeLaw {
         let mut unit = *law;
         unit.bushing.preload = 0.0;
@@ -72,7 +72,7 @@ impl Coefficient {
         unit
     }
 
-    /// A law with this coefficient moved by so many decades, to first order.
+    /// Returns the law with this coefficient changed by `decades`, to first order.
     #[must_use]
     pub(super) fn moved(self, law: &RopeLaw, decades: f64) -> RopeLaw {
         let mut moved = *law;
@@ -81,89 +81,92 @@ impl Coefficient {
     }
 }
 
-/// What is varied.
+/// Quantity with respect to which a run is differentiated.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Column {
-    /// A coefficient of the ropes; the derivative is by its decimal logarithm.
+    /// Coefficient of rope or contact; the derivative is with respect to its decimal logarithm.
     Coefficient(Coefficient),
-    /// A parameter of an effect; the derivative is by the parameter in its declared unit.
+    /// Parameter of an effect; the derivative is with respect to the parameter in its declared unit.
     Parameter {
         /// Identifier of the effect.
         effect: String,
         /// Name of the parameter.
         parameter: String,
-        /// Values of the effect's parameters by name, in declared units, where the machine does not
-        /// have the effect: what is not named is absent (sizes) or typical (shapes). Empty where the
-        /// machine has it: then its own values hold.
+        /// Values of the effect's parameters by name, in declared units, for an effect that the machine
+        /// lacks; parameters not named are absent (sizes) or typical (shapes). Empty for an effect that the
+        /// machine has, whose own values then apply.
         values: Vec<(String, f64)>,
     },
 }
 
-/// Why a column does not exist, and differences of whole runs must do.
+/// Reason why the derivative of a column is unavailable, so that differences of whole runs are required.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Missing {
-    /// With the effect the machine has coordinates that it does not have without: a post that does not
-    /// yield has no displacement.
-    #[error("without the effect the machine lacks coordinates that it has with it")]
+    /// Change of the coordinates: with the effect the machine has coordinates that it lacks without, for
+    /// example the displacement of a post that is rigid without the effect.
+    #[error("the effect changes the number of coordinates of the machine")]
     Coordinates,
-    /// The parameter is rounded to a whole number.
-    #[error("the parameter counts by whole numbers")]
+    /// Parameter that is rounded to a whole number.
+    #[error("the parameter is rounded to a whole number and has no derivative")]
     Whole,
-    /// No machine can be built beside the one at hand.
-    #[error("no machine can be built with the parameter a little off")]
+    /// Machine with a perturbed parameter that cannot be built.
+    #[error("no valid machine can be built with the parameter slightly changed")]
     NoMachine,
-    /// The method of integration has no stages to differentiate.
-    #[error("the method of integration has no stages that could be differentiated")]
+    /// Integration method without stages that can be differentiated.
+    #[error(
+        "the integration method has no stages that can be differentiated; use a Runge-Kutta method"
+    )]
     Method,
-    /// A stage's exact tangent is singular.
-    #[error("a tangent on the way is singular")]
+    /// Singular exact tangent at a stage.
+    #[error("the tangent matrix of a stage is singular")]
     Singular,
-    /// A derivative left the range of numbers.
-    #[error("the derivative is no number")]
+    /// Derivative that is not finite.
+    #[error("the derivative is not finite")]
     NotFinite,
 }
 
-/// Derivatives of what is read at every sample, per decade or per the parameter's declared unit.
+/// Derivatives of the recorded quantities at every sample, per decade of a coefficient or per declared unit
+/// of a parameter.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Changes {
-    /// Of gauges 1 to 4 \[Pa\].
+    /// Derivatives of the readings of gauges 1 to 4 \[Pa\].
     pub gauge: [Vec<f64>; 4],
-    /// Of the height of the suspension point above its lowest design position \[m\].
+    /// Derivatives of the suspension point's height above its lowest design position \[m\].
     pub suspension: Vec<f64>,
-    /// Of the net crank torque [N m].
+    /// Derivatives of the net crank torque [N m].
     pub torque: Vec<f64>,
 }
 
 impl Changes {
-    /// Every curve.
+    /// Returns an iterator over all curves: gauges, suspension height, torque.
     pub(super) fn each(&self) -> impl Iterator<Item = &Vec<f64>> + Clone {
         let beside = [&self.suspension, &self.torque];
         self.gauge.iter().chain(beside)
     }
 
-    /// The same.
+    /// Returns a mutable iterator over all curves: gauges, suspension height, torque.
     pub(super) fn each_mut(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
         let beside = [&mut self.suspension, &mut self.torque];
         self.gauge.iter_mut().chain(beside)
     }
 }
 
-/// One column.
+/// Result for one column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Derivative {
-    /// It has one.
+    /// Derivative curves.
     Curves(Box<Changes>),
-    /// The parameter does nothing: zeros.
+    /// Zero derivative: the parameter has no influence.
     Nothing,
-    /// There is none.
+    /// Unavailable derivative, with the reason.
     Missing(Missing),
 }
 
-/// What a completed run gives besides its curves.
+/// Derivatives of a completed run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
-    /// One for each column that was asked for, in their order.
+    /// Derivative of each requested column, in the order of the request.
     pub columns: Vec<Derivative>,
-    /// Exact factorisations that they took.
+    /// Number of exact factorisations used for the columns.
     pub factorizations: u64,
 }

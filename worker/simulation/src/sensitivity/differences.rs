@@ -1,30 +1,30 @@
-//! Differences of what one stage or one sample says, at two places beside the one at hand.
+//! Finite-difference formulas for a stage or a sample: step sizes and weights.
 use crate::effect::Parameter;
 
-/// Share of a parameter's size over which a residual is differenced: what is left of curvature is its
-/// square, and what of rounding is far below.
+/// Relative difference step, as a share of a parameter's scale, for smooth residuals. The truncation error is
+/// of the order of its square, and rounding errors are far smaller.
 pub(super) const SMOOTH: f64 = 1e-5;
-/// The same where points of contact move in and out of touch: there a force has no second derivative, and
+/// Relative difference step where contact points open or close: the force has no second derivative there, and
 /// penetrations are small differences of large numbers.
 pub(super) const TOUCHING: f64 = 1e-6;
-/// The same where laws along a rope may remember: at a turn of a joint's strain hysteresis has a kink, and
-/// strains are rounded at 1e-15.
+/// Relative difference step where axial laws may have memory: hysteresis has a kink where the strain
+/// reverses, and strains are rounded at 1e-15.
 pub(super) const REMEMBERING: f64 = 1e-7;
 
-/// Where a function is asked beside the place at hand, and how its values make a derivative; what has no
-/// weight is not asked.
+/// Finite-difference formula: steps and weights of two neighbouring values and of the central one. Values of
+/// zero weight are not evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Difference {
-    /// Steps from the place at hand.
+    /// Steps from the current value.
     pub(super) steps: [f64; 2],
-    /// Weights of the values there.
+    /// Weights of the function values at the steps.
     pub(super) weights: [f64; 2],
-    /// Weight of the value at hand.
+    /// Weight of the function value at the current point.
     pub(super) own: f64,
 }
 
 impl Difference {
-    /// Central, by steps of this size.
+    /// Returns the central difference with the given step.
     pub(super) const fn central(step: f64) -> Self {
         Self {
             steps: [step, -step],
@@ -33,7 +33,7 @@ impl Difference {
         }
     }
 
-    /// To one side, by one and two steps of this size, of either sign.
+    /// Returns the second-order one-sided difference with one and two times the given step, of either sign.
     const fn one_sided(step: f64) -> Self {
         Self {
             steps: [step, 2.0 * step],
@@ -42,7 +42,8 @@ impl Difference {
         }
     }
 
-    /// To one side by one step that is so small that nothing is left of curvature.
+    /// Returns the first-order one-sided difference, for a step so small that the effect of curvature is
+    /// negligible.
     const fn forward(step: f64) -> Self {
         Self {
             steps: [step, step],
@@ -51,12 +52,14 @@ impl Difference {
         }
     }
 
-    /// By decades of a coefficient, in which forces are linear.
+    /// Returns the difference with respect to the decades of a coefficient, in which forces are linear;
+    /// `remembering` selects the step for axial laws with memory.
     pub(super) const fn decades(remembering: bool) -> Self {
         Self::central(if remembering { REMEMBERING } else { SMOOTH })
     }
 
-    /// For a parameter at a value, within its bounds, over a share of its size.
+    /// Returns a difference formula for a parameter at a value that stays within its bounds, with a step that
+    /// is the given share of its scale.
     pub(super) fn within(parameter: &Parameter, value: f64, share: f64) -> Self {
         let step = share * parameter.scale;
         let beside = if share < SMOOTH {

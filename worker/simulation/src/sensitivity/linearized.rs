@@ -1,4 +1,4 @@
-//! One stage, taken as solved, linearised.
+//! Linearisation of one solved stage.
 use super::source::add;
 use crate::element::plane::PLANE_UNITS;
 use crate::integrator::stepper::Stages;
@@ -6,23 +6,24 @@ use crate::linear::{Bordered, SingularPivot};
 use crate::model::{Individual, Scratch};
 use crate::system::{Equations, Shift, State, System};
 
-/// State of a stage, its `-K'` and the factor of its `S`, and what its forces left behind.
+/// Linearised stage: state, `-K'`, the factor of `S`, and the buffers of the force evaluation.
 #[derive(Debug)]
 pub(super) struct Linearized {
-    /// The stage's state under its accelerations.
+    /// State of the stage, including accelerations.
     pub(super) state: State,
-    /// `-K'`, which holds the derivatives of `M(q) a` too.
+    /// Matrix `-K'`, which includes the derivatives of `M(q) a`.
     pub(super) stiffness: Bordered,
     /// Factor of `S = M / c^2 - D / c - K'`, or of `-K` at rest.
     pub(super) factor: Bordered,
-    /// Poses, joint loads and contact.
+    /// Poses, joint loads and contact at the stage.
     pub(super) scratch: Scratch,
-    /// What joints do per unit of their coefficients, in the plane and where a column asks.
+    /// Generalised forces of the joints per unit of each coefficient, for motion in the plane and only if a
+    /// column requires them.
     pub(super) units: Vec<[f64; PLANE_UNITS]>,
 }
 
 impl Linearized {
-    /// Allocates; so many coordinates have units.
+    /// Allocates the buffers; `units` is the number of coordinates with unit joint forces, or zero.
     pub(super) fn new(equations: &Individual<'_>, state: &State, units: usize) -> Self {
         Self {
             state: state.clone(),
@@ -36,7 +37,7 @@ impl Linearized {
     /// Factorises `-K` at an equilibrium.
     ///
     /// # Errors
-    /// The unknown whose pivot vanished.
+    /// [`SingularPivot`] naming the unknown whose pivot vanished.
     pub(super) fn rest(
         &mut self,
         system: &mut System<Individual<'_>>,
@@ -47,10 +48,10 @@ impl Linearized {
         self.linearize(system, Shift::NONE, force)
     }
 
-    /// Linearises stage `i` of the step between two states.
+    /// Linearises and factorises stage `i` of the step between two states.
     ///
     /// # Errors
-    /// The unknown whose pivot vanished.
+    /// [`SingularPivot`] naming the unknown whose pivot vanished.
     pub(super) fn stage(
         &mut self,
         system: &mut System<Individual<'_>>,

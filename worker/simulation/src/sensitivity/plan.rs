@@ -1,4 +1,5 @@
-//! Which columns are asked for: checked, and for every effect's parameter the machines beside it.
+//! Plan of the requested columns: validation, and construction of the perturbed machines for effect
+//! parameters.
 use super::column::{Coefficient, Column, Missing};
 use super::differences::{Difference, REMEMBERING, SMOOTH, TOUCHING};
 use super::source::Differing;
@@ -8,70 +9,72 @@ use crate::model::description::Description;
 use crate::model::hook::Hooks;
 use crate::model::layout::Motion;
 
-/// What a machine was made of.
+/// Constituents of a machine: description, number of modes, effects.
 #[derive(Clone, Copy, Debug)]
 pub struct Origin<'a> {
-    /// Its description without effects.
+    /// Description without effects.
     pub description: &'a Description,
     /// Number of head modes that are kept.
     pub modes: usize,
-    /// Its effects.
+    /// Effects with their values.
     pub effects: &'a [Asked<'a>],
 }
 
-/// A column that cannot be asked for; `column` is its position.
+/// Error: a column that cannot be computed as requested; `column` is its position.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refused {
-    /// An effect or a value that cannot be.
+    /// Invalid effect or parameter value.
     #[error("column {column}: {refused}")]
     Effect {
-        /// Position.
+        /// Position of the column.
         column: usize,
-        /// What is wrong.
+        /// Reason of the refusal.
         refused: crate::effect::Refused,
     },
-    /// The machine has the effect, with values of its own.
-    #[error("column {column}: the machine has `{effect}` with values of its own; leave out others")]
+    /// Effect that the machine already has, requested with further values.
+    #[error(
+        "column {column}: the machine already has the effect `{effect}`; leave the values of the column empty"
+    )]
     Present {
-        /// Position.
+        /// Position of the column.
         column: usize,
-        /// The effect.
+        /// Identifier of the effect.
         effect: String,
     },
-    /// The machine's own effects are refused.
+    /// Invalid effects of the machine itself.
     #[error(transparent)]
     Machine(#[from] crate::effect::Refused),
 }
 
-/// Columns that a run is asked for.
+/// Validated columns that a run is to compute.
 #[derive(Debug)]
 pub struct Plan {
     pub(super) ways: Vec<Way>,
 }
 
-/// How a column comes about.
+/// Method by which a column is computed.
 #[derive(Debug)]
 pub(super) enum Way {
-    /// Of a coefficient of the ropes.
+    /// Derivative with respect to a coefficient of rope or contact.
     Coefficient(Coefficient),
-    /// Of two machines beside the one that runs.
+    /// Difference of two machines with perturbed parameters.
     Beside {
         machines: Box<[Machine; 2]>,
         difference: Difference,
         differing: Differing,
     },
-    /// Of the pieces of a force that is linear in its size, at a size of 1.
+    /// Hooks of a force that is linear in its amplitude, at amplitude 1.
     Pieces(Box<Hooks>),
     Nothing,
     Missing(Missing),
 }
 
 impl Plan {
-    /// Checks columns and builds what they ask for; `machine` is the one that will run, made of
-    /// `origin`.
+    /// Validates the columns and builds the machines that they require; `machine` is the one that will be
+    /// simulated, built from `origin`.
     ///
     /// # Errors
-    /// The first column that cannot be asked for.
+    /// [`Refused`] for the first invalid column.
     pub fn new(
         origin: &Origin<'_>,
         machine: &Machine,
@@ -112,18 +115,18 @@ impl Plan {
         })
     }
 
-    /// Number of columns.
+    /// Returns the number of columns.
     pub const fn len(&self) -> usize {
         self.ways.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether the plan has no columns.
     pub const fn is_empty(&self) -> bool {
         self.ways.is_empty()
     }
 }
 
-/// The machine's effects with a further one among them, and its place there.
+/// Returns the machine's effects including the given one, and the index of that effect.
 fn with(
     own: &[Chosen],
     column: usize,
@@ -154,7 +157,7 @@ fn with(
     Ok((effects, at))
 }
 
-/// How the column of parameter `k` of the effect at `varied` comes about.
+/// Chooses the method for the column of parameter `k` of the effect at index `varied`.
 fn way(
     origin: &Origin<'_>,
     machine: &Machine,
@@ -210,7 +213,8 @@ fn way(
     }
 }
 
-/// A machine with effects, one of which may be absent and stays.
+/// Builds a machine with the effects that are present and with effect `stays`, even if it is absent. Returns
+/// `None` if the machine is invalid.
 fn beside(
     origin: &Origin<'_>,
     machine: &Machine,

@@ -1,5 +1,5 @@
-//! A machine beside the one that runs: what its stages, its past and its gauges say where a parameter is
-//! a little off.
+//! Individual with perturbed parameters, used for differences: residuals, memory of axial laws, and gauge
+//! readings.
 use crate::drive::Drive;
 use crate::element::bushing::Bushing;
 use crate::model::forces::Terms;
@@ -8,13 +8,13 @@ use crate::model::{Individual, Machine, Ropes, Scratch};
 use crate::observe::{Gradient, TorqueBy, readings, sampled, shaft, turned_by_ropes};
 use crate::system::{Equations, State};
 
-/// An individual without buffers of its own.
+/// Individual that borrows its buffers for each evaluation.
 #[derive(Clone, Debug)]
 pub(super) struct Side<'a> {
     pub(super) machine: &'a Machine,
     ropes: Ropes,
     pub(super) drive: Drive,
-    /// What its laws along the ropes remember, chain by chain.
+    /// Memory of the axial laws, for each chain.
     memory: Vec<Vec<Memory>>,
 }
 
@@ -28,12 +28,12 @@ impl<'a> Side<'a> {
         }
     }
 
-    /// Law of the joints between its cylinders.
+    /// Returns the law of the joints between cylinders.
     pub(super) const fn inner(&self) -> &Bushing {
         &self.ropes.joint
     }
 
-    /// The individual with buffers lent to it.
+    /// Calls `ask` with the individual, using the buffers lent to it.
     pub(super) fn within<T>(
         &mut self,
         scratch: &mut Scratch,
@@ -54,8 +54,8 @@ impl<'a> Side<'a> {
         }
     }
 
-    /// Some terms of the residual `Q - M a`, inertia among them or not, at a state whose poses are in
-    /// `scratch`.
+    /// Computes the selected terms of the residual `Q - M a`, with or without inertia, at a state whose poses
+    /// are in `scratch`.
     pub(super) fn residual(
         &mut self,
         scratch: &mut Scratch,
@@ -71,14 +71,14 @@ impl<'a> Side<'a> {
         });
     }
 
-    /// Lets laws with a past remember an accepted state.
+    /// Updates the memory of axial laws from an accepted state.
     pub(super) fn remember(&mut self, scratch: &mut Scratch, state: &State) {
         if self.machine.hooks.has_axial() {
             self.within(scratch, |individual| individual.remember(state));
         }
     }
 
-    /// What the gauges read \[Pa\].
+    /// Returns the gauge readings \[Pa\].
     pub(super) fn readings(
         &mut self,
         scratch: &mut Scratch,
@@ -91,8 +91,8 @@ impl<'a> Side<'a> {
         })
     }
 
-    /// The same with what further readings may know, if that is asked for, and the derivatives by the state
-    /// where the gauges have them; `room` is for a state.
+    /// Returns the gauge readings \[Pa\] and, if requested, the quantities available to reading hooks; also
+    /// computes the derivatives of the stress if `gradient` is given. `room` is workspace for a state.
     pub(super) fn gradient(
         &mut self,
         scratch: &mut Scratch,
@@ -111,12 +111,12 @@ impl<'a> Side<'a> {
         })
     }
 
-    /// What is read beside the gauges, as [`shaft`] says.
+    /// Returns suspension height and crank torque; see [`shaft`].
     pub(super) fn shaft(&mut self, scratch: &mut Scratch, state: &State) -> [f64; 2] {
         self.within(scratch, |individual| shaft(individual, state))
     }
 
-    /// Derivatives of the torque by the state; `room` is for a state.
+    /// Computes the derivatives of the torque with respect to the state; `room` is workspace for a state.
     pub(super) fn torque_by(
         &mut self,
         scratch: &mut Scratch,
@@ -126,12 +126,12 @@ impl<'a> Side<'a> {
         self.within(scratch, |individual| by.fill(individual, state, room));
     }
 
-    /// What the back ropes' pull alone turns the crank with [N m].
+    /// Returns the crank torque caused by the force of the back ropes alone [N m].
     pub(super) fn turned_by_ropes(&mut self, scratch: &mut Scratch, state: &State) -> f64 {
         self.within(scratch, |individual| turned_by_ropes(individual, state))
     }
 
-    /// Force of the end of the rope on the back head, in the beam frame \[N\].
+    /// Returns the force of the rope's end on the back head, in the beam frame \[N\].
     pub(super) fn anchor_pull(&mut self, scratch: &mut Scratch, state: &State) -> [f64; 2] {
         self.within(scratch, |individual| individual.anchor_pull(state.motion()))
     }

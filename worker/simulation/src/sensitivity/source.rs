@@ -1,7 +1,8 @@
-//! How `dR/dp` of a column comes about at a stage, at the state as it is.
+//! Computation of the right-hand side `dR/dp` of a column at a stage, at fixed state.
 //!
-//! Closed: coefficients of the ropes, in which forces are linear, and generic forces, which are linear in
-//! their amplitude. Differenced: those terms of the residual in which a machine beside differs.
+//! Closed form: coefficients of the ropes, in which forces are linear, and generic forces, which are linear
+//! in their amplitude. Finite differences: those terms of the residual in which the perturbed machine
+//! differs.
 use super::differences::Difference;
 use super::side::Side;
 use crate::effect::Place;
@@ -13,51 +14,52 @@ use crate::model::hook::Hooks;
 use crate::model::{Individual, Machine};
 use crate::system::State;
 
-/// How `dR/dp` comes about.
+/// Method of computing `dR/dp`.
 #[derive(Clone, Debug)]
 pub(super) enum Source<'a> {
-    /// What the joints of ropes say that have a coefficient of 1 and no other.
+    /// Forces of rope joints with one coefficient equal to 1 and all others zero.
     Joints(Box<Joints<'a>>),
-    /// Times a factor, the contact's derivative by its stiffness, or by its damping.
+    /// Derivative of the contact forces with respect to contact stiffness or damping, times a factor.
     Contact {
-        /// By stiffness or by damping.
+        /// Contact coefficient: stiffness or damping.
         by: By,
-        /// The factor.
+        /// Factor of the derivative.
         factor: f64,
     },
-    /// What pieces of amplitude 1 say.
+    /// Forces of hooks at amplitude 1.
     Pieces(&'a Hooks),
-    /// A difference between machines: of so many terms, of inertia or not, and the contact's derivative by
-    /// the radius of the front head times that of the radius.
+    /// Difference between machines: selected terms, whether inertia is included, and the derivative of the
+    /// front head's radius that multiplies the derivative of the contact forces with respect to that radius.
     Difference(Terms, bool, Option<f64>),
-    /// The motion does not know of the parameter.
+    /// Zero: the parameter does not influence the motion.
     Nothing,
 }
 
-/// Ropes that have a coefficient of 1 and no other.
+/// Ropes with one joint coefficient equal to 1 and all others zero.
 #[derive(Clone, Debug)]
 pub(super) struct Joints<'a> {
     pub(super) unit: Side<'a>,
-    /// What their forces are times.
+    /// Factor of the forces.
     pub(super) factor: f64,
-    /// In the plane, which of the units that are at hand the joints between cylinders are times what;
-    /// none where the coefficient turns nothing there.
+    /// Motion in the plane: index of the unit joint force and its factor, for the joints between cylinders;
+    /// `None` if the coefficient has no effect in the plane.
     pub(super) inner: Option<(usize, f64)>,
 }
 
-/// What a machine beside differs in.
+/// Differences of a perturbed machine from the simulated one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Differing {
-    /// Terms of its forces, and whether its inertia.
+    /// Terms of the forces that differ, and whether the inertia differs; `None` if the motion is the same.
     pub(super) terms: Option<(Terms, bool)>,
-    /// Whether the arc of the front head has another radius, and is the same otherwise.
+    /// Whether the front head's arc differs in its radius only.
     pub(super) raised: bool,
-    /// Whether its head answers a given state with another stress, or another time belongs to a sample.
+    /// Whether the gauge stress at a given state differs, or the time of a sample.
     pub(super) stress: bool,
 }
 
 impl Differing {
-    /// What a machine beside differs in, by an effect that changes this of the model.
+    /// Determines the differences between two machines; `place` is the part of the model that the varied
+    /// effect changes.
     pub(super) fn between(own: &Machine, beside: &Machine, place: Place) -> Self {
         let (d, o) = (&own.description, &beside.description);
         let arcs = d.front_arc != o.front_arc || d.back_arc != o.back_arc;
@@ -99,7 +101,7 @@ impl Differing {
     }
 }
 
-/// Forces of the ropes alone.
+/// Selection of the force terms of the ropes: joints and contact.
 pub(super) const ROPES: Terms = Terms {
     ends: true,
     joints: true,
@@ -108,8 +110,8 @@ pub(super) const ROPES: Terms = Terms {
 };
 
 impl Source<'_> {
-    /// `dR/dp` into `sum`, at a state whose poses and points of contact `individual` has; `units` are
-    /// those of [`Individual::joint_units`], or none in space.
+    /// Computes `dR/dp` into `sum`, at a state whose poses and contact points `individual` holds; `units` are
+    /// the result of [`Individual::joint_units`], empty in space.
     pub(super) fn right(
         &mut self,
         individual: &mut Individual<'_>,

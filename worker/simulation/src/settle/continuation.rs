@@ -1,10 +1,10 @@
-//! Equilibrium followed from a compliant machine, whose equilibrium is known, to a given one.
+//! Continuation of the equilibrium from a compliant machine, whose equilibrium is known, to the given one.
 //!
-//! Where a minimisation gets lost (a rope so stiff that it stands off its arc, so that every step
-//! sideways stretches it), the equilibrium is still there. The ropes' coefficients are led along a
-//! straight line of their logarithms from values under which the rope lies on its arc, taut and
-//! pliable, to the given ones, and the equilibrium follows by Newton's method. The path is the
-//! individual's own: it depends on no start and on no damping.
+//! A minimisation may fail although an equilibrium exists (a rope so stiff that it stands off its arc, so
+//! that every lateral step stretches it). The ropes' coefficients are varied along a straight line in their
+//! logarithms, from values for which the rope is taut, flexible and lies on its arc, to the given ones, and
+//! the equilibrium is tracked by Newton's method. The path depends on the individual alone, not on a start or
+//! a damping.
 use super::guess::guess;
 use super::minimize::{CONVERGED, Damping, minimize, minimize_within};
 use super::overload::Hanging;
@@ -12,10 +12,11 @@ use crate::math::elementary::powf;
 use crate::model::{Individual, Machine, Ropes};
 use crate::system::{StateRef, Static, System};
 
-/// Iterations (factorisations) that a continuation may take.
+/// Maximum number of iterations (factorisations) of a continuation.
 pub(super) const BUDGET: u64 = 1200;
 
-/// Equilibrium of an individual at time 0, and whether it was reached; `q` is its coordinates then.
+/// Solves the equilibrium of an individual at time 0 by continuation and writes its coordinates to `q`.
+/// Returns whether it was reached.
 pub fn follow(system: &mut System<Individual<'_>>, q: &mut [f64]) -> bool {
     let target = system.equations.ropes;
     let reached = Path::new(system, &target).is_some_and(|path| path.walk(system, q));
@@ -23,7 +24,7 @@ pub fn follow(system: &mut System<Individual<'_>>, q: &mut [f64]) -> bool {
     reached
 }
 
-/// From compliant to given ropes.
+/// Continuation path from compliant to given ropes.
 struct Path<'a> {
     machine: &'a Machine,
     from: Ropes,
@@ -32,7 +33,7 @@ struct Path<'a> {
 }
 
 impl<'a> Path<'a> {
-    /// `None` where not even compliant ropes reach.
+    /// Prepares the path; returns `None` if the mechanism does not close even with compliant ropes.
     fn new(system: &mut System<Individual<'a>>, to: &Ropes) -> Option<Self> {
         let drive = system.equations.drive_state(0.0);
         let machine = system.equations.machine;
@@ -48,7 +49,7 @@ impl<'a> Path<'a> {
         })
     }
 
-    /// The ropes at a place on the path, from 0 to 1.
+    /// Returns the ropes at a position on the path, from 0 (compliant) to 1 (given).
     fn at(&self, place: f64) -> Ropes {
         let mix = |a: f64, b: f64| powf(a, 1.0 - place) * powf(b, place);
         let pair = |a: [f64; 2], b: [f64; 2]| [mix(a[0], b[0]), mix(a[1], b[1])];
@@ -110,8 +111,8 @@ impl<'a> Path<'a> {
     }
 }
 
-/// Ropes under which a tension \[N\] stretches a joint by a thousandth of its length and sinks a
-/// millimetre into the tighter arc, and whose bending dies out within 0.1 m.
+/// Returns compliant ropes: a tension \[N\] extends a joint by a thousandth of its length and presses the
+/// rope one millimetre into the tighter arc, and bending decays within 0.1 m.
 fn compliant(machine: &Machine, to: &Ropes, tension: f64) -> Ropes {
     let pitch = machine.description.rope.pitch;
     let mut ropes = *to;
@@ -124,8 +125,8 @@ fn compliant(machine: &Machine, to: &Ropes, tension: f64) -> Ropes {
     ropes
 }
 
-/// Newton's method with full steps. A chain that moves sideways stretches before it follows, so the
-/// step may grow now and then on the way.
+/// Solves an equilibrium by Newton's method with full steps up to a maximum length. A chain that moves
+/// laterally stretches before it follows, so the step length may increase a limited number of times.
 fn newton<E: Static>(system: &mut System<E>, q: &mut [f64]) -> bool {
     let still = vec![0.0; q.len()];
     let mut step = vec![0.0; q.len()];
@@ -160,13 +161,13 @@ fn newton<E: Static>(system: &mut System<E>, q: &mut [f64]) -> bool {
 
 const FIRST_STRIDE: f64 = 0.25;
 const SHORTEST_STRIDE: f64 = 2e-3;
-/// Stride below which a minimisation, of so many iterations at most, is tried where Newton's method
-/// fails: a cylinder snaps to or off its arc there.
+/// Stride below which a minimisation of at most [`PATIENCE`] iterations is tried if Newton's method fails,
+/// because a cylinder snaps onto or off its arc there.
 const CAREFUL: f64 = 0.02;
 const PATIENCE: u32 = 40;
-/// How often a step may fail to be shorter than all before it.
+/// Number of times a Newton step may fail to be clearly shorter than all previous ones.
 const SETBACKS: u32 = 3;
-/// Longest step that is taken, and the step at which Newton's method is lost, in units of its
-/// accuracy: 0.2 m, and 20 m.
+/// Maximum length of a Newton step (0.2 m), in units of Newton's tolerance; at [`LOST`] (20 m) Newton's
+/// method has diverged.
 const LARGEST_STEP: f64 = 1e5;
 const LOST: f64 = 1e7;

@@ -1,5 +1,6 @@
-//! Where a taut machine about stands: stretched ropes on the arcs, sunk in under their line load. Of
-//! two ropes the shorter one is stretched by what the other is longer.
+//! Geometric estimate of the equilibrium of a taut machine: stretched ropes on the arcs, with the penetration
+//! that their line load causes. The shorter of two ropes carries additional stretch equal to the difference
+//! in length.
 use crate::drive::DriveState;
 use crate::math::elementary::sin_cos;
 use crate::model::chain::Chain;
@@ -8,11 +9,11 @@ use crate::model::layout::Motion;
 use crate::model::strand::{BACK, FRONT};
 use crate::model::{Machine, Ropes};
 
-/// Coordinates near equilibrium: taut, stretched ropes on the arcs, sunk in as far as their line
-/// load asks for.
+/// Estimates coordinates near equilibrium: taut, stretched ropes on the arcs, with the penetration that their
+/// line load causes.
 ///
 /// # Errors
-/// [`DoesNotClose`] when the stretched rope no longer reaches.
+/// [`DoesNotClose`] if the mechanism with the stretched rope cannot be closed.
 pub fn guess(
     machine: &Machine,
     ropes: &Ropes,
@@ -66,7 +67,7 @@ pub fn guess(
     Ok(q)
 }
 
-/// The inextensible position at a pin angle, followed from bottom dead centre.
+/// Solves the position of the inextensible mechanism at a pin angle, tracked from bottom dead centre.
 pub(super) fn rigid_position(machine: &Machine, pin: f64) -> Result<Position, DoesNotClose> {
     let mechanism = machine.mechanism(machine.description.back_arc.radius, machine.back_length());
     let mut at = machine.bottom;
@@ -79,12 +80,12 @@ pub(super) fn rigid_position(machine: &Machine, pin: f64) -> Result<Position, Do
     Ok(at)
 }
 
-/// One rope under a tension.
+/// Rope under a tension: radius on the arc and extension of its joints.
 #[derive(Clone, Copy)]
 struct Taut {
     radius: f64,
     extension: f64,
-    /// Extension without a pull \[m\]: below zero for a preloaded joint.
+    /// Extension at zero tension \[m\]; negative for a preloaded joint.
     slack: f64,
 }
 
@@ -106,7 +107,7 @@ impl Taut {
         }
     }
 
-    /// The same rope with every joint drawn less.
+    /// Returns the rope with the extension of every joint reduced by `by`.
     fn longer(self, by: f64) -> Self {
         Self {
             extension: (self.extension - by).max(self.slack),
@@ -114,8 +115,8 @@ impl Taut {
         }
     }
 
-    /// Places cylinders from the anchor (first angle) over the arc to where the rope leaves it
-    /// (second angle) and on along the tangent; returns the height of the rope's free end.
+    /// Writes the coordinates of the cylinders from the anchor (first angle) along the arc to the point where
+    /// the rope leaves it (second angle) and on along the tangent; returns the height of the rope's free end.
     fn place(
         &self,
         machine: &Machine,

@@ -1,16 +1,16 @@
-//! Minimisation of the potential from a start nearby.
+//! Minimisation of the potential from a nearby start.
 use crate::system::{Loads, StateRef, Static, System};
 
-/// Iterations (factorisations) that one minimisation may take.
+/// Maximum number of iterations (factorisations) of a minimisation.
 const BUDGET: u32 = 150;
 
-/// How a step is damped that would raise the potential.
+/// Damping of Newton steps that would raise the potential.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Damping {
-    /// Stiffness [N/m] with which a failed step is tried again first, and beyond which none is
-    /// tried; an answer must not depend on either.
+    /// Additional stiffness [N/m] with which a failed step is first repeated; results must not depend on it.
     pub first: f64,
-    /// Largest.
+    /// Largest additional stiffness [N/m], beyond which the minimisation fails; results must not depend on
+    /// it.
     pub last: f64,
 }
 
@@ -23,15 +23,13 @@ impl Default for Damping {
     }
 }
 
-/// Minimises the potential at time `t` from `q` on.
-///
-/// A damped Newton method that only ever accepts a lower potential. Whether a minimum was reached
-/// within the budget.
+/// Minimises the potential at time `t`, starting from `q`, by a damped Newton method that accepts only
+/// decreases of the potential. Returns whether a minimum was reached within the budget.
 pub fn minimize<E: Static>(system: &mut System<E>, t: f64, q: &mut [f64]) -> bool {
     minimize_within(system, t, q, &Damping::default(), BUDGET)
 }
 
-/// [`minimize`] with a damping and a budget of its own.
+/// Minimises the potential as [`minimize`] does, with a given damping and iteration budget.
 pub fn minimize_within<E: Static>(
     system: &mut System<E>,
     t: f64,
@@ -98,15 +96,16 @@ pub fn minimize_within<E: Static>(
     false
 }
 
-/// Begins an iteration: whether its damped stiffness has a factor, or nothing if none is left.
+/// Starts an iteration by factorising the damped stiffness matrix. Returns whether the factorisation
+/// succeeded, or `None` if no iteration is left.
 fn factorize<E: Static>(mut loads: Loads<'_, '_, E>, lambda: f64, left: &mut u32) -> Option<bool> {
     *left = left.checked_sub(1)?;
     loads.statistics().newton_iterations += 1;
     Some(loads.factorize_static(lambda).is_ok())
 }
 
-/// Longest step, and the step at which equilibrium is reached, in units of Newton's accuracy:
-/// 0.05 m, and 2e-11 m.
+/// Maximum length of a step (0.05 m), in units of Newton's tolerance; at [`CONVERGED`] (2e-11 m) equilibrium
+/// is reached.
 const LARGEST_STEP: f64 = 2.5e4;
 pub(super) const CONVERGED: f64 = 1e-5;
 const ROUNDING: f64 = 1.0;

@@ -1,4 +1,4 @@
-//! What ropes cannot carry whatever their shape: known from the tension alone.
+//! Overload criteria that follow from the rope tension alone, whatever the shape of the ropes.
 use super::guess::rigid_position;
 use crate::drive::DriveState;
 use crate::math::elementary::sin_cos;
@@ -7,17 +7,20 @@ use crate::model::{Machine, Ropes};
 use crate::verdict::{Failure, Limits};
 use std::f64::consts::PI;
 
-/// How the inextensible machine hangs under a drive: of back and front rope.
+/// Static forces and lengths of the ropes of the inextensible machine under a drive, for the back and the
+/// front rope.
 pub(super) struct Hanging {
-    /// Tension, of twin ropes together \[N\].
+    /// Tension \[N\]; the sum for twin ropes.
     pub(super) tension: [f64; 2],
-    /// Length that does not lie on the arc \[m\].
+    /// Length of rope that does not lie on the arc \[m\].
     pub(super) span: [f64; 2],
 }
 
 impl Hanging {
+    /// Computes tensions and free lengths.
+    ///
     /// # Errors
-    /// [`DoesNotClose`] when the mechanism does not reach the crank.
+    /// [`DoesNotClose`] if the mechanism cannot be closed.
     pub(super) fn new(machine: &Machine, drive: &DriveState) -> Result<Self, DoesNotClose> {
         let d = &machine.description;
         let pull = drive.load + d.suspension_mass * d.gravity;
@@ -37,14 +40,14 @@ impl Hanging {
     }
 }
 
-/// What the ropes cannot carry whatever their shape, with the share of the load at which they give
-/// in: the tension follows from the load and the arms alone, so stretch, line load and the
-/// cylinders' own stability are known before any equilibrium is sought.
+/// Returns the failure of ropes that cannot carry the load whatever their shape, with the share of the load
+/// at which they fail. The tension follows from the load and the lever arms alone, so stretch, line load and
+/// the stability of the cylinders are known before any equilibrium is sought.
 ///
-/// Cylinders of pitch `p` under a tension `T` that all turn by the same small angle stretch the rope
-/// by `T p` of work and shear their joints by `k2 p^2` of it: where `k2 p < T` a straight rope gives
-/// way sideways, cylinder by cylinder. Bending resists in a span of `n` cylinders with at most
-/// `k5 (pi / n)^2`.
+/// If all cylinders of pitch `p` under a tension `T` rotate by the same small angle, the tension does work
+/// proportional to `T p` and the shear of the joints stores energy proportional to `k2 p^2`: for `k2 p < T` a
+/// straight rope buckles laterally, cylinder by cylinder. In a span of `n` cylinders, bending adds a
+/// resistance of at most `k5 (pi / n)^2`.
 pub fn overload(
     machine: &Machine,
     ropes: &Ropes,

@@ -1,14 +1,15 @@
-//! How fast the beam swings on its ropes: what steps in time must resolve.
+//! Estimate of the frequency of the beam's swing on its ropes, which time steps must resolve.
 use crate::model::Individual;
 use crate::system::{Equations, StateRef, System};
 
-/// Rate of the beam's swing on ropes, contact and head about an equilibrium at time 0 [rad/s].
+/// Estimates the angular frequency of the beam's swing on ropes, contact and head about an equilibrium at
+/// time 0 [rad/s].
 ///
-/// The Rayleigh quotient of the machine's deflection under the beam's own inertia: one factorisation
-/// and one solution. It lies above the lowest mode, which is the pendulum of rod and rope, and follows
-/// what the load does excite, axial and contact stiffness in series.
+/// The Rayleigh quotient of the machine's deflection under the beam's own inertia, at the cost of one
+/// factorisation and one solution. It is higher than the frequency of the lowest mode, which is the pendulum
+/// of rod and rope, and represents the mode excited by the load: axial and contact stiffness in series.
 ///
-/// `None` where the tangent is singular or the quotient is no positive number.
+/// Returns `None` if the tangent is singular or the quotient is not a positive number.
 pub fn swing_rate(system: &mut System<Individual<'_>>, q: &[f64]) -> Option<f64> {
     let still = vec![0.0; q.len()];
     let mut deflection = vec![0.0; q.len()];

@@ -1,10 +1,10 @@
-//! A cylinder bounces on IMPACT.
+//! Tests of a cylinder bouncing on the IMPACT contact law.
 use crate::rope::*;
 use simulation::element::impact::Impact;
 use simulation::rig::{Drum, End, Rig, Setup};
 use simulation::system::System;
 
-/// Depth, duration and speed of return of a cylinder that meets a flat floor at `speed`.
+/// Penetration depth, contact duration and rebound speed of a cylinder that hits a flat floor at `speed`.
 struct Bounce {
     depth: f64,
     duration: f64,
@@ -49,8 +49,9 @@ fn bounce(law: Impact, speed: f64) -> Bounce {
     }
 }
 
-/// Hertz: a body of mass m meets a spring `K d^1.5` at speed v. It sinks in
-/// `d = (5 m v^2 / 4 K)^(2/5)`, leaves after `2.9432 d / v`, and as fast as it came.
+/// Checks an undamped bounce against Hertz's solution: a body of mass m that hits a spring `K d^1.5` at speed
+/// v reaches the depth `d = (5 m v^2 / 4 K)^(2/5)`, leaves after `2.9432 d / v`, and rebounds at the speed of
+/// impact.
 #[test]
 fn undamped_bounce_is_hertzs() {
     let mass = chain(1).mass;
@@ -73,7 +74,8 @@ fn undamped_bounce_is_hertzs() {
     }
 }
 
-/// Speed of return by 200,000 Runge-Kutta steps of `m d'' = -f(d, d')`, written out here.
+/// Computes the rebound speed with 200,000 Runge-Kutta steps of `m d'' = -f(d, d')`, with the contact law
+/// written out independently.
 fn returned_by_runge_kutta(law: &Impact, mass: f64, speed: f64, duration: f64) -> f64 {
     let force = |d: f64, rate: f64| {
         if d <= 0.0 {
@@ -98,7 +100,8 @@ fn returned_by_runge_kutta(law: &Impact, mass: f64, speed: f64, duration: f64) -
     -v
 }
 
-/// Restitution with the paper's dampings, optimised and recommended, against the scalar equation.
+/// Checks the restitution with the paper's optimised and recommended contact damping against the scalar
+/// equation of motion.
 #[test]
 fn damped_bounce_has_the_restitution_of_its_scalar_equation() {
     for (law, speed) in [

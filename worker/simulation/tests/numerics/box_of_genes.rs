@@ -1,9 +1,9 @@
-//! The whole box that a search may propose from: the paper's ten coefficients, each four decades up
-//! and down from its recommended value (section 5.3), by a seeded Latin hypercube.
+//! Tests over the whole search box: the paper's ten coefficients, each varied by four decades up and down
+//! from its recommended value (section 5.3), sampled by a seeded Latin hypercube.
 //!
-//! Most of it is no machine at all. Every individual must end, complete or with a named failure,
-//! within its budget of iterations, and what the statics say of it may depend neither on where the
-//! search for equilibrium starts nor on how it damps its steps.
+//! Most of the box describes no working machine. Every individual must end within its iteration budget,
+//! either complete or with a named failure, and the result of its statics must depend neither on the start of
+//! the search for equilibrium nor on the damping of its steps.
 use crate::rope::recommended;
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt, SeedableRng};
@@ -19,7 +19,8 @@ use simulation::system::System;
 use simulation::verdict::{Failure, Reached, Verdict};
 use std::collections::BTreeMap;
 
-/// `count` points in the unit cube of ten dimensions, one in each slice of every dimension.
+/// Generates `count` points of a Latin hypercube in the ten-dimensional unit cube: one point per slice of
+/// every dimension.
 fn hypercube(count: usize, random: &mut impl Rng) -> Vec<[f64; 10]> {
     let mut points = vec![[0.0; 10]; count];
     for gene in 0..10 {
@@ -32,7 +33,7 @@ fn hypercube(count: usize, random: &mut impl Rng) -> Vec<[f64; 10]> {
     points
 }
 
-/// The recommended coefficients, each times ten to a power within `decades`.
+/// Returns the recommended coefficients, each multiplied by a power of ten within plus or minus `decades`.
 fn individual(point: &[f64; 10], decades: f64) -> RopeLaw {
     let factor = point.map(|x| 10_f64.powf(decades * (2.0 * x - 1.0)));
     let mut law = recommended();
@@ -52,7 +53,7 @@ fn individual(point: &[f64; 10], decades: f64) -> RopeLaw {
     law
 }
 
-/// The reference machine, and one with the real unit's 72 + 114 cylinders.
+/// Builds the reference machine, or with `fine` the same machine with the real unit's 72 + 114 cylinders.
 fn machine(fine: bool) -> Machine {
     let mut description = reference::description();
     if fine {
@@ -63,7 +64,8 @@ fn machine(fine: bool) -> Machine {
     Machine::new(description, 2).unwrap()
 }
 
-/// What the statics say from a start and with a damping, and the iterations that it took.
+/// Searches the static equilibrium with a given damping, optionally from a disturbed start; returns the
+/// equilibrium or the failure, and the number of Newton iterations.
 fn statics(
     machine: &Machine,
     law: &RopeLaw,
@@ -102,7 +104,7 @@ fn statics(
     (found, system.statistics.newton_iterations)
 }
 
-/// What a run came to, in a few words.
+/// Describes the verdict of a run in a few words.
 fn named(result: &RunResult) -> String {
     match result.verdict {
         Verdict::Complete => "complete".to_owned(),
@@ -119,9 +121,9 @@ fn quantiles(mut x: Vec<u64>) -> String {
     format!("{} {} {} {}", at(50), at(90), at(99), at(100))
 }
 
-/// Statics from five starts with three dampings agree, verdict for verdict and equilibrium for
-/// equilibrium, and end within their budget: of one search, and of four more for the load that is
-/// carried where the whole is not.
+/// Checks that statics from five starts with three dampings agree, in verdict and in equilibrium, and end
+/// within five budgets: one for the full load, and four for the searches for the largest load that is still
+/// carried where the full load is not.
 fn assert_statics(machine: &Machine, count: usize) {
     let mut random = ChaCha8Rng::seed_from_u64(7);
     let mut verdicts: BTreeMap<String, usize> = BTreeMap::new();
@@ -161,7 +163,8 @@ fn assert_statics(machine: &Machine, count: usize) {
     assert!(verdicts["stands"] * 10 > count, "{verdicts:?}");
 }
 
-/// Whole runs end within their budget; those that fail do so early.
+/// Checks that whole runs end within their budget, and that half of the failed ones are known within 1000
+/// iterations.
 fn assert_runs(machine: &Machine, count: usize, decades: f64) -> BTreeMap<String, Vec<u64>> {
     let mut random = ChaCha8Rng::seed_from_u64(7);
     let settings = RunSettings {
@@ -216,8 +219,8 @@ fn close_to_the_recommended_values_nearly_all_complete() {
     assert!(verdicts["complete"].len() >= 11, "{verdicts:?}");
 }
 
-/// The whole thousand on the real unit's discretisation:
-/// `cargo test --release -p simulation --test numerics -- --ignored --nocapture thousand`.
+/// Runs the checks with a thousand individuals on the real unit's discretisation: `cargo test --release -p
+/// simulation --test numerics -- --ignored --nocapture thousand`.
 #[test]
 #[ignore = "minutes in a release build"]
 fn a_thousand_individuals() {

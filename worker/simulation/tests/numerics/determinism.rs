@@ -1,25 +1,25 @@
-//! The same bits whatever the processor, the optimisation, the number of threads.
+//! Results are bit-identical for every processor, optimisation level and number of threads.
 //!
-//! `tests/determinism.sh` builds this test for several instruction sets and optimisation levels; each
-//! build must reproduce the digest below.
+//! `tests/determinism.sh` builds this test for several instruction sets and optimisation levels; each build
+//! must reproduce the digests below.
 use simulation::flexible::{Family, Gauge, Mesh, Pair, Reduction, Request, Steel, Wrap, reduce};
 use simulation::reference;
 use std::process::Command;
 
-/// Digest and work of the reference run, on every machine and in every build. A change of the laws,
-/// of a tolerance or of the order of a sum changes it: copy the new one from the message, and say in
-/// the changelog why results change.
+/// Digest and work counters of the reference run, the same on every machine and in every build. A change of
+/// the laws, of a tolerance or of the order of a summation changes this text: copy the new one from the
+/// test's message, and state in the changelog why results change.
 const REFERENCE: &str = "digest 9ab65d941d9699d2 Statistics { steps: 694, error_rejections: 0, \
     newton_rejections: 20, newton_iterations: 7633, force_evaluations: 7652, jacobians: 490, \
     factorizations: 490 }";
 
-/// Digest of the derivatives that name a build, likewise.
+/// Digest of the reference derivatives that identify a build's numerics; to be updated like `REFERENCE`.
 const COLUMNS: &str = "columns e4fa8267de26a81f";
 
-/// Digest of a small head's reduction, likewise.
+/// Digest of the modal reduction of a small head; to be updated like `REFERENCE`.
 const HEAD: &str = "head a8ea7ade1a755e0d";
 
-/// FNV-1a.
+/// Computes the 64-bit FNV-1a hash of the words.
 fn hash(bits: impl IntoIterator<Item = u64>) -> u64 {
     let bytes = bits.into_iter().flat_map(u64::to_le_bytes);
     bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
@@ -27,19 +27,19 @@ fn hash(bits: impl IntoIterator<Item = u64>) -> u64 {
     })
 }
 
-/// Digest of the reference run's bits and work, to be compared as text.
+/// Returns the digest of the reference run's bits and its work counters, as text.
 fn digest() -> String {
     let (bits, statistics) = reference::bits();
     format!("digest {:016x} {statistics:?}", hash(bits))
 }
 
-/// Digest of the derivatives' bits.
+/// Returns the digest of the bits of the reference derivatives, as text.
 fn columns() -> String {
     format!("columns {:016x}", hash(reference::columns()))
 }
 
-/// A sector of a ring of bricks, held at one end, with its arc outside; hundreds of unknowns, so that
-/// panels of the factor are wider than its tiles.
+/// Builds a sector of a ring of bricks, held at one end, with its arc outside. It has hundreds of unknowns,
+/// so that panels of the matrix factor are wider than its tiles.
 fn sector() -> Mesh {
     const COUNTS: [usize; 3] = [3, 14, 4];
     let [across, around, wide] = COUNTS;
@@ -108,7 +108,7 @@ fn reduced() -> Reduction {
     .unwrap()
 }
 
-/// Digest of every number of the reduction.
+/// Returns the digest of every number of the head's reduction, as text.
 fn head() -> String {
     let reduction = reduced();
     let mut numbers = Vec::new();
@@ -136,8 +136,9 @@ fn head() -> String {
     format!("head {:016x}", hash(numbers.iter().map(|x| x.to_bits())))
 }
 
-/// The factor behind it is worked out in plain loops: a library that chooses its instructions by the
-/// processor gave other bits on every kind of them.
+/// Checks that every build reproduces the head's reduction. The matrix factorisation behind it uses plain
+/// loops, because a library that selects instructions by processor gave different bits on each kind of
+/// processor.
 #[test]
 fn every_build_reproduces_the_reduction_of_a_head() {
     assert_eq!(head(), HEAD);
@@ -153,7 +154,7 @@ fn every_build_reproduces_the_columns() {
     assert_eq!(columns(), COLUMNS);
 }
 
-/// Runs side by side share nothing.
+/// Checks that simultaneous runs in several threads give the same bits as a single one.
 #[test]
 fn bits_do_not_depend_on_the_number_of_threads() {
     let alone = digest();
@@ -166,7 +167,8 @@ fn bits_do_not_depend_on_the_number_of_threads() {
     }
 }
 
-/// Run by the test below in a process of its own.
+/// Prints the digests of this process; started in a process of its own by
+/// `bits_do_not_depend_on_fused_operations`.
 #[test]
 #[ignore = "prints for the test below"]
 fn child_prints_its_digest() {
@@ -181,8 +183,9 @@ fn child_prints_its_digest() {
     );
 }
 
-/// glibc told that the processor has neither AVX2 nor FMA takes other variants of sine and power,
-/// which differ in the last bit; a worker on an older node must still return the same result.
+/// Checks that results do not depend on fused multiply-add. When glibc is told that the processor has neither
+/// AVX2 nor FMA, it selects other variants of sine and power that differ in the last bit; a worker on an
+/// older node must still return the same result.
 #[test]
 fn bits_do_not_depend_on_fused_operations() {
     let run = |tunables: Option<&str>| {

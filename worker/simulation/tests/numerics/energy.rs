@@ -1,7 +1,7 @@
-//! The energy ledger: what goes in is stored, comes out or is lost.
+//! Tests of the energy balance: the energy put in is stored, delivered or dissipated.
 //!
-//! `E(t1) - E(t0) = W_in - W_out - W_lost` with `W` from the powers at the method's own stages. A
-//! wrong sign of any force breaks it, however right the derivatives are.
+//! `E(t1) - E(t0) = W_in - W_out - W_lost` with `W` from the powers at the method's own stages. A wrong sign
+//! of any force violates the balance, even if all derivatives are correct.
 use crate::rope::*;
 use nalgebra::Vector3;
 use simulation::element::bushing::Bushing;
@@ -15,7 +15,7 @@ use simulation::run::{RunSettings, simulate};
 use simulation::system::{StateRef, System};
 use simulation::verdict::Verdict;
 
-/// A named rig, where it starts and for how long it runs.
+/// Named example rig with its start and its simulated time.
 struct Example {
     name: &'static str,
     setup: Setup,
@@ -62,7 +62,8 @@ fn examples() -> Vec<Example> {
     ]
 }
 
-/// Defect of the ledger over the energy that was moved: largest kinetic energy and losses.
+/// Returns the defect of the energy balance relative to the energy moved: largest kinetic energy plus
+/// dissipation.
 fn defect(example: &Example, method: Method, tolerance: f64) -> f64 {
     let setup = example.setup;
     let mut system = System::new(Rig::new(setup));
@@ -96,12 +97,13 @@ fn defect(example: &Example, method: Method, tolerance: f64) -> f64 {
     (last - first + lost).abs() / (kinetic + lost)
 }
 
-/// Every example rig, every method: the ledger closes, and the tighter the tolerance the better.
+/// Checks that the energy balance closes for every example rig and every method, and improves with the
+/// tolerance.
 ///
-/// A rig has nothing but loosely held cylinders (2e-4 m a step), so it is judged from a tenth of the
-/// default tolerance on. What remains is what Newton's method leaves in joints of 3e8 N/m, and where
-/// a soft rope cracks like a whip what the stages do not see of its axial waves: that scatters by a
-/// factor of three between neighbouring tolerances, so the last one is far off the first.
+/// A rig consists only of loosely held cylinders (2e-4 m a step), so it is tested from a tenth of the default
+/// tolerance on. The remaining defect comes from the accuracy of Newton's method in joints of 3e8 N/m and,
+/// where a soft rope cracks like a whip, from axial waves that the stages do not resolve; the latter scatter
+/// by a factor of three between neighbouring tolerances, so the last tolerance is chosen far from the first.
 #[test]
 fn ledger_of_every_rig_closes_and_tightens_with_the_tolerance() {
     for example in examples() {
@@ -119,7 +121,8 @@ fn ledger_of_every_rig_closes_and_tightens_with_the_tolerance() {
     }
 }
 
-/// Defect of the reference machine's ledger over the crank's work in one revolution.
+/// Returns the defect of the reference machine's energy balance relative to the crank's work in one
+/// revolution.
 fn machine_defect(method: Method, tolerance: f64, stiffer: f64) -> f64 {
     let machine = Machine::new(reference::description(), 2).unwrap();
     let settings = RunSettings {
@@ -136,13 +139,14 @@ fn machine_defect(method: Method, tolerance: f64, stiffer: f64) -> f64 {
     (run.stored - gained).abs() / run.work.input
 }
 
-/// The reference machine over one revolution: crank work in, load work out, losses, stored energy.
+/// Checks the energy balance of the reference machine over one revolution: crank work, load work,
+/// dissipation, stored energy.
 ///
-/// Its long cylinders chatter on a stiff contact where steps are long, so a rope stiffer by 1e-9 may
-/// move the defect by a factor of ten; the median of five such ropes is judged (measured: half to a
-/// fifth of what is allowed). At the default tolerance backward differentiation damps away 0.2 % of
-/// the work, the other methods 1e-5 to 2e-4; with the tolerance the ledger closes to 1e-6, for the
-/// Rosenbrock method as fast as Simpson's rule integrates chattering powers.
+/// Its long cylinders chatter on a stiff contact where steps are long, so a relative change of the rope's
+/// stiffness by 1e-9 may change the defect by a factor of ten; the median of five such ropes is tested
+/// (measured: half to a fifth of the permitted value). At the default tolerance backward differentiation
+/// dissipates 0.2 % of the work numerically, the other methods 1e-5 to 2e-4; with tighter tolerance the
+/// balance closes to 1e-6, for the Rosenbrock method as fast as Simpson's rule integrates chattering powers.
 #[test]
 fn ledger_of_the_reference_machine_closes_with_the_tolerance() {
     for method in CATALOGUE {
@@ -166,8 +170,8 @@ fn ledger_of_the_reference_machine_closes_with_the_tolerance() {
     }
 }
 
-/// A chain without damping, thrown out of its plane and twisted: its energy stays, the tighter the
-/// tolerance the better. (With equal torsional and bending stiffness the bushing has a potential.)
+/// Checks that an undamped chain, thrown out of its plane and twisted, conserves its energy, the better the
+/// tighter the tolerance. (With equal torsional and bending stiffness the bushing has a potential.)
 #[test]
 fn chain_out_of_plane_keeps_its_energy() {
     let law = Bushing {
@@ -209,8 +213,8 @@ fn chain_out_of_plane_keeps_its_energy() {
     assert!(drifts[3] < 0.1 * drifts[1], "{drifts:?}");
 }
 
-/// A free chain with damping tumbles in space: nothing outside acts on it, so its momentum and its
-/// moment of momentum stay whatever happens inside (`F_J = -F_I`, `T_J = -T_I - d x F_I`).
+/// Checks that a damped free chain tumbling in space conserves momentum and angular momentum, since only
+/// internal forces act (`F_J = -F_I`, `T_J = -T_I - d x F_I`).
 #[test]
 fn tumbling_chain_keeps_its_moment_of_momentum() {
     let law = Bushing {

@@ -2,8 +2,8 @@
 use simulation::linear::{BLOCK, Bordered, Entry};
 use simulation::system::{Equations, Loaded, Powers, Shift, State, StateRef};
 
-/// `m(q) a = m(x) x'' + k (x - q) + l (x^3 - q^3) + c (x' - v)` in six coordinates, with
-/// `m(q) = 1 + cos(q_0) / 8`, solved by `q = x(t)`, `x_i = sin(w_i t + i)`.
+/// Test equations `m(q) a = m(x) x'' + k (x - q) + l (x^3 - q^3) + c (x' - v)` in six coordinates, with `m(q)
+/// = 1 + cos(q_0) / 8` and the exact solution `q = x(t)`, `x_i = sin(w_i t + i)`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Forced;
 
@@ -16,7 +16,7 @@ fn inertia(q: &[f64]) -> f64 {
 }
 
 impl Forced {
-    /// The solution at a time.
+    /// Returns the exact solution at a time.
     pub(crate) fn exact(t: f64) -> State {
         let mut state = State::at_rest(t, vec![0.0; BLOCK]);
         for i in 0..BLOCK {

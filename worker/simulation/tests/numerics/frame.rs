@@ -1,11 +1,11 @@
-//! Nothing depends on where the world's axes lie.
+//! Test of frame invariance: results do not depend on the position and direction of the world's axes.
 use crate::rope::*;
 use nalgebra::Rotation3;
 use simulation::rig::{Drum, End, Rig, Setup};
 use simulation::system::{StateRef, System};
 
-/// A whole rig in motion, contact and dead loads included, turned about z and moved: forces on the
-/// centres turn along, forces on the angles and the energy stay.
+/// Checks that for a rig in motion, with contact and dead loads, turned about z and moved, the forces on the
+/// centres turn along while the forces on the angles and the energy are unchanged.
 #[test]
 fn rig_turns_with_the_world() {
     let (alpha, shift) = (0.7_f64, V3::new(3.0, -2.0, 1.0));

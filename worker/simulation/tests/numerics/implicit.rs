@@ -1,13 +1,14 @@
-//! Derivatives of equilibria as columns come by them, one exact factor and the forces of ropes that have a
-//! coefficient of 1 and no other, by length a difference of forces at the same place, against what is known
-//! of cantilever, string and catenary.
+//! Tests of derivatives of equilibria by the implicit function theorem, as the columns of a run compute them:
+//! one exact factorisation, and as right side the forces of ropes in which only one coefficient is non-zero
+//! (for the rope length, a difference of forces at fixed coordinates). Expected values are those of
+//! cantilever, string and catenary.
 use crate::rope::*;
 use simulation::element::bushing::Bushing;
 use simulation::rig::{End, Rig, Setup};
 use simulation::system::{Equations, Shift, StateRef, System};
 use std::f64::consts::LN_10;
 
-/// A joint that says nothing.
+/// Joint without stiffness, damping and preload.
 const NONE: Bushing = Bushing {
     stiffness: [0.0; 2],
     damping: [0.0; 2],
@@ -16,7 +17,7 @@ const NONE: Bushing = Bushing {
     preload: 0.0,
 };
 
-/// A setup with other laws of its joints, and with another share of its loads.
+/// Returns a setup with the laws of its joints replaced and its loads scaled by `share`.
 fn with(setup: &Setup, law: fn(&Bushing) -> Bushing, share: f64) -> Setup {
     let end = |end: &End| match *end {
         End::Held {
@@ -63,8 +64,8 @@ fn bending(law: &Bushing) -> Bushing {
     }
 }
 
-/// What the coordinates of an equilibrium do per decade of whatever the forces of `part` are
-/// proportional to.
+/// Returns the derivative of an equilibrium's coordinates per decade of the factor that scales the forces of
+/// `part`.
 fn column(system: &mut System<Rig>, q: &[f64], part: &Setup) -> Vec<f64> {
     let still = vec![0.0; q.len()];
     let at = StateRef::new(0.0, q, &still);
@@ -74,8 +75,8 @@ fn column(system: &mut System<Rig>, q: &[f64], part: &Setup) -> Vec<f64> {
     right.iter().map(|x| LN_10 * x).collect()
 }
 
-/// What the coordinates of an equilibrium do per metre by which each cylinder is longer: forces at the same
-/// place, differenced.
+/// Returns the derivative of an equilibrium's coordinates per metre of cylinder length, from central
+/// differences of the forces at fixed coordinates.
 fn by_pitch(system: &mut System<Rig>, q: &[f64], setup: &Setup) -> Vec<f64> {
     const STEP: f64 = 1e-6;
     let still = vec![0.0; q.len()];
@@ -92,7 +93,7 @@ fn by_pitch(system: &mut System<Rig>, q: &[f64], setup: &Setup) -> Vec<f64> {
     solved(system, at, right.collect())
 }
 
-/// Solves with the exact factor of an equilibrium.
+/// Solves a linear system with the exact tangent factorised at an equilibrium.
 fn solved(system: &mut System<Rig>, at: StateRef<'_>, mut right: Vec<f64>) -> Vec<f64> {
     let mut force = vec![0.0; right.len()];
     let mut factor = system.equations.matrix();
@@ -109,7 +110,8 @@ fn close(found: f64, expected: f64, share: f64, what: &str) {
     assert!((found / expected - 1.0).abs() < share, "{what}");
 }
 
-/// `w = F sum (L - x_j)^2 / K_55 + n F / K_22` at the tip, over the joints at `x_j`.
+/// Checks the derivatives of a cantilever's tip deflection `w = F sum (L - x_j)^2 / K_55 + n F / K_22`,
+/// summed over the joints at `x_j`.
 #[test]
 fn cantilever_by_bending_by_shear_by_load_and_by_length() {
     let (count, load) = (20, 1e-3);
@@ -141,7 +143,8 @@ fn cantilever_by_bending_by_shear_by_load_and_by_length() {
     close(found, 2.0 * by_bending / 0.05, 1e-6, "length");
 }
 
-/// A taut string sags with its weight over its tension, which its stretch gives: `K_11` times it.
+/// Checks the derivatives of a taut string's sag, which is its weight over its tension; the tension is `K_11`
+/// times the joint stretch.
 #[test]
 fn string_by_stiffness_by_load_and_by_length() {
     let (count, stretch) = (41, 1e-3);
@@ -168,8 +171,8 @@ fn string_by_stiffness_by_load_and_by_length() {
     close(found, sag * slack, 3e-3, "length");
 }
 
-/// A hanging string whose stiffnesses and loads grow alike hangs as before; its stretch lets it sag by
-/// `d sag / d S` of the catenary of length `S`.
+/// Checks the derivatives of a hanging string: scaling stiffnesses and loads alike leaves its shape
+/// unchanged, and axial stretch increases the sag by `d sag / d S` of the catenary of length `S`.
 #[test]
 fn catenary_by_stiffness_by_load_and_by_length() {
     let (count, span) = (100, 4.0_f64);

@@ -1,7 +1,7 @@
-//! Proofs of the dynamics: every test opens with its story and its formula.
+//! Tests of the dynamics against known solutions; every test begins with a description and its formula.
 //!
-//! Expected values come from closed forms, from other programs' results or from conservation laws,
-//! never through the code under test.
+//! Expected values come from closed forms, from other programs' results or from conservation laws, never from
+//! the code under test.
 #![expect(
     clippy::unwrap_used,
     clippy::print_stdout,

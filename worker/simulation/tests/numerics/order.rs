@@ -1,5 +1,5 @@
-//! Order of convergence, two-sided, of every method: on a rig in the plane, on one that tumbles in
-//! space, and on forced equations whose solution is known.
+//! Tests of the order of convergence of every method, bounded on both sides: on a rig in the plane, on a rig
+//! that tumbles in space, and on forced equations with a known solution.
 use crate::forced::Forced;
 use crate::rope::*;
 use simulation::element::bushing::Bushing;
@@ -13,10 +13,10 @@ use simulation::rig::{End, Rig};
 use simulation::system::State;
 use simulation::system::{Equations, System};
 
-/// Accuracy of Newton's method that drowns in no step's error.
+/// Accuracy of Newton's method, far below the local error of any step.
 const TIGHT: f64 = 1e-8;
 
-/// State after `steps` equal steps over `time`.
+/// Returns the state after `steps` equal steps over `time`.
 fn equal_steps<E: Equations>(
     system: &mut System<E>,
     mut method: Box<dyn Stepper<E>>,
@@ -42,7 +42,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Halving the step must divide the error by `2^order`, not by less and not by more.
+/// Checks that halving the step divides the error by `2^order`, within 0.3 of the order.
 fn judge(name: &str, order: usize, errors: &[f64]) {
     for pair in errors.windows(2) {
         let found = (pair[0] / pair[1]).log2();
@@ -54,7 +54,7 @@ fn judge(name: &str, order: usize, errors: &[f64]) {
     }
 }
 
-/// A damped chain of five cylinders that swings down in the plane.
+/// Builds a damped chain of five cylinders that swings down in the plane.
 fn swinging() -> (System<Rig>, State) {
     let law = Bushing {
         stiffness: [900.0, 700.0],
@@ -72,7 +72,7 @@ fn swinging() -> (System<Rig>, State) {
     (system, state)
 }
 
-/// A free chain of three cylinders that spins about their axes and tumbles in space.
+/// Builds a free chain of three cylinders that spins about its axis and tumbles in space.
 fn tumbling() -> (System<Rig>, State) {
     let law = Bushing {
         stiffness: [400.0, 300.0],
@@ -95,7 +95,7 @@ fn tumbling() -> (System<Rig>, State) {
     (system, state)
 }
 
-/// Errors of coordinates with `coarsest`, twice and four times as many steps.
+/// Returns the errors of the coordinates with `coarsest`, twice and four times as many steps.
 fn errors_on_rig(
     rig: fn() -> (System<Rig>, State),
     time: f64,
@@ -111,7 +111,7 @@ fn errors_on_rig(
     })
 }
 
-/// Every method on a rig in the plane against 20,000 steps of the fourth-order method.
+/// Checks the order of every method on a rig in the plane against 20,000 steps of the fourth-order method.
 #[test]
 fn halving_the_step_divides_the_error_by_two_to_the_order() {
     let (mut system, state) = swinging();
@@ -125,8 +125,9 @@ fn halving_the_step_divides_the_error_by_two_to_the_order() {
     }
 }
 
-/// A method that varies its order begins with the first, and equal steps keep it there: higher ones
-/// are judged from a known past below.
+/// Returns the method and its order with equal steps. A method of variable order starts with order 1 and
+/// keeps it at equal steps; its higher orders are tested from a known history in
+/// `each_backward_differentiation_formula_has_its_order`.
 fn fixed(method: Method) -> (Method, usize) {
     match method {
         Method::Bdf { .. } => (Method::Bdf { highest: 1 }, 1),
@@ -136,8 +137,8 @@ fn fixed(method: Method) -> (Method, usize) {
     }
 }
 
-/// The same in space, where inertia depends on the angles and velocity terms matter: the Rosenbrock
-/// method's order stands only with the complete tangent.
+/// Checks the order of every method in space, where inertia depends on the angles and velocity terms matter:
+/// the Rosenbrock method has its order only with the complete tangent.
 #[test]
 fn order_holds_for_a_chain_that_tumbles_in_space() {
     let (mut system, state) = tumbling();
@@ -154,8 +155,9 @@ fn order_holds_for_a_chain_that_tumbles_in_space() {
     }
 }
 
-/// Forced nonlinear equations with a mass matrix that moves, against their solution: every method,
-/// coordinates and rates, and accelerations at least as good as the dense output needs them.
+/// Checks the order of every method on forced nonlinear equations with a variable mass matrix and a known
+/// solution: in coordinates and rates, and in accelerations to at least the order that the dense output
+/// needs.
 #[test]
 fn order_holds_for_forced_equations_with_a_known_solution() {
     for method in CATALOGUE {
@@ -189,7 +191,7 @@ fn order_holds_for_forced_equations_with_a_known_solution() {
     }
 }
 
-/// Backward differentiation formulas of every order, from a known past.
+/// Checks the order of the backward differentiation formulas of order 1 to 5, started from a known history.
 #[test]
 fn each_backward_differentiation_formula_has_its_order() {
     for order in 1..=5 {
@@ -208,8 +210,8 @@ fn each_backward_differentiation_formula_has_its_order() {
     }
 }
 
-/// Steps of changing size keep the order of every method that looks back: generalised-alpha moves
-/// its accelerations, backward differentiation its points.
+/// Checks that multistep methods keep their order with steps of varying size: generalised-alpha shifts its
+/// accelerations, backward differentiation its interpolation points.
 #[test]
 fn order_survives_steps_of_changing_size() {
     let uneven = |method: Method, steps: usize| {
@@ -251,8 +253,8 @@ fn order_survives_steps_of_changing_size() {
     }
 }
 
-/// The formula of order 2 from a known past, with steps of 1.3 and 0.7 in turn: its points lie as
-/// unevenly as in a run that changes its step.
+/// Checks the backward differentiation formula of order 2, started from a known history, with steps of 1.3
+/// and 0.7 in turn: its points lie as unevenly as in a run with variable steps.
 #[test]
 fn order_2_of_backward_differentiation_survives_uneven_steps() {
     let errors = [200, 400, 800].map(|steps| {
@@ -274,7 +276,8 @@ fn order_2_of_backward_differentiation_survives_uneven_steps() {
     judge("bdf of order 2, uneven", 2, &errors);
 }
 
-/// Steps that follow a small error, and the highest order that was chosen.
+/// Integrates with step control at a small tolerance; returns the number of steps and the highest order
+/// chosen.
 fn chosen(highest: usize) -> (usize, usize) {
     let tolerance = 1e-6;
     let mut system = System::new(Forced);
@@ -308,7 +311,8 @@ fn chosen(highest: usize) -> (usize, usize) {
     (steps, most)
 }
 
-/// Where higher orders pay they are chosen, never above the cap, and steps become fewer.
+/// Checks that higher orders are chosen where they pay, never above the cap, and that they reduce the number
+/// of steps.
 #[test]
 fn backward_differentiation_chooses_the_order_that_pays() {
     let [first, second, fifth] = [1, 2, 5].map(chosen);
@@ -320,7 +324,8 @@ fn backward_differentiation_chooses_the_order_that_pays() {
     );
 }
 
-/// The dense output between two exact states errs with the fourth power of their distance.
+/// Checks that the error of the dense output between two exact states falls with the fourth power of the
+/// step.
 #[test]
 fn dense_output_is_of_fourth_order() {
     let mut out = Forced::exact(0.0);

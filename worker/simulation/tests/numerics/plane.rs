@@ -1,4 +1,5 @@
-//! Three coordinates per cylinder against six: a symmetric machine stays in its plane exactly.
+//! Tests of planar motion (three coordinates per cylinder) against spatial motion (six): a symmetric machine
+//! stays in its plane exactly.
 use crate::rope::{optimised, recommended};
 use simulation::effect::{Asked, Selection};
 use simulation::model::Machine;
@@ -8,8 +9,8 @@ use simulation::reference;
 use simulation::run::{RunSettings, simulate};
 use simulation::verdict::Verdict;
 
-/// Whole runs in three and in six coordinates take the same steps, and their gauges agree within
-/// 1e-9 of their range.
+/// Checks that whole runs in three and in six coordinates take the same steps, with gauge signals equal
+/// within 1e-9 of their range.
 #[test]
 fn a_run_in_the_plane_is_the_run_in_space() {
     let plane = Machine::new(reference::description(), 2).unwrap();
@@ -18,7 +19,8 @@ fn a_run_in_the_plane_is_the_run_in_space() {
     }
 }
 
-/// The same with effects along the ropes, on the head's surface and under the pivot.
+/// Checks that planar and spatial runs agree with effects along the ropes, on the head's surface and under
+/// the pivot.
 #[test]
 fn a_run_with_effects_in_the_plane_is_the_run_in_space() {
     let wear = ("head_profile_wear", vec![("depth", 0.004)]);
@@ -47,9 +49,9 @@ fn a_run_with_effects_in_the_plane_is_the_run_in_space() {
     }
 }
 
-/// Joints that pull by themselves, in the plane and in space; and what that is to a machine: another
-/// length of its back rope (the front rope's moves the suspension point alone). Cylinders that lie
-/// closer touch the head at other places, which leaves a fifteenth of the difference.
+/// Checks that preloaded joints give the same results in the plane and in space, and act on a machine like
+/// another length of its back rope (the front rope's preload moves the suspension point alone). Cylinders
+/// that lie closer together touch the head at other points, which leaves a fifteenth of the difference.
 #[test]
 fn a_preload_is_another_length_of_rope() {
     let mut preloaded = recommended();

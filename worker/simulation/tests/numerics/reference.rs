@@ -1,13 +1,13 @@
-//! The same ropes in other programs (tests/reference): Exudyn, and a scipy reference.
+//! Comparison of ropes with results of other programs (tests/reference): Exudyn and a scipy model.
 use crate::rope::*;
 use simulation::model::description::RopeLaw;
 use simulation::rig::{Drum, End, Rig, Setup};
 use simulation::system::System;
 
-/// A cantilever of 40 bushings under a dead load at its end.
+/// Checks a cantilever of 40 bushings under a dead load at its end.
 ///
-/// Small loads: tip deflection `F sum_k (k L)^2 / K_66 + F N / K_22`, twist `T N / K_44`, extension
-/// `F N / K_11`, rotation `M N / K_66`. Large ones: Exudyn.
+/// Small loads are compared with formulas: tip deflection `F sum_k (k L)^2 / K_66 + F N / K_22`, twist `T N /
+/// K_44`, extension `F N / K_11`, rotation `M N / K_66`. Large loads are compared with Exudyn.
 #[test]
 fn cantilever_bends_twists_and_stretches_as_in_exudyn() {
     let rows = include_str!("../reference/a_cantilever_tip.csv")
@@ -64,7 +64,7 @@ fn cantilever_bends_twists_and_stretches_as_in_exudyn() {
     assert_eq!(compared, 14);
 }
 
-/// The whole shape of a cantilever bent by 0.63 m and 0.31 m at its end.
+/// Checks the whole shape of a cantilever bent by 0.63 m and 0.31 m at its end against Exudyn.
 #[test]
 fn strongly_bent_cantilever_has_exudyns_shape() {
     for (law, text) in [
@@ -93,9 +93,9 @@ fn strongly_bent_cantilever_has_exudyns_shape() {
     }
 }
 
-/// A horizontal chain of 60 cylinders falls when gravity is switched on: dynamics of large motion.
+/// Checks a horizontal chain of 60 cylinders that falls when gravity is switched on (large motion).
 ///
-/// Two programs give the tip's path; ours must follow both within 0.05 % of its travel.
+/// Two programs give the tip's path; the simulation must follow both within 0.05 % of the tip's travel.
 #[test]
 fn falling_chain_follows_the_reference() {
     // with the columns of Exudyn's path
@@ -181,7 +181,8 @@ fn drum_setup(law: &RopeLaw, pull: f64) -> Setup {
     }
 }
 
-/// Joints on the drum from its top clockwise over an angle, then straight on.
+/// Returns coordinates of cylinders laid on the drum clockwise from its top over the angle `wrap`, then
+/// straight on.
 pub(crate) fn laid_on_drum(count: usize, wrap: f64) -> Vec<f64> {
     let (pitch, radius) = (0.05_f64, 1.205_f64);
     let turn = 2.0 * (0.5 * pitch / radius).asin();
@@ -203,8 +204,8 @@ pub(crate) fn laid_on_drum(count: usize, wrap: f64) -> Vec<f64> {
     q
 }
 
-/// Tension, shear and moment that joint `j` of a rig gives the body before it, and the contact force of its
-/// cylinder.
+/// Returns tension, shear and moment that joint `j` of a rig exerts on the body before it, and the contact
+/// force of its cylinder.
 fn carried(system: &System<Rig>, law: &RopeLaw, q: &[f64], j: usize) -> [f64; 4] {
     let state = &system.equations.state;
     // on J acts the opposite of the load on I; J is the ground or the cylinder before
@@ -218,8 +219,8 @@ fn carried(system: &System<Rig>, law: &RopeLaw, q: &[f64], j: usize) -> [f64; 4]
     [state.tension(j), shear, moment, state.contact[j]]
 }
 
-/// A rope over a fixed drum, one contact point per cylinder as in both references: where every
-/// cylinder lies, what every joint carries and what every contact carries.
+/// Checks a rope over a fixed drum, with one contact point per cylinder as in both references: positions of
+/// the cylinders, joint loads and contact forces.
 #[test]
 fn rope_on_a_drum_has_the_references_forces() {
     let cases: [(&str, RopeLaw, f64, [&str; 2]); 4] = [

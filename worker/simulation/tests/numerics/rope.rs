@@ -1,4 +1,4 @@
-//! Rope rigs that the proofs share, and how they are settled and run.
+//! Rope rigs shared by the tests, and functions to find their equilibrium and to integrate them.
 use nalgebra::Vector3;
 use simulation::element::{bushing::Bushing, impact::Impact};
 use simulation::integrator::adaptive::Adaptive;
@@ -15,7 +15,7 @@ pub(crate) type V3 = Vector3<f64>;
 
 const PER_DEGREE: f64 = 180.0 / std::f64::consts::PI;
 
-/// Table 3's recommended coefficients (paper).
+/// Returns the recommended coefficients of Table 3 of the paper.
 pub(crate) fn recommended() -> RopeLaw {
     RopeLaw {
         bushing: Bushing {
@@ -34,7 +34,7 @@ pub(crate) fn recommended() -> RopeLaw {
     }
 }
 
-/// Table 3's optimised coefficients (paper).
+/// Returns the optimised coefficients of Table 3 of the paper.
 pub(crate) fn optimised() -> RopeLaw {
     RopeLaw {
         bushing: Bushing {
@@ -53,7 +53,7 @@ pub(crate) fn optimised() -> RopeLaw {
     }
 }
 
-/// The recommended rope with a thousandth of its rotational coefficients.
+/// Returns the recommended rope with its rotational coefficients divided by 1000.
 pub(crate) fn soft() -> RopeLaw {
     let mut law = recommended();
     law.bushing.rotational_stiffness = law.bushing.rotational_stiffness.map(|k| 1e-3 * k);
@@ -61,10 +61,10 @@ pub(crate) fn soft() -> RopeLaw {
     law
 }
 
-/// A rope with next to no bending stiffness and no damping: a string.
+/// Returns the bushing of a string: almost no bending stiffness, and no damping.
 ///
-/// Softer along its axis than the unit's rope: its lateral stiffness is a few newtons per metre,
-/// and an axial one of 3e8 N/m would drown that in rounding (measured: 0.9 % of a frequency).
+/// It is softer along its axis than the unit's rope: the lateral stiffness is a few newtons per metre, and
+/// would be lost to rounding beside an axial stiffness of 3e8 N/m (measured: 0.9 % of a frequency).
 pub(crate) fn string() -> Bushing {
     Bushing {
         stiffness: [1e6, 1e6],
@@ -75,13 +75,13 @@ pub(crate) fn string() -> Bushing {
     }
 }
 
-/// The unit's cylinders: 10 mm thick, 50 mm long, steel.
+/// Returns a chain of the unit's cylinders: steel, 10 mm thick, 50 mm long.
 pub(crate) fn chain(count: usize) -> Chain {
     Chain::solid(0, count, 0.01, 0.05, 7850.0)
 }
 
-/// A pin that lets a rope turn in the plane but holds its twist: a chain whose both ends are free to
-/// twist has no unique equilibrium.
+/// Returns a pin that lets a rope rotate in the plane but holds its twist; a chain free to twist at both ends
+/// has no unique equilibrium.
 pub(crate) fn pinned(law: &Bushing) -> Bushing {
     let mut pin = law.revolute();
     pin.rotational_stiffness[0] = law.rotational_stiffness[0];
@@ -96,7 +96,7 @@ pub(crate) fn clamped(law: Bushing) -> End {
     }
 }
 
-/// A chain with a clamped base at the origin, a free end, and neither gravity nor drum.
+/// Returns a chain with a clamped base at the origin and a free end, without gravity and drum.
 pub(crate) fn cantilever(count: usize, law: Bushing) -> Setup {
     Setup {
         chain: chain(count),
@@ -107,7 +107,7 @@ pub(crate) fn cantilever(count: usize, law: Bushing) -> Setup {
     }
 }
 
-/// A chain between two pins so far apart on a level, under this gravity downwards [m/s2].
+/// Returns a chain between two pins at one height, `span` apart \[m\], under downward `gravity` \[m/s2\].
 pub(crate) fn strung(count: usize, law: Bushing, span: f64, gravity: f64) -> Setup {
     let pin = |x: f64| End::Held {
         place: V3::new(x, 0.0, 0.0),
@@ -121,7 +121,7 @@ pub(crate) fn strung(count: usize, law: Bushing, span: f64, gravity: f64) -> Set
     }
 }
 
-/// Static equilibrium from coordinates `q` on.
+/// Finds the static equilibrium, starting from coordinates `q`.
 pub(crate) fn settled(setup: &Setup, mut q: Vec<f64>) -> (System<Rig>, Vec<f64>) {
     let mut system = System::new(Rig::new(*setup));
     assert!(minimize(&mut system, 0.0, &mut q), "no equilibrium");
@@ -131,8 +131,8 @@ pub(crate) fn settled(setup: &Setup, mut q: Vec<f64>) -> (System<Rig>, Vec<f64>)
     (system, q)
 }
 
-/// A chain of 5 m bowed down between two places at one height, 4 m apart: the arc of the right length,
-/// `sin(bow) / bow = b / S`.
+/// Returns the coordinates of a chain of 5 m sagging as a circular arc of its own length between two points
+/// at one height, 4 m apart: `sin(bow) / bow = b / S`.
 pub(crate) fn bowed(count: usize, span: f64) -> Vec<f64> {
     let bow = 1.131_102_f64;
     let arc = 0.5 * 0.05 * count as f64 / bow;
@@ -152,13 +152,13 @@ pub(crate) fn bowed(count: usize, span: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Static equilibrium from a straight chain along +x.
+/// Finds the static equilibrium, starting from a straight chain along +x.
 pub(crate) fn settled_straight(setup: &Setup) -> (System<Rig>, Vec<f64>) {
     let q = Rig::new(*setup).straight(V3::zeros(), 0.0);
     settled(setup, q)
 }
 
-/// How a rig is integrated.
+/// Integration settings of a rig.
 #[derive(Clone, Copy)]
 pub(crate) struct Course {
     pub(crate) method: Method,
@@ -176,7 +176,7 @@ impl Course {
     }
 }
 
-/// A state with its accelerations.
+/// Returns a state at time 0 with the accelerations that satisfy the equations of motion.
 pub(crate) fn started(system: &mut System<Rig>, q: Vec<f64>, v: Vec<f64>) -> State {
     let mut state = State::at_rest(0.0, q);
     state.v = v;
@@ -185,7 +185,7 @@ pub(crate) fn started(system: &mut System<Rig>, q: Vec<f64>, v: Vec<f64>) -> Sta
     state
 }
 
-/// Integrates from `state` to `until`; `each` sees the ends of every accepted step.
+/// Integrates from `state` to `until`; `each` is called with the two ends of every accepted step.
 pub(crate) fn advance(
     system: &mut System<Rig>,
     course: &Course,
@@ -203,7 +203,7 @@ pub(crate) fn advance(
     }
 }
 
-/// The numbers of a table, row by row; `#` opens a comment line, the first line names the columns.
+/// Parses the numbers of a CSV table, row by row; `#` opens a comment line, the first line names the columns.
 pub(crate) fn table(text: &str) -> Vec<Vec<f64>> {
     csv::Reader::from_reader(text.as_bytes())
         .records()

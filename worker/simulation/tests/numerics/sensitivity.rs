@@ -1,5 +1,5 @@
-//! Columns of a run against Richardson-extrapolated central differences of whole runs on the same list
-//! of steps, whose stages are solved to rounding.
+//! Derivatives (columns) of a run compared with Richardson-extrapolated central differences of whole runs on
+//! the same list of steps, whose stages are solved to rounding.
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use simulation::effect::{Asked, Parameter, Role, Selection, catalogue};
@@ -15,7 +15,7 @@ use simulation::system::{State, System};
 use simulation::verdict::Verdict;
 use std::f64::consts::LN_10;
 
-/// Notes where the steps end.
+/// Observer that records the end times of the steps.
 #[derive(Default)]
 struct Steps(Vec<f64>);
 
@@ -27,7 +27,7 @@ impl Observe for Steps {
     }
 }
 
-/// A machine's own effects, and what is varied of it.
+/// Machine with its own effects, rope law and run settings, whose derivatives are tested.
 #[derive(Clone)]
 struct Subject {
     description: Description,
@@ -52,8 +52,8 @@ impl Subject {
         Machine::with_effects(self.description.clone(), 2, selection.effects()).unwrap()
     }
 
-    /// The columns, and the steps that they belong to; none where the run fails, or its stages cannot be
-    /// solved to rounding.
+    /// Computes the columns and the list of steps that they belong to; `None` where the run fails or its
+    /// stages cannot be solved to rounding.
     fn columns(&self, columns: &[Column]) -> Option<(Vec<Derivative>, Vec<f64>)> {
         let machine = self.machine();
         let effects = asked(&self.effects);
@@ -73,8 +73,8 @@ impl Subject {
         Some((found?.columns, steps))
     }
 
-    /// Readings of a run on given steps with a column's unknown moved: gauges, height, torque; no numbers
-    /// where contact that makes or breaks keeps a stage from being solved to rounding.
+    /// Returns gauges, height and torque of a run on given steps with a column's unknown changed by `by`; NaN
+    /// where contact that closes or opens prevents a stage from being solved to rounding.
     fn moved(&self, column: &Column, by: f64, steps: &[f64]) -> Vec<f64> {
         let mut own = self.clone();
         match column {
@@ -110,7 +110,8 @@ impl Subject {
         gauges.chain(height).chain(recorder.curves.torque).collect()
     }
 
-    /// To which side alone a parameter may move by such a step, if there are not both.
+    /// Returns the direction of a one-sided difference if the parameter's bounds rule out a central one with
+    /// this step.
     fn side(&self, column: &Column, step: f64) -> Option<f64> {
         let Column::Parameter {
             effect, parameter, ..
@@ -132,7 +133,7 @@ impl Subject {
         }
     }
 
-    /// Derivative by extrapolated differences, and those of the finer step size.
+    /// Returns the derivative by extrapolated differences, and the plain differences of the finer step size.
     fn differenced(&self, column: &Column, step: f64, steps: &[f64]) -> [Vec<f64>; 2] {
         let side = self.side(column, step);
         let step = side.unwrap_or(1.0) * step;
@@ -175,7 +176,7 @@ fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Distance of two columns over the size of the second.
+/// Returns the norm of the difference of two columns, relative to the norm of the second.
 fn distance(x: &[f64], y: &[f64]) -> f64 {
     let apart: Vec<f64> = x.iter().zip(y).map(|(x, y)| x - y).collect();
     norm(&apart) / norm(y).max(1e-300)
@@ -200,7 +201,7 @@ fn fast() -> Subject {
     }
 }
 
-/// Step over which a column is differenced first.
+/// Returns the coarser step size of the differences for a column.
 fn step(column: &Column) -> f64 {
     match column {
         Column::Coefficient(_) => 2e-4,
@@ -210,7 +211,8 @@ fn step(column: &Column) -> f64 {
     }
 }
 
-/// What a usual change of the unknown moves, over a column of this root mean square.
+/// Returns the typical change of a column's unknown: one decade of a coefficient, the typical value of a
+/// parameter.
 fn usual(column: &Column) -> f64 {
     match column {
         Column::Coefficient(_) => 1.0,
@@ -220,20 +222,21 @@ fn usual(column: &Column) -> f64 {
     }
 }
 
-/// How many curves differences could judge, of those above 0.05 `MPa` for a usual change, how far off the
-/// worst of them is, and which are off by more than they may.
+/// Summary of the comparison: number of curves above 0.05 `MPa` for a typical change (`of`), number of those
+/// that differences resolve well enough to test (`able`), largest deviation, and the list of curves that
+/// deviate by more than permitted.
 #[derive(Default)]
 struct Judged {
     able: usize,
     of: usize,
-    /// Columns that were compared or found to be rightly without curves.
+    /// Number of columns compared, including those that are correctly without curves.
     columns: usize,
     worst: f64,
     wrong: Vec<String>,
 }
 
 impl Judged {
-    /// Fails where columns are wrong, or too few were judged.
+    /// Fails if any column is wrong, or if differences could test less than 95 % of the curves.
     fn verdict(&self) {
         let Self {
             able,
@@ -250,18 +253,20 @@ impl Judged {
     }
 }
 
-/// What is read: which curves, and what turns them into megapascals or the like of a usual size.
+/// Curves compared: unit, range of curves, and the factor that scales them to a size comparable with
+/// megapascals.
 const READ: [(&str, std::ops::Range<usize>, f64); 3] =
     [("MPa", 0..4, 1e-6), ("m", 4..5, 10.0), ("kN m", 5..6, 1e-3)];
 
-/// Columns that do not exist, by effect, parameter and reason; any other one that is missing is wrong.
+/// Columns that are expected to be missing, by effect, parameter and reason; any other missing column is an
+/// error.
 const MISSING: &[(&str, &str, Missing)] = &[
     // a post that does not yield has no displacement
     ("post_compliance", "compliance", Missing::Coordinates),
 ];
 
-/// Whether a column that moves nothing, or does not exist, is right about it: the run on the same steps with the
-/// unknown moved is the same run, or the column is among those that are known to be missing.
+/// Checks a column without curves: either a run on the same steps with the unknown changed is identical, or
+/// the column is listed in [`MISSING`].
 fn check_without_curves(
     subject: &Subject,
     steps: &[f64],
@@ -286,9 +291,11 @@ fn check_without_curves(
     }
 }
 
-/// Compares columns with differences: wherever these agree among themselves to 2e-5, to 1e-4; where they
-/// are rounding alone, extrapolated ones are off by four times as much; elsewhere to 1e-3, where a usual change moves
-/// the curve by more than 0.05. Columns without curves are held to that, too. Whether there are columns.
+/// Compares columns with differences; returns whether the run gave columns at all. Where differences of two
+/// step sizes agree to 2e-5, the column must agree to 1e-4; elsewhere it must agree to 1e-3 if a typical
+/// change moves the curve by more than 0.05. Of the two step sizes, the one whose extrapolated and plain
+/// differences agree better is used, because extrapolation amplifies rounding errors fourfold. Columns
+/// without curves are checked, too.
 fn compare(subject: &Subject, columns: &[Column], judged: &mut Judged) -> bool {
     let Some((found, steps)) = subject.columns(columns) else {
         return false;
@@ -347,7 +354,7 @@ fn compare(subject: &Subject, columns: &[Column], judged: &mut Judged) -> bool {
     true
 }
 
-/// A random individual within a decade of the reference.
+/// Returns a random individual within half a decade of the reference in each coefficient.
 fn individual(seed: u64) -> Subject {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut subject = fast();
@@ -357,7 +364,7 @@ fn individual(seed: u64) -> Subject {
     subject
 }
 
-/// Sizes of all effects, every `stride`-th.
+/// Returns columns for every `stride`-th of the size parameters of all effects.
 fn sizes(stride: usize) -> Vec<Column> {
     let sizes = catalogue().iter().flat_map(|d| {
         let sizes = d.parameters.iter().filter(|p| p.role == Role::Size);
@@ -370,7 +377,7 @@ fn sizes(stride: usize) -> Vec<Column> {
     sizes.step_by(stride).collect()
 }
 
-/// An effect at its usual size, with all its parameters as columns.
+/// Returns a machine with an effect at its typical parameters, and columns for all of these parameters.
 fn present(id: &str) -> (Subject, Vec<Column>) {
     let descriptor = catalogue().iter().find(|d| d.id == id).unwrap();
     let mut subject = fast();
@@ -387,7 +394,7 @@ fn present(id: &str) -> (Subject, Vec<Column>) {
     (subject, own)
 }
 
-/// 39 of the 562 columns of the whole proof below.
+/// Checks 39 of the 562 columns that `every_column_agrees_with_differences_on_the_same_steps` covers.
 #[test]
 fn columns_agree_with_differences_on_the_same_steps() {
     let mut judged = Judged::default();
@@ -402,8 +409,8 @@ fn columns_agree_with_differences_on_the_same_steps() {
     judged.verdict();
 }
 
-/// Thirty random individuals, every effect absent and at its usual size:
-/// `cargo test -p simulation --test numerics -- --ignored --nocapture every_column`.
+/// Checks thirty random individuals, and every effect both absent and at its typical size: `cargo test -p
+/// simulation --test numerics -- --ignored --nocapture every_column`.
 #[test]
 #[ignore = "minutes"]
 fn every_column_agrees_with_differences_on_the_same_steps() {
@@ -425,8 +432,8 @@ fn every_column_agrees_with_differences_on_the_same_steps() {
     judged.verdict();
 }
 
-/// The run and its counters are the plain run's whatever is asked for, and a column has the same bits
-/// whatever stands beside it.
+/// Checks that the run and its counters equal those of a run without columns, and that a column has the same
+/// bits regardless of which other columns are computed.
 #[test]
 fn columns_change_no_bit_of_the_run_nor_of_each_other() {
     let subject = fast();
@@ -480,7 +487,8 @@ fn columns_change_no_bit_of_the_run_nor_of_each_other() {
     assert_eq!(shape, Derivative::Nothing, "the shape of an absent size");
 }
 
-/// A run that fails has the plain run's verdict and no columns; a method without stages says so.
+/// Checks that a failing run has the verdict of the run without columns and returns no columns, and that a
+/// method without stages is reported as such.
 #[test]
 fn a_run_that_fails_has_no_columns() {
     let mut subject = fast();

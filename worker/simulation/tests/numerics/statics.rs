@@ -1,19 +1,20 @@
-//! Ropes at rest.
+//! Tests of ropes at rest.
 use crate::rope::*;
 use simulation::element::bushing::Bushing;
 use simulation::rig::{Drum, End, Setup};
 
-/// A string of 100 cylinders hangs between two pins at one height.
+/// Checks that a string of 100 cylinders between two pins at one height hangs as a catenary.
 ///
-/// `y = a cosh(x / a)` with `S = 2 a sinh(b / 2 a)` for the stretched length S and the span b, and
-/// the horizontal pull `H = w a` of its weight w per length.
+/// `y = a cosh(x / a)` with `S = 2 a sinh(b / 2 a)` for the stretched length S and the span b, and the
+/// horizontal tension `H = w a` for the weight w per length.
 #[test]
 fn hanging_string_is_a_catenary() {
     catenary(&string());
 }
 
-/// Joints that pull with 300 N where nothing stretches them draw the string together by 0.6 % (its
-/// weight stretches it by 0.02 %): the catenary of the shorter length, under its own pull.
+/// Checks that a preload of 300 N in the unstretched joints, which shortens the string by 0.6 % (its weight
+/// stretches it by 0.02 %), gives the catenary of the shorter length with the corresponding horizontal
+/// tension.
 #[test]
 fn preloaded_string_is_the_catenary_of_a_shorter_one() {
     catenary(&Bushing {
@@ -67,9 +68,9 @@ fn catenary(law: &Bushing) {
     assert!(q.iter().all(|x| x.is_finite()));
 }
 
-/// A rope pulled over a drum presses on it with `T / R` per length, whatever its coefficients.
+/// Checks that a rope pulled over a drum presses on it with `T / R` per length, whatever its coefficients.
 ///
-/// Ten cylinders in the middle of half a turn, far from both ends, where bending is constant.
+/// Uses ten cylinders in the middle of half a turn, far from both ends, where bending is constant.
 #[test]
 fn wrapped_rope_presses_with_tension_over_radius() {
     for (law, pull) in [

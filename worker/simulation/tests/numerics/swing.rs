@@ -1,4 +1,4 @@
-//! The beam's swing on its ropes, by which steps in time are cut to size.
+//! Tests of the beam's natural frequency on its ropes, which limits the time step.
 use simulation::drive::Drive;
 use simulation::linear::Bordered;
 use simulation::model::description::RopeLaw;
@@ -13,7 +13,7 @@ fn machine() -> Machine {
     Machine::new(reference::description(), 2).unwrap()
 }
 
-/// The reference ropes, `factor` times as stiff along their axis.
+/// Returns the reference rope law with its axial stiffness multiplied by `factor`.
 fn stretched(factor: f64) -> RopeLaw {
     let mut law = reference::law();
     law.bushing.stiffness[0] *= factor;
@@ -36,14 +36,14 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// `M x`.
+/// Computes `M x`.
 fn momentum(system: &System<Individual<'_>>, q: &[f64], x: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; x.len()];
     system.equations.subtract_inertia(q, x, &mut out);
     out.iter().map(|x| -x).collect()
 }
 
-/// The static tangent, not factorised.
+/// Returns the static tangent stiffness matrix, not factorised.
 fn stiffness(system: &mut System<Individual<'_>>, q: &[f64]) -> Bordered {
     let still = vec![0.0; q.len()];
     let mut force = still.clone();
@@ -53,7 +53,8 @@ fn stiffness(system: &mut System<Individual<'_>>, q: &[f64]) -> Bordered {
     matrix
 }
 
-/// Strain energy over kinetic energy of the shape that the beam's own inertia bends the machine into.
+/// Checks that the swing rate is the Rayleigh quotient (strain energy over kinetic energy) of the shape into
+/// which the beam's own inertia deflects the machine.
 #[test]
 fn the_rate_is_the_rayleigh_quotient_of_the_beams_deflection() {
     let machine = machine();
@@ -77,7 +78,8 @@ fn the_rate_is_the_rayleigh_quotient_of_the_beams_deflection() {
     }
 }
 
-/// Ten times softer ropes swing slower, by the root of ten at most: other parts yield too.
+/// Checks that ropes ten times softer lower the swing rate, at most by the square root of ten, since other
+/// parts deform too.
 #[test]
 fn softer_ropes_swing_slower() {
     let machine = machine();
@@ -89,7 +91,8 @@ fn softer_ropes_swing_slower() {
     assert!((1.3..3.2).contains(&ratio), "{ratio}");
 }
 
-/// Steps shrink in proportion where the swing is faster than it may be, and not where it is not.
+/// Checks that steps shrink in proportion where the beam swings faster than the settings permit, and are
+/// unchanged elsewhere.
 #[test]
 fn steps_are_cut_to_the_swing() {
     let machine = machine();

@@ -1,5 +1,5 @@
-//! The tangent of a rig against differences of its forces, and both tangents of a stage of a machine
-//! against each of them alone.
+//! Tests of the tangent matrix of a rig against differences of its forces, and of the two tangents of a
+//! machine's stage against each computed separately.
 use crate::rope::*;
 use simulation::drive::Drive;
 use simulation::effect::{Asked, Selection};
@@ -9,8 +9,8 @@ use simulation::rig::{Drum, End, Rig, Setup};
 use simulation::settle::guess;
 use simulation::system::{Equations, Shift, StateRef, System};
 
-/// A disturbed, moving chain on a drum with a revolute base and a loaded free end:
-/// `mu M - gamma D - K` against central differences, coordinate by coordinate.
+/// Checks `mu M - gamma D - K` against central differences, coordinate by coordinate, for a disturbed, moving
+/// chain on a drum with a revolute base and a loaded free end.
 #[test]
 fn tangent_is_the_derivative_of_the_forces() {
     let setup = Setup {
@@ -91,8 +91,8 @@ fn tangent_is_the_derivative_of_the_forces() {
     }
 }
 
-/// Places and rates apart, then their sum: the tangents that each would be alone, in the plane and in
-/// space.
+/// Checks that the position and rate tangents of a stage, and their combination, equal the tangents computed
+/// separately, in the plane and in space.
 #[test]
 fn tangents_of_a_stage_are_those_of_each_alone() {
     let drive = Drive {

@@ -1,4 +1,4 @@
-//! Twin ropes on the reference machine: two chains on each head against one, and against each other.
+//! Tests of twin ropes on the reference machine: two chains per head compared with one, and with each other.
 use crate::rope::{optimised, recommended};
 use simulation::model::Machine;
 use simulation::model::description::{Description, RopeLaw};
@@ -19,7 +19,7 @@ fn run(description: Description, law: &RopeLaw) -> (RunResult, Curves) {
     (result, recorder.curves)
 }
 
-/// Largest difference of the gauges of two runs over each gauge's range.
+/// Returns the largest difference between the gauge signals of two runs, relative to each gauge's range.
 fn apart(a: &Curves, b: &Curves) -> f64 {
     let each = a.gauge.iter().zip(&b.gauge).map(|(a, b)| {
         let highest = b.iter().fold(f64::MIN, |m, x| m.max(*x));
@@ -37,8 +37,8 @@ fn twisted(law: &RopeLaw, factor: f64) -> RopeLaw {
     other
 }
 
-/// Twins of equal length share the load evenly and stay in their planes: the same steps and the same
-/// gauges as with the single rope to 1e-8 of their range, whatever their torsion.
+/// Checks that twins of equal length share the load evenly and stay in their planes: the same steps as with a
+/// single rope, and gauge signals equal to 1e-8 of their range, for any torsional stiffness.
 #[test]
 fn twins_of_equal_length_are_the_single_rope() {
     for law in [recommended(), optimised()] {
@@ -62,8 +62,8 @@ fn twins_of_equal_length_are_the_single_rope() {
     }
 }
 
-/// The longer one of two ropes pulls less, by `dL EA / (2 L)` where the contact is stiff, and the sum
-/// of both stays. The front ropes know nothing of the back ones' lengths.
+/// Checks that the longer of two ropes carries less, by `dL EA / (2 L)` where the contact is stiff, while the
+/// sum of both is unchanged. The front ropes are not affected by the lengths of the back ropes.
 #[test]
 fn unequal_twins_share_the_load_by_their_stiffness() {
     let law = optimised();
@@ -88,7 +88,7 @@ fn unequal_twins_share_the_load_by_their_stiffness() {
     }
 }
 
-/// What a crank puts in is taken out, stored or lost with unequal twins as with one rope.
+/// Checks that the energy balance closes with twin ropes of unequal length.
 #[test]
 fn ledger_of_the_twins_closes() {
     for law in [recommended(), optimised()] {

@@ -1,10 +1,11 @@
-//! Small vibrations about equilibrium, from the tangent and in time.
+//! Tests of small vibrations about equilibrium, from the tangent and in the time domain.
 use crate::rope::*;
 use simulation::rig::{End, Rig, Setup};
 use simulation::system::{Equations, StateRef, System};
 use std::f64::consts::PI;
 
-/// The lowest in-plane modes, as (angular frequency, shape): inverse iteration on `-K x = w^2 M x`.
+/// Computes the lowest in-plane modes as (angular frequency, shape), by inverse iteration on `-K x = w^2 M
+/// x`.
 fn modes(system: &mut System<Rig>, q: &[f64], count: usize, along: usize) -> Vec<(f64, Vec<f64>)> {
     let n = q.len();
     let still = vec![0.0; n];
@@ -66,8 +67,8 @@ fn hanging(count: usize) -> (System<Rig>, Vec<f64>) {
     settled(&setup, q)
 }
 
-/// A hanging rope swings with `w_n = j_n / 2 sqrt(g / L)`, `j_n` the zeros of Bessel's `J_0`; cutting
-/// the rope into twice as many cylinders divides the error by four.
+/// Checks that a hanging rope swings at `w_n = j_n / 2 sqrt(g / L)`, `j_n` the zeros of Bessel's `J_0`; twice
+/// as many cylinders divide the error by four.
 #[test]
 fn hanging_rope_swings_at_the_bessel_zeros() {
     let zeros = [
@@ -97,7 +98,8 @@ fn hanging_rope_swings_at_the_bessel_zeros() {
     }
 }
 
-/// The same swing in time: half a period from one zero crossing to the next.
+/// Checks the hanging rope's first period in the time domain: half a period lies between consecutive zero
+/// crossings.
 #[test]
 fn hanging_rope_keeps_its_period_in_time() {
     let (mut system, q) = hanging(60);
@@ -125,7 +127,7 @@ fn hanging_rope_keeps_its_period_in_time() {
     }
 }
 
-/// A string under tension: `f_n = n / (2 L) sqrt(T / m)` with m its mass per length.
+/// Checks the harmonics of a string under tension: `f_n = n / (2 L) sqrt(T / m)` with m its mass per length.
 #[test]
 fn taut_string_sounds_its_harmonics() {
     let (count, tension) = (80_usize, 200.0);

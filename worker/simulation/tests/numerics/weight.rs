@@ -1,15 +1,16 @@
-//! The beam's own weight where its centre of mass is off the line through the pivot.
+//! Tests of the beam's own weight with its centre of mass off the line through the pivot.
 use simulation::drive::Drive;
 use simulation::model::{Individual, Machine, description::Description};
 use simulation::reference;
 use simulation::run::{RunSettings, settle};
 use simulation::system::{Equations as _, Shift, State, StateRef, System};
 
-/// Weight times the place of the centre of mass at beam angle 0, towards the well and up [N m].
+/// Weight times horizontal distance of the centre of mass from the pivot at beam angle 0, towards the well
+/// \[N m\]; `UP` is the same for the height.
 const ACROSS: f64 = 9.0e3;
 const UP: f64 = 4.0e4;
 
-/// The reference machine whose beam weighs so.
+/// Builds the reference machine with the given moments of the beam's weight (horizontal, vertical) \[N m\].
 fn machine([across, up]: [f64; 2]) -> Machine {
     let description = Description {
         beam_gravity_moment: across,
@@ -19,7 +20,7 @@ fn machine([across, up]: [f64; 2]) -> Machine {
     Machine::new(description, 2).unwrap()
 }
 
-/// Forces, stiffness of the beam alone, and energy at rest.
+/// Returns the forces, the stiffness of the beam's coordinate alone, and the energy at rest.
 fn at_rest(system: &mut System<Individual<'_>>, q: &[f64], beam: usize) -> (Vec<f64>, f64, f64) {
     let still = vec![0.0; q.len()];
     let mut force = still.clone();
@@ -33,9 +34,9 @@ fn at_rest(system: &mut System<Individual<'_>>, q: &[f64], beam: usize) -> (Vec<
     (force, stiffness, system.equations.energy(&rest))
 }
 
-/// A mass on the beam is a pendulum: at the beam angle `theta` it stands `x sin theta + y cos theta`
-/// above the pivot; its weight times that is energy, the slope is a torque, the curvature a stiffness.
-/// Nothing else feels it, and the machine comes to rest with it.
+/// Checks that a mass on the beam acts as a pendulum: at beam angle `theta` it stands `x sin theta + y cos
+/// theta` above the pivot; weight times this height is the energy, its slope a torque, its curvature a
+/// stiffness. No other coordinate is affected, and the machine still finds its equilibrium.
 #[test]
 fn a_heavy_beam_is_a_pendulum() {
     let (plain, heavy) = (machine([0.0, 0.0]), machine([ACROSS, UP]));

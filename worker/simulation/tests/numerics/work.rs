@@ -1,8 +1,8 @@
-//! Work snapshots: what named runs cost, in counters that do not depend on the machine.
+//! Snapshots of the work of named runs, in counters that do not depend on the computer.
 //!
-//! Any change of method, tolerance, refactorisation policy or law shows here before it shows in
-//! seconds. To update: run the test, read in the message what a run cost before and now, decide
-//! that the change is wanted, and copy the new numbers here.
+//! A change of a method, tolerance, refactorisation policy or law shows here before it shows in run time. To
+//! update: run the test, compare the counters before and after in its message, decide whether the change is
+//! wanted, and copy the new numbers here.
 use crate::rope::*;
 use simulation::integrator::method::{CATALOGUE, Method, SPECTRAL_RADIUS};
 use simulation::integrator::tableau::{ESDIRK4, TR_BDF2};
@@ -14,7 +14,8 @@ use simulation::run::{RunSettings, simulate};
 use simulation::statistics::Statistics;
 use simulation::system::System;
 
-/// Steps, rejections by error and by Newton, Newton iterations, Jacobians, factorisations.
+/// Returns the counters as an array: steps, rejections by error and by Newton, Newton iterations, Jacobians,
+/// factorisations.
 fn counters(statistics: &Statistics) -> [u64; 6] {
     let Statistics {
         steps,

@@ -1,24 +1,24 @@
-//! PEST's observations as channels: one for each group, over the numbers of its observations. What has no weight is
-//! predicted.
+//! Conversion of PEST observations to channels: one channel for each observation group, with the observation
+//! number as abscissa. Observations of zero weight form predicted channels without a measured record.
 use exchange::pest::Control;
 use toml_edit::{Array, ArrayOfTables, InlineTable, Table, Value, value};
 
-/// File of the observations.
+/// Name of the file with the observations.
 pub(super) const OBSERVATIONS: &str = "observations.csv";
-/// Channel of prior information.
+/// Name of the channel for prior information.
 const PRIOR: &str = "prior_information";
 
-/// Observations that become one channel.
+/// Observations that form one channel.
 #[derive(Debug)]
 pub(super) struct Group {
-    /// Name of the channel.
+    /// Name of the channel that the group becomes.
     pub(super) name: String,
-    /// Whether they have weights.
+    /// Whether the observations have positive weights.
     pub(super) is_measured: bool,
     pub(super) rows: Vec<Row>,
 }
 
-/// One observation.
+/// Observation: name, value and weight.
 #[derive(Debug)]
 pub(super) struct Row {
     name: String,
@@ -26,7 +26,7 @@ pub(super) struct Row {
     weight: f64,
 }
 
-/// The groups in the order in which they appear.
+/// Groups the observations and the prior information by channel, in order of first appearance.
 pub(super) fn groups(control: &Control) -> Vec<Group> {
     let mut all: Vec<Group> = Vec::new();
     let observations = control.observations.iter();
@@ -66,7 +66,7 @@ pub(super) fn groups(control: &Control) -> Vec<Group> {
     all
 }
 
-/// A name of letters, digits, `_` and `-`.
+/// Replaces every character other than ASCII letters, digits, `_` and `-` by `_`.
 fn plain(name: &str) -> String {
     let letter = |letter: char| {
         let is_plain = letter.is_ascii_alphanumeric() || matches!(letter, '_' | '-');
@@ -75,7 +75,7 @@ fn plain(name: &str) -> String {
     name.chars().map(letter).collect()
 }
 
-/// The table of all observations.
+/// Returns the CSV text with all observations.
 pub(super) fn table(groups: &[Group]) -> String {
     let mut text = "channel,number,observation,value,weight\n".to_owned();
     for group in groups {
@@ -93,7 +93,7 @@ pub(super) fn table(groups: &[Group]) -> String {
     text
 }
 
-/// `[[channels]]`.
+/// Returns the `[[channels]]` tables of the case file.
 pub(super) fn tables(groups: &[Group], condition: &str) -> ArrayOfTables {
     groups
         .iter()
@@ -142,7 +142,8 @@ fn channel(group: &Group, condition: &str) -> Table {
     table
 }
 
-/// `[objective]`: PEST's, the sum of the squared weighted residuals.
+/// Returns the `[objective]` table, equivalent to PEST's objective: the sum of the squared weighted
+/// residuals.
 pub(super) fn objective(groups: &[Group], condition: &str) -> Table {
     let measured = groups.iter().filter(|group| group.is_measured);
     let term = |group: &Group| {

@@ -1,9 +1,10 @@
-//! A folder with all that lies in it, copied.
+//! Copying of a folder with its contents.
 use protocol::external::MOST_BYTES;
 use std::{fs, io, path::Path};
 
-/// Copies what lies in a folder; gives the names of its entries, and what was left out. A case may lie beside its
-/// control file: other cases and what is hidden stay behind.
+/// Copies the contents of a folder; returns the names of the copied entries and notes on those left out.
+/// Hidden entries and folders that are themselves cases are skipped, because a case may lie in the folder of
+/// its control file.
 pub(super) fn all(from: &Path, to: &Path) -> io::Result<(Vec<String>, Vec<String>)> {
     let (mut names, mut notes, mut bytes) = (Vec::new(), Vec::new(), 0);
     let mut entries = fs::read_dir(from)?.collect::<io::Result<Vec<_>>>()?;
@@ -13,7 +14,7 @@ pub(super) fn all(from: &Path, to: &Path) -> io::Result<(Vec<String>, Vec<String
         let path = entry.path();
         let Some(name) = entry.file_name().to_str().map(str::to_owned) else {
             notes.push(format!(
-                "{} has a name that is no text and stays behind",
+                "{} was not copied: its name is not valid UTF-8",
                 path.display()
             ));
             continue;
@@ -25,7 +26,7 @@ pub(super) fn all(from: &Path, to: &Path) -> io::Result<(Vec<String>, Vec<String
         }
         if !copied(&path, &to.join(&name), &mut bytes)? {
             notes.push(format!(
-                "{name} is neither file nor folder, or too large to travel: it stays behind"
+                "{name} was not copied: it is neither a file nor a folder, or exceeds the size limit for files sent to workers"
             ));
             continue;
         }
@@ -34,7 +35,8 @@ pub(super) fn all(from: &Path, to: &Path) -> io::Result<(Vec<String>, Vec<String
     Ok((names, notes))
 }
 
-/// Copies a file or folder; false for what is neither, or more than may travel.
+/// Copies a file or folder; returns false if it is neither, or exceeds the size limit for files that travel
+/// with a case.
 fn copied(from: &Path, to: &Path, bytes: &mut u64) -> io::Result<bool> {
     let found = fs::symlink_metadata(from)?;
     if found.is_dir() {

@@ -1,5 +1,5 @@
-//! A case made of a control file of PEST: `case.toml`, the observations beside it, and the control file's whole
-//! folder, whose files travel with the case.
+//! Import of a PEST control file as a case: writes `case.toml` and the observations, and copies the control
+//! file's folder, whose files travel with the case.
 mod channels;
 mod copy;
 mod unknowns;
@@ -12,45 +12,47 @@ use std::{
 };
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value, value};
 
-/// Name of the one condition of such a case.
+/// Name of the only condition of an imported case.
 const CONDITION: &str = "model";
-/// How long one run may take where nobody has said so (s).
+/// Default deadline of one run (s).
 const DEADLINE_S: f64 = 3600.0;
 
-/// What was made.
+/// Result of an import.
 #[derive(Debug)]
 pub struct Imported {
-    /// The case folder.
+    /// Folder of the new case.
     pub folder: PathBuf,
-    /// What was taken otherwise than it stands, or not at all.
+    /// Notes on settings of the control file that were changed or ignored.
     pub notes: Vec<String>,
-    /// Parameters that are estimated, and observations that count.
+    /// Number of estimated parameters and number of observations with positive weight.
     pub counts: [usize; 2],
 }
 
-/// Why nothing was made.
+/// Error that prevents an import.
 #[derive(Debug, thiserror::Error)]
 pub enum ImportError {
-    /// The control file, or one that it names.
+    /// Problem in the control file or in a file that it names.
     #[error(transparent)]
     File(#[from] Problem),
-    /// A folder that is there already.
+    /// Target folder that exists already.
     #[error("{} exists already, and nothing was written", .0.display())]
     Exists(PathBuf),
-    /// What the system says.
+    /// Input or output error of the operating system.
     #[error("{}: {source}", .path.display())]
     Io {
-        /// The file.
+        /// Path of the file or folder concerned.
         path: PathBuf,
-        /// Why.
+        /// Error of the operating system.
         source: io::Error,
     },
 }
 
-/// Makes the case folder of a control file: `to`, or the control file's name beside it.
+/// Creates the case folder for a control file: at `to`, or beside the control file under its name without
+/// extension.
 ///
 /// # Errors
-/// A control file that cannot be used, a folder that is there; then nothing is left of it.
+/// Returns an error for a control file that cannot be used, and for a target folder that exists. A partly
+/// written folder is removed.
 pub fn import(control: &Path, to: Option<&Path>) -> Result<Imported, ImportError> {
     let io = |path: &Path, source| ImportError::Io {
         path: path.to_owned(),
@@ -95,7 +97,8 @@ pub fn import(control: &Path, to: Option<&Path>) -> Result<Imported, ImportError
     })
 }
 
-/// A name for the case and its entry: many a control file is called like all others, so the folder's goes before.
+/// Returns the name for the case and its allow-list entry: the folder's name and the control file's name,
+/// because many control files have the same name.
 fn named(control: &Path) -> String {
     let full = std::path::absolute(control).unwrap_or_else(|_| control.to_owned());
     let folder = full.parent().and_then(Path::file_name);
@@ -104,7 +107,7 @@ fn named(control: &Path) -> String {
     parts.join("-")
 }
 
-/// The text of the case file.
+/// Returns the text of the case file.
 fn text_of(
     control: &Control,
     groups: &[Group],
@@ -130,7 +133,7 @@ fn text_of(
     format!("# Made from {file}, a control file of PEST.\n{document}")
 }
 
-/// `[model]`.
+/// Returns the `[model]` table of the case file.
 fn model(control: &Control, name: &str, files: &[String]) -> Table {
     let mut model = Table::new();
     model.insert("kind", value("command"));
@@ -178,13 +181,14 @@ fn model(control: &Control, name: &str, files: &[String]) -> Table {
     model
 }
 
-/// A file's path without `./` before it, and with `/` between folders.
+/// Normalises a path: removes leading `./` and uses `/` as separator.
 fn plain_path(path: &str) -> String {
     let path = path.replace('\\', "/");
     path.trim_start_matches("./").to_owned()
 }
 
-/// The words of the command line; several lines, or one for a shell, become a shell's.
+/// Splits the command line into words; several lines, or a line with shell syntax, are passed to `/bin/sh
+/// -c`.
 fn command(lines: &[String]) -> Vec<String> {
     let shell = |text: &str| text.contains(['|', '>', '<', '&', ';', '$', '`']);
     match lines {

@@ -1,18 +1,18 @@
-//! PEST's parameters as unknowns, and what is known of them beside their bounds.
+//! Conversion of PEST parameters to unknowns, with their priors and difference steps.
 use exchange::pest::{
     Control, IncrementKind, Parameter, ParameterGroup, PriorInformation, Transform,
 };
 use toml_edit::{Array, ArrayOfTables, InlineTable, Table, Value, value};
 
-/// PEST++ takes the bounds for four standard deviations.
+/// Number of standard deviations between the lower and the upper bound of a parameter, as PEST++ assumes.
 const BOUNDS_SD: f64 = 4.0;
 
-/// Whether a parameter is estimated itself.
+/// Returns whether a parameter is estimated, and neither fixed nor tied.
 pub(super) const fn is_searched(transform: &Transform) -> bool {
     matches!(transform, Transform::None | Transform::Log)
 }
 
-/// `[[unknowns]]`.
+/// Returns the `[[unknowns]]` tables of the case file.
 pub(super) fn tables(control: &Control) -> ArrayOfTables {
     let parameters = control.parameters.iter();
     parameters
@@ -64,7 +64,7 @@ fn table(control: &Control, own: &Parameter) -> Table {
     table
 }
 
-/// A tied parameter is searched on the scale of the one that it follows.
+/// Returns whether a parameter has a logarithmic scale; a tied parameter takes the scale of its parent.
 fn is_logarithmic(control: &Control, own: &Parameter) -> bool {
     match &own.transform {
         Transform::Log => true,
@@ -76,8 +76,8 @@ fn is_logarithmic(control: &Control, own: &Parameter) -> bool {
     }
 }
 
-/// What differences move a parameter by, at its initial value: a share of it on a logarithmic scale, else in its
-/// unit.
+/// Returns the finite-difference step of a parameter at its initial value: relative to the value on a
+/// logarithmic scale, otherwise in the parameter's unit.
 fn difference(own: &Parameter, group: &ParameterGroup, logarithmic: bool) -> Option<f64> {
     let size = own.initial.abs();
     let step = match group.increment_kind {
@@ -94,7 +94,7 @@ fn difference(own: &Parameter, group: &ParameterGroup, logarithmic: bool) -> Opt
     (share > 0.0 && share <= most).then_some(share)
 }
 
-/// How a parameter is written, where not as it is.
+/// Returns the factor and offset with which a parameter is written; `None` for factor 1 and offset 0.
 pub(super) fn written(own: &Parameter) -> Option<(String, Value)> {
     let is_plain = own.scale.total_cmp(&1.0).is_eq() && own.offset.total_cmp(&0.0).is_eq();
     if is_plain {
@@ -108,7 +108,8 @@ pub(super) fn written(own: &Parameter) -> Option<(String, Value)> {
     Some((own.name.clone(), parts.into()))
 }
 
-/// Prior information as an equation, which is measured like everything else.
+/// Converts an item of prior information to an equation, whose value is compared with an observation like any
+/// other.
 pub(super) fn equation(prior: &PriorInformation) -> InlineTable {
     let term = |term: &exchange::pest::PriorTerm| {
         let mut parts = InlineTable::new();

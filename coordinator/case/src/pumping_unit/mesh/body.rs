@@ -1,32 +1,32 @@
-//! The meshed head: nodes, elements of one kind, named groups, and the volume that they fill.
+//! Mesh of the head: nodes, elements of one kind and named groups, with their volume.
 use super::volume;
 use protocol::pumping_unit::ElementKind;
 use std::collections::BTreeMap;
 
-/// A mesh with named groups.
+/// Finite-element mesh with named groups.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Node positions in the beam frame \[m\].
     pub nodes_m: Vec<[f64; 3]>,
-    /// What its elements are.
+    /// Kind of the elements.
     pub kind: ElementKind,
-    /// Elements per volume group: indices of nodes, element after element, in Gmsh's order.
+    /// Elements of each volume group: node indices, element after element, in Gmsh's order.
     pub volumes: BTreeMap<String, Vec<usize>>,
-    /// Faces per surface group: indices of nodes, face after face.
+    /// Faces of each surface group: node indices, face after face.
     pub surfaces: BTreeMap<String, Vec<usize>>,
-    /// Whether it is the half z >= 0 of the head: it has a group [`SYMMETRY`].
+    /// Whether the mesh covers only the half z >= 0 of the head, marked by a group [`SYMMETRY`].
     pub half: bool,
 }
 
-/// The group of all elements.
+/// Name of the group of all elements.
 pub const VOLUME: &str = "steel";
-/// The groups of the held pin holes and of the loaded rim.
+/// Names of the groups of the held pin holes and of the loaded rim.
 pub const SURFACES: [&str; 3] = ["pin_a", "pin_b", "rope_surface"];
-/// The group of the cut face in the plane z = 0, which only a half has.
+/// Name of the group of the cut face in the plane z = 0, present only in a half mesh.
 pub const SYMMETRY: &str = "symmetry";
 
 impl Mesh {
-    /// Volume of the head \[m3\]: of all elements, twice that of a half.
+    /// Returns the volume of the head \[m3\]: the sum over all elements, doubled for a half mesh.
     pub fn volume_m3(&self) -> f64 {
         let elements = self.volumes.values();
         let elements = elements.flat_map(|group| group.chunks_exact(self.kind.nodes()));
@@ -36,7 +36,7 @@ impl Mesh {
         if self.half { 2.0 * sum } else { sum }
     }
 
-    /// Volume of one element \[m3\]; none if it is inside out.
+    /// Returns the volume of an element \[m3\]; `None` if it is inverted.
     pub(super) fn element_volume_m3(&self, element: &[usize]) -> Option<f64> {
         let place = |&node: &usize| self.nodes_m.get(node).copied().unwrap_or_default();
         let places: Vec<[f64; 3]> = element.iter().map(place).collect();

@@ -1,6 +1,7 @@
-//! The back head's mesh: elements of one kind in named groups, and whether it is the head of the modes.
+//! Reading of the back head's mesh, with elements of one kind in named groups, and a check that the modes
+//! belong to it.
 //!
-//! Checking it takes some milliseconds, so every load reads it whole; nothing of it travels.
+//! The check takes a few milliseconds, so every load reads the whole mesh; the mesh is not sent to workers.
 mod body;
 mod msh;
 mod origin;

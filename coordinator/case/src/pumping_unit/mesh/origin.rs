@@ -1,25 +1,25 @@
-//! Whether the head's tables and its mesh belong together, by content hashes and by mass.
+//! Check that the head's tables belong to its mesh, by content hashes and by mass.
 use super::{super::head::Provenance, body::Mesh};
 use crate::error::{CaseError, contradiction};
 use std::path::Path;
 
-/// What to do about tables of another mesh.
+/// Remedy for tables computed from another mesh.
 const ANOTHER: &str =
     "the tables belong to another mesh: `horsehead head CASE --write` computes them again";
 
-/// What tables of the head say that they were computed from, by its content hash.
+/// Input whose content hash is stated in the head's tables.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) enum Origin {
-    /// The mesh file.
+    /// Mesh file.
     Mesh,
-    /// All that a reduction depends on: mesh, material, arc, stations, gauges.
+    /// All inputs of a reduction: mesh, material, arc, stations and gauges.
     Source,
 }
 
-/// Tables were computed from what is there now, as far as that is known and they say so.
+/// Checks that tables were computed from the current input, if both hashes are known.
 ///
 /// # Errors
-/// They name another content.
+/// Returns an error if the tables state another content hash.
 pub(in super::super) fn check_origin(
     path: &Path,
     origin: Origin,
@@ -50,10 +50,10 @@ pub(in super::super) fn check_origin(
     ))
 }
 
-/// The tables were computed from this mesh, as far as they say.
+/// Checks that the tables were computed from this mesh, if they state a hash.
 ///
 /// # Errors
-/// They name another content.
+/// Returns an error if the tables state another content hash.
 pub(in super::super) fn check_hash(
     path: &Path,
     hash: &str,
@@ -72,10 +72,10 @@ pub(in super::super) fn check_hash(
     }
 }
 
-/// The mesh is the steel whose modes the case uses.
+/// Checks that the mesh has the mass that belongs to the modes.
 ///
 /// # Errors
-/// Volume times density differs from the modes' mass by more than 1 %.
+/// Returns an error if volume times density differs from the modes' mass by more than 1 %.
 pub(in super::super) fn check_mass(
     path: &Path,
     mesh: &Mesh,

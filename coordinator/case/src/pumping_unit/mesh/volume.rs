@@ -1,7 +1,8 @@
-//! Volumes of elements, and whether they are inside out. Knows no mesh.
+//! Volumes of single elements, with detection of inverted elements.
 use protocol::pumping_unit::ElementKind;
 
-/// Volume of an element with its nodes in place, in Gmsh's order \[m3\]; none if it is inside out.
+/// Returns the volume of an element from its node positions, in Gmsh's order \[m3\]; `None` if the element is
+/// inverted.
 pub(super) fn of(kind: ElementKind, nodes: &[[f64; 3]]) -> Option<f64> {
     match kind {
         ElementKind::Hexahedron => Some(hexahedron(nodes)).filter(|volume| *volume > 0.0),
@@ -9,7 +10,7 @@ pub(super) fn of(kind: ElementKind, nodes: &[[f64; 3]]) -> Option<f64> {
     }
 }
 
-/// Exact by 2 x 2 x 2 Gauss points.
+/// Computes the volume of a hexahedron exactly, by 2 x 2 x 2 Gauss points.
 fn hexahedron(corners: &[[f64; 3]]) -> f64 {
     let at = 1.0 / 3.0_f64.sqrt();
     let mut volume = 0.0;
@@ -46,10 +47,10 @@ const SIGNS: [[f64; 3]; 8] = [
     [-1.0, 1.0, 1.0],
 ];
 
-/// Exact for straight and for curved edges: the Jacobian's determinant is of degree 3, and so is the
-/// rule, which gives the corners 1/40 and the middles of the faces 9/40 of the volume. None where the
-/// determinant is not positive at one of them: a middle of an edge far from its place shows there
-/// first.
+/// Computes the volume of a tetrahedron, exactly for straight and for curved edges: the Jacobian's
+/// determinant is of degree 3, as is the quadrature rule with weights 1/40 for the corners and 9/40 for the
+/// face centres. Returns `None` if the determinant is not positive at one of these points, which is where a
+/// badly displaced mid-edge node shows first.
 fn tetrahedron(nodes: &[[f64; 3]]) -> Option<f64> {
     let mut volume = 0.0;
     for k in 0..4 {
@@ -68,10 +69,10 @@ fn tetrahedron(nodes: &[[f64; 3]]) -> Option<f64> {
     Some(volume)
 }
 
-/// Ends of the edges that the nodes 4 to 9 of a tetrahedron lie on.
+/// End nodes of the edges on which nodes 4 to 9 of a tetrahedron lie.
 const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
 
-/// Slopes of the position along each volume coordinate, at a point.
+/// Returns the derivatives of the position with respect to each volume coordinate, at a point.
 fn slopes(nodes: &[[f64; 3]], point: &[f64; 4]) -> [[f64; 3]; 4] {
     let mut slopes = [[0.0; 3]; 4];
     let mut add = |k: usize, factor: f64, node: &[f64; 3]| {
@@ -98,8 +99,8 @@ fn determinant([[a, b, c], [d, e, f], [g, h, i]]: &[[f64; 3]; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    /// The unit tetrahedron under a quadratic map whose determinant is `1 - 2 a b x z`: the volume is
-    /// `1/6 - 2 a b / 120`.
+    /// Returns the nodes of the unit tetrahedron under a quadratic map with determinant `1 - 2 a b x z`,
+    /// whose volume is `1/6 - 2 a b / 120`.
     fn bent(a: f64, b: f64) -> Vec<[f64; 3]> {
         let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let middles = EDGES.map(|[i, j]| [0, 1, 2].map(|k| 0.5 * (corners[i][k] + corners[j][k])));

@@ -1,4 +1,4 @@
-//! Whether a record, its data sheet and the case agree, and what is worth knowing of them.
+//! Checks that a record, its data sheet and the case agree, and notes for the user.
 use super::{resample, samples::Samples, sheet::Sheet};
 use crate::{
     document::Document,
@@ -8,7 +8,7 @@ use crate::{
 use protocol::pumping_unit::TurnSense;
 use std::path::{Path, PathBuf};
 
-/// What a record is asked to agree with.
+/// Values of the case with which a record must agree.
 #[derive(Debug, Clone, Copy)]
 pub(in super::super) struct Expected<'a> {
     /// Position of the condition in the case.
@@ -17,40 +17,40 @@ pub(in super::super) struct Expected<'a> {
     pub(in super::super) condition: &'a str,
     /// Speed of the condition [1/min].
     pub(in super::super) speed_rpm: f64,
-    /// The case file, for messages.
+    /// Path of the case file, for messages.
     pub(in super::super) case_file: &'a Path,
-    /// Output grid \[deg\].
+    /// Step of the output grid \[deg\].
     pub(in super::super) step_deg: f64,
     /// Sense in which the case's crank turns.
     pub(in super::super) sense: TurnSense,
 }
 
-/// What was found in a record beside its curves.
+/// Facts about a record apart from its curves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordFacts {
-    /// The file.
+    /// Path of the record's file.
     pub path: PathBuf,
-    /// Samples in the file.
+    /// Number of samples in the file.
     pub samples: usize,
-    /// Samples that are missing in the time column.
+    /// Number of samples missing according to the time column.
     pub lost: u64,
-    /// Samples per second \[Hz\].
+    /// Sampling rate \[Hz\].
     pub rate_hz: f64,
     /// Mean speed between the first and the last index pulse [1/min].
     pub speed_rpm: f64,
     /// Noise that the data sheet states, per sample \[MPa\].
     pub stated_noise_mpa: Option<f64>,
-    /// Columns that are not used.
+    /// Names of the columns that are not used.
     pub unused: Vec<String>,
 }
 
-/// Largest difference of speeds that is no contradiction \[1\]: belt creep and slip reach 3 %.
+/// Relative tolerance between stated and measured speed \[1\]: belt creep and slip reach 3 %.
 const SPEED_TOLERANCE: f64 = 0.05;
 
-/// The sheet is one of this condition.
+/// Checks that a data sheet belongs to the condition.
 ///
 /// # Errors
-/// Another speed, or a crank that turns the other way.
+/// Returns an error for another speed or the opposite sense of crank rotation.
 pub(super) fn check_stated(
     sheet: &Sheet,
     document: &Document,
@@ -84,7 +84,7 @@ pub(super) fn check_stated(
     Ok(())
 }
 
-/// The case's speed, for messages.
+/// Returns a phrase with the case's speed, for messages.
 pub(super) fn speed_of(expected: &Expected<'_>) -> String {
     format!(
         "condition `{}` of {} has speed_rpm = {}",
@@ -94,7 +94,7 @@ pub(super) fn speed_of(expected: &Expected<'_>) -> String {
     )
 }
 
-/// What is told about a record; the speed is that between index pulses where there are two.
+/// Collects the facts about a record; the speed is measured between index pulses if there are at least two.
 pub(super) fn facts(path: &Path, samples: &Samples, sheet: &Sheet) -> RecordFacts {
     let speed_rpm = match samples.pulses_s.as_slice() {
         [first, .., last] => 60.0 * (samples.pulses_s.len() - 1) as f64 / (last - first),
@@ -115,7 +115,7 @@ pub(super) fn facts(path: &Path, samples: &Samples, sheet: &Sheet) -> RecordFact
     }
 }
 
-/// The measured speed is that of the condition.
+/// Checks that the measured speed is that of the condition, within [`SPEED_TOLERANCE`].
 pub(super) fn check_speed(
     path: &Path,
     samples: &Samples,
@@ -137,7 +137,8 @@ pub(super) fn check_speed(
     ))
 }
 
-/// Sampling and counts are those of the data sheet.
+/// Checks that sampling rate and sample counts match the data sheet; a different number of lost samples is
+/// only a note.
 pub(super) fn check_sheet(
     path: &Path,
     samples: &Samples,
@@ -184,7 +185,7 @@ pub(super) fn check_sheet(
     Ok(())
 }
 
-/// What the user should know.
+/// Adds notes for the user: unused columns, few cycles, lost samples and a deviating speed.
 pub(super) fn remark(
     path: &Path,
     cycles: &resample::Cycles,

@@ -1,7 +1,7 @@
-//! Gauge records: samples and data sheet in, one averaged turn on the output grid out.
+//! Reading of gauge records: from samples and data sheet to an averaged turn on the output grid.
 //!
-//! A record is cut into cycles at the index pulses, every whole cycle is resampled on the output
-//! grid, and the cycles are averaged; the standard deviation between them is the noise model.
+//! A record is cut into cycles at the index pulses, every whole cycle is resampled on the output grid, and
+//! the cycles are averaged; the standard deviation between them is the noise model.
 mod agreement;
 mod read;
 mod resample;

@@ -1,4 +1,4 @@
-//! One record from its files to the averaged turn.
+//! Reading of a record, from its files to the averaged turn.
 use super::{
     agreement::{Expected, RecordFacts, check_sheet, check_speed, check_stated, facts, remark},
     resample,
@@ -15,29 +15,30 @@ use protocol::case::{Channel, ChannelRecord};
 use protocol::pumping_unit::Sensor;
 use std::path::{Path, PathBuf};
 
-/// Reads the samples of a record alone, without its sheet and without a case; how many there are.
+/// Reads the samples of a record alone, without data sheet and case; returns their number. `path` is used
+/// only in messages.
 ///
 /// # Errors
-/// Everything that makes the samples unusable, with row and column; `path` is only named.
+/// Returns everything that makes the samples unusable, with row and column.
 pub fn count_samples(path: &Path, csv: &[u8]) -> Result<usize, CaseError> {
     Samples::read(path, csv).map(|samples| samples.angle_deg.len())
 }
 
-/// A record that was read.
+/// Record as read from its files.
 #[derive(Debug)]
 pub(in super::super) struct Read {
-    /// What every sensor of the condition shows, with what was measured of the gauges.
+    /// Channels of all sensors of the condition, with the measured records of the gauges.
     pub(in super::super) channels: Vec<Channel>,
-    /// Every cycle by itself, with what was recorded beside the gauges.
+    /// Record with each cycle separate, including channels recorded in addition to the gauges.
     pub(in super::super) cycles: Record,
     pub(in super::super) facts: RecordFacts,
     pub(in super::super) notes: Vec<Note>,
 }
 
-/// Reads a record and the data sheet beside it.
+/// Reads a record and the data sheet in the same folder.
 ///
 /// # Errors
-/// Anything that makes the record unusable or contradicts its sheet or the case.
+/// Returns everything that makes the record unusable or contradicts its sheet or the case.
 pub(in super::super) fn read(path: &Path, expected: &Expected<'_>) -> Result<Read, CaseError> {
     let role = format!(
         "the gauge record of condition `{}` in {}",
@@ -103,21 +104,21 @@ pub(in super::super) fn read(path: &Path, expected: &Expected<'_>) -> Result<Rea
     })
 }
 
-/// What every sensor shows under a condition on the output grid; nothing of it measured.
+/// Returns the channels of all sensors under a condition on the output grid, without measured records.
 pub(in super::super) fn channels(condition: usize, step_deg: f64) -> Vec<Channel> {
     let turn_deg = resample::grid(step_deg);
     let channel = |sensor: Sensor| sensor.channel(condition, turn_deg.clone());
     Sensor::ALL.map(channel).into()
 }
 
-/// The data sheet of a record: the same name with the ending `.toml`.
+/// Returns the path of a record's data sheet: the same name with the extension `.toml`.
 fn sheet_path(record: &Path) -> PathBuf {
     let name = record.file_name().unwrap_or_default().to_string_lossy();
     let stem = name.trim_end_matches(".gz").trim_end_matches(".csv");
     record.with_file_name(format!("{stem}.toml"))
 }
 
-/// Gives the gauges that were recorded their averaged records; every grid angle must have a value.
+/// Stores the averaged records in the channels of the recorded gauges; every grid angle must have a value.
 fn average(
     path: &Path,
     cycles: &resample::Cycles,
@@ -154,7 +155,7 @@ fn average(
     Ok(())
 }
 
-/// From the first to the last angle.
+/// Returns the difference between the last and the first angle.
 fn span(angles: &[f64]) -> f64 {
     match (angles.first(), angles.last()) {
         (Some(first), Some(last)) => last - first,

@@ -1,37 +1,37 @@
-//! From samples to the output grid: local regression on each cycle, then mean and spread.
+//! Resampling on the output grid by local regression on each cycle, with mean and spread over the cycles.
 //!
-//! A grid value is the value at the grid angle of the parabola that fits the samples around it best,
-//! with weights 1 - (u/h)^2 within the half-width h. Unlike linear interpolation it averages the
-//! noise of several samples; unlike bins and triangles it does not smear: with h = 0.75 deg it
-//! keeps 99.8 % of a ripple of order 80 of the crank, where a bin of 0.5 deg keeps 98 % and a
-//! triangle 96 %. Because it fits a curve instead of averaging, uneven and lost samples do not bias
-//! it. At the grid's Nyquist order (360 at 0.5 deg) half is kept, above it less, and a gauge
-//! amplifier leaves nothing there: nothing aliases that matters. Where a cycle has samples on one
-//! side only, or fewer than three, it has no value, and the other cycles stand for it.
+//! A grid value is that of the parabola fitted to the samples around the grid angle, with weights 1 - (u/h)^2
+//! within the half-width h. Unlike linear interpolation it averages the noise of several samples; unlike bins
+//! and triangular kernels it hardly smooths the signal: with h = 0.75 deg it keeps 99.8 % of a ripple of
+//! order 80 of the crank, where a bin of 0.5 deg keeps 98 % and a triangle 96 %. Because a curve is fitted,
+//! uneven and lost samples cause no bias. At the grid's Nyquist order (360 at 0.5 deg) half of the amplitude
+//! is kept, and less above; aliasing is negligible, because a gauge amplifier leaves nothing there. A cycle
+//! with samples on only one side of the grid angle, or fewer than three, has no value there, and the other
+//! cycles replace it.
 use super::samples::Samples;
 use crate::spread::mean_and_spread;
 use discrepancy::record::Curves;
 use protocol::pumping_unit::Sensor;
 
-/// Resampled cycles.
+/// Cycles resampled on the output grid, with their mean and spread.
 #[derive(Debug)]
 pub(super) struct Cycles {
-    /// Indices of the cycles that are whole.
+    /// Indices of the whole cycles.
     pub(super) whole: Vec<usize>,
     /// Mean per gauge and grid angle; absent where no cycle has a value.
     pub(super) mean: Vec<Vec<Option<f64>>>,
     /// Standard deviation between cycles, per gauge and grid angle.
     pub(super) spread: Vec<Vec<f64>>,
-    /// Grid angles that some whole cycle lacks.
+    /// Number of grid angles at which at least one whole cycle has no value.
     pub(super) gaps: usize,
-    /// Which channel each curve of a cycle is, gauges first.
+    /// Sensor of each curve of a cycle, gauges first.
     pub(super) channels: Vec<Sensor>,
-    /// Every whole cycle; where it has a gap, the mean of the others stands. Empty where every cycle
-    /// lacks an angle.
+    /// Curves of every whole cycle, with gaps filled by the mean of the other cycles. Empty if an angle is
+    /// missing in all cycles.
     pub(super) single: Vec<Curves>,
 }
 
-/// Share of the grid a cycle must cover to count as whole.
+/// Minimum share of the grid that a whole cycle covers.
 const WHOLE: f64 = 0.9;
 
 /// Resamples every cycle and averages the whole ones.
@@ -88,7 +88,8 @@ pub(super) fn cycles(samples: &Samples, step_deg: f64) -> Cycles {
     cycles
 }
 
-/// The cycles with their gaps filled by the mean of the others; none if an angle is missing in all.
+/// Fills the gaps of the cycles with the mean of the others; returns an empty list if an angle is missing in
+/// all.
 fn filled(cycles: &[Vec<Vec<Option<f64>>>]) -> Vec<Curves> {
     let mean = |channel: usize, at: usize| {
         let there = cycles.iter().filter_map(|cycle| cycle[channel][at]);
@@ -108,19 +109,19 @@ fn filled(cycles: &[Vec<Vec<Option<f64>>>]) -> Vec<Curves> {
         .unwrap_or_default()
 }
 
-/// Number of grid angles of a turn.
+/// Returns the number of grid angles of a turn.
 pub(super) fn grid_count(step_deg: f64) -> usize {
     usize::try_from(super::samples::whole((360.0 / step_deg).round())).unwrap_or(0)
 }
 
-/// The grid 0, step, .. 360 - step.
+/// Returns the grid angles 0, step, .. 360 - step.
 pub(super) fn grid(step_deg: f64) -> Vec<f64> {
     (0..grid_count(step_deg))
         .map(|at| at as f64 * step_deg)
         .collect()
 }
 
-/// What a grid value is made of: a run of samples with their regression weights.
+/// Consecutive samples and their regression weights for one grid value.
 #[derive(Debug)]
 struct Window {
     first: usize,
@@ -128,7 +129,8 @@ struct Window {
 }
 
 impl Window {
-    /// Regression weights at an angle; none where samples are too few or on one side only.
+    /// Computes the regression weights at an angle; `None` if there are fewer than three samples or all are
+    /// on one side.
     fn new(angles: &[f64], center: f64, half_width: f64) -> Option<Self> {
         let first = angles.partition_point(|angle| *angle <= center - half_width);
         let end = angles.partition_point(|angle| *angle < center + half_width);
@@ -168,7 +170,7 @@ impl Window {
         Some(Self { first, weights })
     }
 
-    /// The grid value of one gauge.
+    /// Returns the grid value of one curve.
     fn apply(&self, stress: &[f64]) -> f64 {
         let run = stress.iter().skip(self.first);
         run.zip(&self.weights)

@@ -7,10 +7,11 @@ use crate::{
 use protocol::pumping_unit::Sensor;
 use std::path::Path;
 
-/// Columns that a record must have.
+/// Names of the required columns of a record.
 const COLUMNS: [&str; 2] = ["time_s", "crank_deg"];
 
-/// What is recorded over them: gauges, of which there must be one, then what a diagnosis uses beside them.
+/// Columns with measured curves and their sensors: gauges, at least one of which is required, then the
+/// optional sensors that a diagnosis uses.
 const CURVES: [(&str, Sensor); 6] = [
     ("stress_1_mpa", Sensor::Gauge(1)),
     ("stress_2_mpa", Sensor::Gauge(2)),
@@ -20,25 +21,25 @@ const CURVES: [(&str, Sensor); 6] = [
     ("crank_torque_nm", Sensor::Torque),
 ];
 
-/// Columns for the reader: what a channel of the model is driven by is no reading of it.
+/// Columns that are accepted but not used: the load drives the model and so is not an output to compare with.
 const FOR_READERS: [&str; 1] = ["polished_rod_load_n"];
 
-/// A record as it was sampled.
+/// Record as sampled.
 #[derive(Debug)]
 pub(super) struct Samples {
-    /// Crank angle, counted on over the cycles: cycle x 360 + angle \[deg\]; never falls.
+    /// Crank angle unwrapped over the cycles: cycle x 360 + angle \[deg\]; never decreasing.
     pub(super) angle_deg: Vec<f64>,
-    /// What was recorded (MPa, m, N m), gauges first.
+    /// Sensor and values of each recorded curve (MPa, m, N m), gauges first.
     pub(super) curves: Vec<(Sensor, Vec<f64>)>,
-    /// Columns that are not used, each with the nearest name that would be.
+    /// Names of the unused columns, each with the most similar known column that is absent.
     pub(super) unused: Vec<(String, Option<&'static str>)>,
     /// Time of the first sample after each index pulse \[s\].
     pub(super) pulses_s: Vec<f64>,
-    /// Usual time between samples \[s\].
+    /// Median time between samples \[s\].
     pub(super) step_s: f64,
-    /// Samples that are lost: steps that are missing in the time column.
+    /// Number of lost samples, from gaps in the time column.
     pub(super) lost: u64,
-    /// Usual crank angle between samples \[deg\].
+    /// Median crank angle between samples \[deg\].
     pub(super) step_deg: f64,
 }
 
@@ -46,8 +47,8 @@ impl Samples {
     /// Reads and checks the columns.
     ///
     /// # Errors
-    /// Everything a table may have wrong; times that repeat or run backwards; angles outside
-    /// 0 to 360 or running backwards; no gauge; stress that is not MPa by its magnitude; a dead gauge.
+    /// Returns an error for any fault of the table; times that repeat or decrease; angles outside 0 to 360 or
+    /// decreasing; no gauge; stress that is not in MPa judging by its magnitude; a gauge without signal.
     pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Self, CaseError> {
         let table = Table::read_with(path, bytes, &COLUMNS, &CURVES.map(|(name, _)| name))?;
         let [time, crank, rest @ ..] = table.columns.as_slice() else {
@@ -109,7 +110,7 @@ impl Samples {
     }
 }
 
-/// Times ascend strictly.
+/// Checks that times ascend strictly.
 fn check_time(path: &Path, table: &Table, time: &[f64]) -> Result<(), CaseError> {
     for (row, (before, after)) in time.iter().zip(time.iter().skip(1)).enumerate() {
         if after <= before {
@@ -136,7 +137,8 @@ fn check_time(path: &Path, table: &Table, time: &[f64]) -> Result<(), CaseError>
     Ok(())
 }
 
-/// Counts the crank angle on over index pulses, which show as a fall of more than half a turn.
+/// Unwraps the crank angle over the index pulses, which appear as a decrease of more than half a turn;
+/// returns the angles and the times of the pulses.
 fn unwrap_angle(
     path: &Path,
     table: &Table,
@@ -175,7 +177,7 @@ fn unwrap_angle(
     Ok((angles, pulses))
 }
 
-/// Stress is MPa by its magnitude, and alive.
+/// Checks that stress has the magnitude of MPa and varies.
 fn check_stress(
     path: &Path,
     table: &Table,
@@ -208,14 +210,14 @@ fn check_stress(
     Ok(())
 }
 
-/// The middle value; 0 of nothing.
+/// Returns the median (the upper one of an even number of values); 0 without values.
 fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or_default()
 }
 
-/// A count from a number that is one already, up to rounding.
+/// Converts a non-negative number that is whole up to rounding to an integer; negative numbers become 0.
 pub(super) fn whole(value: f64) -> u64 {
     #[expect(
         clippy::cast_possible_truncation,

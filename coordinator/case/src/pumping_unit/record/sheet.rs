@@ -1,4 +1,5 @@
-//! The data sheet beside a gauge record, `test_5rpm.toml`: what the measuring chain states.
+//! Data sheet of a gauge record (e.g. `test_5rpm.toml`): sampling, noise and tolerances of the measuring
+//! chain.
 use super::tolerance::Tolerance;
 use crate::{
     document::{Document, Step},
@@ -10,7 +11,7 @@ use protocol::pumping_unit::{Sensor, TurnSense};
 use serde::Deserialize;
 use std::path::Path;
 
-/// What is used of a data sheet; other keys are allowed and noted.
+/// Keys of a data sheet that are read; other keys are allowed and produce a note.
 #[derive(Debug, Deserialize)]
 pub(super) struct Sheet {
     pub(super) strokes_per_minute: f64,
@@ -30,32 +31,32 @@ pub(super) struct Sheet {
     tolerance: Tolerance,
 }
 
-/// The crank's part of a data sheet.
+/// `[crank]` table of a data sheet.
 #[derive(Debug, Default, Deserialize)]
 struct Crank {
     index_tolerance_deg: Option<f64>,
     sense: Option<String>,
 }
 
-/// The load cell's part of a data sheet.
+/// `[load]` table of a data sheet: the load cell.
 #[derive(Debug, Default, Deserialize)]
 struct Load {
     cycle_to_cycle_variation: Option<f64>,
 }
 
-/// The position's part of a data sheet.
+/// `[position]` table of a data sheet: the rod position sensor.
 #[derive(Debug, Default, Deserialize)]
 struct Position {
     noise_rms_m: Option<f64>,
 }
 
-/// The torque's part of a data sheet.
+/// `[torque]` table of a data sheet: the crank torque sensor.
 #[derive(Debug, Default, Deserialize)]
 struct Torque {
     noise_rms_nm: Option<f64>,
 }
 
-/// The gauges' part of a data sheet.
+/// `[gauges]` table of a data sheet.
 #[derive(Debug, Deserialize)]
 pub(super) struct Gauges {
     pub(super) unit: String,
@@ -64,7 +65,8 @@ pub(super) struct Gauges {
     noise_correlation_per_sample: Option<f64>,
 }
 
-/// Keys of a sheet that are understood, or known and for the reader only.
+/// Top-level keys of a data sheet that produce no note: keys that are read, and keys that only inform a human
+/// reader.
 const KNOWN: &[&str] = &[
     "name",
     "strokes_per_minute",
@@ -80,15 +82,15 @@ const KNOWN: &[&str] = &[
     "tolerance",
 ];
 
-/// Every sense in which a crank may turn.
+/// Allowed values of `crank.sense`.
 const SENSES: [TurnSense; 2] = [TurnSense::Clockwise, TurnSense::CounterClockwise];
 
 impl Sheet {
-    /// The sense in which the crank turns, seen with the well on the right; none where the sheet says
-    /// nothing of it.
+    /// Returns the direction in which the crank turns, seen with the well on the right; `None` where the
+    /// sheet does not state it.
     ///
     /// # Errors
-    /// Any value that is none of the two, prose too.
+    /// Any value other than those in [`SENSES`].
     pub(super) fn sense(&self, document: &Document) -> Result<Option<TurnSense>, CaseError> {
         let Some(stated) = &self.crank.sense else {
             return Ok(None);
@@ -107,7 +109,8 @@ impl Sheet {
         })
     }
 
-    /// The noise of one sample, in the unit of the sensor's channel, if the sheet states it.
+    /// Returns the standard deviation of the noise of one sample, in the unit of the sensor's channel, if the
+    /// sheet states it.
     pub(super) const fn noise(&self, sensor: Sensor) -> Option<f64> {
         match sensor {
             Sensor::Gauge(_) => self.gauges.noise_rms_mpa,
@@ -116,14 +119,15 @@ impl Sheet {
         }
     }
 
-    /// Correlation of the noise from one value to the next, of channels that are sampled `grid` times as densely on the
-    /// output grid as in the record, if the sheet states it.
+    /// Returns the correlation of the noise between neighbouring points of the output grid, if the sheet
+    /// states it, for channels whose output grid has `grid` points per sample of the record.
     pub(super) fn correlation(&self, grid: f64) -> Option<f64> {
         let stated = self.gauges.noise_correlation_per_sample;
         stated.map(|rho| libm::pow(rho, 1.0 / grid))
     }
 
-    /// What the sheet says of the measurement, for channels of these sensors.
+    /// Converts the tolerances and input scatter of the sheet to the form that a diagnosis uses, for channels
+    /// of the given sensors.
     pub(super) fn stated(&self, recorded: &[Sensor]) -> Stated {
         let positive = |value: &f64| *value > 0.0;
         let turned = self.crank.index_tolerance_deg.filter(positive);
@@ -140,10 +144,10 @@ impl Sheet {
         }
     }
 
-    /// Reads and checks a data sheet.
+    /// Reads and checks a data sheet; returns it with its document and one note per unused key.
     ///
     /// # Errors
-    /// Missing, malformed, another unit than MPa, values out of range.
+    /// A missing or malformed file, a gauge unit other than MPa, or values out of range.
     pub(super) fn read(path: &Path, role: &str) -> Result<(Self, Document, Vec<Note>), CaseError> {
         let document = Document::read(path, role)?;
         let sheet: Self = document.parse()?;
@@ -225,7 +229,7 @@ impl Sheet {
     }
 }
 
-/// Standard deviations are finite and not negative.
+/// Checks that the stated standard deviations are finite and not negative.
 fn check_tolerance(document: &Document, tolerance: &Tolerance) -> Result<(), CaseError> {
     for (name, value) in tolerance.stated() {
         if !(value.is_finite() && value >= 0.0) {

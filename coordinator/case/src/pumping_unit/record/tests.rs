@@ -1,4 +1,4 @@
-//! Resampling against curves that are known: nothing is smeared, nothing is biased.
+//! Tests of the resampling against known curves: the result is neither smeared nor biased.
 use super::{
     resample::{self, Cycles},
     samples::{Samples, whole},
@@ -6,8 +6,9 @@ use super::{
 use protocol::pumping_unit::Sensor;
 use std::path::Path;
 
-/// A record of one gauge: a sample each `step_deg`, from `start_deg` on, over `turns`, where `keep`
-/// says so; the stress is a function of the counted-on crank angle.
+/// Builds a record of one gauge with a sample every `step_deg`, from `start_deg` on, over `turns`
+/// revolutions, of which only the samples accepted by `keep` remain; `stress` is a function of the unwrapped
+/// crank angle.
 fn sampled(
     (start_deg, step_deg, turns): (f64, f64, f64),
     keep: impl Fn(usize) -> bool,
@@ -36,12 +37,12 @@ fn sampled(
     }
 }
 
-/// The whole part of a small positive number.
+/// Returns the integer part of a small positive number.
 fn floor(value: f64) -> usize {
     usize::try_from(whole(value)).unwrap()
 }
 
-/// Largest difference from a curve on the grid of 0.5 deg.
+/// Returns the largest absolute difference between the mean cycle and a curve, on the grid of 0.5 deg.
 fn worst(cycles: &Cycles, curve: impl Fn(f64) -> f64) -> f64 {
     let differences = cycles.mean[0]
         .iter()
@@ -50,7 +51,7 @@ fn worst(cycles: &Cycles, curve: impl Fn(f64) -> f64) -> f64 {
     differences.fold(0.0, f64::max)
 }
 
-/// A ripple of a whole order of the crank.
+/// Returns a sine of the given integer order of the crank revolution.
 fn ripple(order: f64) -> impl Fn(f64) -> f64 + Copy {
     move |angle: f64| (order * angle).to_radians().sin()
 }
@@ -198,7 +199,7 @@ fn noise_is_averaged() {
     assert!((0.4..0.82).contains(&ours), "{ours}");
 }
 
-/// A table of these columns that every gauge and sensor moves in.
+/// Builds a CSV table with the given columns, in which every gauge and sensor varies.
 fn table(columns: &[&str]) -> String {
     let row = |at: usize| {
         let angle = 0.5 * at as f64 % 360.0;
@@ -216,7 +217,8 @@ fn table(columns: &[&str]) -> String {
         .join("\n")
 }
 
-/// Any gauge will do, position and torque need not be there; a record without a gauge is none.
+/// Checks that any subset of the gauges is accepted, that position and torque are optional, and that a record
+/// without a gauge is rejected.
 #[test]
 fn any_gauges_make_a_record() {
     let read = |columns: &[&str]| Samples::read(Path::new("test.csv"), table(columns).as_bytes());

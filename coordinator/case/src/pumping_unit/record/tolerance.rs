@@ -1,48 +1,49 @@
-//! How good the instruments of a test are, as its data sheet states it, and what each error does: an
-//! effect of the library, or the gain of a channel.
+//! Tolerances of the instruments of a test, as stated in its data sheet, and the model error that each
+//! represents: an effect of the library or the gain of a channel.
 use discrepancy::record::{Acts, Nuisance};
 use protocol::pumping_unit::Sensor;
 use serde::Deserialize;
 
-/// One standard deviation of each instrument's error, constant over a test; none where the sheet states
-/// nothing.
+/// Standard deviation of each instrument's error, which is constant over a test; `None` where the sheet
+/// states nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Tolerance {
-    /// Of each gauge's reading, relative \[1\].
+    /// Standard deviation of each gauge's gain, relative \[1\].
     gauge_factor: Option<f64>,
-    /// Of the index mark's place on the crank \[deg\].
+    /// Standard deviation of the angular position of the index mark on the crank \[deg\].
     index_deg: Option<f64>,
-    /// Of the load card's load, relative \[1\].
+    /// Standard deviation of the load of the load card, relative \[1\].
     load_cell: Option<f64>,
-    /// Of the amplifier's delay, which is never negative \[s\].
+    /// Standard deviation of the amplifier's delay, which is never negative \[s\].
     amplifier_lag_s: Option<f64>,
-    /// Of the rod position's reading, relative \[1\].
+    /// Standard deviation of the rod position's gain, relative \[1\].
     position: Option<f64>,
-    /// Of the crank torque's reading, relative \[1\].
+    /// Standard deviation of the crank torque's gain, relative \[1\].
     torque: Option<f64>,
-    /// Of the friction of the saddle bearing, which is never negative [N m].
+    /// Standard deviation of the friction moment of the saddle bearing, which is never negative [N m].
     bearing_friction_nm: Option<f64>,
-    /// Of the moment of the beam's own weight about the saddle bearing [N m].
+    /// Standard deviation of the moment of the beam's own weight about the saddle bearing [N m].
     balance_nm: Option<f64>,
 }
 
-/// What an instrument's error is.
+/// Model parameter that represents an instrument's error.
 enum Means {
-    /// A size of an effect of the library.
+    /// Size parameter of a library effect: effect identifier, parameter name.
     Effect(&'static str, &'static str),
-    /// One that only a sensor shows.
+    /// Size parameter of a library effect that only one sensor shows: sensor, effect identifier, parameter
+    /// name.
     Seen(Sensor, &'static str, &'static str),
-    /// The gain of a sensor.
+    /// Gain of a sensor: sensor, identifier.
     Gain(Sensor, &'static str),
 }
 
-/// A key of the table: its name, what is usual of it where nothing is stated, with the unit, whether it
-/// is never negative, and what it means. Usual are a good foil gauge, a mark that was set by hand, a load
-/// cell of class 0.3.
+/// Key of the `[tolerance]` table: name, default standard deviation where the sheet states none, unit,
+/// whether the error is never negative, and the model parameters that represent the error. The defaults are
+/// those of a good foil gauge, an index mark set by hand and a load cell of class 0.3.
 type Key = (&'static str, f64, &'static str, bool, &'static [Means]);
 
-/// All keys, in the table's order.
+/// All keys of the `[tolerance]` table, in its order.
 const KEYS: [Key; 8] = [
     (
         "gauge_factor",
@@ -108,7 +109,7 @@ const KEYS: [Key; 8] = [
 ];
 
 impl Tolerance {
-    /// What is stated of each key.
+    /// Returns the stated standard deviation of each key, in the order of [`KEYS`].
     const fn values(&self) -> [Option<f64>; KEYS.len()] {
         [
             self.gauge_factor,
@@ -122,13 +123,14 @@ impl Tolerance {
         ]
     }
 
-    /// What is stated, by the names of its keys.
+    /// Returns the stated standard deviations with the names of their keys.
     pub(super) fn stated(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let stated = |((name, ..), value): (Key, Option<f64>)| Some((name, value?));
         KEYS.into_iter().zip(self.values()).filter_map(stated)
     }
 
-    /// All errors that a record of these sensors shows, with what is usual where nothing is stated.
+    /// Returns the nuisance parameters of a record with the given sensors; unstated standard deviations take
+    /// their defaults and are marked as assumed.
     pub(super) fn nuisances(&self, recorded: &[Sensor]) -> Vec<Nuisance> {
         let of_key = |((_, usual, unit, never_negative, means), stated): (Key, Option<f64>)| {
             means.iter().filter_map(move |means| {

@@ -1,46 +1,46 @@
-//! Abscissa x channel: windows in which a residual cannot be noise.
+//! Map of a residual by abscissa and channel: windows in which it is larger than noise.
 //!
-//! The residual's mean over windows of 5, 11 and 21 bins is held against the largest such mean, over
-//! all windows and channels, of records with nothing but noise: so any false window at all appears in
-//! a share of records that is set beforehand. Such records are the cycles themselves with signs
-//! flipped: where only noise is left, a cycle's residual is as likely as its negative, whatever its
-//! colour. Windows are measured in a scale that no flip changes. With too few cycles for that the
-//! noise is drawn from the metric, which knows its variances less well than it believes.
+//! The residual's mean over windows of 5, 11 and 21 bins is compared with the largest window mean, over all
+//! windows and channels, of records that hold noise alone. The level is therefore that of any false window at
+//! all in a record. The noise records are the cycles themselves with random signs: under noise alone a
+//! cycle's residual is as likely as its negative, whatever its autocorrelation. Window means are scaled by a
+//! deviation that no sign flip changes. With too few cycles for sign flips the noise is drawn from the
+//! metric, whose variances are then taken as known although they are estimates.
 use crate::place::along::null::{Null, can_flip};
 use crate::place::along::windows::{WIDTHS, Windows, windows};
 use crate::place::residual::Residual;
 use crate::record::bins::Bins;
 use nalgebra::DVector;
 
-/// A window in which the residual is no noise.
+/// Window of the abscissa in which the residual is significant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Window {
     /// Index of the channel.
     pub channel: usize,
-    /// Where it begins, in the unit of the channel's abscissa.
+    /// Start of the window, in the unit of the channel's abscissa.
     pub from: f64,
-    /// Where it ends; beyond the end of a period where it runs on into the next.
+    /// End of the window; it exceeds the end of the period where the window continues in the next one.
     pub to: f64,
-    /// Mean of the residual in it over its standard deviation.
+    /// Mean of the residual in the window over its standard deviation.
     pub strength: f64,
-    /// Probability that noise alone has any window so strong.
+    /// Probability that noise alone has a window of this strength anywhere.
     pub p_value: f64,
 }
 
-/// The map: strength by channel and bin for the narrowest windows, and the significant windows, the
-/// strongest of those that overlap.
+/// Map of the strength by channel and bin for the narrowest windows, with the significant windows; of
+/// overlapping windows only the strongest is kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlongMap {
-    /// The bins of each channel's abscissa.
+    /// Bins of each channel's abscissa.
     pub bins: Vec<Bins>,
-    /// By channel and first bin.
+    /// Strength of the narrowest windows, by channel and first bin.
     pub strength: Vec<Vec<f64>>,
     /// Significant windows, the strongest first.
     pub windows: Vec<Window>,
 }
 
-/// Maps a whitened residual; `deviations` are those of the cycles from their mean, whitened and
-/// projected likewise; at most `draws` sets of noise decide what is significant at `alpha`.
+/// Maps a whitened residual. `deviations` are the deviations of the cycles from their mean, whitened and
+/// projected likewise; the significance at level `alpha` is decided with at most `draws` sets of noise.
 pub fn map(
     residual: &Residual<'_>,
     deviations: &[DVector<f64>],

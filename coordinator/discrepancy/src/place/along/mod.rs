@@ -1,4 +1,4 @@
-//! Windows of the abscissa in which a residual cannot be noise.
+//! Map of a residual over the abscissa: windows in which it is larger than noise.
 pub(crate) mod map;
 pub(crate) mod null;
 pub(crate) mod windows;

@@ -1,28 +1,29 @@
-//! What noise alone does to windows: the record's own cycles with signs flipped, or noise as the metric
-//! describes it.
+//! Null distribution of the largest window mean: from the record's own cycles with signs flipped, or from
+//! noise drawn from the metric.
 use crate::linear::tangent::Tangent;
 use crate::place::along::windows::{WIDTHS, Windows, windows};
 use crate::record::metric::Metric;
 use nalgebra::DVector;
 use search::random::{Phase, Streams};
 
-/// Whether flips of so many cycles can tell one record in `1 / alpha`: the first cycle's sign is free.
+/// Returns whether sign flips of `cycles` cycles give at least `1 / alpha` different sets; the first cycle
+/// keeps its sign.
 pub(crate) fn can_flip(cycles: usize, alpha: f64) -> bool {
     cycles >= 2 && alpha * libm::exp2(cycles as f64 - 1.0) >= 1.0
 }
 
-/// What noise alone does to windows.
+/// Null distribution of window means.
 pub(crate) struct Null {
-    /// Standard deviation by channel and width.
+    /// Standard deviation of a window mean by channel and width.
     pub(crate) scales: Vec<Vec<f64>>,
-    /// The largest window of each set, in ascending order.
+    /// Largest scaled window mean of each noise set, in ascending order.
     maxima: Vec<f64>,
-    /// Whether the record itself is one of the sets.
+    /// Whether all sign combinations were enumerated, so that the record itself is one of the sets.
     complete: bool,
 }
 
 impl Null {
-    /// From the cycles' windows, with signs flipped.
+    /// Builds the distribution from the cycles' windows with signs flipped.
     pub(crate) fn flipped(cycles: &[Windows], draws: usize) -> Self {
         let n = cycles.len();
         let square = |c: usize, w: usize| -> f64 {
@@ -70,7 +71,7 @@ impl Null {
         Self::new(maxima, scales, complete)
     }
 
-    /// From noise as the metric describes it.
+    /// Builds the distribution from noise drawn from the metric.
     pub(crate) fn drawn(metric: &Metric, tangent: &Tangent, draws: usize) -> Self {
         let streams = Streams::new(0x616e_676c, 0);
         let noise: Vec<Windows> = (0..draws)
@@ -105,7 +106,7 @@ impl Null {
         }
     }
 
-    /// Share of sets with a window as strong.
+    /// Returns the share of noise sets with a window at least as strong.
     pub(crate) fn p_value(&self, strength: f64) -> f64 {
         // the record's own set has exactly its strongest window, up to rounding
         let below = self
@@ -120,7 +121,8 @@ impl Null {
     }
 }
 
-/// The largest window over all channels, widths and bins that windows like these have.
+/// Returns the largest absolute scaled window mean over all channels, widths and bins; `like` gives the
+/// shape.
 fn largest(like: &Windows, scales: &[Vec<f64>], value: impl Fn(usize, usize, usize) -> f64) -> f64 {
     let mut most: f64 = 0.0;
     for (c, scales) in scales.iter().enumerate() {

@@ -1,14 +1,14 @@
-//! Means of a whitened residual over windows of the abscissa. What is significant it does not know.
+//! Means of a whitened residual over windows of the abscissa, without any test of significance.
 use crate::record::metric::Metric;
 use nalgebra::DVector;
 
 /// Widths of the windows (bins).
 pub const WIDTHS: [usize; 3] = [5, 11, 21];
 
-/// Means over windows, channel x width x first bin.
+/// Window means by channel, width and first bin.
 pub(crate) type Windows = Vec<Vec<Vec<f64>>>;
 
-/// Window means of every channel's whitened curve.
+/// Computes the window means of every channel's whitened curve.
 pub(crate) fn windows(whitened: &DVector<f64>, metric: &Metric) -> Windows {
     let curves = metric.along(whitened);
     let channels = metric.bins().into_iter().zip(&curves);

@@ -1,4 +1,4 @@
-//! Parameters that would have to wander along the abscissa or with the condition.
+//! Parameters that would have to vary along the abscissa or with the condition.
 pub(crate) mod refit;
 pub(crate) mod sheet;
 pub(crate) mod shifts;

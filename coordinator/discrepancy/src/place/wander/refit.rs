@@ -1,4 +1,4 @@
-//! Refits of single parameters on parts of the abscissa and under other conditions.
+//! Refits of single parameters on sectors of the abscissa and under other conditions.
 use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
@@ -7,8 +7,8 @@ use crate::place::wander::shifts::{Wander, wanders};
 use crate::record::measured::{Curves, Record, difference};
 use search::least_squares::Variable;
 
-/// How the unknowns of a fit would have to wander; those of the case come first among them. Each condition
-/// takes a simulation per unknown where nothing differentiates.
+/// Estimates how the unknowns of a fit would have to vary; those of the case come first among the unknowns.
+/// Each condition takes one simulation per unknown where the laboratory provides no derivatives.
 pub(crate) async fn wander<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
@@ -27,8 +27,8 @@ pub(crate) async fn wander<L: Laboratory>(
     Ok(wanders(&own, &deviations, &elsewhere))
 }
 
-/// A record at the fitted point with the change per unknown; nothing where it has too few cycles, or
-/// the point cannot be simulated.
+/// Linearises a record at the fitted point; `None` where the record has too few cycles or the point cannot be
+/// simulated.
 async fn sheet<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,

@@ -1,36 +1,37 @@
-//! A record beside a fitted point, linear in the unknowns, with the scatter of its cycles.
+//! Record linearised about a fitted point, with the scatter of its cycles.
 use crate::record::measured::{Curves, Record};
 use nalgebra::{DMatrix, DVector};
 
-/// Fewer cycles than these have no scatter to speak of.
+/// Smallest number of cycles from which a scatter is estimated.
 const CYCLES: usize = 3;
 
-/// What is left of a record at the fitted point, cycle by cycle, and how the unknowns change it: grid
-/// after grid of all channels, about their means (channels have no zero), in units of the cycles' scatter.
+/// Residual of a record at the fitted point, cycle by cycle, and its derivatives by the unknowns. Channels
+/// are concatenated, taken about their means (channels have no zero) and divided by the scatter of the
+/// cycles.
 #[derive(Clone, Debug)]
 pub(crate) struct Sheet {
     /// Index of the record's condition.
     pub(crate) condition: usize,
-    /// Of the mean of the cycles.
+    /// Residual of the mean of the cycles.
     pub(crate) left: DVector<f64>,
-    /// Each cycle less their mean.
+    /// Deviations of the cycles from their mean.
     pub(crate) deviations: Vec<DVector<f64>>,
-    /// A column per unknown, per unit of it.
+    /// Derivatives, one column per unknown, per unit of the unknown.
     pub(crate) columns: DMatrix<f64>,
-    /// Samples of each channel.
+    /// Number of samples of each channel.
     samples: Vec<usize>,
-    /// Where the first channel's abscissa begins and ends, in its unit.
+    /// Start and end of the first channel's abscissa, in its unit.
     pub(crate) span: [f64; 2],
 }
 
 impl Sheet {
-    /// Whether a record has cycles enough.
+    /// Returns whether a record has enough cycles for a scatter.
     pub(crate) fn suits(record: &Record) -> bool {
         record.cycles.len() >= CYCLES
     }
 
-    /// Of a record that suits, the curves at the fitted point, and the curves' change per unit of each
-    /// unknown.
+    /// Linearises a record with enough cycles, from the curves at the fitted point and their derivatives by
+    /// each unknown.
     pub(crate) fn new(record: &Record, fitted: &Curves, changes: &[Curves]) -> Self {
         let variance = record.cycle_variance();
         let flat = |curves: &Curves| {
@@ -59,7 +60,7 @@ impl Sheet {
         }
     }
 
-    /// Rows of the samples of one of so many equal parts, channel after channel.
+    /// Returns the rows of the samples in part number `part` of `of` equal parts, channel after channel.
     pub(crate) fn rows(&self, part: usize, of: usize) -> Vec<usize> {
         let mut begin = 0;
         let mut rows = Vec::new();

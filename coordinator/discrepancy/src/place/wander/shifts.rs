@@ -1,56 +1,58 @@
-//! Parameters that would have to wander: each refitted alone on quarters of the abscissa and under other
+//! Parameters that would have to vary: each refitted alone on quarters of the abscissa and under other
 //! conditions.
 //!
-//! A parameter of what is simulated is the same everywhere and under every condition. One that would have
-//! to change from part to part makes up for something that the model lacks. Everything is linear about
-//! the fitted point, and errors are the scatter of the same estimate from cycle to cycle, so that they
-//! need no model of the noise. It does not know what a parameter means.
+//! A physical parameter is the same everywhere and under every condition. A parameter that would have to
+//! change from part to part compensates for something that the model lacks. Everything is linear about the
+//! fitted point, and standard errors come from the scatter of the same estimate from cycle to cycle, so that
+//! no noise model is needed. The module does not know the meaning of a parameter.
 use crate::linear::score::family_wise;
 use crate::place::wander::sheet::Sheet;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use statrs::distribution::{ContinuousCDF as _, StudentsT};
 
-/// Parts of the abscissa.
+/// Number of equal sectors of the abscissa.
 const SECTORS: usize = 4;
 
-/// Where a parameter was refitted.
+/// Part of the data on which a parameter was refitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Part {
-    /// A part of the abscissa.
+    /// Sector of the abscissa.
     Sector {
-        /// Where it begins, in the unit of the first channel's abscissa.
+        /// Start of the sector, in the unit of the first channel's abscissa.
         from: f64,
-        /// Where it ends.
+        /// End of the sector, in the unit of the first channel's abscissa.
         to: f64,
     },
     /// The whole record of another condition, by its index.
     Condition(usize),
 }
 
-/// How far a parameter would have to move in one part.
+/// Shift of a parameter that one part of the data would require.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shift {
-    /// Which part.
+    /// Part of the data.
     pub part: Part,
-    /// From the fitted point (coordinate).
+    /// Shift from the fitted point (coordinate).
     pub by: f64,
-    /// Probability that noise moves any parameter in any part so far.
+    /// Probability that noise shifts any parameter in any part by as much.
     pub p_value: f64,
 }
 
-/// One parameter and its parts.
+/// Shifts that all parts of the data would require of one parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wander {
-    /// Its position among the unknowns.
+    /// Index of the parameter among the unknowns.
     pub unknown: usize,
-    /// Its parts, those of the abscissa first.
+    /// Shifts by part, those of the abscissa's sectors first.
     pub shifts: Vec<Shift>,
-    /// Share of what is left that it takes up if it may be another in every part of the abscissa \[1\].
+    /// Share of the residual that the parameter removes if it may differ between the sectors of the abscissa
+    /// \[1\].
     pub explained: f64,
 }
 
-/// How the unknowns would have to wander between the parts of the abscissa and to other conditions, for those
-/// that the record sees; the one that explains most first. `priors` are their standard deviations.
+/// Computes the shifts between the sectors of the abscissa and to other conditions of the unknowns that
+/// influence the record; the one that explains most first. `priors` are the unknowns' prior standard
+/// deviations.
 pub(crate) fn wanders(own: &Sheet, priors: &[f64], others: &[Sheet]) -> Vec<Wander> {
     let Some(refit) = Refit::new(own, priors) else {
         return Vec::new();
@@ -82,7 +84,7 @@ pub(crate) fn wanders(own: &Sheet, priors: &[f64], others: &[Sheet]) -> Vec<Wand
     all
 }
 
-/// A part of the abscissa: what the refit of the whole leaves there.
+/// Sector of the abscissa with the residual that the refit of the whole record leaves there.
 struct Sector {
     part: Part,
     columns: DMatrix<f64>,
@@ -106,7 +108,8 @@ impl Sector {
         }
     }
 
-    /// How far an unknown would have to move here, and how much of what is left it takes up by that.
+    /// Returns the shift that an unknown would need in this sector, and the squared length of the residual
+    /// that the shift removes.
     fn shift(&self, unknown: usize) -> (Shift, f64) {
         let column = self.columns.column(unknown).into_owned();
         let by = along(&column, &self.left);
@@ -120,7 +123,7 @@ impl Sector {
     }
 }
 
-/// The linear refit of all unknowns on the whole record.
+/// Linear refit of all unknowns on the whole record.
 struct Refit {
     curvature: Cholesky<f64, Dyn>,
 }
@@ -135,17 +138,17 @@ impl Refit {
         Some(Self { curvature })
     }
 
-    /// The step that the whole record asks for.
+    /// Returns the step of all unknowns that explains `v` on the whole record.
     fn step(&self, own: &Sheet, v: &DVector<f64>) -> DVector<f64> {
         self.curvature.solve(&own.columns.tr_mul(v))
     }
 
-    /// What that step leaves.
+    /// Returns the residual of `v` after that step of the unknowns.
     fn settle(&self, own: &Sheet, v: &DVector<f64>) -> DVector<f64> {
         v - &own.columns * self.step(own, v)
     }
 
-    /// An unknown under another condition, beside the error that the fit itself has.
+    /// Returns the shift of an unknown under another condition, beyond the error of the fit itself.
     fn elsewhere(&self, own: &Sheet, other: &Sheet, k: usize) -> Shift {
         let column = other.columns.column(k).into_owned();
         let carried = |v: &DVector<f64>| along(&column, &(&other.columns * self.step(own, v)));
@@ -164,7 +167,7 @@ impl Refit {
     }
 }
 
-/// How much of a column a vector holds; nothing of none.
+/// Returns the least-squares coefficient of `v` on a column; 0 for a zero column.
 fn along(column: &DVector<f64>, v: &DVector<f64>) -> f64 {
     let length = column.norm_squared();
     if length > 0.0 {
@@ -174,13 +177,13 @@ fn along(column: &DVector<f64>, v: &DVector<f64>) -> f64 {
     }
 }
 
-/// Squared standard error of the mean of values that scatter about zero.
+/// Returns the squared standard error of the mean of values that scatter about zero.
 fn squares(errors: impl ExactSizeIterator<Item = f64>) -> f64 {
     let n = errors.len() as f64;
     errors.map(|e| e * e).sum::<f64>() / (n * (n - 1.0))
 }
 
-/// Probability that noise alone brings a mean so far from zero.
+/// Returns the two-sided p-value of a mean, from Student's distribution.
 fn tail(value: f64, squared_error: f64, cycles: usize) -> f64 {
     if squared_error <= 0.0 {
         return 1.0;
@@ -198,7 +201,8 @@ mod tests {
     const GRID: usize = 120;
     const UNKNOWNS: usize = 4;
 
-    /// Change of two channels per unit of an unknown: different shapes along the abscissa.
+    /// Returns the change of two channels per unit of an unknown; its shape along the abscissa differs
+    /// between the unknowns.
     fn change(k: usize) -> Curves {
         let curve = |c: usize| {
             (0..GRID)
@@ -212,7 +216,7 @@ mod tests {
         vec![curve(0), curve(1)]
     }
 
-    /// Eight cycles of noise about what the unknowns do; `moved` says how far each is moved at a sample.
+    /// Creates a record of eight noisy cycles; `moved` is the shift of each unknown at each sample.
     fn record(seed: u64, condition: usize, moved: impl Fn(usize, usize) -> f64) -> Record {
         let mut stream = Streams::new(seed, 5).at(0, Phase::Initial, condition);
         let changes: Vec<Curves> = (0..UNKNOWNS).map(change).collect();
@@ -239,7 +243,8 @@ mod tests {
         }
     }
 
-    /// The sheets of a record and of another condition at a point that was fitted to the first.
+    /// Returns the shifts for a record and another condition, linearised at a point that was fitted to the
+    /// first.
     fn found(own: &Record, other: &Record) -> Vec<Wander> {
         let changes: Vec<Curves> = (0..UNKNOWNS).map(change).collect();
         let zero = vec![vec![0.0; GRID]; 2];
@@ -252,8 +257,8 @@ mod tests {
         wander.shifts.iter().map(|s| s.p_value).fold(1.0, f64::min)
     }
 
-    /// Of parameters that are what they are everywhere, also where the fit of the first record is off,
-    /// one set in twenty shows some that would wander.
+    /// Checks the false alarm rate: for parameters that are constant everywhere, also where the fit of the
+    /// first record is off, about one set in twenty has a significant shift.
     #[test]
     fn true_parameters_do_not_wander() {
         let sets = 300;

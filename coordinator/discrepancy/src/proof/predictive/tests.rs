@@ -1,4 +1,4 @@
-//! Scores against dense Gaussians, and on records in which nothing is hidden.
+//! Tests of the scores against dense Gaussians, and on records without an effect.
 use super::*;
 use crate::proof::scale::Scale;
 use crate::record::measured::{Record, Stated, tests::recorded};
@@ -38,7 +38,7 @@ fn table(rows: usize, columns: usize, of: u64) -> DMatrix<f64> {
     DMatrix::from_fn(rows, columns, |_, _| stream.normal())
 }
 
-/// The formula is the dense Gaussian's, less its constant.
+/// Checks that the score equals the log density of the dense Gaussian, less its constant.
 #[test]
 fn the_score_is_that_of_the_dense_gaussian() {
     let (fitted, predicted) = (table(12, 3, 1), table(7, 3, 2));
@@ -68,7 +68,7 @@ fn the_score_is_that_of_the_dense_gaussian() {
     }
 }
 
-/// An unknown on its bound is not integrated out.
+/// Checks that an unknown on its bound is not integrated out.
 #[test]
 fn what_stands_on_a_bound_is_known() {
     let at = Linearized {
@@ -84,7 +84,8 @@ fn what_stands_on_a_bound_is_known() {
     assert!((own + 1.5).abs() < 1e-12, "{own}");
 }
 
-/// Where nothing is there, a flexible model that was fitted to noise is rarely preferred by as much as a name needs.
+/// Checks that, without an effect, the best of twenty candidates fitted to noise rarely reaches the score
+/// that an effect needs.
 #[test]
 fn noise_is_predicted_no_better_by_what_was_fitted_to_it() {
     let streams = search::random::Streams::new(9, 0);
@@ -120,7 +121,7 @@ fn noise_is_predicted_no_better_by_what_was_fitted_to_it() {
     assert!(claims <= 20, "{claims} of {sets}");
 }
 
-/// A case of two conditions, and nothing else.
+/// Creates inputs with two conditions and one unknown.
 fn case() -> Inputs {
     Inputs {
         space: search::space::Space::new(&[Unknown::new(
@@ -190,7 +191,8 @@ fn a_name_must_predict_all_together_and_nothing_clearly_worse() {
     );
 }
 
-/// A left-out block is predicted as the dense Gaussian of all data, conditioned on the rest, has it.
+/// Checks that the score of a left-out block equals the log density of the dense Gaussian conditioned on the
+/// rest.
 #[test]
 fn left_out_blocks_are_those_of_the_dense_gaussian() {
     let jacobian = table(9, 2, 11);
@@ -230,8 +232,9 @@ fn left_out_blocks_are_those_of_the_dense_gaussian() {
     assert!((left_out - dense).abs() < 1e-10, "{left_out} {dense}");
 }
 
-/// Where nothing is there, `E exp dS` of held-out cycles is no more than 1 for the best of many candidates on the fitted
-/// ones: a record must not be measured by directions that itself spans.
+/// Checks that, without an effect, the mean of `exp dS` on held-out cycles is about 1 for the best of many
+/// candidates on the fitted cycles: the directions that shorten a record's residual must not be estimated
+/// from that record.
 #[test]
 fn held_out_cycles_know_nothing_of_the_fit() {
     const SAMPLES: usize = 120;

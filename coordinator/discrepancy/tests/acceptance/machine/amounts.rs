@@ -1,17 +1,18 @@
-//! What a job asks of the machine, and what all its parts reckon with.
+//! Amounts of the effects that a job requests of the stand-in machine, and constants and types shared by its
+//! parts.
 use crate::case::ORDERS;
 use nalgebra::Complex;
 use protocol::announce::EffectDescriptor;
 use protocol::job::SimulateSpec;
 
-/// A coefficient of an order of the crank.
+/// Complex Fourier coefficient of one order of the crank.
 pub(super) type C = Complex<f64>;
 
-/// Orders that are solved, beyond those that are compared.
+/// Highest order solved, eight above the highest order compared.
 pub(super) const HIGHEST: usize = ORDERS + 8;
-/// Rod, beam and head.
+/// Masses of rod, beam and head.
 pub(super) const MASSES: [f64; 3] = [2.0, 4.0, 5.9];
-/// Amounts of effects, by identifier and parameter.
+/// Amounts of effects requested by a job, looked up by identifier and parameter index.
 pub(super) struct Amounts<'a> {
     pub(super) library: &'a [EffectDescriptor],
     pub(super) spec: &'a SimulateSpec,

@@ -1,4 +1,4 @@
-//! The machine as a laboratory.
+//! Laboratory that answers at once from the stand-in machine.
 use super::{fineness::is_shorter, stand_in::Machine};
 use crate::case::grid;
 use discrepancy::laboratory::{Laboratory, Stage};
@@ -6,22 +6,22 @@ use protocol::case::EffectSetting;
 use protocol::job::{Column, Derivative, Numerics, Observation, Per, SimulateSpec, Verdict};
 use std::convert::Infallible;
 
-/// What discretisation does to the machine.
+/// Discretisation error of the stand-in machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Roughness {
-    /// Nothing.
+    /// No discretisation error.
     Exact,
-    /// The usual one adds a ripple to every gauge (MPa).
+    /// Ripple on every gauge with the usual discretisation (MPa).
     Ripple(f64),
-    /// It does so once an effect is on: MPa per size of the effect.
+    /// Ripple on every gauge while the named effect is on: MPa per size of the effect.
     RippleOf(&'static str, f64),
-    /// No finer one completes.
+    /// Every simulation with a finer discretisation fails.
     NothingFiner,
-    /// None of shorter cylinders does.
+    /// Every simulation with shorter cylinders fails.
     NoShorterCylinders,
 }
 
-/// Waves of a ripple in a turn, and its size at each gauge.
+/// Number of ripple waves per turn; `AT_GAUGES` has the relative amplitude at each gauge.
 const RIPPLES: f64 = 17.0;
 const AT_GAUGES: [f64; 4] = [1.0, -0.7, 0.8, 0.5];
 
@@ -34,19 +34,19 @@ pub(crate) fn ripple(gauges: &mut [Vec<f64>], size: f64) {
     }
 }
 
-/// A laboratory that simulates at once; some of its runs may be lost, and its effects may go by
-/// other names.
+/// Laboratory that simulates at once; a share of its runs may be lost, and its effects may have other labels
+/// outside than in the machine.
 pub(crate) struct AtOnce<'a> {
     machine: &'a Machine,
-    /// One run in so many is lost, spread as a counter's hash spreads them; none if 0.
+    /// Loss of one run in this many, spread by a hash of the run counter; 0 loses none.
     lost_every: u64,
-    /// Names that are used outside, with the machine's own.
+    /// Pairs of the label used outside and the machine's own identifier.
     labels: &'a [(String, String)],
     numerics: Roughness,
-    /// Whether observations come with the columns that a job asks for.
+    /// Whether observations include the derivative columns that a job requests.
     columns: bool,
     runs: u64,
-    /// Runs that were lost.
+    /// Number of lost runs.
     pub(crate) lost: u64,
 }
 
@@ -87,7 +87,8 @@ impl<'a> AtOnce<'a> {
         Some(seen)
     }
 
-    /// A simulation in the names of the machine; nothing where it does not complete.
+    /// Simulates a job stated in the machine's own identifiers; returns `None` where the simulation does not
+    /// complete.
     fn simulated(&self, spec: &SimulateSpec) -> Option<Observation> {
         let shorter = is_shorter(&spec.numerics);
         let ripples = match self.numerics {
@@ -111,8 +112,8 @@ impl<'a> AtOnce<'a> {
         Some(seen)
     }
 
-    /// The derivative by a column: central differences of two steps, extrapolated to none (Richardson). None where they do
-    /// not agree, as about a kink.
+    /// Returns the derivative for a column: central differences of two step sizes, extrapolated to step zero
+    /// (Richardson); `Derivative::Missing` where the two differ too much, e.g. at a kink.
     fn column(&self, spec: &SimulateSpec, column: &Column) -> Derivative {
         let missing = |reason: &str| Derivative::Missing {
             reason: reason.to_owned(),
@@ -181,7 +182,8 @@ impl<'a> AtOnce<'a> {
         }
     }
 
-    /// What a column varies.
+    /// Returns the simulation with the number that a column varies and its step; `None` if the machine has no
+    /// number of that name.
     fn varied(&self, spec: &SimulateSpec, column: &Column) -> Option<Varied> {
         let mut spec = spec.clone();
         if let Some(k) = column
@@ -221,22 +223,23 @@ impl<'a> AtOnce<'a> {
     }
 }
 
-/// Steps of differences, as shares of a value or of a usual size, and how near those of two steps must lie.
+/// Step of the differences, as a share of the value or of the effect's usual size; `AGREE` is the largest
+/// relative difference allowed between the results of two step sizes.
 const STEP: f64 = 2e-3;
 const AGREE: f64 = 1e-4;
 
-/// A simulation of which one number is varied.
+/// Simulation of which one number is varied.
 struct Varied {
     spec: SimulateSpec,
     place: Place,
     step: f64,
 }
 
-/// Where that number stands.
+/// Location of the varied number in a simulation.
 #[derive(Clone, Copy)]
 enum Place {
     Unknown(usize),
-    /// An effect, and which of its parameters.
+    /// Index of the effect, and index of its parameter.
     Effect(usize, usize),
 }
 

@@ -4,7 +4,7 @@ use super::lags::Lags;
 use super::turn::Turn;
 use crate::case::{SAMPLES, grid};
 
-/// The drive on the grid: height (m), speed (m/t), acceleration (m/t^2), slope (m/rad).
+/// Motion of the drive on the grid: height (m), speed (m/t), acceleration (m/t^2), slope (m/rad).
 pub(super) struct Drive {
     pub(super) height: Vec<f64>,
     pub(super) speed: Vec<f64>,
@@ -43,7 +43,8 @@ pub(super) fn drive(amounts: &Amounts<'_>, ratio: f64) -> Drive {
     drive
 }
 
-/// Crank angle against time where the crank's speed ripples: the machine swings in time.
+/// Maps between crank angle and time where the crank's speed ripples, as the machine's equations are solved
+/// in time; `None` at constant speed.
 pub(super) struct Warp(pub(super) Option<[Vec<f64>; 2]>);
 
 impl Warp {
@@ -64,7 +65,7 @@ impl Warp {
         Self(Some([from, to]))
     }
 
-    /// The spectrum over time of a curve over the angle.
+    /// Returns the spectrum over time of a curve given over the crank angle.
     pub(super) fn enter(&self, turn: &Turn, curve: &[f64]) -> Vec<C> {
         let spectrum = turn.transform(curve);
         match &self.0 {
@@ -73,7 +74,7 @@ impl Warp {
         }
     }
 
-    /// Spectra over the angle of a solution over time.
+    /// Converts the spectra of a solution from time to crank angle, in place.
     pub(super) fn leave(&self, turn: &Turn, lags: &mut Lags, tensions: &mut (Vec<C>, Vec<C>)) {
         let Some([_, to]) = &self.0 else { return };
         let back = |spectrum: &[C]| turn.transform(&Turn::at(spectrum, to));

@@ -1,14 +1,14 @@
-//! The masses' lags behind the drive, order by order, and the forces between them.
+//! Lags of the masses behind the drive, order by order, and the forces between the masses.
 use super::amounts::{C, HIGHEST, MASSES};
 use super::fineness::is_shorter;
 use crate::case::RECOMMENDED;
 use nalgebra::{Matrix3, Vector3};
 use protocol::job::SimulateSpec;
 
-/// The lags of one solution, order by order.
+/// Lags of the masses of one solution, one vector per order.
 pub(super) struct Lags(pub(super) Vec<Vector3<C>>);
 
-/// The genes as the equations need them.
+/// Stiffness and loss coefficients of the equations of motion, converted from the genes.
 pub(super) struct Genes {
     pub(super) back: f64,
     pub(super) back_loss: f64,
@@ -46,14 +46,14 @@ impl Genes {
 }
 
 impl Lags {
-    /// Tension of the back rope.
+    /// Returns the spectrum of the back rope's tension.
     pub(super) fn rope(&self, g: &Genes, ratio: f64) -> Vec<C> {
         let part =
             |(h, y): (usize, &Vector3<C>)| C::new(g.back, h as f64 * ratio * g.back_loss) * y[2];
         self.0.iter().enumerate().map(part).collect()
     }
 
-    /// Force between beam and head.
+    /// Returns the spectrum of the force between beam and head.
     pub(super) fn pin(&self, g: &Genes, ratio: f64) -> Vec<C> {
         let part = |(h, y): (usize, &Vector3<C>)| {
             C::new(g.contact, h as f64 * ratio * g.contact_loss) * (y[1] - y[2])
@@ -62,7 +62,7 @@ impl Lags {
     }
 }
 
-/// `(K + i w C - w^2 M) y = f` at every order.
+/// Solves `(K + i w C - w^2 M) y = f` for the lags at every order.
 pub(super) fn solve(g: &Genes, ratio: f64, spectra: &[Vec<C>; 3], beam: f64) -> Lags {
     let at = |h: usize| {
         let w = h as f64 * ratio;

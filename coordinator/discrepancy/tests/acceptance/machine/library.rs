@@ -1,12 +1,12 @@
-//! What the stand-in machine announces: its effects, and the forces without a cause.
+//! Effect library that the stand-in machine announces: named effects and generic forces.
 use crate::case::{effect, size};
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
 
-/// Joints at which a force without a cause may act.
+/// Joints at which a generic force may act.
 pub(crate) const JOINTS: [&str; 4] = ["rod", "beam", "head", "crank"];
-/// Forms of such a force, beside harmonics.
+/// Forms of a generic force other than harmonics.
 pub(crate) const FORMS: [&str; 6] = ["const", "sgn_v", "v", "v2", "d2", "d3"];
-/// Highest harmonic of such a force.
+/// Highest harmonic of a generic force.
 pub(crate) const HARMONICS: u32 = 5;
 
 fn shape(name: &str, unit: &str, typical: f64, range: [f64; 2], scale: f64) -> ParameterDescriptor {
@@ -23,7 +23,7 @@ fn shape(name: &str, unit: &str, typical: f64, range: [f64; 2], scale: f64) -> P
     }
 }
 
-/// The named effects.
+/// Returns the named effects of the library.
 pub(crate) fn named() -> Vec<EffectDescriptor> {
     use Place::{Drive, Dynamics, Load, Sensor};
     use Sign::{Either, Positive};
@@ -138,7 +138,7 @@ pub(crate) fn named() -> Vec<EffectDescriptor> {
     ]
 }
 
-/// Forces without a cause: `probe.JOINT.FORM`.
+/// Returns the generic forces, identified as `probe.JOINT.FORM`.
 pub(crate) fn generic() -> Vec<EffectDescriptor> {
     let harmonics = (1..=HARMONICS).flat_map(|h| [format!("cos{h}"), format!("sin{h}")]);
     let forms: Vec<String> = FORMS

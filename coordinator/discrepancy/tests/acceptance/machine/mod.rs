@@ -1,4 +1,4 @@
-//! The tool's side of the stand-in machine: what it announces, and a laboratory that has it.
+//! Stand-in machine that the tool simulates: its announced effect library and a laboratory that runs it.
 mod amounts;
 mod at_once;
 mod drive;

@@ -1,9 +1,9 @@
-//! The tool's side of the stand-in machine: a periodic solution by harmonics.
+//! Stand-in machine that the tool simulates: a periodic solution by harmonics.
 //!
-//! Three masses hang below a driven suspension: rod, beam, head, in the order in which the load
-//! reaches the rope. `y` are their lags behind the drive: `M y'' + C y' + K y = f`, order by order
-//! of the crank; what is not linear is a force or an imposed stretch, evaluated on a first, linear
-//! solution. Units: kN, m, t (2 pi t is a turn of the first condition).
+//! Three masses hang below a driven suspension: rod, beam, head, in the order in which the load reaches the
+//! rope. `y` are their lags behind the drive: `M y'' + C y' + K y = f`, order by order of the crank; a
+//! nonlinear term is a force or an imposed stretch, evaluated on a first, linear solution. Units: kN, m, t (2
+//! pi t is a turn of the first condition).
 use super::amounts::{Amounts, C, HIGHEST, MASSES};
 use super::drive::{Drive, Warp, drive};
 use super::lags::{Genes, Lags, solve};
@@ -15,21 +15,22 @@ use protocol::announce::EffectDescriptor;
 use protocol::job::{Counters, Observation, Reached, SimulateSpec, Verdict};
 use protocol::pumping_unit::failure;
 
-/// Stress per rope tension (MPa/kN), its change along the head, and its bending part, by gauge.
+/// Stress per rope tension (MPa/kN), by gauge; `ALONG` is its relative change along the head, `BENDING` its
+/// bending part.
 const SENSITIVITY: [f64; 4] = [0.5, 0.35, 0.45, 0.3];
 const ALONG: [f64; 4] = [0.8, -0.5, 0.3, 1.2];
 const BENDING: [f64; 4] = [0.05, 0.03, -0.04, 0.02];
 const CONTACT: [f64; 4] = [0.02, -0.05, 0.03, 0.06];
 const WEAR: [f64; 4] = [1.0, 0.6, -0.4, 0.2];
 
-/// The machine and what it announces.
+/// Stand-in machine with its load cards and its effect library.
 pub(crate) struct Machine {
     turn: Turn,
     cards: [Vec<C>; 2],
     library: Vec<EffectDescriptor>,
 }
 
-/// Effects that follow the motion: evaluated on a solution without them.
+/// Effects that depend on the motion and are evaluated on a solution without them.
 const BY_MOTION: [&str; 5] = [
     "pivot_friction",
     "stuffing_box_friction",
@@ -39,7 +40,7 @@ const BY_MOTION: [&str; 5] = [
 ];
 
 impl Machine {
-    /// With its whole library.
+    /// Creates the machine with its whole effect library.
     pub(crate) fn new() -> Self {
         let turn = Turn::new();
         let spectrum =
@@ -56,7 +57,7 @@ impl Machine {
         }
     }
 
-    /// What it announces.
+    /// Returns the effects that the machine announces.
     pub(crate) fn library(&self) -> &[EffectDescriptor] {
         &self.library
     }
@@ -81,7 +82,7 @@ impl Machine {
             .collect()
     }
 
-    /// One turn.
+    /// Simulates one turn.
     pub(crate) fn observe(&self, spec: &SimulateSpec) -> Observation {
         let amounts = Amounts {
             library: &self.library,
@@ -122,7 +123,7 @@ impl Machine {
         self.channels(&amounts, &g, &drive, (&lags, &tensions), ratio)
     }
 
-    /// Forces on rod, beam, head, downwards.
+    /// Returns the downward forces on rod, beam and head.
     fn forces(
         &self,
         amounts: &Amounts<'_>,
@@ -151,7 +152,8 @@ impl Machine {
         forces
     }
 
-    /// Friction and drag on rod and beam, by how these move in a solution.
+    /// Returns the spectra of friction and drag on rod and beam, computed from their velocities in a
+    /// solution.
     fn losses(
         &self,
         amounts: &Amounts<'_>,
@@ -182,7 +184,7 @@ impl Machine {
         [self.turn.transform(&on_rod), self.turn.transform(&on_beam)]
     }
 
-    /// The forces without a cause at one joint.
+    /// Returns the sum of the generic forces at one joint.
     fn probe(&self, spec: &SimulateSpec, joint: &str, drive: &Drive, ratio: f64) -> Vec<f64> {
         let mut sum = vec![0.0; SAMPLES];
         let prefix = format!("probe.{joint}.");
@@ -212,7 +214,8 @@ impl Machine {
         sum
     }
 
-    /// Stretches that clearance and toe impose, as forces across pin and back rope.
+    /// Returns the stretches imposed by pin clearance and rope toe, as equivalent forces across pin and back
+    /// rope.
     fn stretch(
         &self,
         amounts: &Amounts<'_>,

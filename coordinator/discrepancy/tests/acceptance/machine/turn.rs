@@ -1,9 +1,9 @@
-//! Curves over a turn and their spectra.
+//! Fourier transform between curves over a turn and their spectra.
 use super::amounts::{C, HIGHEST};
 use crate::case::SAMPLES;
 use std::f64::consts::TAU;
 
-/// Sines and cosines of the grid.
+/// Table of the unit phasors at the grid's angles.
 pub(super) struct Turn(pub(super) Vec<C>);
 
 impl Turn {
@@ -12,7 +12,7 @@ impl Turn {
         Self((0..SAMPLES).map(unit).collect())
     }
 
-    /// Orders 0 to the highest.
+    /// Returns the Fourier coefficients of a curve, from order 0 to the highest order.
     pub(super) fn transform(&self, curve: &[f64]) -> Vec<C> {
         let coefficient = |h: usize| {
             let mut sum = C::new(0.0, 0.0);
@@ -29,7 +29,7 @@ impl Turn {
         (0..=HIGHEST).map(coefficient).collect()
     }
 
-    /// A curve at any angles (rad).
+    /// Evaluates a spectrum at arbitrary angles (rad).
     pub(super) fn at(spectrum: &[C], angles: &[f64]) -> Vec<f64> {
         let value = |angle: &f64| {
             let unit = C::from_polar(1.0, *angle);

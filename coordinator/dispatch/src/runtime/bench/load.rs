@@ -1,25 +1,25 @@
-//! Jobs that do nothing, asked for so that nobody has to wait.
+//! Load of empty jobs for benchmarks, queued ahead so that workers do not wait.
 use crate::runtime::{dispatch::Dispatch, error::DispatchError};
 use protocol::{id::JobId, job::Job};
 
-/// Bytes of a job on its way to a worker, about those of a gene vector with its frame.
+/// Size of a job sent to a worker (bytes), about that of a gene vector with its frame.
 const JOB_BYTES: usize = 1000;
-/// Jobs asked for ahead, per worker: enough to keep them busy.
+/// Jobs queued per worker, enough to keep workers busy.
 const AHEAD: u64 = 4;
-/// Jobs that are done between two looks at the clock, over those asked for ahead.
+/// Jobs between two readings of the clock, as a multiple of the queued jobs.
 const ROUND: u64 = 16;
 
-/// Jobs that do nothing, numbered in a row.
+/// Generator of consecutively numbered empty jobs.
 pub(super) struct Load {
     workers: u64,
     result_bytes: u32,
-    /// How many were asked for.
+    /// Number of jobs requested so far, and number of the next job.
     pub(super) next: u64,
     open: u64,
 }
 
 impl Load {
-    /// For so many workers, with results of so many bytes.
+    /// Creates a load for a number of workers, with results of the given size (bytes).
     pub(super) fn new(workers: usize, result_bytes: u32) -> Self {
         Self {
             workers: workers.max(1) as u64,
@@ -29,17 +29,17 @@ impl Load {
         }
     }
 
-    /// Jobs that keep everybody busy for a moment.
+    /// Returns the number of jobs that keep all workers busy between two readings of the clock.
     pub(super) const fn round(&self) -> u64 {
         ROUND * self.ahead()
     }
 
-    /// Jobs asked for ahead.
+    /// Returns the number of jobs to keep queued.
     const fn ahead(&self) -> u64 {
         AHEAD * self.workers
     }
 
-    /// Has so many jobs done, some asked for ahead.
+    /// Runs a number of jobs to completion, keeping some queued ahead.
     pub(super) async fn run(
         &mut self,
         dispatch: &mut Dispatch,

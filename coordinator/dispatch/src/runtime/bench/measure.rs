@@ -1,4 +1,4 @@
-//! Measuring round trip, rate and cost of the bus.
+//! Benchmark of the bus: round-trip time, job rate and coordinator cost.
 use super::{
     load::Load,
     meter::{cost, resident_mib},
@@ -11,16 +11,16 @@ use std::time::{Duration, Instant};
 use support::quantile;
 use tokio::time::sleep;
 
-/// Most jobs that are done one at a time, for the round trip.
+/// Maximum number of jobs run one at a time to measure the round trip.
 const ALONE: u64 = 1000;
-/// How long workers may take to join before it is measured with those that are there.
+/// Time limit for workers to join, after which the connected workers are measured.
 const JOINING: Duration = Duration::from_mins(3);
-/// Folder of the certificate that sessions of the bus show, within that of the coordinator.
+/// Subfolder of the coordinator's key folder with the certificate that benchmark sessions use.
 const WORKER: &str = "worker-01";
-/// Parts of the measurement whose cost is compared.
+/// Number of parts of the measurement whose costs are compared.
 const PARTS: u64 = 10;
 
-/// Measures round trip, rate and cost of the run that `options` describe; the run should be new.
+/// Measures round trip, job rate and cost of the run described by `options`; the run should be new.
 ///
 /// # Errors
 /// As [`Dispatch::open`] and [`Dispatch::next`].
@@ -107,7 +107,7 @@ pub async fn bench(
     })
 }
 
-/// What does the jobs, where it is not the dispatcher's own workers; ends when dropped.
+/// Guard of the benchmark's workers, which end when it is dropped; `Local` if the dispatcher owns them.
 enum Running {
     Local,
     #[expect(dead_code, reason = "held for its end")]

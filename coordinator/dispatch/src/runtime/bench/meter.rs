@@ -1,23 +1,24 @@
-//! What the system says that this process has used.
+//! Processor time and memory of this process, as reported by the operating system.
 use rustix::time::{ClockId, clock_gettime};
 use std::{fs, time::Duration};
 
-/// Name of the thread of sessions, whose processor time is not the coordinator's.
+/// Name of the thread that runs simulated sessions; its processor time is not counted as the coordinator's.
 pub(super) const SESSIONS: &str = "bench-sessions";
 
-/// Processor time of this process so far, threads that have ended included.
+/// Returns the processor time of this process so far, including threads that have ended.
 pub fn processor_time() -> Duration {
     let now = clock_gettime(ClockId::ProcessCPUTime);
     Duration::try_from(now).unwrap_or_default()
 }
 
-/// Processor time of the coordinator: of the living threads of this process, but those of sessions.
+/// Returns the coordinator's processor time: that of this process's living threads except the sessions
+/// thread.
 pub(super) fn cost() -> Duration {
     cpu_time(|thread| thread != SESSIONS)
 }
 
-/// Processor time of the living threads of this process that are counted, by name; zero where the
-/// system does not say.
+/// Sums the processor time of living threads whose name satisfies `counts`; zero if the system does not
+/// report it.
 fn cpu_time(counts: impl Fn(&str) -> bool) -> Duration {
     let threads = fs::read_dir("/proc/self/task")
         .into_iter()
@@ -32,7 +33,7 @@ fn cpu_time(counts: impl Fn(&str) -> bool) -> Duration {
     Duration::from_nanos(nanos.sum())
 }
 
-/// Memory of this process; not a number where the system does not say.
+/// Returns the resident memory of this process (MiB); NaN if the system does not report it.
 pub(super) fn resident_mib() -> f64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));

@@ -1,5 +1,5 @@
-//! The bus alone: jobs that do nothing, over a real journal; workers are real processes, or mere
-//! sessions where there are to be more of them than the machine can bear.
+//! Benchmark of the bus with empty jobs and a real journal; workers are real processes, or mere sessions
+//! where there are more workers than this machine can run as processes.
 mod load;
 mod measure;
 mod meter;

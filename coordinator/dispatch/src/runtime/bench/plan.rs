@@ -1,100 +1,101 @@
-//! What is measured of the bus, and what comes out.
+//! Plan and results of a bus benchmark.
 
-/// Who does the jobs.
+/// Kind of workers that do a benchmark's jobs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BenchWorkers {
     /// Worker processes with one slot process each, over TCP on loopback.
     Processes,
-    /// Sessions of one other process, over TCP on loopback, or QUIC if the run has key material: all
-    /// is real but the slots.
+    /// Sessions in one other process, over TCP on loopback, or QUIC if the run has key material; everything
+    /// but the slots is real.
     Connections,
-    /// Sessions of one thread of this process, over the memory link: frames, core and journal are
-    /// the real ones, transport and slots are not there.
+    /// Sessions on one thread of this process, over the memory link; frames, core and journal are real,
+    /// transport and slots are absent.
     Sessions,
 }
 
-/// What to measure.
+/// Plan of a bus benchmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BenchPlan {
-    /// Who does the jobs.
+    /// Kind of the workers.
     pub by: BenchWorkers,
-    /// How many of them.
+    /// Number of workers.
     pub workers: usize,
-    /// Jobs done as fast as possible.
+    /// Number of jobs to run at full rate.
     pub jobs: u64,
-    /// Bytes of each result; a residual vector has about 10,000, a score 300.
+    /// Size of each result (bytes); a residual vector has about 10,000, a score 300.
     pub result_bytes: u32,
-    /// Connections that say nothing, to be measured beside. Not with [`BenchWorkers::Sessions`], which
+    /// Silent connections whose cost is measured too. Not possible with [`BenchWorkers::Sessions`], which
     /// have no address.
     pub silent: Option<SilentPlan>,
 }
 
-/// What the bus costs.
+/// Result of a bus benchmark.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BenchResult {
-    /// Workers with one slot each.
+    /// Number of workers, with one slot each.
     pub workers: usize,
-    /// From the opening until all of them had joined \[s\].
+    /// Time from opening the run until all workers had joined \[s\].
     pub joined_s: f64,
-    /// Jobs done as fast as possible.
+    /// Number of jobs run at full rate.
     pub jobs: u64,
     /// Median round trip of one job at a time \[ms\].
     pub rtt_median_ms: f64,
-    /// 99th percentile of the same \[ms\].
+    /// 99th percentile of the round trip of one job at a time \[ms\].
     pub rtt_p99_ms: f64,
     /// Jobs per second with all workers busy.
     pub jobs_per_s: f64,
-    /// Processor time of the coordinator per job, with all workers busy \[us\]: of this process,
-    /// less the thread of sessions.
+    /// Processor time of the coordinator per job, with all workers busy \[us\]: of this process without the
+    /// sessions thread.
     pub coordinator_cpu_us_per_job: f64,
-    /// The same for the last tenth of the jobs over the first: what stored results cost \[1\].
+    /// Coordinator processor time per job in the last tenth of the jobs over that in the first: growth of the
+    /// cost with stored results \[1\].
     pub cost_ratio: f64,
-    /// Memory of this process at the end (MiB); with sessions of it, theirs too.
+    /// Resident memory of this process at the end, including in-process sessions (MiB).
     pub coordinator_rss_mib: f64,
-    /// What silent connections cost, if they were asked for.
+    /// Cost of silent connections, if measured.
     pub silent: Option<SilentResult>,
 }
 
-/// How far peers go that say nothing.
+/// Stage of connecting at which silent peers stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Silence {
-    /// They connect; the coordinator closes them when they have not opened a session in time.
+    /// Peers open a connection only; the coordinator closes it when no session is opened in time.
     Connection,
-    /// They open a session of the bus, which exchanges keep-alives for ever, and never announce
-    /// themselves.
+    /// Peers open a bus session, which exchanges keep-alives indefinitely, but never announce themselves.
     Session,
 }
 
-/// Connections that say nothing, to be measured beside.
+/// Plan for measuring the cost of silent connections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SilentPlan {
-    /// How far they go.
+    /// Stage at which the silent peers stop.
     pub silence: Silence,
-    /// How many there are at a time.
+    /// Number of simultaneous silent connections.
     pub connections: usize,
-    /// How often it is measured without and with them; once at least.
+    /// Number of pairs of blocks, without and with silent connections; at least one.
     pub turns: usize,
 }
 
-/// What silent connections cost.
+/// Measured cost of silent connections.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct SilentResult {
-    /// How many were asked for.
+    /// Number of silent connections requested.
     pub connections: usize,
-    /// The fewest that the coordinator held when a block began or ended.
+    /// Smallest number of silent connections held by the coordinator at the start or end of a block.
     pub held: usize,
-    /// How often one that had been closed was opened again, in all blocks.
+    /// Number of times a closed connection was reopened, over all blocks.
     pub reopened: u64,
-    /// Blocks without, and as many with them.
+    /// Number of pairs of blocks, without and with silent connections.
     pub turns: usize,
-    /// Jobs per second without them, the median block.
+    /// Jobs per second without silent connections, median of the blocks.
     pub jobs_per_s_without: f64,
-    /// Jobs per second beside them, the median block.
+    /// Jobs per second with silent connections, median of the blocks.
     pub jobs_per_s_beside: f64,
-    /// Rate beside them over that of the block before, without: the median \[1\].
+    /// Ratio of the job rate with silent connections to that of the preceding block without, median \[1\].
     pub rate_ratio: f64,
-    /// The smallest and the largest of those \[1\].
+    /// Smallest and largest ratio of the job rates \[1\].
     pub rate_ratio_range: (f64, f64),
-    /// The same of the coordinator's processor time per job: the median \[1\].
+    /// Ratio of the coordinator's processor time per job with silent connections to that without, median
+    /// \[1\].
     pub cpu_ratio: f64,
 }

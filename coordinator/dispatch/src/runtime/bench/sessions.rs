@@ -1,9 +1,9 @@
-//! Workers that are only sessions: many of them on one thread over the memory link, or in a process
-//! of their own over the bus.
+//! Workers without slot processes for benchmarks: sessions on one thread over the memory link, or in a
+//! separate process over the bus.
 //!
-//! They speak the protocol as real ones do (announcement, proof, heartbeat, results) and answer a
-//! job that does nothing at once, or after the sleep that it asks for. They repeat nothing: the memory link loses nothing, and over the bus
-//! what is not answered in time is offered again.
+//! Sessions speak the protocol as real workers do (announcement, proof, heartbeat, results) and answer an
+//! empty job at once, or after the delay it requests. They never resend: the memory link loses nothing, and
+//! over the bus an unanswered job is offered again.
 use super::meter::SESSIONS;
 use crate::simulated::{Running, Worker, outcome};
 use link::{
@@ -36,19 +36,19 @@ use tokio::{
     time::{Instant, MissedTickBehavior, sleep, sleep_until},
 };
 
-/// How often a worker speaks.
+/// Heartbeat interval of a session.
 const BEAT: Duration = Duration::from_secs(1);
 
-/// Connections that are opened at a time.
+/// Maximum number of connections being opened at a time.
 const OPENING: usize = 32;
-/// Pause before a connection that failed is tried again.
+/// Pause before a failed connection is retried.
 const AGAIN: Duration = Duration::from_millis(200);
 
-/// Running sessions; they end with the link.
+/// Running in-process sessions, which end when the link closes.
 pub(super) struct Sessions(Option<thread::JoinHandle<()>>);
 
 impl Sessions {
-    /// Starts so many sessions; the coordinator's end of their link.
+    /// Starts a number of sessions and returns the coordinator's end of their link.
     pub(super) fn start(count: usize, blob: Blob) -> (MemoryCoordinator, Self) {
         let (end, hub) = Hub::new(Faults::NONE, blob);
         let work = move || {
@@ -86,12 +86,12 @@ impl Drop for Sessions {
     }
 }
 
-/// A process with sessions over the bus; ended when dropped.
+/// Child process with sessions over the bus, killed on drop.
 pub(super) struct Connections(Child);
 
 impl Connections {
-    /// Starts this program again, with so many sessions that dial an address, with the key material
-    /// of a worker's folder if it takes any.
+    /// Starts this program as a child process with a number of sessions that connect to an address, using the
+    /// key material in a worker's folder if given.
     pub(super) fn start(count: usize, connect: &str, tls: Option<&Path>) -> io::Result<Self> {
         let mut command = Command::new(env::current_exe()?);
         command.args(["bench", "sessions", connect, &count.to_string()]);
@@ -112,12 +112,12 @@ impl Drop for Connections {
     }
 }
 
-/// Dials an address with so many sessions and serves until all have been told to end; with the key
-/// material of a worker's folder where certificates are asked for.
+/// Connects a number of sessions to an address and serves until all have been told to end, using the key
+/// material in a worker's folder if given.
 ///
 /// # Errors
-/// What is wrong with the key material; the first connection that cannot be opened, and why trying
-/// again does not help.
+/// Unusable key material, or the first connection that cannot be opened for a reason that retrying does not
+/// cure.
 pub async fn connect(to: &Locator, count: usize, tls: Option<&Path>) -> Result<(), LinkError> {
     let keys = tls.map(|folder| Keys::read(folder, Role::Worker));
     let keys = keys.transpose()?.map(Arc::new);
@@ -233,7 +233,7 @@ fn announce(id: WorkerId) -> FromWorker {
     }))
 }
 
-/// Jobs that are answered at once are never seen to run.
+/// Builds a heartbeat; jobs answered at once never appear as running.
 fn beat(number: &mut u64, case: Option<ContentHash>, sleeper: &Worker) -> FromWorker {
     *number += 1;
     let proof = Proof::Bits(ContentHash::of(b"sessions compute nothing"));
@@ -243,7 +243,7 @@ fn beat(number: &mut u64, case: Option<ContentHash>, sleeper: &Worker) -> FromWo
     })
 }
 
-/// Whether a job takes time.
+/// Returns whether a job requests a delay.
 const fn sleeps(job: &Job) -> bool {
     matches!(job, Job::Nothing { delay_ms, .. } if *delay_ms > 0)
 }

@@ -1,8 +1,9 @@
-//! Peers that connect and never say a word, or open a session of the bus and never announce
-//! themselves: what they cost a coordinator at work, measured in blocks of the same run, in turn
-//! without and with them.
+//! Measurement of the cost of silent peers on a busy coordinator: peers that connect and send nothing, or
+//! open a bus session and never announce themselves. Blocks of the same run alternate without and with silent
+//! peers.
 //!
-//! They are connections of one other process, which opens again whatever the coordinator closes.
+//! The peers are connections of a separate process, which reopens every connection that the coordinator
+//! closes.
 use super::{
     load::Load,
     meter::cost,
@@ -28,23 +29,23 @@ use tokio::{
     time::sleep,
 };
 
-/// How long each time: twice as long as the coordinator bears with those that say nothing.
+/// Duration of a block, twice the time for which the coordinator tolerates silent connections.
 const BLOCK: Duration = Duration::from_secs(8);
-/// How long the connections may take to open, and to be gone.
+/// Time limit for the connections to open, and to close.
 const SETTLING: Duration = Duration::from_secs(30);
-/// Connections that are being opened at a time.
+/// Maximum number of connections being opened at a time.
 const OPENING: usize = 64;
-/// Pause before a connection that failed is tried again.
+/// Pause before a failed connection is retried.
 const AGAIN: Duration = Duration::from_millis(50);
 
-/// Rate and cost of one block.
+/// Job rate and processor cost of one block.
 #[derive(Clone, Copy, Debug)]
 struct Block {
     jobs_per_s: f64,
     cpu_s_per_job: f64,
 }
 
-/// Measures a run that is going, in turn without and with silent connections.
+/// Measures an open run in alternating blocks without and with silent connections.
 pub(super) async fn measure(
     dispatch: &mut Dispatch,
     load: &mut Load,
@@ -91,7 +92,7 @@ pub(super) async fn measure(
     })
 }
 
-/// The median.
+/// Returns the median of sorted values.
 fn middle(sorted: &[f64]) -> f64 {
     quantile::of(sorted, 50).unwrap_or(f64::NAN)
 }
@@ -109,7 +110,8 @@ async fn block(dispatch: &mut Dispatch, load: &mut Load) -> Result<Block, Dispat
     })
 }
 
-/// Waits until something holds, but not for ever: how many were held is part of the result.
+/// Waits until a condition holds or [`SETTLING`] has passed; the number of connections held is part of the
+/// result.
 async fn settle(holds: impl Fn() -> bool) {
     let begun = Instant::now();
     while !holds() && begun.elapsed() < SETTLING {
@@ -117,19 +119,19 @@ async fn settle(holds: impl Fn() -> bool) {
     }
 }
 
-/// Files that this process has open, connections among them.
+/// Returns the number of open file descriptors of this process, including connections.
 fn open_files() -> usize {
     fs::read_dir("/proc/self/fd").map_or(0, Iterator::count)
 }
 
-/// A process that holds silent connections; ended when dropped.
+/// Child process that holds silent connections, killed on drop.
 struct Silent {
     process: Child,
     said: Option<BufReader<ChildStdout>>,
 }
 
 impl Silent {
-    /// Starts this program again, with so many connections to an address.
+    /// Starts this program as a child process with a number of silent connections to an address.
     fn start(silence: Silence, count: usize, connect: &str) -> io::Result<Self> {
         let mut command = Command::new(env::current_exe()?);
         command.args(["bench", "silent", connect, &count.to_string()]);
@@ -144,20 +146,20 @@ impl Silent {
         Ok(Self { process, said })
     }
 
-    /// Waits until all of them are open.
+    /// Waits until all connections are open.
     async fn opened(mut self) -> io::Result<Self> {
         self.word().await?;
         Ok(self)
     }
 
-    /// Ends them; how many were opened again.
+    /// Closes the connections; returns how many were reopened.
     async fn end(mut self) -> io::Result<u64> {
         drop(self.process.stdin.take());
         let word = self.word().await?;
         word.trim().parse().map_err(io::Error::other)
     }
 
-    /// The next line that it says.
+    /// Reads the next line of the child's standard output.
     async fn word(&mut self) -> io::Result<String> {
         let Some(mut said) = self.said.take() else {
             return Err(io::ErrorKind::BrokenPipe.into());
@@ -181,9 +183,9 @@ impl Drop for Silent {
     }
 }
 
-/// Holds so many connections or sessions to an address, over TCP, and says nothing, until standard
-/// input ends. One that is closed is opened again. Standard output has a line when all are open, and
-/// at the end how many were opened again.
+/// Holds a number of silent connections or sessions to an address, over TCP, until standard input ends; a
+/// closed connection is reopened. Prints a line to standard output when all are open, and at the end the
+/// number of reopened connections.
 ///
 /// # Errors
 /// If standard output cannot be written.
@@ -222,14 +224,14 @@ pub async fn keep_silent(to: &Locator, silence: Silence, count: usize) -> io::Re
     say(&opened.saturating_sub(count as u64).to_string())
 }
 
-/// One peer that says nothing.
+/// Silent peer: a TCP connection or a bus session.
 enum Held {
     Connection(TcpStream),
     Session(Box<ZenohWorker>),
 }
 
 impl Held {
-    /// Connects, if the other end takes it.
+    /// Opens a silent peer; `None` if the connection fails.
     async fn open(silence: Silence, to: &Locator, process: u64) -> Option<Self> {
         match silence {
             Silence::Connection => {
@@ -243,7 +245,7 @@ impl Held {
         }
     }
 
-    /// Waits for the other end to close, whatever it says before.
+    /// Waits until the remote end closes; received data are discarded.
     async fn closed(self) {
         match self {
             Self::Connection(connection) => {

@@ -1,5 +1,5 @@
-//! Jobs that sleep, on sessions of another process: a source of jobs is run to its end on more slots than there
-//! are processors.
+//! Benchmark with sleeping jobs on sessions of a separate process: runs a source of jobs to its end on more
+//! slots than there are processors.
 use super::{meter::processor_time, sessions::Connections};
 use crate::{
     runtime::{dispatch::Dispatch, error::DispatchError, options::DispatchOptions},
@@ -9,25 +9,26 @@ use protocol::{event::Spent, id::JobId, job::Job};
 use std::time::{Duration, Instant};
 use tokio::time::sleep;
 
-/// How long sessions may take to join.
+/// Time limit for sessions to join.
 const JOINING: Duration = Duration::from_mins(3);
 
-/// What came of it.
+/// Result of a benchmark with sleeping jobs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slept {
-    /// Sessions that had joined.
+    /// Number of sessions that joined.
     pub slots: usize,
-    /// From the first job to the end of the source.
+    /// Time from the first job to the end of the source.
     pub wall: Duration,
-    /// Processor time of the coordinator meanwhile.
+    /// Processor time of the coordinator from the first job to the end of the source.
     pub processor: Duration,
-    /// Results.
+    /// Number of results.
     pub results: u64,
-    /// Slot time before the first job, and at the end.
+    /// Slot time before the first job, and at the end of the source.
     pub spent: [Spent; 2],
 }
 
-/// Runs a source on so many sessions of one slot over TCP on loopback; a job sleeps as long as `takes` says.
+/// Runs a source on a number of one-slot sessions over TCP on loopback; each job sleeps for the time given by
+/// `takes`.
 ///
 /// # Errors
 /// As [`Dispatch::open`] and [`Dispatch::next`].

@@ -1,4 +1,4 @@
-//! Asking a running run.
+//! Client of a run's control socket.
 use super::{
     path::{SOCKET, through},
     words::{Question, Reply, Worker},
@@ -10,36 +10,36 @@ use std::{
     time::Duration,
 };
 
-/// How long an answer may take.
+/// Time limit for an answer.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// Longest answer (bytes): thousands of workers.
+/// Maximum length of an answer (bytes), enough for thousands of workers.
 const LONGEST: u64 = 64 << 20;
 
-/// Why a run does not answer.
+/// Reason why a run does not answer a control request.
 #[derive(Debug, thiserror::Error)]
 pub enum ControlError {
-    /// No process works on it.
-    #[error("nobody works on {} now: {reason}", folder.display())]
+    /// No coordinator process works on the run.
+    #[error("no `horsehead` process is working on the run {}: {reason}", folder.display())]
     Nobody {
-        /// The run folder.
+        /// Run folder.
         folder: PathBuf,
-        /// The system's words.
+        /// Error of the operating system.
         reason: io::Error,
     },
-    /// It does not understand, or has no such worker.
+    /// The coordinator does not understand the request, or has no worker of that name.
     #[error("{}: {reason}", folder.display())]
     Refused {
-        /// The run folder.
+        /// Run folder.
         folder: PathBuf,
-        /// Its words.
+        /// Reason given by the coordinator.
         reason: String,
     },
 }
 
-/// Asks the process that works on the run of a folder; the workers that the answer is about.
+/// Sends a request to the coordinator process of a run folder; returns the workers concerned.
 ///
 /// # Errors
-/// [`ControlError`] if there is none, or it refuses.
+/// [`ControlError`] if no process works on the run, or it refuses the request.
 pub fn ask(folder: &Path, question: &Question) -> Result<Vec<Worker>, ControlError> {
     let reply = exchange(folder, question).map_err(|reason| ControlError::Nobody {
         folder: folder.to_owned(),

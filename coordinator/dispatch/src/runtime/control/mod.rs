@@ -1,7 +1,7 @@
-//! The socket of a running run: who works, and taking workers out of the work.
+//! Control socket of an open run: lists workers and drains them.
 //!
-//! It lies in the run folder, for the owner alone, and speaks lines of JSON: one question, one answer
-//! ([`words`]). It knows no more of a run than its workers.
+//! The socket lies in the run folder, accessible to the owner only, and speaks JSON lines: one request, one
+//! answer ([`words`]). It gives access to the workers of a run and to nothing else.
 mod client;
 mod path;
 mod server;

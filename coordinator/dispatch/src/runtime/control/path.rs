@@ -1,11 +1,11 @@
-//! Where the socket lies.
+//! Path of the control socket.
 use std::{fs::File, io, os::fd::AsRawFd, path::Path};
 
 /// Name of the socket in the run folder.
 pub const SOCKET: &str = "workers.sock";
 
-/// A path of the socket that fits: those of sockets end after 107 bytes, so it goes through the folder,
-/// which must stay open meanwhile.
+/// Returns a short path to the control socket, through the descriptor of the run folder, which must stay open
+/// while the path is used: socket paths are limited to 107 bytes.
 pub(super) fn through(folder: &Path) -> io::Result<(File, String)> {
     let folder = File::open(folder)?;
     let path = format!("/proc/self/fd/{}/{SOCKET}", folder.as_raw_fd());

@@ -1,4 +1,4 @@
-//! Answering who asks through the socket.
+//! Server of a run's control socket.
 use super::{
     path::{SOCKET, through},
     words::{Question, Reply},
@@ -18,17 +18,17 @@ use tokio::{
     time::timeout,
 };
 
-/// Longest question (bytes).
+/// Maximum length of a request (bytes).
 const LONGEST: u64 = 64 << 10;
-/// How long one may take to ask, and to read the answer.
+/// Time limit for a client to send its request and read the answer.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// Askers at a time.
+/// Maximum number of simultaneous clients.
 const ASKERS: usize = 16;
 
-/// A question with the way back.
+/// Request with the channel for its reply.
 pub(in crate::runtime) type Asked = (Question, oneshot::Sender<Reply>);
 
-/// An open socket; gone when dropped.
+/// Open control socket, removed on drop.
 #[derive(Debug)]
 pub(in crate::runtime) struct Control {
     path: PathBuf,
@@ -36,8 +36,8 @@ pub(in crate::runtime) struct Control {
 }
 
 impl Control {
-    /// Opens the socket in a run folder that is locked for this process: one that is there is left of an
-    /// earlier one. Nobody is asked once `ask` says that the run has ended.
+    /// Opens the socket in a run folder that this process has locked; an existing socket is left over from an
+    /// earlier process and is replaced. `ask` passes a request on; it returns `false` once the run has ended.
     pub(in crate::runtime) fn open(
         folder: &Path,
         ask: impl Fn(Asked) -> bool + Clone + Send + Sync + 'static,
@@ -87,7 +87,7 @@ async fn serve(
         let ask = ask.clone();
         drop(tokio::spawn(async move {
             let answered = timeout(PATIENCE, answer(stream, ask)).await;
-            tracing::debug!(?answered, "somebody asked");
+            tracing::debug!(?answered, "a control request was answered");
             drop(place);
         }));
     }
@@ -107,7 +107,7 @@ async fn answer(stream: UnixStream, ask: impl Fn(Asked) -> bool) -> io::Result<(
                 over()
             }
         }
-        Err(error) => Reply::Error(format!("not understood: {error}")),
+        Err(error) => Reply::Error(format!("the request is not valid: {error}")),
     };
     let mut line = serde_json::to_vec(&reply)?;
     line.push(b'\n');

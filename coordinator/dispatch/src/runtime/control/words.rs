@@ -1,88 +1,88 @@
-//! What is said through the socket of a run: a question and an answer, each one line of JSON.
+//! Messages of a run's control socket: a request and an answer, each one line of JSON.
 //!
 //! ```text
 //! {"ask": "list"}
 //! {"ask": "drain", "names": ["worker-03"], "now": false, "end": false}
-//!     -> {"workers": [{"name": "worker-03", "id": "...", ...}]}   all of them, or those that are meant
+//!     -> {"workers": [{"name": "worker-03", "id": "...", ...}]}   all workers, or those named
 //!     -> {"error": "no worker is called ..."}
 //! ```
 use serde::{Deserialize, Serialize};
 
-/// A question.
+/// Request to a run's control socket.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "ask", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Question {
-    /// Who works?
+    /// Lists the workers.
     List,
-    /// Take workers out of the work.
+    /// Drains workers: they get no further jobs.
     Drain {
-        /// Whom, by the names of their keys, by host or by id; everybody if empty.
+        /// Workers by key name, host or id; all workers if empty.
         names: Vec<String>,
-        /// Hand back at once what they hold.
+        /// Whether workers return their unfinished jobs at once.
         now: bool,
-        /// End once they hold nothing.
+        /// Whether workers end once they hold no job.
         end: bool,
     },
 }
 
-/// An answer.
+/// Answer to a control request.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reply {
-    /// The workers that were asked for.
+    /// Workers concerned by the request.
     Workers(Vec<Worker>),
-    /// Why there is no answer.
+    /// Reason why the request was refused.
     Error(String),
 }
 
-/// A worker that takes part: a line of `workers list`.
+/// Connected worker: a line of `workers list`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Worker {
-    /// Name of its keys; `anyone` without.
+    /// Name in the worker's certificate; `anyone` without key material.
     pub name: String,
-    /// Its process, 16 hexadecimal digits.
+    /// Identifier of the worker process, 16 hexadecimal digits.
     pub id: String,
-    /// Its machine.
+    /// Host name of the worker.
     pub host: String,
-    /// Simulations it computes at a time.
+    /// Number of simultaneous simulations.
     pub slots: u32,
-    /// Version and profile of its program.
+    /// Version and build profile of the worker program.
     pub version: String,
-    /// What it does.
+    /// State of the worker.
     pub state: State,
-    /// Jobs it holds, those in its slots first.
+    /// Jobs held by the worker, those running in slots first.
     pub jobs: Vec<Job>,
-    /// Results it brought.
+    /// Number of results delivered.
     pub done: u64,
-    /// Attempts that failed there.
+    /// Number of attempts that failed on the worker.
     pub failed: u64,
-    /// Results a minute since it joined.
+    /// Results per minute since the worker joined.
     pub per_minute: f64,
-    /// Since it joined \[s\].
+    /// Time since the worker joined \[s\].
     pub present_s: f64,
-    /// Since it was last heard \[s\]; workers speak every second.
+    /// Time since the last message of the worker \[s\]; workers send one every second.
     pub last_seen_s: f64,
 }
 
-/// What a worker does.
+/// State of a worker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum State {
-    /// It fetches the case and shows that it computes as the others do.
+    /// Fetching the case and proving that it computes as the other workers do.
     Joining,
-    /// It takes jobs.
+    /// Taking jobs.
     Working,
-    /// It finishes its jobs and gets no more.
+    /// Finishing its jobs and getting no more.
     Draining,
-    /// It holds nothing and gets nothing.
+    /// Holding no job and getting none.
     Drained,
 }
 
-/// A job in the hands of a worker.
+/// Job held by a worker.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Job {
-    /// Its number.
+    /// Number of the job.
     pub job: u64,
-    /// Since it was sent \[s\].
+    /// Time since the job was sent \[s\].
     pub for_s: f64,
 }

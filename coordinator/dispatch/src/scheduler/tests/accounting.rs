@@ -1,4 +1,4 @@
-//! Where slot time goes: held against the simulated workers' own clocks.
+//! Slot-time accounting, compared with the simulated workers' own clocks.
 use super::{
     simulated::{Cluster, Fault, Generations, Setting},
     *,
@@ -7,8 +7,7 @@ use protocol::event::{Event, WorkerAccount};
 
 const LIMIT: Duration = Duration::from_hours(2);
 
-/// Kinds must make up all the time that slots were connected, and computing what the simulated
-/// workers really computed.
+/// Returns the slot time of the cluster after checking that the kinds add up to the connected time.
 fn balanced(cluster: &Cluster) -> Spent {
     let spent = cluster.core.snapshot(cluster.now).spent;
     let share = spent.sum_us() as f64 / spent.connected_us as f64;
@@ -33,7 +32,7 @@ fn the_kinds_add_up_and_useful_time_is_what_workers_computed() {
     }
 }
 
-/// A slow network is not the barrier's fault, and it is not useful.
+/// Checks that network latency counts as starved, neither as barrier nor as useful time.
 #[test]
 fn time_on_the_way_counts_as_starved() {
     let mut policy_of_one = Cluster::new(Setting {
@@ -100,8 +99,8 @@ fn accounts_of_all_workers_are_in_the_journal_and_are_the_same_as_the_live_one()
     assert_eq!(folded, live);
 }
 
-/// Time left is told from this: workers that start, fetch the case and build the model evaluate
-/// nothing.
+/// Checks that the computing time excludes workers that start, fetch the case and build the model; the
+/// estimate of the remaining time is derived from it.
 #[test]
 fn waiting_for_workers_and_for_them_to_get_ready_is_not_computing() {
     let mut scene = Scene::new();

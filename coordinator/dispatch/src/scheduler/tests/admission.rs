@@ -1,4 +1,4 @@
-//! Who may take part.
+//! Admission of workers.
 use super::*;
 use protocol::{
     case::Repeats,
@@ -15,7 +15,8 @@ fn a_worker_without_the_case_gets_nothing() {
     assert_eq!(scene.given().len(), 1);
 }
 
-/// Why a worker was refused, as it was told, and whether people were told the same.
+/// Returns the reason sent to a refused worker, after checking that the notice to the user states the same
+/// reason.
 fn refusal(scene: &Scene, id: u64) -> Option<String> {
     let told = scene.other.iter().find_map(|command| match command {
         Command::Send {
@@ -47,7 +48,7 @@ fn effect(id: &str) -> protocol::announce::EffectDescriptor {
     }
 }
 
-/// The same worker, whose model can add these effects.
+/// Returns the announcement with the given effects added to its model.
 fn with(
     mut announcement: Announcement,
     effects: Vec<protocol::announce::EffectDescriptor>,
@@ -56,7 +57,8 @@ fn with(
     announcement
 }
 
-/// What nobody of ours would say is kept by nobody: it would fill the memory, or a terminal.
+/// Checks that oversized or malformed announcements are refused with the field's name and not kept, since
+/// they could fill the memory or corrupt a terminal.
 #[test]
 fn absurd_announcements_are_refused_by_the_name_of_the_field() {
     let long = || "x".repeat(256);
@@ -179,8 +181,8 @@ fn prove(scene: &mut Scene, id: u64, proof: Proof) {
     );
 }
 
-/// The digest is the same, yet the case's reference individual has other bits: nothing it computes
-/// can be trusted.
+/// Checks that a worker with an equal digest but another result of the reference individual is refused, since
+/// its results cannot be trusted.
 #[test]
 fn another_result_of_the_reference_individual_is_refused() {
     let mut scene = Scene::new();
@@ -208,8 +210,8 @@ fn another_result_of_the_reference_individual_is_refused() {
     assert_eq!(scene.given().len(), 1);
 }
 
-/// Where bits do not repeat, values decide, within what the case allows; a machine on which the program fails is
-/// left out once another one has shown that it need not.
+/// Checks that for models without bitwise repeatability the values decide, within the tolerance of the case,
+/// and that a machine on which the program fails is refused once another machine has succeeded.
 #[test]
 fn values_of_the_reference_individual_may_differ_by_what_the_case_allows() {
     let values = |value: f64| Proof::Values(vec![Sample { value, scale: 2.0 }]);
@@ -246,7 +248,7 @@ fn values_of_the_reference_individual_may_differ_by_what_the_case_allows() {
     assert_eq!(scene.given().len(), 1);
 }
 
-/// A worker that held jobs when it was found out gives them back, and no job is to blame.
+/// Checks that a worker refused while holding jobs gives them back without a failure counted against them.
 #[test]
 fn a_worker_that_changes_its_proof_loses_its_jobs() {
     let mut scene = Scene::new();
@@ -263,8 +265,7 @@ fn a_worker_that_changes_its_proof_loses_its_jobs() {
     assert_eq!(scene.given().len(), 1);
 }
 
-/// Another case can only be a mistake: a worker on its way from one run to the next says that it has
-/// none.
+/// Checks that a worker reporting another case is refused at once; a worker between two runs reports no case.
 #[test]
 fn another_case_is_refused_at_once_and_by_name() {
     let mut scene = Scene::new();
@@ -285,7 +286,8 @@ fn another_case_is_refused_at_once_and_by_name() {
     assert_eq!(scene.core.snapshot(scene.now).workers.len(), 0);
 }
 
-/// Whoever differs may compute something else: what it had on its way counts for nothing.
+/// Checks that results in transit from a refused worker are not accepted, since it may compute something
+/// else.
 #[test]
 fn results_of_the_refused_are_not_accepted() {
     let mut scene = Scene::new();
@@ -332,7 +334,7 @@ fn another_version_of_the_wire_is_answered_each_time_and_told_once() {
     assert_eq!(scene.delivered.len(), 1);
 }
 
-/// A farewell is shown and written down, so there is an end to it.
+/// Checks that a worker's reason for leaving is truncated before it is shown and recorded.
 #[test]
 fn a_long_farewell_is_cut() {
     let mut scene = Scene::new();
@@ -343,8 +345,8 @@ fn a_long_farewell_is_cut() {
     assert!(said.len() < 300 && said.contains("[31mxxx"), "{said}");
 }
 
-/// What strangers hand in before its job exists is not kept, and of others' not without end: it
-/// would fill the memory.
+/// Checks that results arriving before their job is submitted are discarded from unknown workers and kept up
+/// to a memory limit from members.
 #[test]
 fn early_results_are_kept_of_members_and_up_to_a_budget() {
     const LONG: usize = 10 << 20;

@@ -1,4 +1,4 @@
-//! Workers that are taken out of the work.
+//! Draining of workers.
 use super::*;
 
 fn drain(scene: &mut Scene, worker: u64, now: bool, end: bool) {
@@ -7,7 +7,7 @@ fn drain(scene: &mut Scene, worker: u64, now: bool, end: bool) {
     scene.tell(Input::Drain { worker, how });
 }
 
-/// Whether a worker was told to end since the last look.
+/// Returns whether a worker was ordered to end since the last call.
 fn told_to_end(scene: &mut Scene, worker: u64) -> bool {
     let is = |command: &Command| matches!(command, Command::Send { to, message: ToWorker::Refused { .. } } if to.0 == worker);
     mem::take(&mut scene.other).iter().any(is)

@@ -1,4 +1,4 @@
-//! Attempts that fail: tried again, given up, recorded or not.
+//! Failed attempts: retried, given up, recorded or not.
 use super::{
     simulated::{Cluster, Generations, Setting},
     *,
@@ -19,8 +19,8 @@ fn a_job_that_crashes_twice_is_given_up_and_recorded() {
     assert_eq!(scene.given(), []);
 }
 
-/// One bad node among three fails whatever it is given, at once, so that it is always the least loaded: each job is
-/// tried once more elsewhere, even where that has to be waited for.
+/// Checks that each job failed by a bad worker is tried once more elsewhere, even if that means waiting; the
+/// bad worker fails all jobs at once and is therefore always the least loaded.
 #[test]
 fn what_fails_at_one_worker_is_tried_again_at_another() {
     let mut scene = Scene::new();
@@ -125,7 +125,7 @@ fn an_overdue_job_gets_a_second_longer_try() {
     assert_eq!(scene.delivered, [(0, Outcome::Failed(overdue()))]);
 }
 
-/// The worker ends what is overdue; should it not, the core does.
+/// Checks that the coordinator ends an overdue job if the worker does not.
 #[test]
 fn a_worker_that_does_not_end_an_overdue_job_loses_it() {
     let mut scene = Scene::new();
@@ -139,8 +139,8 @@ fn a_worker_that_does_not_end_an_overdue_job_loses_it() {
     assert_eq!(scene.cancelled, [(WorkerId(1), attempt)]);
 }
 
-/// Jobs that kill whoever computes them, on clusters of all kinds: each costs four workers at most
-/// and no other job fails.
+/// Checks, on clusters of many kinds, that jobs that kill their worker cost at most four workers each and
+/// that no other job fails.
 #[test]
 fn jobs_that_kill_their_workers_are_found_whatever_else_those_held() {
     const KILLERS: &[u64] = &[3, 11, 12];

@@ -1,4 +1,4 @@
-//! Who gets which job, and when a worker may forget it.
+//! Dispatch of jobs, and when a worker may forget a result.
 use super::*;
 
 #[test]
@@ -98,7 +98,7 @@ fn an_answer_to_another_question_is_not_taken() {
     assert_eq!(scene.delivered.len(), 1);
 }
 
-/// The journal cannot be written: nothing is given out, what comes in is kept.
+/// Checks that nothing is dispatched while the journal cannot be written, while incoming results are kept.
 #[test]
 fn while_the_journal_cannot_be_written_nothing_is_given_out() {
     let mut scene = Scene::new();
@@ -118,7 +118,7 @@ fn while_the_journal_cannot_be_written_nothing_is_given_out() {
     assert_eq!(scene.acknowledged, [(WorkerId(1), attempt)]);
 }
 
-/// A run that ends waits for its disk, and begins nothing meanwhile.
+/// Checks that a finishing run waits for results to be stored and dispatches nothing meanwhile.
 #[test]
 fn a_run_that_is_to_end_gives_nothing_out_and_still_takes_what_comes() {
     let mut scene = Scene::new();
@@ -151,7 +151,8 @@ fn people_are_told_once_that_nobody_is_there() {
     );
 }
 
-/// Found as a coordinator that grew by a hundred megabytes: workers were faster than the disk.
+/// Checks that a disk slower than the workers pauses dispatch; before, the coordinator grew by a hundred
+/// megabytes.
 #[test]
 fn a_disk_that_falls_behind_holds_up_the_workers_and_does_not_fill_the_memory() {
     let mut scene = Scene::new();

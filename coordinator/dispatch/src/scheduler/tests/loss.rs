@@ -50,8 +50,8 @@ fn a_coordinator_that_stood_still_blames_nobody() {
     );
 }
 
-/// Found as a run that was stopped with Ctrl-Z: its workers gave up their connections to it, and when
-/// it went on, all were taken for lost and their jobs were done again.
+/// Checks that connections broken during a stall of the coordinator are no losses. Regression: a run stopped
+/// with Ctrl-Z counted all its workers as lost when it went on, and computed their jobs again.
 #[test]
 fn connections_that_broke_while_the_coordinator_stood_still_are_no_losses() {
     let time = Duration::from_secs(20);
@@ -89,7 +89,7 @@ fn connections_that_broke_while_the_coordinator_stood_still_are_no_losses() {
     }
 }
 
-/// A job over which workers die runs alone, so that no other job can be blamed or harmed.
+/// Checks that a job whose workers are lost runs alone, so that no other job can be blamed or harmed.
 #[test]
 fn a_job_that_killed_two_workers_runs_alone_and_two_more_are_the_end() {
     let mut scene = Scene::new();
@@ -127,7 +127,8 @@ fn a_job_that_killed_two_workers_runs_alone_and_two_more_are_the_end() {
     );
 }
 
-/// Found as a job that waited for a worker of its own until nothing else was left to do.
+/// Checks that a quarantined job gets a worker to itself while other jobs keep coming. Regression: the job
+/// waited until no other job was left.
 #[test]
 fn a_suspect_is_not_kept_waiting_by_jobs_that_keep_coming() {
     let mut scene = Scene::new();
@@ -161,8 +162,8 @@ fn a_suspect_is_not_kept_waiting_by_jobs_that_keep_coming() {
     assert!(finished <= 4, "it waited for {finished} others");
 }
 
-/// Under load a worker may die of a job that, as far as is known, only waited there: the results of
-/// those before it died with it. Found as a job that killed all workers and was never given up.
+/// Checks that jobs reported as waiting on a lost worker are suspects too, since results of the jobs before
+/// them may have been lost with the worker. Regression: a job that killed all workers was never given up.
 #[test]
 fn what_waited_on_lost_workers_is_suspected_too_and_clears_itself_alone() {
     let mut scene = Scene::new();
@@ -201,8 +202,8 @@ fn what_waited_on_lost_workers_is_suspected_too_and_clears_itself_alone() {
     );
 }
 
-/// A job that an idle worker takes over may have been begun by the one it was taken from, and may be
-/// what that one dies of.
+/// Checks that a job moved to an idle worker is still a suspect when the first worker is lost, since that
+/// worker may have begun it.
 #[test]
 fn a_job_that_was_taken_from_a_worker_may_still_be_what_it_dies_of() {
     let lost = |seconds| {
@@ -226,7 +227,7 @@ fn a_job_that_was_taken_from_a_worker_may_still_be_what_it_dies_of() {
     assert_eq!(lost(3), 0, "it has let go");
 }
 
-/// A worker that leaves in good order is not counted as lost, even if its connection ends next.
+/// Checks that an orderly departure is not counted as a loss, even if the connection ends next.
 #[test]
 fn leaving_blames_no_job() {
     let mut scene = Scene::new();
@@ -249,8 +250,8 @@ fn leaving_blames_no_job() {
     assert_eq!(scene.given().len(), 1);
 }
 
-/// A worker that outlived the coordinator keeps what it computes, and delivers what it finished
-/// before the jobs were even submitted again.
+/// Checks that a worker that outlived the coordinator keeps its running jobs and delivers results that it
+/// finished before the jobs were submitted again.
 #[test]
 fn work_that_outlived_the_coordinator_is_not_done_again() {
     let mut scene = Scene::with([JobId(0)].into_iter().collect(), 2);
@@ -276,8 +277,8 @@ fn work_that_outlived_the_coordinator_is_not_done_again() {
     assert_eq!(scene.delivered.len(), 3);
 }
 
-/// After a restart, what outliving workers may hold is given to nobody before they are back or have
-/// been waited for.
+/// Checks that after a restart jobs that expected workers may hold are dispatched only once these workers are
+/// back or the grace period is over.
 #[test]
 fn nobody_gets_what_those_who_outlived_the_coordinator_may_hold() {
     let old = |job| Attempt {
@@ -311,8 +312,8 @@ fn nobody_gets_what_those_who_outlived_the_coordinator_may_hold() {
     assert_eq!(scene.given().len(), 4);
 }
 
-/// What is said of a loss is what is known: an end at once is one of the process, an end after
-/// silence is not.
+/// Checks that the reason of a loss distinguishes a process that ended at once from one that fell silent
+/// first.
 #[test]
 fn the_reason_of_a_loss_tells_an_end_from_a_silence() {
     let lost = |seconds| {

@@ -1,4 +1,4 @@
-//! Scenarios: whole clusters without a socket, a file or a clock.
+//! Scenario tests of the scheduler without sockets, files or clocks.
 use super::*;
 use crate::simulated::{self, CASE, MODEL, PROOF, announcement, cost, job};
 use protocol::{
@@ -24,7 +24,7 @@ mod loss;
 mod tail;
 mod window;
 
-/// A core with the time and everything it asked for.
+/// Scheduler core under test, with a simulated time and the commands it has emitted.
 struct Scene {
     core: Core,
     now: Duration,
@@ -34,7 +34,7 @@ struct Scene {
     delivered: Vec<(u64, Outcome)>,
     storing: Vec<JobId>,
     other: Vec<Command>,
-    /// What workers say that a job took.
+    /// Computing time that the simulated workers report per job \[us\].
     wall_us: u64,
 }
 
@@ -101,7 +101,7 @@ impl Scene {
         self.check();
     }
 
-    /// What must hold after every step.
+    /// Checks the invariants of the core that must hold after every step.
     fn check(&self) {
         for (id, pending) in &self.core.jobs {
             let queued = self.core.queue.contains(id);
@@ -196,7 +196,7 @@ impl Scene {
         self.tell(Input::Stored { jobs });
     }
 
-    /// Orders since the last call, as (worker, attempt).
+    /// Returns the orders sent since the last call, as (worker, attempt).
     fn given(&mut self) -> Vec<(u64, Attempt)> {
         let orders = self.orders.drain(..);
         orders.map(|(to, order)| (to.0, order.attempt)).collect()

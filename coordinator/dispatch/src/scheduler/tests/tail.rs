@@ -1,4 +1,4 @@
-//! The tail of a generation: waiting jobs change hands, slow ones are copied.
+//! Straggler handling at the end of a generation: waiting jobs are moved, slow ones copied.
 use super::{
     simulated::{Cluster, Fault, Generations, Setting},
     *,
@@ -25,7 +25,7 @@ fn an_idle_worker_takes_what_waits_elsewhere() {
     assert_eq!(scene.cancelled, [(WorkerId(1), held[3].1)]);
 }
 
-/// Copies of slow jobs cost next to nothing while nothing is wrong.
+/// Checks that copies of slow jobs cost at most five percent of the useful time when there is no fault.
 #[test]
 fn without_faults_copies_cost_at_most_five_percent() {
     for (seed, slow_one_in) in [(1, 0), (2, 0), (3, 10), (4, 10)] {
@@ -47,8 +47,8 @@ fn without_faults_copies_cost_at_most_five_percent() {
     }
 }
 
-/// One of sixteen freezes for good in the middle of a generation: an idle one takes over long
-/// before its silence is noticed.
+/// Checks that an idle worker takes over from a frozen one (one of sixteen, frozen in the middle of a
+/// generation) long before its silence is detected.
 #[test]
 fn a_frozen_worker_does_not_hold_up_its_generation() {
     let mut clean = Cluster::new(Setting::even(16));
@@ -66,7 +66,7 @@ fn a_frozen_worker_does_not_hold_up_its_generation() {
     assert!(frozen.core.snapshot(frozen.now).copies >= 1);
 }
 
-/// The loser is told at once, and ends within a message's time.
+/// Checks that the slower of two copies is cancelled as soon as the first result is accepted.
 #[test]
 fn the_loser_of_two_copies_is_cancelled_at_once() {
     let mut scene = Scene::new();
@@ -98,7 +98,7 @@ fn the_loser_of_two_copies_is_cancelled_at_once() {
     assert_eq!(scene.delivered.len(), 7, "the late one changes nothing");
 }
 
-/// A frozen worker with jobs outstanding costs the others neither rate nor results.
+/// Checks that a frozen worker holding jobs costs the other workers neither throughput nor results.
 #[test]
 fn one_frozen_worker_of_sixty_four_costs_the_others_nothing() {
     let run = |freeze: bool| {

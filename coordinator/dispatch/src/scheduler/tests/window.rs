@@ -1,5 +1,5 @@
-//! The search without generations on simulated clusters: the same bits whatever happens, and how
-//! much of the cluster it uses.
+//! Steady-state search (without generations) on simulated clusters: bitwise equal results under all faults,
+//! and the share of the cluster's capacity used.
 use super::{
     simulated::{Cluster, Fault, Generations, Search, Setting},
     *,
@@ -27,7 +27,7 @@ fn settings(window: usize, generations: u32) -> Settings {
     })
 }
 
-/// Runs a search on a cluster; its evaluation log's digest, and the cluster.
+/// Runs a search on a cluster and returns the digest of its evaluation log, and the cluster.
 fn run(settings: &Settings, mut cluster: Cluster) -> (String, Cluster) {
     let space = CLIFF.space();
     let tell = |genes: &[f64]| CLIFF.tell(&space, genes);
@@ -83,8 +83,7 @@ fn one_three_seven_and_forty_workers_with_delays_losses_and_kills_make_the_same_
     assert_ne!(other, expected, "the window is part of what decides");
 }
 
-/// Share of capacity that is spent on results, in a cluster of mixed speed: computing times spread
-/// by 30 %, one worker in ten half as fast.
+/// Builds a cluster of mixed speed: computing times spread by 30 %, one worker in ten half as fast.
 fn mixed(workers: u64) -> Cluster {
     Cluster::new(Setting {
         slow_one_in: 10,
@@ -118,7 +117,7 @@ fn a_window_uses_what_a_barrier_leaves_idle() {
     assert!(window > 0.9, "{window}");
 }
 
-/// Makes the table of shares of capacity in `tests/README.md` again.
+/// Regenerates the table of capacity shares in `tests/README.md`.
 #[test]
 #[ignore = "a study, not a test"]
 fn share_of_capacity_used() {

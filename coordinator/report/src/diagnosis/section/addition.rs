@@ -1,4 +1,4 @@
-//! What is added to the model: the entry of the case file, and its sizes.
+//! Report section on the effects added to the model: their estimated sizes and the entry for the case file.
 use crate::diagnosis::effects::effects_toml;
 use crate::diagnosis::subject::Subject;
 use crate::diagnosis::table as tables;
@@ -22,7 +22,7 @@ pub(super) fn section(subject: &Subject<'_>) -> Section {
     }
     Section {
         id: "add",
-        title: "What is added",
+        title: "Effects added to the model",
         blocks,
     }
 }

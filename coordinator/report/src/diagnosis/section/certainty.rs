@@ -1,4 +1,5 @@
-//! What the verdict rests on: numerical error, noise, convergence, parameters, cost.
+//! Report section on the reliability of the verdict: numerical error, noise, convergence, parameters and
+//! cost.
 use crate::diagnosis::subject::Subject;
 use crate::diagnosis::table as tables;
 use crate::document::{Block, Fact, Section};
@@ -28,12 +29,12 @@ pub(super) fn section(subject: &Subject<'_>) -> Section {
     }
     Section {
         id: "certainty",
-        title: "What it rests on",
+        title: "Reliability of the verdict",
         blocks,
     }
 }
 
-/// The grounds; none where the recalibration did not come to an end.
+/// Returns the facts about noise, convergence and dispersion; empty where the recalibration did not finish.
 fn facts(subject: &Subject<'_>) -> Vec<Fact> {
     let diagnosis = subject.diagnosis();
     let Some(fit) = &diagnosis.before else {

@@ -1,7 +1,7 @@
-//! Sections of a diagnosis' report: one file each, one line in the [`SECTIONS`] list.
+//! Sections of the diagnosis report: one file each, one line in the [`SECTIONS`] list.
 //!
-//! A section turns the diagnosis into blocks, or into none where it has nothing for it. It does not
-//! know its place or its neighbours, nor in which form its blocks are read.
+//! A section turns the diagnosis into blocks, or returns no blocks where the diagnosis holds no data for it.
+//! A section depends neither on its position, nor on other sections, nor on the output format.
 mod addition;
 mod certainty;
 mod origin;
@@ -14,7 +14,7 @@ mod wander;
 use super::subject::Subject;
 use crate::document::Section;
 
-/// Every section, in the order of the argument.
+/// All sections of the diagnosis report, in the order of the argument.
 pub(super) const SECTIONS: &[fn(&Subject<'_>) -> Section] = &[
     verdict::section,
     place::section,

@@ -1,4 +1,4 @@
-//! How the diagnosis was made: enough to make it again.
+//! Report section on the provenance of the diagnosis: everything needed to reproduce it.
 use crate::diagnosis::subject::{Subject, channels};
 use crate::document::{Block, Fact, Section};
 use crate::number::duration;

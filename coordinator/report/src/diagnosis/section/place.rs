@@ -1,4 +1,4 @@
-//! Where the recalibrated simulation and the record part: abscissa, order, joint.
+//! Report section that localises the residual of the recalibrated model: by abscissa, by order and by joint
 use crate::diagnosis::subject::{Subject, channels};
 use crate::document::{Block, Figure, Section, figures};
 use crate::number::{figure, fixed, plain, unit};
@@ -9,7 +9,7 @@ use discrepancy::place::whereabouts::Where;
 use discrepancy::record::Record;
 use protocol::case::Abscissa;
 
-/// Windows and entries that are named in words.
+/// Maximum number of windows, and of peaks by order, listed in the text.
 const NAMED: usize = 6;
 
 pub(super) fn section(subject: &Subject<'_>) -> Section {
@@ -28,7 +28,7 @@ pub(super) fn section(subject: &Subject<'_>) -> Section {
     }
     Section {
         id: "where",
-        title: "Where the curves part",
+        title: "Where the residual lies",
         blocks,
     }
 }
@@ -82,13 +82,13 @@ fn windows(seen: &Where, record: &Record) -> Vec<Block> {
     blocks
 }
 
-/// Where a window ends, within the period.
+/// Returns the end of a window, wrapped into the abscissa's period.
 fn end(window: &Window, abscissa: &Abscissa) -> f64 {
     let period = abscissa.period.filter(|period| window.to > *period);
     window.to - period.unwrap_or(0.0)
 }
 
-/// What stands out by order; none where nothing is periodic.
+/// Describes the peaks of the residual by order; `None` where no channel is periodic.
 fn peaks(seen: &Where, record: &Record) -> Option<String> {
     let mut abscissas = record.channels.iter().map(|own| &own.channel.abscissa);
     let of = &abscissas.find(|abscissa| abscissa.period.is_some())?.name;

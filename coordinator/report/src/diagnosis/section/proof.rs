@@ -1,5 +1,5 @@
-//! The proof: how far the gap closes, on records that took part and on records that did not, with
-//! the best rejected rival beside it.
+//! Report section that shows how far the gap closes, on fitted and on held-out records, compared with the
+//! best rejected rival effect.
 use crate::chart;
 use crate::diagnosis::shown::{Shown, shown};
 use crate::diagnosis::subject::Subject;
@@ -21,12 +21,12 @@ pub(super) fn section(subject: &Subject<'_>) -> Section {
     }
     Section {
         id: "show",
-        title: "What it shows",
+        title: "Validation: the gap before and after",
         blocks,
     }
 }
 
-/// The curves of one condition: what is scored, and behind a fold its other channels.
+/// Draws the curves of one condition: the scored channels, and the other channels in a collapsed block.
 fn curves(shown: &Shown<'_>) -> Vec<Block> {
     let heading = html! { h3 { "Condition " (shown.condition) } };
     let mut blocks = vec![Block::Markup(heading)];

@@ -1,4 +1,5 @@
-//! What was suspected: every effect with its test, its refit, and why it was dropped or kept.
+//! Report section on the candidate effects: each with its test, its refit and the reason why it was kept or
+//! dropped.
 use crate::diagnosis::subject::Subject;
 use crate::diagnosis::{table as tables, words};
 use crate::document::{Block, Section};
@@ -8,7 +9,7 @@ pub(super) fn section(subject: &Subject<'_>) -> Section {
     let rounds = &subject.diagnosis().rounds;
     Section {
         id: "what",
-        title: "What was suspected",
+        title: "Candidate effects",
         blocks: if rounds.is_empty() {
             Vec::new()
         } else {
@@ -17,7 +18,8 @@ pub(super) fn section(subject: &Subject<'_>) -> Section {
     }
 }
 
-/// Whether two rounds are one, of which each has another effect.
+/// Returns whether two rounds belong to one joint search step: both added their effect together with others
+/// and have identical test statistics.
 fn same(one: &Round, other: &Round) -> bool {
     let statistics = |round: &Round| -> Vec<u64> {
         let all = round.suspects.iter();
@@ -52,12 +54,12 @@ fn blocks(subject: &Subject<'_>) -> Vec<Block> {
     if let Some(id) = &diagnosis.generic {
         let force = words::generic(subject, id);
         blocks.push(Block::Text(format!(
-            "The widest margin has {force}: no name comes near it."
+            "The best explanation by a wide margin is {force}: no named effect comes close."
         )));
     } else if let Some(force) = &diagnosis.force {
         let force = words::generic(subject, &force.id);
         blocks.push(Block::Text(format!(
-            "The widest margin has {force}, and it is only suspected."
+            "The best explanation is {force}, but it is not confirmed."
         )));
     }
     blocks.extend(tables::absorbed(subject).map(Block::Table));

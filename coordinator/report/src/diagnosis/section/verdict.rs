@@ -1,4 +1,5 @@
-//! The verdict: one sentence, its size, how sure it is, and what to do next.
+//! Report section with the verdict: one sentence, the effect sizes, the confidence and the recommended next
+//! steps.
 use crate::diagnosis::subject::Subject;
 use crate::diagnosis::words;
 use crate::document::{Block, Section};

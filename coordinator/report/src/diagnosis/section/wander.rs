@@ -1,4 +1,5 @@
-//! Parameters that would have to wander, before and after.
+//! Report section on parameters that would have to vary along the record or between conditions, before and
+//! after the answer.
 use crate::diagnosis::subject::Subject;
 use crate::diagnosis::table::{self as tables, Wandering};
 use crate::document::{Block, Section};

@@ -1,4 +1,4 @@
-//! Numbers of the answer: parameters of its effects, and genes.
+//! Tables of the answer: parameters of its effects, and parameters of the calibration.
 use crate::diagnosis::subject::Subject;
 use crate::diagnosis::words::interval;
 use crate::document::{Row, Table};
@@ -6,7 +6,7 @@ use crate::number::{NONE, figure, quantity};
 use crate::words::at_bound;
 use protocol::announce::{ParameterDescriptor, Role};
 
-/// Parameters of the effects of the answer.
+/// Builds the table of the parameters of the answer's effects; `None` if no effect was added.
 pub(in crate::diagnosis) fn sizes(subject: &Subject<'_>) -> Option<Table> {
     let diagnosis = subject.diagnosis();
     // a suspect without a verdict is no answer
@@ -54,7 +54,7 @@ pub(in crate::diagnosis) fn sizes(subject: &Subject<'_>) -> Option<Table> {
     .unless_empty()
 }
 
-/// How large a parameter usually is: of a shape, its typical value.
+/// Returns the usual value of a parameter: the scale of a size, the typical value of a shape.
 fn usual(parameter: &ParameterDescriptor) -> f64 {
     match parameter.role {
         Role::Size => parameter.scale,
@@ -62,7 +62,7 @@ fn usual(parameter: &ParameterDescriptor) -> f64 {
     }
 }
 
-/// Which bound a value on a linear scale touches.
+/// Names the bound that a value on a linear scale lies at, if any.
 fn edge(value: f64, lower: f64, upper: f64) -> Option<&'static str> {
     let share = (value - lower) / (upper - lower);
     match share {
@@ -72,7 +72,7 @@ fn edge(value: f64, lower: f64, upper: f64) -> Option<&'static str> {
     }
 }
 
-/// Genes before and after, with their bounds.
+/// Builds the table of the case's unknowns before and after the answer, with their bounds.
 pub(in crate::diagnosis) fn genes(subject: &Subject<'_>) -> Option<Table> {
     let diagnosis = subject.diagnosis();
     let before = diagnosis

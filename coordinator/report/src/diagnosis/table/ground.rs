@@ -1,11 +1,12 @@
-//! What the diagnosis stands on and what it cost: numerical error, simulations.
+//! Tables on numerical error and on the cost of the stages.
 use crate::diagnosis::subject::Subject;
 use crate::document::{Row, Table};
 use crate::number::{NONE, count, duration, fixed, quantity};
 use discrepancy::ground::preflight::Preflight;
 use protocol::case::Channel;
 
-/// How far the discretisation moves each channel, at the recalibrated model and at the answer.
+/// Builds the table of the discretisation error of each channel, for the recalibrated model and for the
+/// answer.
 pub(in crate::diagnosis) fn numerics(subject: &Subject<'_>) -> Option<Table> {
     let diagnosis = subject.diagnosis();
     let record = subject.calibrated()?;
@@ -36,7 +37,7 @@ pub(in crate::diagnosis) fn numerics(subject: &Subject<'_>) -> Option<Table> {
     }
     notes.push(
         "What recalibration leaves of the difference counts as noise in every test, so that no effect is \
-         named for what a coarser model does; a name must be believed with that of the answer as well."
+         named for a discretisation error; a name must also remain significant with the discretisation error at the answer."
             .to_owned(),
     );
     Table::new(
@@ -53,7 +54,7 @@ pub(in crate::diagnosis) fn numerics(subject: &Subject<'_>) -> Option<Table> {
     .unless_empty()
 }
 
-/// One channel of a check.
+/// Builds the row of one channel of a numerical check.
 fn row(check: &Preflight, c: usize, channel: &Channel) -> Row {
     let of = |values: &[f64]| {
         values
@@ -70,7 +71,7 @@ fn row(check: &Preflight, c: usize, channel: &Channel) -> Row {
     )
 }
 
-/// What each stage cost.
+/// Builds the table of the cost of each stage; `None` if no stage was accounted.
 pub(in crate::diagnosis) fn stages(subject: &Subject<'_>) -> Option<Table> {
     let accounts = &subject.diagnosed.accounts;
     let mut rows: Vec<Row> = accounts

@@ -1,10 +1,10 @@
-//! What is never exact about the record, and what the record cannot show.
+//! Tables of the instrument errors (nuisance parameters) and of the effects that the record cannot show.
 use crate::diagnosis::subject::Subject;
 use crate::document::{Row, Table};
 use crate::number::{percent, quantity};
 use discrepancy::diagnose::NeverExact;
 
-/// What the instruments are off by, beside the answer.
+/// Builds the table of the estimated instrument errors, with their intervals and tolerances.
 pub(in crate::diagnosis) fn instruments(subject: &Subject<'_>) -> Option<Table> {
     let nuisances = &subject.diagnosis().nuisances;
     let row = |own: &NeverExact| {
@@ -27,17 +27,17 @@ pub(in crate::diagnosis) fn instruments(subject: &Subject<'_>) -> Option<Table> 
     };
     Table::new(
         "Instruments and what else is never exact",
-        ["", "off by", "95 % interval", "good to", "three of that"],
+        ["", "off by", "95 % interval", "good to", "within 3 standard deviations"],
         nuisances.iter().map(row).collect(),
     )
     .noted([
-        "Each is a parameter of every fit, with what it is good to (one standard deviation, from the data \
-         sheet) known beforehand. Within three of that it is no discovery.",
+        "Each is a parameter of every fit, with its tolerance (one standard deviation, from the data \
+         sheet) as prior. An error within three standard deviations is no finding.",
     ])
     .unless_empty()
 }
 
-/// Effects that the unknowns take up, and what would show them.
+/// Builds the table of effects absorbed by the unknowns, with the measurement that would reveal each.
 pub(in crate::diagnosis) fn absorbed(subject: &Subject<'_>) -> Option<Table> {
     let absorbed = subject.diagnosis().absorbed.iter();
     let rows = absorbed.map(|own| {
@@ -47,7 +47,7 @@ pub(in crate::diagnosis) fn absorbed(subject: &Subject<'_>) -> Option<Table> {
         )
     });
     Table::new(
-        "What this record cannot show, since recalibration takes it up",
+        "Effects that this record cannot show, since recalibration absorbs them",
         ["", "taken up", "what would show it"],
         rows.collect(),
     )

@@ -1,4 +1,4 @@
-//! The tables of a diagnosis: what they show, not how they are set.
+//! Tables of a diagnosis: their content, not their layout.
 mod answer;
 mod ground;
 mod instruments;

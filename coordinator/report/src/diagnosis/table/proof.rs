@@ -1,4 +1,4 @@
-//! The gap before and after: above the noise, and in the reference paper's measures.
+//! Tables of the gap before and after: above the noise, and in the error measures of the reference paper.
 use crate::diagnosis::shown::{Shown, shown};
 use crate::diagnosis::subject::Subject;
 use crate::diagnosis::words;
@@ -8,7 +8,8 @@ use crate::words::{condition_name, headed};
 use discrepancy::proof::compare;
 use std::collections::BTreeSet;
 
-/// The gap before and after, of the answer and of the best rejected rival.
+/// Builds the table of the gap before and after, for the answer, the best rejected rival effect and the
+/// generic force.
 pub(in crate::diagnosis) fn gaps(subject: &Subject<'_>) -> Option<Table> {
     let diagnosis = subject.diagnosis();
     let added = !subject.added().is_empty();
@@ -46,7 +47,7 @@ pub(in crate::diagnosis) fn gaps(subject: &Subject<'_>) -> Option<Table> {
         ]).noted(diagnosis.whiteness.map(|p| whiteness(subject, p))).unless_empty()
 }
 
-/// Whether what is left lies where noise lies.
+/// States the p-values of the whiteness test of the residual before and after.
 fn whiteness(subject: &Subject<'_>, [before, after]: [f64; 2]) -> String {
     let channels = subject.records.iter().flat_map(|record| &record.channels);
     let along = channels
@@ -61,7 +62,8 @@ fn whiteness(subject: &Subject<'_>, [before, after]: [f64; 2]) -> String {
     )
 }
 
-/// One row of it; without a change there is nothing after and nothing closed.
+/// Builds one row of the gap table; the columns "after", "closed" and the interval show a dash if the model
+/// did not change.
 fn gap(subject: &Subject<'_>, of: &compare::Row, changed: bool) -> Row {
     let small = |share: f64| {
         if share.is_finite() {
@@ -96,7 +98,7 @@ fn gap(subject: &Subject<'_>, of: &compare::Row, changed: bool) -> Row {
     )
 }
 
-/// The paper's two error measures, channel by channel.
+/// Builds the table of the reference paper's two error measures, by scored channel.
 pub(in crate::diagnosis) fn paper(subject: &Subject<'_>) -> Option<Table> {
     let all = shown(subject);
     let scored = all.iter().flat_map(|shown| {

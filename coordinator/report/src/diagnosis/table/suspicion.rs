@@ -1,4 +1,4 @@
-//! What was suspected, and what would have been seen.
+//! Tables of the candidate effects, their tests and their detection limits.
 use crate::diagnosis::judgement::{ranked, tempered};
 use crate::diagnosis::subject::Subject;
 use crate::diagnosis::words::{self, nats, p_value};
@@ -6,7 +6,7 @@ use crate::document::{Row, Table};
 use crate::number::{NONE, figure, percent, quantity};
 use discrepancy::diagnose::Round;
 
-/// Every suspect of a round, with what became of it.
+/// Builds the table of all candidate effects of a round, with the reason why each was kept or dropped.
 pub(in crate::diagnosis) fn suspects(number: usize, round: &Round) -> Table {
     let rows = ranked(round).into_iter().map(|(suspect, judgement)| {
         let score = suspect.score.as_ref();
@@ -45,7 +45,7 @@ pub(in crate::diagnosis) fn suspects(number: usize, round: &Round) -> Table {
     ])
 }
 
-/// The forces without a cause that explain most; none where none was tried.
+/// Builds the table of the generic forces with the largest test statistics; `None` if none was tried.
 pub(in crate::diagnosis) fn generics(round: &Round) -> Option<Table> {
     const SHOWN: usize = 6;
     let mut forces: Vec<_> = round.generics.iter().collect();
@@ -83,9 +83,11 @@ pub(in crate::diagnosis) fn generics(round: &Round) -> Option<Table> {
     .unless_empty()
 }
 
-/// Effects that this record cannot tell apart, and what would.
+/// Builds the table of effects that this record cannot distinguish, with the additional cycles or records
+/// that would distinguish them.
 pub(in crate::diagnosis) fn look_alikes(subject: &Subject<'_>) -> Option<Table> {
-    /// More cycles than this many times those that there are nobody records.
+    /// Largest realistic multiple of the recorded number of cycles; a larger one is reported as not
+    /// achievable.
     const MOST: f64 = 30.0;
     let times = |cycles: f64| {
         if cycles <= 1.0 {
@@ -111,18 +113,18 @@ pub(in crate::diagnosis) fn look_alikes(subject: &Subject<'_>) -> Option<Table> 
         })
         .collect();
     Table::new(
-        "What this record cannot tell apart, and what would",
-        ["", "more of the same", "with the other conditions' records"],
+        "Effects that this record cannot distinguish, and what would distinguish them",
+        ["", "with more cycles", "with the other conditions' records"],
         rows,
     )
     .noted([
-        "Whatever the verdict, at three times the sizes from which the effects are seen at all; \
-             the likest first. All pairs that are not listed are told apart.",
+        "Computed at three times the detection limits, independent of the verdict; \
+             the most similar pairs first. Pairs that are not listed can be distinguished.",
     ])
     .unless_empty()
 }
 
-/// From which size on each effect would have been seen.
+/// Builds the table of detection limits: the smallest size of each effect that the record would have shown.
 pub(in crate::diagnosis) fn limits(subject: &Subject<'_>) -> Option<Table> {
     let limits = subject.diagnosis().detection_limits();
     let rows: Vec<Row> = limits

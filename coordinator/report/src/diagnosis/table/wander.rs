@@ -1,4 +1,4 @@
-//! Parameters that would have to wander along a record or from condition to condition.
+//! Table of parameters that would have to vary along a record or between conditions.
 use crate::diagnosis::subject::Subject;
 use crate::document::{Row, Table};
 use crate::number::{figure, fixed, percent};
@@ -6,22 +6,23 @@ use crate::words::condition_name;
 use discrepancy::model::Fit;
 use discrepancy::place::wander::{Part, Shift, Wander};
 
-/// Probability below which a shift is no noise.
+/// Significance level: a shift with a larger p-value is taken as noise.
 const CLEAR: f64 = 0.05;
-/// Parameters that are shown.
+/// Maximum number of parameters shown.
 const SHOWN: usize = 6;
 
-/// Wandering parameters under a fitted model.
+/// Variation of the parameters from part to part, under one fitted model.
 pub(in crate::diagnosis) struct Wandering<'a> {
-    /// What the table is headed with.
+    /// Title of the table.
     pub title: &'static str,
-    /// The model.
+    /// Fitted model.
     pub fit: &'a Fit,
     /// How far each unknown would have to change from part to part.
     pub wander: &'a [Wander],
 }
 
-/// The unknowns that would have to wander under a model, with the values that they would take.
+/// Builds the table of the unknowns that would have to vary under a model, with their value in each part;
+/// `None` if there are none.
 pub(in crate::diagnosis) fn wander(
     subject: &Subject<'_>,
     Wandering { title, fit, wander }: &Wandering<'_>,
@@ -71,7 +72,7 @@ pub(in crate::diagnosis) fn wander(
     ]))
 }
 
-/// Unknowns of which some part stands out of the noise.
+/// Returns the unknowns of the case with a significant shift in at least one part.
 fn clear<'a>(fit: &Fit, wander: &'a [Wander]) -> impl Iterator<Item = &'a Wander> {
     let genes = fit.model.space.dimension();
     wander.iter().filter(move |wander| {

@@ -1,4 +1,4 @@
-//! Effects and forces in words: their names, and the sizes that were found.
+//! Sentences about effects and generic forces: their names and estimated sizes.
 use super::value::interval;
 use crate::diagnosis::subject::Subject;
 use crate::number::quantity;
@@ -7,8 +7,8 @@ use discrepancy::diagnose::Estimate;
 use discrepancy::verdict::Verdict;
 use protocol::announce::Role;
 
-/// An effect by its title, with the identifier behind it; the identifier alone where the workers do
-/// not know it.
+/// Names an effect by its title followed by its identifier; the identifier alone if no worker describes the
+/// effect.
 pub(super) fn named(subject: &Subject<'_>, id: &str) -> String {
     subject.effect(id).map_or_else(
         || id.to_owned(),
@@ -16,7 +16,7 @@ pub(super) fn named(subject: &Subject<'_>, id: &str) -> String {
     )
 }
 
-/// A force without a cause: what it is and where it acts.
+/// Names a generic force by its title (kind and place of action) followed by its identifier.
 pub(in crate::diagnosis) fn generic(subject: &Subject<'_>, id: &str) -> String {
     subject.effect(id).map_or_else(
         || id.to_owned(),
@@ -24,7 +24,7 @@ pub(in crate::diagnosis) fn generic(subject: &Subject<'_>, id: &str) -> String {
     )
 }
 
-/// The sizes of an effect with their intervals, shapes left out.
+/// Lists the sizes of an effect with their 95 % intervals, without its shape parameters.
 fn sizes(subject: &Subject<'_>, effect: &Estimate) -> String {
     let is_size = |name: &str| {
         let known = subject.parameter(&effect.id, name);
@@ -46,7 +46,8 @@ fn sizes(subject: &Subject<'_>, effect: &Estimate) -> String {
     listed(&each, "and")
 }
 
-/// Effects of the answer with their sizes, and what is only suspected as such: one item each.
+/// Lists the effects of the answer with their sizes, one item each; those of an unresolved verdict are marked
+/// as suspected.
 pub(in crate::diagnosis) fn effects(subject: &Subject<'_>) -> Vec<String> {
     let unresolved = subject.diagnosis().verdict == Verdict::Unresolved;
     let suspected = if unresolved {

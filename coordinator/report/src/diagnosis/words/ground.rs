@@ -1,4 +1,4 @@
-//! How sure a diagnosis is, and how far it reaches: one sentence per ground.
+//! Sentences about the confidence in a diagnosis and its scope.
 use super::effect::named;
 use super::value::{equals, interval, nats, p_value};
 use crate::diagnosis::subject::Subject;
@@ -8,7 +8,7 @@ use discrepancy::diagnose::Force;
 use discrepancy::proof::compare::{Portion, Row};
 use discrepancy::record::noise::Known;
 
-/// How sure the verdict is.
+/// Lists the sentences that state the confidence in the verdict.
 pub(in crate::diagnosis) fn confidence(subject: &Subject<'_>) -> Vec<String> {
     let diagnosis = subject.diagnosis();
     let added = subject.added();
@@ -30,7 +30,7 @@ pub(in crate::diagnosis) fn confidence(subject: &Subject<'_>) -> Vec<String> {
     {
         let behind = (best.log_evidence - rival.log_evidence) / round.dispersion;
         sentences.push(format!(
-            "The best rejected rival, {}, lies {} nats behind on what was fitted; with what took no part, 3 are asked for.",
+            "The best rejected rival, {}, lies {} nats behind on the fitted data; including held-out data, at least 3 nats are required.",
             named(subject, &rival.id),
             nats(behind)
         ));
@@ -49,7 +49,7 @@ pub(in crate::diagnosis) fn confidence(subject: &Subject<'_>) -> Vec<String> {
         sentences.extend(diagnosis.prediction.iter().map(|one| {
             let likelier = if one.nats < 0.0 { "less likely" } else { "likelier" };
             format!(
-                "{}, {}: with what was added it is {} nats {likelier}, what the fit leaves open integrated out.",
+                "{}, {}: with the added effects these data are {} nats {likelier}, marginalised over the uncertainty of the fit.",
                 condition_name(subject.case, one.condition),
                 part(one.part),
                 nats(one.nats.abs()),
@@ -63,15 +63,16 @@ pub(in crate::diagnosis) fn confidence(subject: &Subject<'_>) -> Vec<String> {
              every probability and every limit here is as good as that statement.",
         ),
         Known::Guessed => Some(
-            "The noise is neither seen nor stated: it was guessed from how rough the curves are, and nothing is named \
-             on a guess.",
+            "The noise is neither measured nor stated: it was estimated from the roughness of the curves, and no effect is named \
+             on that basis.",
         ),
     };
     sentences.extend(noise.map(str::to_owned));
     sentences
 }
 
-/// The size of a force without a cause, and by how much it closes the gap on each record.
+/// States the size of a generic force without a physical cause, and how far it closes the gap on each
+/// held-out record.
 fn force(subject: &Subject<'_>, force: &Force) -> Vec<String> {
     let phase = force.phase_deg.map_or_else(String::new, |phase| {
         format!(", largest at {} deg of its own turn", figure(phase))
@@ -89,7 +90,7 @@ fn force(subject: &Subject<'_>, force: &Force) -> Vec<String> {
     sentences
 }
 
-/// By how much the gap of a row closed.
+/// States the share of the gap that closed or opened on one row of the comparison.
 fn closing(subject: &Subject<'_>, row: &Row) -> String {
     let closed = row.closed;
     let spread = closed.interval.map_or_else(String::new, |[low, high]| {
@@ -112,7 +113,7 @@ fn closing(subject: &Subject<'_>, row: &Row) -> String {
     )
 }
 
-/// What a row's cycles were to the fit.
+/// Returns the role of a row's data in the fit: fitted, or the kind of hold-out.
 pub(in crate::diagnosis) const fn role(row: &Row) -> &'static str {
     part(row.part)
 }

@@ -1,6 +1,6 @@
-//! What a diagnosis says, in sentences: verdict, grounds, what to do next.
+//! Sentences of a diagnosis report: verdict, confidence, next steps.
 //!
-//! Judges nothing: every number is the diagnosis' own.
+//! Formats only: every number is taken from the diagnosis.
 mod effect;
 mod ground;
 mod next;

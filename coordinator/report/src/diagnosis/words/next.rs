@@ -1,4 +1,4 @@
-//! What to do next: one sentence each.
+//! Sentences that recommend the next steps after a diagnosis.
 use crate::diagnosis::subject::Subject;
 use crate::number::percent;
 use crate::words::{command, listed};
@@ -6,7 +6,7 @@ use discrepancy::diagnose::Diagnosis;
 use discrepancy::record::noise::Known;
 use discrepancy::verdict::Verdict;
 
-/// What to do next.
+/// Lists the recommended next steps, one sentence each.
 pub(in crate::diagnosis) fn next(subject: &Subject<'_>) -> Vec<String> {
     let diagnosis = subject.diagnosis();
     let mut steps = vec![by_verdict(diagnosis)];
@@ -73,7 +73,7 @@ fn unresolved(diagnosis: &Diagnosis) -> String {
             command::CHECK
         )
     } else if diagnosis.noise == Known::Guessed {
-        "State `noise` of every channel, or record several cycles: a guess carries no name."
+        "State `noise` for every channel in case.toml, or record several cycles: no effect is named on guessed noise."
             .to_owned()
     } else if diagnosis.rounds.is_empty() {
         format!(
@@ -87,7 +87,7 @@ fn unresolved(diagnosis: &Diagnosis) -> String {
     }
 }
 
-/// Channels that the machine can have and the record does not.
+/// Returns the titles of the channels that the case defines for the condition but the record lacks.
 fn missing_channels(subject: &Subject<'_>) -> Vec<String> {
     let Some(record) = subject.calibrated() else {
         return Vec::new();

@@ -1,11 +1,11 @@
-//! The answer in a word, and in a sentence.
+//! Verdict of a diagnosis as a keyword and as a sentence.
 use super::effect::{generic, named};
 use crate::diagnosis::subject::Subject;
 use crate::words::listed;
 use discrepancy::diagnose::Round;
 use discrepancy::verdict::Verdict;
 
-/// The verdict's name.
+/// Returns the verdict's keyword in capitals.
 pub(in crate::diagnosis) const fn outcome(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::NothingDetected => "NOTHING DETECTED",
@@ -16,7 +16,7 @@ pub(in crate::diagnosis) const fn outcome(verdict: Verdict) -> &'static str {
     }
 }
 
-/// The answer in one sentence, without its sizes.
+/// Returns the verdict as one sentence, without the effect sizes.
 pub(in crate::diagnosis) fn verdict(subject: &Subject<'_>) -> String {
     let diagnosis = subject.diagnosis();
     match diagnosis.verdict {
@@ -46,11 +46,13 @@ pub(in crate::diagnosis) fn verdict(subject: &Subject<'_>) -> String {
                 |id| generic(subject, id)
             )
         ),
-        Verdict::Unresolved => "Unresolved: this record does not carry a name.".to_owned(),
+        Verdict::Unresolved => {
+            "Unresolved: this record is not sufficient to name an effect.".to_owned()
+        }
     }
 }
 
-/// What was added, round by round: a name, or the members of a set of which one acts.
+/// Lists the additions round by round: an effect's name, or the members of an ambiguity set joined by "or".
 fn choices(subject: &Subject<'_>) -> Vec<String> {
     let rounds = subject.diagnosis().rounds.iter();
     let choice = |round: &Round| {

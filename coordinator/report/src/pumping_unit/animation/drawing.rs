@@ -1,30 +1,30 @@
-//! The drawing: machine parts in side view, in scale, one unit a centimetre, y downwards.
+//! Drawing of the machine: side view to scale, 1 unit = 1 cm, y downwards.
 //!
-//! Arcs, anchors, pins, lengths and ropes are the case's; post, gearbox, well head and the
-//! outlines of beam and heads away from the arcs are schematic, and the legend says so.
+//! Arcs, anchors, pins, lengths and ropes are taken from the case; post, gearbox, well head and the outlines
+//! of beam and heads away from the arcs are schematic, as the legend states.
 use super::film::{Film, MM};
 use super::rope;
 use maud::{Markup, html};
 use protocol::pumping_unit::Machine;
 
-/// A point of the drawing from metres in a frame with y upwards.
+/// Formats a point, given in metres with y upwards, in drawing coordinates.
 fn xy(x_m: f64, y_m: f64) -> String {
     format!("{:.1},{:.1}", 100.0 * x_m, -100.0 * y_m)
 }
 
-/// A closed path through points \[m\].
+/// Formats a closed SVG path through points \[m\].
 fn closed(points: &[(f64, f64)]) -> String {
     let corners: Vec<_> = points.iter().map(|&(x, y)| xy(x, y)).collect();
     format!("M{}Z", corners.join("L"))
 }
 
-/// A point on a circle \[m\].
+/// Returns a point on a circle \[m\] at an angle in degrees.
 fn on_circle((x, y): (f64, f64), radius: f64, deg: f64) -> (f64, f64) {
     let (sin, cos) = deg.to_radians().sin_cos();
     (x + radius * cos, y + radius * sin)
 }
 
-/// Points along an arc \[m\].
+/// Returns 49 points along an arc \[m\].
 fn arc(center: (f64, f64), radius: f64, from_deg: f64, to_deg: f64) -> Vec<(f64, f64)> {
     (0..=48)
         .map(|i| {
@@ -37,7 +37,7 @@ fn arc(center: (f64, f64), radius: f64, from_deg: f64, to_deg: f64) -> Vec<(f64,
         .collect()
 }
 
-/// Lengths that frame the drawing \[m\].
+/// Extents of the drawing \[m\], and the lower end of the front arc \[deg\].
 struct Frame {
     left: f64,
     right: f64,
@@ -82,7 +82,7 @@ impl Frame {
     }
 }
 
-/// The machine at the first frame; every moving part carries an id for the player.
+/// Draws the machine at the first frame; every moving part carries an id for the player.
 pub(super) fn drawing(machine: &Machine, film: &Film) -> Markup {
     let frame = Frame::new(machine, film);
     let view = format!(
@@ -125,7 +125,7 @@ fn hatch() -> Markup {
     }
 }
 
-/// Ground, foundation of the gearbox, well head: schematic.
+/// Draws ground, gearbox foundation and well head (schematic).
 fn ground(machine: &Machine, frame: &Frame) -> Markup {
     let crank = &machine.crank;
     let (x, y) = (crank.center_x_m, crank.center_y_m);
@@ -159,7 +159,7 @@ fn ground(machine: &Machine, frame: &Frame) -> Markup {
     }
 }
 
-/// Post from the pivot to the ground: schematic.
+/// Draws the post from the pivot to the ground (schematic).
 fn post(frame: &Frame) -> Markup {
     let foot = frame.ground;
     let (front, back) = (0.2 * -foot, -0.13 * -foot);
@@ -235,7 +235,7 @@ fn rod(machine: &Machine, film: &Film) -> Markup {
     }
 }
 
-/// Beam and both heads, in the beam frame.
+/// Draws beam and both heads, in the beam frame.
 fn beam_and_heads(machine: &Machine, frame: &Frame) -> Markup {
     let half_rope = 0.5 * machine.ropes.diameter_m;
     let front = &machine.front_head;
@@ -303,7 +303,7 @@ fn beam_and_heads(machine: &Machine, frame: &Frame) -> Markup {
     }
 }
 
-/// A length written on the part it belongs to, turned counter-clockwise.
+/// Draws a dimension label, rotated counter-clockwise, on its part.
 fn dimension(x_m: f64, y_m: f64, turned_deg: f64, text: &str) -> Markup {
     let place = format!("translate({}) rotate({:.0})", xy(x_m, y_m), -turned_deg);
     html! { text transform=(place) text-anchor="middle" dominant-baseline="middle" { (text) } }
@@ -338,7 +338,8 @@ fn scale_bar(frame: &Frame) -> Markup {
     }
 }
 
-/// Colour scale of the tension, length scale of the pressure, and what is schematic.
+/// Draws the legend: colour scale of the tension, length scale of the contact force, and a note on the
+/// schematic parts.
 pub(super) fn legend(film: &Film) -> Markup {
     let [low, high] = film.tension_range.map(|tenths| 0.1 * tenths);
     let gradient = format!("background:linear-gradient(90deg,{})", film.stops.join(","));

@@ -1,6 +1,6 @@
-//! The snapshots of a simulation, thinned, rounded and packed for the player.
+//! Snapshots of a simulation: thinned, rounded and packed for the player.
 //!
-//! Lengths are whole millimetres, forces tenths of kilonewtons: finer than a pixel, small in a file.
+//! Lengths are whole millimetres, forces tenths of kilonewtons: finer than a pixel, and compact in the file.
 use crate::color::{Color, Ramp};
 use crate::number::{NONE, fixed};
 use maud::{Markup, html};
@@ -11,7 +11,7 @@ use protocol::{
 use serde::Serialize;
 use support::quantile;
 
-/// The scale of tension, low to high: deep blue over violet and rose to orange.
+/// Colour scale of the tension, low to high: deep blue over violet and rose to orange.
 pub(super) const TENSION: Ramp = Ramp([
     Color(0x1c, 0x2a, 0x7c),
     Color(0x5b, 0x1f, 0x9b),
@@ -20,28 +20,27 @@ pub(super) const TENSION: Ramp = Ramp([
     Color(0xf4, 0x92, 0x3a),
 ]);
 
-/// Millimetres per unit of the drawing, a centimetre.
+/// Millimetres per unit of the drawing (1 unit = 1 cm).
 pub(super) const MM: f64 = 10.0;
-/// Snapshots kept at most: one every two degrees.
+/// Maximum number of frames: one every two degrees.
 const FRAMES: usize = 181;
 
-/// A scalar that the player shows beside the drawing.
+/// Scalar that the player shows next to the drawing.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Readout {
-    /// What it is.
+    /// Label of the scalar.
     pub label: String,
-    /// Its unit.
     pub unit: &'static str,
-    /// Decimals shown.
+    /// Number of decimals shown.
     pub decimals: usize,
-    /// One value per frame, rounded to the decimals; none where the simulation has none.
+    /// Value per frame, rounded to the decimals; `None` where the simulation has no value.
     pub values: Vec<Option<f64>>,
 }
 
-/// One rope in one frame.
+/// Path and tension of one rope in one frame.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct RopeFrame {
-    /// Centres of the cylinders: first x, y, then differences \[mm\].
+    /// Centres of the cylinders, delta-encoded: first x, y, then differences to the previous cylinder \[mm\].
     pub path: Vec<i32>,
     /// Axial force in the joint before each cylinder [0.1 kN].
     pub tension: Vec<i32>,
@@ -49,7 +48,7 @@ pub(super) struct RopeFrame {
     pub contact: Vec<i32>,
 }
 
-/// Everything the player needs.
+/// Data of the animation, embedded as JSON for the player.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Film {
     /// Crank angle of each frame \[deg\].
@@ -64,16 +63,16 @@ pub(super) struct Film {
     pub crossbeam: Vec<[i32; 2]>,
     /// Suspension point x, y \[mm\].
     pub suspension: Vec<[i32; 2]>,
-    /// Back rope.
+    /// Frames of the back rope.
     pub back: Vec<RopeFrame>,
-    /// Front rope.
+    /// Frames of the front rope.
     pub front: Vec<RopeFrame>,
     /// Back head: arc centre x, y in the beam frame \[mm\], anchor x, y in the beam frame \[mm\].
     pub back_head: [i32; 4],
-    /// Front head likewise.
+    /// Front head: arc centre x, y and anchor x, y in the beam frame \[mm\].
     pub front_head: [i32; 4],
-    /// Crank centre \[mm\] and angle by which the counterweight follows the pin, counter-clockwise
-    /// \[deg\].
+    /// Crank centre x, y \[mm\], and angle from the crank pin to the counterweight, counter-clockwise
+    /// positive \[deg\].
     pub crank: [f64; 3],
     /// Ends of the tension scale [0.1 kN].
     pub tension_range: [f64; 2],
@@ -82,11 +81,11 @@ pub(super) struct Film {
     /// Contact force per length that the pressure diagram shows as one metre [kN/m].
     #[serde(skip)]
     pub pressure_kn_per_m: f64,
-    /// Numbers beside the drawing.
+    /// Scalars shown next to the drawing.
     pub readouts: Vec<Readout>,
 }
 
-/// Whether every place in a snapshot is a number; others cannot be drawn.
+/// Returns whether all coordinates of a snapshot are finite; other snapshots are left out.
 fn is_finite(motion: &Motion) -> bool {
     let single = [
         motion.crank_pin_m,
@@ -99,7 +98,7 @@ fn is_finite(motion: &Motion) -> bool {
     motion.turn_deg.is_finite() && places.all(|place| place.is_finite())
 }
 
-/// Metres to whole millimetres; zero where there is no number.
+/// Converts metres to whole millimetres; zero for a value that is not finite.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "clamped to a range that fits"
@@ -143,7 +142,7 @@ impl RopeFrame {
         }
     }
 
-    /// Centres of the cylinders \[mm\].
+    /// Decodes the centres of the cylinders \[mm\].
     pub(super) fn points(&self) -> Vec<[i32; 2]> {
         let mut at = [0, 0];
         self.path
@@ -157,7 +156,7 @@ impl RopeFrame {
 }
 
 impl Film {
-    /// Packs the snapshots of a simulation; none if it has none.
+    /// Packs the snapshots of a simulation; `None` if the simulation has none.
     pub(super) fn new(
         case: &Case,
         machine: &Machine,
@@ -242,7 +241,7 @@ impl Film {
         })
     }
 
-    /// The film as JSON; holds numbers and plain labels only.
+    /// Serialises the film as JSON, escaped for inline HTML.
     pub(super) fn json(&self) -> String {
         // a list of numbers and strings always serialises
         serde_json::to_string(self)
@@ -251,7 +250,7 @@ impl Film {
             .replace('&', "\\u0026")
     }
 
-    /// The numbers beside the drawing, of the first frame.
+    /// Renders the readouts of the first frame as a table.
     pub(super) fn readouts(&self) -> Markup {
         html! {
             table.readouts {
@@ -274,7 +273,7 @@ impl Film {
     }
 }
 
-/// Centre and anchor of a head in the beam frame \[mm\].
+/// Returns arc centre and anchor of a head in the beam frame \[mm\].
 fn head((x, y): (f64, f64), radius_m: f64, anchor_deg: f64) -> [i32; 4] {
     let (sin, cos) = anchor_deg.to_radians().sin_cos();
     [mm(x), mm(y), mm(x + radius_m * cos), mm(y + radius_m * sin)]

@@ -1,8 +1,8 @@
-//! The moving machine: an inline SVG drawing in scale with a small player, from the snapshots of a
+//! Animation of the machine: an inline SVG drawing to scale with a small player, from the snapshots of a
 //! simulation.
 //!
-//! The drawing stands by itself (first snapshot) where there is no JavaScript or on paper; the
-//! player only moves its parts. No library, no network.
+//! Without JavaScript or on paper the drawing shows the first snapshot; the player only moves its parts. No
+//! library and no network access.
 mod drawing;
 mod film;
 mod rope;
@@ -14,12 +14,12 @@ use protocol::{
     pumping_unit::{Machine, Simulation},
 };
 
-/// The player; reads the film, moves the parts.
+/// JavaScript player that reads the film and moves the parts.
 const PLAYER: &str = include_str!("player.js");
-/// How the parts look; no other section has any.
+/// Style sheet of the machine parts, used by this section only.
 const STYLE: &str = include_str!("film.css");
 
-/// Draws the machine with its player; none without snapshots.
+/// Draws the machine with its player; `None` without snapshots.
 pub(super) fn machine(case: &Case, condition: usize, simulation: &Simulation) -> Option<Markup> {
     let machine = Machine::of(case).ok()?;
     let film = film::Film::new(case, &machine, condition, simulation)?;

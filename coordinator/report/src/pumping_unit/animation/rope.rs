@@ -1,9 +1,9 @@
-//! Ropes and contact force in the drawing, of the first frame; the player does the same for the
-//! others.
+//! Drawing of the ropes and the contact force in the first frame; the player redraws them for the other
+//! frames.
 use super::film::{Film, MM, RopeFrame, TENSION};
 use maud::{Markup, html};
 
-/// Both ropes.
+/// Draws both ropes.
 pub(super) fn ropes(film: &Film) -> Markup {
     html! {
         (rope("machine-back", &film.back[0], &rope_ends(film, true), film))
@@ -11,7 +11,8 @@ pub(super) fn ropes(film: &Film) -> Markup {
     }
 }
 
-/// Where a rope starts and ends in the first frame \[mm\]: crossbeam or suspension, and the anchor.
+/// Returns the ends of a rope in the first frame \[mm\]: crossbeam or suspension point, and the anchor on the
+/// head.
 fn rope_ends(film: &Film, back: bool) -> [[f64; 2]; 2] {
     let (start, head) = if back {
         (film.crossbeam[0], film.back_head)
@@ -24,7 +25,7 @@ fn rope_ends(film: &Film, back: bool) -> [[f64; 2]; 2] {
     [start.map(f64::from), [cos * x - sin * y, sin * x + cos * y]]
 }
 
-/// A rope as one line per joint, coloured by its tension; the last one ends at the anchor.
+/// Draws a rope as one line per joint, coloured by its tension; the last line ends at the anchor.
 fn rope(id: &str, frame: &RopeFrame, ends: &[[f64; 2]; 2], film: &Film) -> Markup {
     let mut points = vec![ends[0]];
     points.extend(frame.points().iter().map(|point| point.map(f64::from)));
@@ -45,7 +46,7 @@ fn rope(id: &str, frame: &RopeFrame, ends: &[[f64; 2]; 2], film: &Film) -> Marku
     }
 }
 
-/// Contact force along both ropes as diagrams outside the arcs, in the first frame.
+/// Draws the contact force along both ropes as diagrams outside the arcs, for the first frame.
 pub(super) fn pressure(film: &Film) -> Markup {
     let beam = film.beam.first().copied().unwrap_or(0.0).to_radians();
     let (sin, cos) = beam.sin_cos();
@@ -59,7 +60,8 @@ pub(super) fn pressure(film: &Film) -> Markup {
     }
 }
 
-/// The diagram of one rope: out along the arc's normals, back along the rope.
+/// Returns the path of one rope's contact force diagram: along the tips of the forces, drawn normal to the
+/// arc, and back along the rope.
 fn diagram(frame: &RopeFrame, center_mm: [f64; 2]) -> String {
     let mut outer = Vec::new();
     let mut inner = Vec::new();

@@ -5,15 +5,15 @@ use crate::{
     space::{Interval, Space},
 };
 
-/// One code per gene. Bit k of the string is bit `k % bits` of gene `k / bits`.
+/// Chromosome: one code per gene. Bit k of the string is bit `k % bits` of gene `k / bits`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Chromosome(pub(super) Vec<u32>);
 
-/// Translates chromosomes to gene values.
+/// Codec that translates between chromosomes and gene values.
 #[derive(Clone, Debug)]
 pub(super) struct Codec {
     space: Space,
-    /// What the codes of each gene cover (coordinate).
+    /// Interval that the codes of each gene cover (coordinate).
     intervals: Vec<Interval>,
     encoding: Encoding,
     scale: Scale,
@@ -38,22 +38,22 @@ impl Codec {
         self.encoding
     }
 
-    /// Bits per gene.
+    /// Returns the number of bits per gene.
     pub(super) const fn bits(&self) -> u32 {
         self.bits
     }
 
-    /// Bits of a whole chromosome.
+    /// Returns the number of bits of a whole chromosome.
     pub(super) fn length(&self) -> usize {
         self.intervals.len() * self.bits as usize
     }
 
-    /// The largest code.
+    /// Returns the largest code.
     pub(super) const fn largest(&self) -> u32 {
         (1 << self.bits) - 1
     }
 
-    /// A chromosome in which every bit is even odds.
+    /// Draws a uniformly random chromosome.
     pub(super) fn random(&self, stream: &mut Stream) -> Chromosome {
         let code = |_| {
             let bits = stream.bits() >> (u64::BITS - self.bits);
@@ -62,7 +62,7 @@ impl Codec {
         Chromosome((0..self.intervals.len()).map(code).collect())
     }
 
-    /// Values of all unknowns [declared units], inside the bounds.
+    /// Decodes a chromosome to the values of all unknowns [declared units], inside the bounds.
     pub(super) fn decode(&self, chromosome: &Chromosome) -> Vec<f64> {
         let genes = chromosome
             .0
@@ -90,13 +90,14 @@ impl Codec {
         self.space.expand(&own)
     }
 
-    /// The chromosome nearest to one of the starts of the space.
+    /// Returns the chromosome nearest to the starting point of that index; `None` if the space has no such
+    /// starting point.
     pub(super) fn start(&self, index: usize) -> Option<Chromosome> {
         let point = self.space.starts().get(index)?;
         Some(self.encode(point))
     }
 
-    /// The chromosome nearest to a point (coordinate).
+    /// Encodes a point (coordinate) as the nearest chromosome.
     pub(super) fn encode(&self, point: &[f64]) -> Chromosome {
         let genes = point.iter().zip(&self.intervals).zip(self.space.axes());
         let codes = genes.map(|((&x, interval), axis)| {
@@ -117,7 +118,7 @@ impl Codec {
         Chromosome(codes.collect())
     }
 
-    /// The code nearest to a share of the interval; shares outside 0..1 give the ends.
+    /// Returns the code nearest to a share of the interval; shares outside 0..1 give the ends.
     pub(super) fn code(&self, share: f64) -> u32 {
         #[expect(
             clippy::cast_possible_truncation,
@@ -137,7 +138,7 @@ impl Codec {
     }
 }
 
-/// In how many bits two chromosomes differ.
+/// Returns the Hamming distance of two chromosomes [bit].
 pub(super) fn distance(a: &Chromosome, b: &Chromosome) -> u32 {
     a.0.iter()
         .zip(&b.0)

@@ -1,9 +1,9 @@
-//! The hill climbs of one generation (paper, steps 7 and 8), with exact speculation.
+//! Hill climbs of one generation (paper, steps 7 and 8), with exact speculation.
 //!
-//! A sequential climb starts trial t + 1 from the winner of trial t. As every trial draws from a
-//! stream of its own, all trials that remain can be evaluated at once from the current elite;
-//! those up to the first success are what the sequential climb would have done, the rest is
-//! discarded and drawn again from the new elite. The elite takes the same path, bit for bit.
+//! A sequential climb starts trial t + 1 from the winner of trial t. As every trial draws from a stream of
+//! its own, all remaining trials can be evaluated at once from the current elite; those up to the first
+//! success are identical to the sequential climb, the others are discarded and drawn again from the new
+//! elite. The path of the elite is therefore that of the sequential climb, bit for bit.
 use super::{
     chromosome::Chromosome,
     craft::{At, Craft},
@@ -16,29 +16,29 @@ use crate::{
     strategy::{proposal::Purpose, told::Told},
 };
 
-/// One planned trial; the index is part of its random address.
+/// Planned trial; the index is part of its random address.
 #[derive(Clone, Copy, Debug)]
 struct Trial {
     purpose: Purpose,
     index: usize,
 }
 
-/// A trial that is being evaluated.
+/// Trial being evaluated.
 #[derive(Clone, Debug)]
 pub(super) struct Attempt {
     pub(super) purpose: Purpose,
     pub(super) chromosome: Chromosome,
-    /// Position in the population of the individual it would replace.
+    /// Position in the population of the individual that a successful trial replaces.
     target: usize,
 }
 
-/// The climbs of one generation.
+/// Hill climbs of one generation.
 #[derive(Debug)]
 pub(super) struct Climb {
     generation: u32,
-    /// Trials that are still to be done, in order.
+    /// Trials still to be done, in order.
     trials: Vec<Trial>,
-    /// How much the population differed from its elite when the climb began [0 to 1].
+    /// Diversity of the population relative to its elite when the climb began [0 to 1].
     diversity: f64,
     attempts: Vec<Attempt>,
 }
@@ -69,12 +69,12 @@ impl Climb {
         }
     }
 
-    /// Trials that have not been decided.
+    /// Returns the number of undecided trials.
     pub(super) fn remaining(&self) -> usize {
         self.trials.len()
     }
 
-    /// The next trials to evaluate at once; empty when the climb is over.
+    /// Plans the next trials to evaluate at once; empty when the climb is over.
     pub(super) fn plan(&mut self, craft: &Craft, population: &[Individual]) -> &[Attempt] {
         let width = self.width(craft);
         let elite = best(population);
@@ -95,7 +95,8 @@ impl Climb {
         &self.attempts
     }
 
-    /// Takes the results of the planned trials and improves the population in place.
+    /// Absorbs the results of the planned trials and replaces improved individuals of the population in
+    /// place.
     pub(super) fn absorb(&mut self, craft: &Craft, population: &mut [Individual], told: &[Told]) {
         let attempts = std::mem::take(&mut self.attempts);
         let mut successes = attempts
@@ -127,7 +128,7 @@ impl Climb {
         self.trials.drain(..decided.min(self.trials.len()));
     }
 
-    /// How many trials may be evaluated at once.
+    /// Returns how many trials may be evaluated at once.
     fn width(&self, craft: &Craft) -> usize {
         let all = self.trials.len();
         match (craft.settings.climbers, craft.settings.acceptance) {
@@ -180,8 +181,8 @@ fn plan(purpose: Purpose, count: usize) -> impl Iterator<Item = Trial> {
     (0..count).map(move |index| Trial { purpose, index })
 }
 
-/// To the letter: each individual in turn starts a crossover trial, by chance, and a mutation
-/// trial.
+/// Plans the trials of the paper's literal text: each individual in turn starts a crossover trial, with the
+/// crossover probability, and a mutation trial.
 fn literal_trials(craft: &Craft, generation: u32, population: usize) -> Vec<Trial> {
     let mut trials = Vec::with_capacity(2 * population);
     for index in 0..population {

@@ -1,6 +1,8 @@
-//! The operators with the streams that they draw from: one breeding for both forms of the algorithm.
+//! Genetic operators with their random streams, shared by the generational and the sliding-window form of the
+//! algorithm.
 //!
-//! Every operation has an address, generation and index, so that none sees what another has drawn.
+//! Every operation has an address, generation and index, so its random numbers do not depend on other
+//! operations.
 use super::{
     chromosome::{Chromosome, Codec},
     population::Individual,
@@ -14,14 +16,14 @@ use crate::{
     strategy::setting::SettingsError,
 };
 
-/// What individuals are made with; the same all through a run.
+/// Genetic operators with settings, codec and random streams; constant throughout a run.
 pub(super) struct Craft {
     pub(super) settings: MemeticSettings,
     pub(super) codec: Codec,
     streams: Streams,
 }
 
-/// The address of an operation.
+/// Random address of an operation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct At {
     pub(super) generation: u32,
@@ -29,7 +31,7 @@ pub(super) struct At {
 }
 
 impl Craft {
-    /// For the part of a space that `intervals` (coordinate) cover.
+    /// Creates the operators for the part of a space that `intervals` (coordinate) cover.
     ///
     /// # Errors
     /// If a setting lies outside its range.
@@ -47,12 +49,12 @@ impl Craft {
         })
     }
 
-    /// The stream of an operation.
+    /// Returns the random stream of an operation.
     pub(super) fn stream(&self, at: At, phase: Phase) -> Stream {
         self.streams.at(at.generation, phase, at.index)
     }
 
-    /// An individual of the first population: a start of the space, or a random one.
+    /// Creates an individual of the initial population: a starting point of the space, or a random one.
     pub(super) fn first(&self, index: usize) -> Chromosome {
         if let Some(start) = self.codec.start(index) {
             return start;
@@ -64,12 +66,12 @@ impl Craft {
         self.codec.random(&mut self.stream(at, Phase::Initial))
     }
 
-    /// The wheel of a population.
+    /// Creates the roulette wheel of a population.
     pub(super) fn wheel(&self, population: &[Individual]) -> Wheel {
         Wheel::new(population, self.settings.roulette)
     }
 
-    /// Exchanges parts of two chromosomes, or does not, by chance.
+    /// Exchanges parts of two chromosomes, with the crossover probability.
     pub(super) fn cross(&self, at: At, first: &mut Chromosome, second: &mut Chromosome) {
         let mut stream = self.stream(at, Phase::Crossover);
         if stream.chance(self.settings.crossover_probability) {
@@ -82,7 +84,7 @@ impl Craft {
         }
     }
 
-    /// Mutates a chromosome; `phase` tells children from trials.
+    /// Mutates a chromosome; `phase` distinguishes children from hill-climbing trials.
     pub(super) fn mutate(&self, at: At, phase: Phase, child: &mut Chromosome) {
         let rule = (
             self.settings.mutation_unit,
@@ -92,8 +94,8 @@ impl Craft {
         variation::mutate(&self.codec, child, rule, &mut self.stream(at, phase));
     }
 
-    /// A trial of the first hill climb: the special crossover with a partner, which draws from the
-    /// trial's stream. `diversity` says how much the population differs from its elite [0 to 1].
+    /// Creates a trial of the first hill climb: the special crossover with a partner, which draws from the
+    /// trial's stream. `diversity` is the difference of the population from its elite [0 to 1].
     pub(super) fn crossover_trial<'a>(
         &self,
         at: At,
@@ -110,7 +112,7 @@ impl Craft {
         variation::elite_crossover(&self.codec, start, partner, share, &mut stream)
     }
 
-    /// A trial of the second hill climb: a few random bits flipped.
+    /// Creates a trial of the second hill climb: a few random bits flipped.
     pub(super) fn mutation_trial(&self, at: At, start: &Chromosome, diversity: f64) -> Chromosome {
         let mut stream = self.stream(at, Phase::MutationTrial);
         let count = self.settings.flipped_bits;
@@ -120,7 +122,7 @@ impl Craft {
     }
 }
 
-/// 1 to 4 bits, more in a diverse population.
+/// Returns the number of bits to flip, 1 to 4, more in a diverse population.
 fn adaptive_bits(diversity: f64) -> usize {
     match 3.0 * diversity {
         x if x < 0.5 => 1,

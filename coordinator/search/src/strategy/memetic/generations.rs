@@ -1,7 +1,7 @@
-//! The paper's algorithm, generation by generation.
+//! The paper's memetic algorithm, generation by generation.
 //!
-//! Parents by roulette, uniform crossover, bit mutation, one elite kept; then the elite tries
-//! crossovers with partners, and flips of a few random bits, and moves wherever it gets better.
+//! Parents by roulette, uniform crossover, bit mutation, one elite kept; then hill climbing of the elite by
+//! crossovers with partners and by flips of a few random bits, accepting every improvement.
 use super::{
     chromosome::Chromosome,
     climb::{Attempt, Climb},
@@ -25,7 +25,7 @@ use crate::{
     },
 };
 
-/// The paper's numbers.
+/// Preset of the paper's settings.
 pub const PAPER: Preset = Preset {
     name: "paper",
     summary: "the reference paper's memetic algorithm: 80 individuals, 60 generations",
@@ -36,15 +36,15 @@ pub const PAPER: Preset = Preset {
     build: build_as::<MemeticSettings>,
 };
 
-/// The paper's numbers, with trials in batches.
+/// Preset of the paper's settings, with trials in batches.
 pub const PAPER_BATCH: Preset = Preset {
     name: "paper-batch",
-    summary: "the same with 40 + 40 climbing trials at once, the best of which wins",
+    summary: "the paper's algorithm with 40 + 40 climbing trials in one batch each, accepting the best",
     settings: |_| Settings::of(&MemeticSettings::paper_batch()),
     ..PAPER
 };
 
-/// What the operators with the paper's numbers promise, with or without generations.
+/// Accuracy that the operators with the paper's settings are expected to reach, with or without generations.
 pub(super) const PROMISE: Promise = Promise {
     one_basin: 0.1,
     many_basins: 1.1,
@@ -57,7 +57,7 @@ pub(super) const PROMISE: Promise = Promise {
 impl Recipe for MemeticSettings {
     const STRATEGY: &'static str = "memetic";
 
-    /// The algorithm alone, over the whole space.
+    /// Builds the memetic algorithm alone, over the whole space.
     fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
         let intervals = space.axes().iter().map(Axis::interval).collect();
         let streams = Streams::new(seed, 0);
@@ -67,20 +67,20 @@ impl Recipe for MemeticSettings {
     }
 }
 
-/// What the running batch is.
+/// Stage of the algorithm: the content of the running batch.
 enum Stage {
     /// Nothing has been planned.
     Start,
     /// The initial population, or the children of a generation.
     Evaluating(Vec<Chromosome>),
-    /// Children live; the climb goes on.
+    /// Children are evaluated; the hill climb is in progress.
     Climbing(Climb),
 }
 
-/// The algorithm as a piece of a strategy.
+/// Memetic algorithm as a piece of a strategy.
 pub struct Memetic {
     craft: Craft,
-    /// Chromosomes that open the initial population; the rest is random.
+    /// First chromosomes of the initial population; the others are random.
     start: Vec<Chromosome>,
     population: Vec<Individual>,
     generation: u32,
@@ -88,8 +88,8 @@ pub struct Memetic {
 }
 
 impl Memetic {
-    /// The algorithm in the part of a space that `intervals` (coordinate) cover. The first members
-    /// of the initial population are the points of `start` (coordinate), the others are random.
+    /// Creates the algorithm in the part of a space that `intervals` (coordinate) cover. The first members of
+    /// the initial population are the points of `start` (coordinate), the others are random.
     ///
     /// # Errors
     /// If a setting lies outside its range.
@@ -117,7 +117,7 @@ impl Memetic {
         population
     }
 
-    /// Children of this generation: roulette, crossover in pairs, mutation.
+    /// Creates the children of this generation: roulette, crossover in pairs, mutation.
     fn breed(&self) -> Vec<Chromosome> {
         let selected = self.select();
         let mut children: Vec<_> = selected.into_iter().map(|one| one.chromosome).collect();
@@ -132,7 +132,7 @@ impl Memetic {
         children
     }
 
-    /// A population drawn from this one by roulette.
+    /// Draws a new population from the current one by roulette.
     fn select(&self) -> Vec<Individual> {
         let wheel = self.craft.wheel(&self.population);
         let drawn = (0..self.craft.settings.population).map(|index| {
@@ -142,7 +142,7 @@ impl Memetic {
         drawn.collect()
     }
 
-    /// The address of an operation of this generation.
+    /// Returns the random address of an operation of this generation.
     const fn at(&self, index: usize) -> At {
         At {
             generation: self.generation,
@@ -150,7 +150,7 @@ impl Memetic {
         }
     }
 
-    /// Puts the next generation in place of the population.
+    /// Replaces the population by the next generation.
     fn survive(&mut self, mut children: Vec<Individual>) {
         if self.population.is_empty() {
             self.population = children;
@@ -175,7 +175,7 @@ impl Memetic {
         self.population = children;
     }
 
-    /// Starts the next generation: its first batch, or none after the last.
+    /// Starts the next generation and returns its first batch; `None` after the last generation.
     fn next_generation(&mut self) -> Option<Vec<Draft>> {
         if self.generation >= self.craft.settings.bred_generations() {
             return None;
@@ -254,7 +254,8 @@ impl Piece for Memetic {
         self.craft.settings.bred_generations()
     }
 
-    /// Speculative trials that are discarded are not foreseen.
+    /// Returns the expected number of remaining evaluations, not counting speculative trials that will be
+    /// discarded.
     fn remaining(&self) -> u64 {
         let settings = &self.craft.settings;
         let size = settings.population as u64;

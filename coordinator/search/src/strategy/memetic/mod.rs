@@ -1,8 +1,8 @@
-//! The memetic algorithm of the reference paper (sections 5.1 to 5.3): a genetic algorithm on bit
-//! strings whose elite climbs hills after every generation.
+//! Memetic algorithm of the reference paper (sections 5.1 to 5.3): a genetic algorithm on bit strings with
+//! hill climbing of the elite after every generation.
 //!
-//! What the paper leaves open is a documented choice in [`MemeticSettings`]. [`generations`] is the
-//! paper's algorithm, [`window`] the same operators without generations.
+//! Each point that the paper leaves open is a documented choice in [`MemeticSettings`]. [`generations`] is
+//! the paper's algorithm, [`window`] the same operators without generations.
 mod chromosome;
 mod climb;
 mod craft;

@@ -1,20 +1,20 @@
-//! Individuals with their results: the best, the worst, and how much they differ.
+//! Individuals with their results: best, worst, and diversity.
 use super::chromosome::{Chromosome, Codec, distance};
 use crate::strategy::told::Told;
 
-/// A chromosome with its result.
+/// Individual: a chromosome with its result.
 #[derive(Clone, Debug)]
 pub(super) struct Individual {
     pub(super) chromosome: Chromosome,
     pub(super) told: Told,
 }
 
-/// Position of the best individual; the first on ties.
+/// Returns the position of the best individual; the first on ties.
 pub(super) fn best(population: &[Individual]) -> usize {
     extreme(population, Told::beats)
 }
 
-/// Position of the worst individual; the first on ties.
+/// Returns the position of the worst individual; the first on ties.
 pub(super) fn worst(population: &[Individual]) -> usize {
     extreme(population, |one, other| other.beats(one))
 }
@@ -29,7 +29,7 @@ fn extreme(population: &[Individual], wins: impl Fn(Told, Told) -> bool) -> usiz
     found
 }
 
-/// Twice the mean share of bits in which the population differs from its elite: 1 for a random
+/// Returns twice the mean share of bits in which the population differs from its elite: 1 for a random
 /// population, 0 for clones.
 pub(super) fn diversity(codec: &Codec, population: &[Individual]) -> f64 {
     let elite = &population[best(population)].chromosome;

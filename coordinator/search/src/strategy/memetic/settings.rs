@@ -1,8 +1,8 @@
-//! Settings of the memetic algorithm: the paper's numbers, and every point its text leaves open.
+//! Settings of the memetic algorithm: the paper's numbers, and every point that the paper leaves open.
 use crate::strategy::setting::{Setting, SettingsError, Values, check};
 use serde::{Deserialize, Serialize};
 
-/// How genes become a chromosome.
+/// Encoding of genes in a chromosome.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Encoding {
@@ -15,17 +15,17 @@ pub enum Encoding {
     Real,
 }
 
-/// How a chromosome is spread over a gene's interval.
+/// Distribution of the codes over a gene's interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Scale {
     /// Evenly in the logarithm: the recommended value is the centre, as the paper says. Default.
     Logarithmic,
-    /// Evenly in the value: 90 % of the population starts in the highest decade.
+    /// Evenly in the value: 90 % of the initial population lies in the highest decade.
     Linear,
 }
 
-/// Weight of an individual on the roulette wheel, when small fitness is good.
+/// Weight of an individual on the roulette wheel; smaller fitness is better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Roulette {
@@ -45,11 +45,11 @@ pub enum Roulette {
 pub enum Crossover {
     /// Every bit is exchanged with probability 1/2. Default.
     Uniform,
-    /// Everything behind one random point is exchanged.
+    /// All bits after one random point are exchanged.
     OnePoint,
 }
 
-/// What the mutation probability counts.
+/// Unit to which the mutation probability applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MutationUnit {
@@ -72,39 +72,40 @@ pub enum SpecialCrossover {
     Even,
 }
 
-/// Which reading of the paper's steps 6 to 8.
+/// Interpretation of the paper's steps 6 to 8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Climbers {
-    /// A generation of selection, crossover and mutation; then the elite climbs. Default.
+    /// A generation of selection, crossover and mutation; then hill climbing of the elite. Default.
     Elite,
-    /// Likewise, but every individual climbs: one trial of each kind against itself.
+    /// A generation of selection, crossover and mutation; then one climbing trial of each kind for every
+    /// individual, compared with that individual.
     All,
-    /// To the letter: no other crossover or mutation; each selected individual starts one
-    /// crossover trial (with the crossover probability) and one mutation trial (each bit with the
-    /// mutation probability) against the running elite.
+    /// The paper's literal text: no other crossover or mutation; each selected individual starts one
+    /// crossover trial (with the crossover probability) and one mutation trial (each bit with the mutation
+    /// probability) against the current elite.
     Literal,
 }
 
-/// How trials of a climb follow each other.
+/// Order of the trials of a hill climb.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Acceptance {
-    /// Every trial starts from the winner of the one before. Default.
+    /// Sequential: every trial starts from the winner of the previous trial. Default.
     First,
-    /// All trials start from the same elite and the best one wins: another algorithm, two
-    /// batches per generation.
+    /// All trials start from the same elite and the best trial wins: a different algorithm, with two batches
+    /// per generation.
     BestOfBatch,
 }
 
-/// Who lives on.
+/// Survivor selection: the individuals that form the next generation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Survival {
     /// The children, and the best parent in place of the worst child if no child is as good.
     /// Default.
     Generational,
-    /// The best of parents and children together.
+    /// The best of parents and children together (plus selection).
     Plus,
 }
 
@@ -114,57 +115,57 @@ pub enum Survival {
 pub struct MemeticSettings {
     /// Individuals per generation.
     pub population: usize,
-    /// Most generations; the initial population counts only with `initial_counts`.
+    /// Maximum number of generations; the initial population counts only with `initial_counts`.
     pub generations: u32,
-    /// Whether the initial population is the first of the generations; default no.
+    /// Whether the initial population counts as the first generation; default no.
     pub initial_counts: bool,
     /// Fitness at or below which the search ends, if any.
     pub threshold: Option<f64>,
-    /// Probability that a pair is crossed.
+    /// Probability of crossover for a pair of parents.
     pub crossover_probability: f64,
     /// Probability of a mutation per `mutation_unit`.
     pub mutation_probability: f64,
-    /// Trials of the crossover-based hill climb per generation; the paper gives none.
+    /// Trials of the crossover-based hill climb per generation; the paper gives no number.
     pub crossover_trials: usize,
     /// Trials of the mutation-based hill climb per generation.
     pub mutation_trials: usize,
-    /// How genes become a chromosome.
+    /// Encoding of genes in a chromosome.
     pub encoding: Encoding,
-    /// Bits per gene, 2 to 30; 16 resolve 1.2e-4 decade of 8.
+    /// Bits per gene, 2 to 30; 16 bits resolve an interval of 8 decades to 1.2e-4 decade.
     pub bits_per_gene: u32,
     /// Standard deviation of a mutation of the real encoding, as a share of the interval.
     pub real_step: f64,
-    /// How a chromosome is spread over a gene's interval.
+    /// Distribution of the codes over a gene's interval.
     pub scale: Scale,
-    /// Weight on the roulette wheel.
+    /// Weight of an individual on the roulette wheel.
     pub roulette: Roulette,
     /// Crossover of two parents.
     pub crossover: Crossover,
-    /// What the mutation probability counts.
+    /// Unit to which the mutation probability applies.
     pub mutation_unit: MutationUnit,
     /// Crossover of the first hill climb.
     pub special_crossover: SpecialCrossover,
-    /// How many random bits the second hill climb flips. None: 1 to 4, the more the population
-    /// differs from its elite. Default none.
+    /// Number of random bits that the second hill climb flips; `None`, the default: 1 to 4, more in a more
+    /// diverse population.
     pub flipped_bits: Option<usize>,
-    /// Which reading of the paper's steps.
+    /// Interpretation of the paper's steps 6 to 8.
     pub climbers: Climbers,
-    /// How trials of a climb follow each other.
+    /// Order of the trials of a hill climb.
     pub acceptance: Acceptance,
-    /// Who lives on.
+    /// Survivor selection.
     pub survival: Survival,
-    /// How many trials of a sequential climb are evaluated ahead, from the current elite; what
-    /// follows the first success is discarded. None: all that remain. The elite's path has the
-    /// same bits for every width; a wide one takes fewer steps, a narrow one fewer evaluations.
+    /// Number of trials of a sequential climb that are evaluated ahead, from the current elite; trials after
+    /// the first success are discarded. `None`: all remaining trials. The elite's path is identical, bit for
+    /// bit, for every value; a large value takes fewer batches, a small one fewer evaluations.
     pub speculation: Option<usize>,
-    /// Whether an individual met before keeps its result instead of being simulated again, as
-    /// the paper would; the same bits either way.
+    /// Whether a repeated individual keeps its result instead of being simulated again, as the paper would;
+    /// the search is identical, bit for bit, either way.
     pub reuse_clones: bool,
 }
 
 impl MemeticSettings {
-    /// The paper's numbers with the default reading of everything else: at most 6,080
-    /// evaluations without speculation.
+    /// Returns the paper's settings, with the default choice for everything the paper leaves open: at most
+    /// 6,080 evaluations without speculation.
     pub const fn paper() -> Self {
         Self {
             population: 80,
@@ -192,7 +193,7 @@ impl MemeticSettings {
         }
     }
 
-    /// 40 + 40 trials at once: 9,680 evaluations in 121 batches of 80.
+    /// Returns the paper's settings with batches of 40 + 40 trials: 9,680 evaluations in 121 batches of 80.
     pub const fn paper_batch() -> Self {
         Self {
             crossover_trials: 40,
@@ -202,7 +203,7 @@ impl MemeticSettings {
         }
     }
 
-    /// Generations after the initial one.
+    /// Returns the number of generations after the initial one.
     pub(super) const fn bred_generations(&self) -> u32 {
         if self.initial_counts {
             self.generations.saturating_sub(1)
@@ -211,6 +212,8 @@ impl MemeticSettings {
         }
     }
 
+    /// Checks that every setting lies within its range.
+    ///
     /// # Errors
     /// If a setting lies outside its range.
     pub(super) fn check(&self) -> Result<(), SettingsError> {
@@ -218,7 +221,7 @@ impl MemeticSettings {
     }
 }
 
-/// What can be set by name: the paper's numbers, and every point that its text leaves open.
+/// Settings that can be set by name: the paper's numbers, and every point that the paper leaves open.
 pub(in crate::strategy) const SETTINGS: &[Setting] = &[
     Setting::new(
         "population",
@@ -228,7 +231,7 @@ pub(in crate::strategy) const SETTINGS: &[Setting] = &[
     Setting::new(
         "generations",
         Values::Whole(0, 1_000_000),
-        "most generations",
+        "maximum number of generations",
     ),
     Setting::new(
         "initial_counts",
@@ -264,7 +267,7 @@ pub(in crate::strategy) const SETTINGS: &[Setting] = &[
     Setting::new(
         "encoding",
         Values::Words(&["binary", "gray", "real"]),
-        "how genes become a chromosome",
+        "encoding of genes in a chromosome",
     ),
     Setting::new(
         "bits_per_gene",
@@ -279,7 +282,7 @@ pub(in crate::strategy) const SETTINGS: &[Setting] = &[
     Setting::new(
         "scale",
         Values::Words(&["logarithmic", "linear"]),
-        "how a chromosome is spread over a gene's interval",
+        "distribution of the codes over a gene's interval",
     ),
     Setting::new(
         "roulette",
@@ -294,7 +297,7 @@ pub(in crate::strategy) const SETTINGS: &[Setting] = &[
     Setting::new(
         "mutation_unit",
         Values::Words(&["bit", "gene", "individual"]),
-        "what mutation_probability counts",
+        "unit to which mutation_probability applies",
     ),
     Setting::new(
         "special_crossover",
@@ -304,33 +307,33 @@ pub(in crate::strategy) const SETTINGS: &[Setting] = &[
     Setting::new(
         "flipped_bits",
         Values::Whole(1, 1000),
-        "random bits that the second hill climb flips: 1 to 4 by diversity, or so many",
+        "random bits that the second hill climb flips: 1 to 4 by diversity, or a fixed number",
     )
     .or("adaptive"),
     Setting::new(
         "climbers",
         Values::Words(&["elite", "all", "literal"]),
-        "who climbs: the elite, everybody, or the paper's steps to the letter",
+        "individuals that climb: the elite, all, or the paper's literal steps",
     ),
     Setting::new(
         "acceptance",
         Values::Words(&["first", "best_of_batch"]),
-        "each trial starts from the last winner, or all from one elite",
+        "start of a trial: the last winner, or one elite for the whole batch",
     ),
     Setting::new(
         "survival",
         Values::Words(&["generational", "plus"]),
-        "who lives on: children and one elite, or the best of parents and children",
+        "survivors: children and one elite, or the best of parents and children",
     ),
     Setting::new(
         "speculation",
         Values::Whole(1, 1_000_000),
-        "trials evaluated ahead; the same search for every width, with fewer steps or evaluations",
+        "trials evaluated ahead; the result is the same, a larger number takes fewer batches but more evaluations",
     )
     .or("all"),
     Setting::new(
         "reuse_clones",
         Values::Switch,
-        "whether an individual met before keeps its result; the same search either way",
+        "whether a repeated individual reuses its result; the search is the same either way",
     ),
 ];

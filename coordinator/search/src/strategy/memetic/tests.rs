@@ -1,4 +1,4 @@
-//! What is particular to the memetic algorithm: its costs, its options, exact speculation.
+//! Tests specific to the memetic algorithm: number of evaluations, options, exact speculation.
 use super::*;
 use crate::{
     strategy::{
@@ -8,7 +8,7 @@ use crate::{
     test_function::{self, SPHERE, TestFunction},
 };
 
-/// Another reading of the paper.
+/// Change of the settings to another interpretation of the paper.
 type Change = fn(&mut MemeticSettings);
 
 /// Runs the paper's algorithm with changed settings.
@@ -35,8 +35,8 @@ fn search(
     )
 }
 
-/// The individuals of a generation's children depend on the whole population, elite included: if
-/// they agree in every generation, the elite took the same path.
+/// Returns generation and genes of all children of a run. They depend on the whole population including the
+/// elite, so equal children in every generation imply the same path of the elite.
 fn children(record: &Record) -> Vec<(u32, Vec<f64>)> {
     let bred = record
         .asked
@@ -131,7 +131,7 @@ fn the_paper_costs_what_its_text_implies() {
     assert!((121..350).contains(&batches), "{batches}");
 }
 
-/// Every reading of the paper that differs from the default.
+/// Names and changes of settings for every interpretation of the paper that differs from the default.
 const READINGS: &[(&str, Change)] = &[
     ("gray", |s| s.encoding = Encoding::Gray),
     ("real", |s| s.encoding = Encoding::Real),
@@ -153,7 +153,7 @@ const READINGS: &[(&str, Change)] = &[
     ("plus", |s| s.survival = Survival::Plus),
 ];
 
-/// In the order of [`READINGS`].
+/// Checks the hash of a short run for each entry of [`READINGS`], in its order.
 #[test]
 fn the_bits_of_every_reading_stay() {
     let frozen: &[u64] = &[

@@ -1,11 +1,11 @@
-//! Crossover and mutation. All draws come from the stream that is passed in.
+//! Crossover and mutation operators, drawing all random numbers from the given stream.
 use super::{
     chromosome::{Chromosome, Codec},
     settings::{Crossover, Encoding, MutationUnit},
 };
 use crate::random::Stream;
 
-/// Exchanges parts of two chromosomes.
+/// Exchanges parts of two chromosomes by the crossover rule.
 pub(super) fn cross(
     codec: &Codec,
     rule: Crossover,
@@ -28,7 +28,7 @@ pub(super) fn cross(
     }
 }
 
-/// The elite with each bit (or gene) taken from the partner with probability `share`.
+/// Returns the elite with each bit (or gene) taken from the partner with probability `share`.
 pub(super) fn elite_crossover(
     codec: &Codec,
     elite: &Chromosome,
@@ -78,8 +78,8 @@ pub(super) fn mutate(
     }
 }
 
-/// A copy with `count` different random bits flipped; of the real encoding, with as many genes
-/// moved.
+/// Returns a copy with `count` different random bits flipped, or with `count` genes moved for the real
+/// encoding.
 pub(super) fn flip_some(
     codec: &Codec,
     from: &Chromosome,
@@ -108,14 +108,14 @@ pub(super) fn flip_some(
     child
 }
 
-/// Moves one gene by a share of its interval, to its end at most.
+/// Moves one gene by a share of its interval, at most to the end of the interval.
 fn shift(codec: &Codec, chromosome: &mut Chromosome, gene: usize, step: f64) {
     if let Some(code) = chromosome.0.get_mut(gene) {
         *code = codec.code(f64::from(*code) / f64::from(codec.largest()) + step);
     }
 }
 
-/// The bits of a gene for which `chosen` holds; of the real encoding all or none.
+/// Returns the mask of a gene's bits for which `chosen` holds; all bits or none for the real encoding.
 fn mask(codec: &Codec, gene: usize, chosen: &mut impl FnMut(usize) -> bool) -> u32 {
     let bits = codec.bits() as usize;
     if codec.encoding() == Encoding::Real {

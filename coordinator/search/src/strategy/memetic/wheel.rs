@@ -1,17 +1,18 @@
-//! Who breeds.
+//! Selection of parents by roulette.
 use super::{population::Individual, settings::Roulette};
 use crate::{random::Stream, strategy::told::Told};
 
-/// A roulette wheel over a population.
+/// Roulette wheel over a population.
 #[derive(Clone, Debug)]
 pub(super) struct Wheel {
-    /// Running sums of the weights.
+    /// Cumulative sums of the weights.
     sums: Vec<f64>,
 }
 
 impl Wheel {
-    /// Weights by the rule. A failed individual weighs nothing beside a complete one; if all
-    /// failed, their grades count as fitness, and if no weight is left, all weigh the same.
+    /// Creates a wheel with weights by the rule. A failed individual has no weight if any individual is
+    /// complete; if all failed, their grades count as fitness, and if all weights are zero, they are made
+    /// equal.
     pub(super) fn new(population: &[Individual], rule: Roulette) -> Self {
         let any_survived = population.iter().any(|one| one.told.survived());
         let eligible = |told: Told| told.survived() || (!any_survived && told.fitness.is_finite());
@@ -47,7 +48,7 @@ impl Wheel {
         Self { sums }
     }
 
-    /// One draw: a position in the population.
+    /// Draws a position in the population.
     pub(super) fn draw(&self, stream: &mut Stream) -> usize {
         let total = self.sums.last().copied().unwrap_or(0.0);
         let mark = stream.unit() * total;

@@ -1,25 +1,25 @@
-//! The memetic algorithm without generations: a deterministic window instead of a barrier.
+//! The memetic algorithm without generations: a deterministic sliding window instead of a barrier.
 //!
 //! ```text
 //! individual k is bred from the population after results 0 ..= k - L, taken in index order
 //! ```
 //!
-//! `L`, the window, is a constant of the run. At most `L` individuals are open at a time, and a
-//! slot waits only if the oldest of them is still being computed when all the others are done. The
-//! search is a function of the case, the settings and the seed alone: how many workers there are,
-//! in which order they answer and who is killed does not show. `L = 1` is the sequential steady
-//! state; the larger `L`, the older is what an individual is bred from. Three individuals per
-//! worker keep workers of mixed speed busy (the coordinator's simulated cluster measures it).
+//! `L`, the window, is a constant of the run. At most `L` individuals are open at a time, and a slot waits
+//! only if the oldest of them is still being computed when all the others are done. The search is a function
+//! of the case, the settings and the seed alone, independent of the number of workers, the order of their
+//! results and lost workers. `L = 1` is the sequential steady state; a larger `L` means breeding from older
+//! results. Three individuals per worker keep workers of mixed speed busy (the coordinator's simulated
+//! cluster measures it).
 //!
-//! Operators, encoding and hill-climbing trials are those of the generational algorithm. A result
-//! replaces the worst of the population if it is better; of every `population + trials`
-//! individuals, `trials` are spread evenly as trials from the elite of the moment, the others are
-//! children of two parents. The first individuals are random: a population, or as many as it takes
-//! for the first child to be bred from half a population.
+//! Operators, encoding and hill-climbing trials are those of the generational algorithm. A result replaces
+//! the worst of the population if it is better; of every `population + trials` individuals, `trials` are
+//! hill-climbing trials from the current elite, evenly spread, the others are children of two parents. The
+//! first individuals are random: a population, or as many as are needed for the first child to be bred from
+//! half a population.
 //!
-//! What breeding from older results costs, in medians of 25 seeds after 4,880 evaluations with the
-//! paper's settings (`cargo test -p search -- --ignored --nocapture cost_of_the_window` makes the
-//! table again; fitness, smaller is better):
+//! The cost of breeding from older results, in medians of 25 seeds after 4,880 evaluations with the paper's
+//! settings (`cargo test -p search -- --ignored --nocapture cost_of_the_window` reproduces the table;
+//! fitness, smaller is better):
 //!
 //! | function | generations | L = 1 | L = 16 | L = 48 | L = 120 | L = 240 |
 //! |---|---|---|---|---|---|---|
@@ -28,8 +28,8 @@
 //! | cliff | 1.3e-2 | 1.3e-2 | 1.0e-2 | 2.2e-2 | 1.0e-2 | 2.7e-3 |
 //! | resonance | 2.5e-3 | 9.2e-3 | 5.2e-3 | 2.5e-3 | 2.5e-3 | 1.3e-3 |
 //!
-//! No window from 48 on costs anything that these functions could show; on the narrow valley of the
-//! resonance the smallest ones are two to four times worse than generations.
+//! No window from 48 on has a cost that these functions could show; on the narrow valley of the resonance the
+//! smallest windows are two to four times worse than generations.
 use super::{
     chromosome::Chromosome,
     craft::{At, Craft},
@@ -54,10 +54,10 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
 
-/// The paper's numbers without generations.
+/// Preset of the memetic algorithm with the paper's settings, without generations.
 pub const WINDOW: Preset = Preset {
     name: "window",
-    summary: "the same without generations: no worker waits, and the bits are still the same",
+    summary: "the paper's memetic algorithm without generations: workers never wait, results stay reproducible",
     strategy: WindowSettings::STRATEGY,
     settings: |plan| Settings::of(&WindowSettings::for_workers(plan.workers)),
     groups: &[
@@ -79,29 +79,28 @@ pub const WINDOW: Preset = Preset {
     build: build_as::<WindowSettings>,
 };
 
-/// What can be set by name beside the settings of the memetic algorithm.
+/// Settings that can be set by name in addition to those of the memetic algorithm.
 const WINDOWED: &[Setting] = &[Setting::new(
     "window",
     Values::Whole(1, 1_000_000),
-    "an individual is bred from results that are this many behind; 3 per worker planned",
+    "lag in results between an individual and the population that it is bred from; 3 per planned worker",
 )
 .following_workers()];
 
-/// Settings of the search without generations.
+/// Settings of the sliding-window memetic algorithm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WindowSettings {
-    /// L: individual k is bred from results 0 to k - L. Three times the number of workers keeps
-    /// nearly all of them busy.
+    /// Window L: individual k is bred from results 0 to k - L. Three times the number of workers keeps nearly
+    /// all of them busy.
     pub window: usize,
-    /// Operators, population and trials; `generations` times population and trials, and the first
-    /// population, are evaluated. Climbers, acceptance, survival and speculation have no meaning
-    /// here.
+    /// Operators, population and trials; the number of evaluations is `generations` times population and
+    /// trials, plus the first population. Climbers, acceptance, survival and speculation are ignored.
     pub memetic: MemeticSettings,
 }
 
 impl WindowSettings {
-    /// The paper's numbers with the window of so many workers.
+    /// Returns the paper's settings with the window for this number of workers.
     pub const fn for_workers(workers: usize) -> Self {
         Self {
             window: Self::window_for(workers),
@@ -109,7 +108,7 @@ impl WindowSettings {
         }
     }
 
-    /// The window that keeps so many workers busy.
+    /// Returns the window that keeps this number of workers busy.
     pub const fn window_for(workers: usize) -> usize {
         if workers == 0 { 3 } else { 3 * workers }
     }
@@ -123,13 +122,13 @@ impl Recipe for WindowSettings {
     }
 }
 
-/// The search, as a strategy.
+/// Memetic search with a sliding window instead of generations, as a strategy.
 pub struct Window {
-    /// L.
+    /// Window L.
     lag: usize,
     craft: Craft,
     population: Vec<Individual>,
-    /// Proposals without a consumed result, by id from the front.
+    /// Chromosomes of proposals whose results have not been consumed, in id order.
     open: VecDeque<Chromosome>,
     outbox: Vec<Proposal>,
     early: BTreeMap<u64, Told>,
@@ -139,7 +138,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// The search over the whole space.
+    /// Creates the search over the whole space.
     ///
     /// # Errors
     /// If a setting lies outside its range.
@@ -162,13 +161,13 @@ impl Window {
         Ok(window)
     }
 
-    /// How many individuals are random.
+    /// Returns the number of random first individuals.
     fn first(&self) -> u64 {
         let population = self.craft.settings.population;
         population.max(self.lag + population / 2) as u64
     }
 
-    /// Individuals between two of the same place in the plan.
+    /// Returns the period of the plan: population plus trials.
     const fn cycle(&self) -> u64 {
         (self.craft.settings.population + self.trials()) as u64
     }
@@ -177,13 +176,13 @@ impl Window {
         self.craft.settings.crossover_trials + self.craft.settings.mutation_trials
     }
 
-    /// How many evaluations are planned.
+    /// Returns the number of planned evaluations.
     fn planned(&self) -> u64 {
         let generations = u64::from(self.craft.settings.bred_generations());
         self.first() + generations * self.cycle()
     }
 
-    /// The generation an individual would belong to if there were any.
+    /// Returns the equivalent generation of an individual, for progress reports.
     fn generation(&self, id: u64) -> u32 {
         let bred = id.checked_sub(self.first());
         bred.map_or(0, |bred| {
@@ -191,7 +190,7 @@ impl Window {
         })
     }
 
-    /// What an individual is for: trials are spread evenly, of either kind in turn.
+    /// Returns the purpose of an individual: trials are spread evenly, alternating between both kinds.
     fn purpose(&self, id: u64) -> Purpose {
         let Some(bred) = id.checked_sub(self.first()) else {
             return Purpose::Initial;
@@ -210,7 +209,7 @@ impl Window {
         }
     }
 
-    /// Hands out everything that may be bred from what has been consumed.
+    /// Proposes every individual that can be bred from the results consumed so far.
     fn propose(&mut self) {
         let consumed = self.archive.entries().len() as u64;
         // individual k needs results 0 ..= k - L; random ones need none
@@ -263,7 +262,7 @@ impl Window {
         child
     }
 
-    /// Takes the next result in index order.
+    /// Consumes the next result in index order and updates the population.
     fn consume(&mut self, id: u64, chromosome: Chromosome, told: Told) {
         self.archive.push(Evaluated {
             id,

@@ -1,4 +1,4 @@
-//! Windows of every size: the plan, the independence of arrival, and what a window costs.
+//! Tests of windows of several sizes: plan, independence of the order of arrival, and cost of a window.
 use super::*;
 use crate::strategy::build;
 use crate::test_function::{self, SPHERE, TestFunction};
@@ -16,7 +16,8 @@ fn settings(window: usize) -> WindowSettings {
     }
 }
 
-/// Runs to the end; at each step one of the open proposals, chosen by a stream, is told.
+/// Runs a search to its end; in each step the result of one open proposal, the first or one at random, is
+/// told.
 fn run(settings: &WindowSettings, function: &TestFunction, order: Option<u64>) -> Window {
     let space = function.space();
     let mut window = Window::new(settings, &space, 3).unwrap();
@@ -46,7 +47,7 @@ fn a_window_of_any_size_does_not_see_the_order_of_arrival() {
     }
 }
 
-/// The law itself: a result changes no individual that is nearer than the window.
+/// Checks that a result affects no individual closer than the window, by changing one result.
 #[test]
 fn individual_k_depends_on_results_up_to_k_minus_the_window_and_on_no_later_one() {
     let window = 7;
@@ -125,7 +126,7 @@ fn a_threshold_ends_the_search_at_the_same_individual_whatever_has_arrived() {
     }
 }
 
-/// Makes the table of the module's head; takes a minute in a release build.
+/// Prints the table of the module documentation; takes a minute in a release build.
 #[test]
 #[ignore = "a study, not a test"]
 fn cost_of_the_window() {

@@ -1,4 +1,4 @@
-//! `horsehead ask-tell`: any program drives any of our strategies over standard input and output.
+//! `horsehead ask-tell`: lets an external program drive a search strategy over standard input and output.
 mod talk;
 mod words;
 
@@ -44,7 +44,7 @@ pub(super) struct Arguments {
     strategy: String,
 }
 
-/// Talks until the strategy is done, the input ends, or a line cannot be taken.
+/// Runs the dialogue until the strategy finishes, the input ends, or a line is rejected.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut talk: Option<Talk> = None;
     for (number, line) in (1..).zip(io::stdin().lock().lines()) {
@@ -81,7 +81,8 @@ fn say(line: &Line) -> anyhow::Result<()> {
     terminal::write(&text)
 }
 
-/// The last line of a talk that ends badly: why, and what was found until then.
+/// Writes the last line of a dialogue that ends with an error: the error, and the best point found until
+/// then.
 fn end(talk: Option<&Talk>, problem: Problem) -> anyhow::Result<()> {
     let (evaluations, best) = talk.map_or((0, None), Talk::found);
     say(&Line::Error {

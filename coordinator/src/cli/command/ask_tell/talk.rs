@@ -1,5 +1,5 @@
-//! A talk with whoever evaluates: what it says becomes results of a search, which says what is asked next. It
-//! knows lines, not where they come from.
+//! Dialogue with an external evaluator: passes the reported values to the search strategy and returns the
+//! next points to evaluate. Independent of where the lines come from.
 use super::words::{Answer, Answers, Axis, Best, Line, Point, Scale, read};
 use crate::cli::argument::settings::SettingsChoice;
 use protocol::case::{self, Unknown};
@@ -12,17 +12,17 @@ use support::Problem;
 
 pub(super) use super::words::Opening;
 
-/// A talk that has begun.
+/// State of a running ask-tell dialogue.
 pub(super) struct Talk {
     strategy: Box<dyn Strategy>,
-    /// Points that may still be asked for.
+    /// Number of points that may still be proposed within the budget.
     left: u64,
-    /// How many were asked for: their ids are below.
+    /// Number of points proposed so far; their ids are all smaller than this number.
     asked: u64,
-    /// Those that were not told.
+    /// Proposed points without a reported value, by id.
     open: BTreeMap<u64, Vec<f64>>,
     told: u64,
-    /// The best that was told, whether or not the strategy has come to it.
+    /// Best reported point, even if the strategy has not processed it yet.
     best: Option<Best>,
 }
 
@@ -40,7 +40,8 @@ impl Axis {
     }
 }
 
-/// Points to begin with, each inside the bounds.
+/// Checks that every starting point has one value per axis and lies inside the bounds, and returns the
+/// points.
 fn first_points(space: &Space, points: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Problem> {
     for (number, point) in (1..).zip(points) {
         let axes = space.axes();
@@ -68,13 +69,13 @@ fn first_points(space: &Space, points: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Pro
 }
 
 impl Opening {
-    /// Reads the first line.
+    /// Parses the opening line.
     pub(super) fn read(line: &str) -> Result<Self, Problem> {
         let example = "{\"space\": [{\"name\": \"x\", \"lower\": -1, \"upper\": 1}]}";
         read(line, example)
     }
 
-    /// Begins a talk.
+    /// Builds the search space and the strategy, and returns the dialogue.
     pub(super) fn begin(self, strategy: &str) -> Result<Talk, Problem> {
         let unknowns: Vec<Unknown> = self.space.into_iter().map(Axis::unknown).collect();
         let bounds = "give each a name of its own, finite lower < upper with the start between, above \
@@ -122,7 +123,7 @@ impl Opening {
 }
 
 impl Talk {
-    /// What may be evaluated now.
+    /// Asks the strategy for points to evaluate now, within the remaining budget.
     pub(super) fn ask(&mut self) -> Line {
         let mut asked = self.strategy.ask();
         asked.truncate(usize::try_from(self.left).unwrap_or(usize::MAX));
@@ -135,7 +136,7 @@ impl Talk {
         Line::Ask { ask }
     }
 
-    /// Takes a line of answers, whole or not at all; what is said to it.
+    /// Processes a line of answers, all of them or none, and returns the reply.
     pub(super) fn take(&mut self, line: &str) -> Result<Line, Problem> {
         let answers: Answers = read(line, "{\"tell\": [{\"id\": 0, \"f\": 3.5}]}")?;
         let mut told = BTreeMap::new();
@@ -146,7 +147,7 @@ impl Talk {
             }
             if told.insert(id, answer.into_told()?).is_some() {
                 return Err(Problem::new(
-                    format!("point {id} is told twice in it"),
+                    format!("point {id} is told twice in the same line"),
                     "tell every point once",
                 ));
             }
@@ -179,12 +180,12 @@ impl Talk {
         self.end(done)
     }
 
-    /// The end of the input.
+    /// Ends the dialogue because the input ended.
     pub(super) fn close(&self) -> Result<Line, Problem> {
         self.end("input")
     }
 
-    /// How many points were told, and the best of them.
+    /// Returns the number of reported points and the best of them.
     pub(super) fn found(&self) -> (u64, Option<Best>) {
         (self.told, self.best.clone())
     }
@@ -194,7 +195,7 @@ impl Talk {
         let failed = || match evaluations {
             0 => Problem::new(
                 "the input ended, and no point was told",
-                "tell what came of the points that are asked",
+                "answer each proposed point with {\"tell\": [{\"id\": .., \"f\": ..}]}",
             ),
             _ => Problem::new(
                 format!("all of the {evaluations} points failed"),
@@ -209,7 +210,7 @@ impl Talk {
         })
     }
 
-    /// Why an answer is to no open point.
+    /// Explains why an answer's id belongs to no open point.
     fn stranger(&self, id: u64) -> Problem {
         let open: Vec<String> = self.open.keys().take(9).map(u64::to_string).collect();
         let help = format!("open are {}", open.join(", "));

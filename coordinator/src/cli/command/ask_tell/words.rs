@@ -1,25 +1,25 @@
-//! What is said, as JSON: the first line, answers, and what is said back. It knows no search.
+//! JSON messages of the ask-tell dialogue: opening line, answers and replies. Independent of the search.
 use search::strategy::Proposal;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use support::Problem;
 
-/// The first line.
+/// Opening line of the dialogue: defines the search.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Opening {
-    /// What is searched.
+    /// Axes of the search space, one per unknown.
     pub(super) space: Vec<Axis>,
-    /// Fixes every random choice.
+    /// Seed of the random number generator.
     #[serde(default = "one")]
     pub(super) seed: u64,
-    /// Most evaluations.
+    /// Maximum number of evaluations; the strategy's own plan if absent.
     pub(super) budget: Option<u64>,
-    /// Points to evaluate first and to begin the search with.
+    /// Points to evaluate first; the search starts from them.
     #[serde(default)]
     pub(super) start: Vec<Vec<f64>>,
-    /// Settings by name.
+    /// Settings that replace those of the preset, by name.
     #[serde(default)]
     pub(super) settings: BTreeMap<String, Value>,
 }
@@ -28,7 +28,7 @@ const fn one() -> u64 {
     1
 }
 
-/// One unknown.
+/// One unknown of the search space: name, bounds, scale and starting value.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Axis {
@@ -37,11 +37,11 @@ pub(super) struct Axis {
     pub(super) upper: f64,
     #[serde(default)]
     pub(super) scale: Scale,
-    /// The middle where none is given.
+    /// Starting value; the middle of the range if absent.
     pub(super) start: Option<f64>,
 }
 
-/// How equal steps change an unknown.
+/// Scale of an unknown on which equal search steps are taken.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Scale {
@@ -50,41 +50,41 @@ pub(super) enum Scale {
     Log,
 }
 
-/// Every later line.
+/// Any line after the opening line.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Answers {
     pub(super) tell: Vec<Answer>,
 }
 
-/// What came of a point.
+/// Result reported for one proposed point.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Answer {
     pub(super) id: u64,
-    /// What is minimised; the squared length of the residual where that alone is told.
+    /// Objective value; if absent, the squared length of `residual`.
     pub(super) f: Option<f64>,
-    /// Whether there is no such number.
+    /// Whether the evaluation failed and there is no objective value.
     #[serde(default)]
     pub(super) failed: bool,
-    /// In units in which its squared length is `f`.
+    /// Residual vector, scaled so that its squared length is `f`; empty if not reported.
     #[serde(default)]
     pub(super) residual: Vec<f64>,
 }
 
-/// A line out.
+/// Line written to standard output.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 pub(super) enum Line {
     /// Points to evaluate.
     Ask { ask: Vec<Point> },
-    /// The end.
+    /// Last line of a search that ended normally.
     Done {
         done: &'static str,
         evaluations: u64,
         best: Best,
     },
-    /// A line could not be taken.
+    /// Last line of a dialogue that ended because an input line was rejected.
     Error {
         error: String,
         help: String,
@@ -98,7 +98,7 @@ pub(super) enum Line {
 pub(super) struct Point {
     id: u64,
     x: Vec<f64>,
-    /// Whether the residual is of use beside the number.
+    /// Whether the strategy can use the residual vector besides the objective value.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     residual: bool,
 }
@@ -113,7 +113,7 @@ impl From<Proposal> for Point {
     }
 }
 
-/// The best point.
+/// Best point reported so far.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Best {
     pub(super) id: u64,
@@ -121,25 +121,25 @@ pub(super) struct Best {
     pub(super) f: f64,
 }
 
-/// Nothing was said.
+/// Returns the error for input that ended before its first line.
 pub(super) fn silent() -> Problem {
     let help = "begin with one line that has `space`; `horsehead ask-tell --help` shows one";
     Problem::new("the input ended before its first line", help)
 }
 
-/// With the line, counted from 1.
+/// Prefixes the message of a problem with the line number, counted from 1.
 pub(super) fn at(problem: Problem, number: usize) -> Problem {
     let message = format!("line {number}: {}", problem.message);
     Problem { message, ..problem }
 }
 
-/// Reads a line.
+/// Parses a JSON line; the error's remedy shows `example`.
 pub(super) fn read<T: DeserializeOwned>(line: &str, example: &str) -> Result<T, Problem> {
     serde_json::from_str(line).map_err(|error| {
         let mut help = format!("a line is one object, as {example}");
         if ["NaN", "Infinity"].iter().any(|word| line.contains(word)) {
             help += "; JSON has finite numbers only: say {\"id\": .., \"failed\": true}";
         }
-        Problem::new(format!("it cannot be read: {error}"), help)
+        Problem::new(format!("the line cannot be read: {error}"), help)
     })
 }

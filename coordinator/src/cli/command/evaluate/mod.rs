@@ -1,4 +1,4 @@
-//! `horsehead evaluate`: any program's individuals are scored on workers, line by line.
+//! `horsehead evaluate`: scores the individuals of an external program on workers, one JSON line each.
 mod words;
 
 use crate::cli::{
@@ -61,7 +61,7 @@ pub(super) struct Arguments {
     workers: WorkersChoice,
 }
 
-/// Nothing but the case decides what individuals are worth.
+/// Settings of an evaluate run: empty, since the case alone determines the scores.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Individuals {}
 
@@ -70,10 +70,10 @@ impl Decides for Individuals {
     const SEEDED: bool = false;
 }
 
-/// Lines that wait to be taken.
+/// Maximum number of input lines that wait to be evaluated.
 const WAITING: usize = 4096;
 
-/// Scores until the input ends.
+/// Scores individuals until the input ends.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let session = Session::begin(&arguments.workers);
     let run = begin(arguments)?;
@@ -90,8 +90,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match refused.load(Ordering::SeqCst) {
         0 => Ok(()),
         count => Err(Problem {
-            message: format!("{count} lines were not taken"),
-            remedy: "each was answered with its error; all others are scored".to_owned(),
+            message: format!("{count} input lines were rejected"),
+            remedy:
+                "each was answered with its error on standard output; all other lines were scored"
+                    .to_owned(),
         }
         .into()),
     }
@@ -120,7 +122,8 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Individuals>> {
     Run::begin(&path, manifest, case)
 }
 
-/// Reads lines and asks for what they say until the input ends or nobody takes any more.
+/// Reads input lines and sends the evaluation requests they contain, until the input ends or the receiver is
+/// closed; answers each malformed line with an error.
 fn read(space: &Space, asking: &mpsc::Sender<Request<Tag>>, refused: &AtomicUsize) {
     for (number, line) in (1..).zip(io::stdin().lock().lines()) {
         let Ok(line) = line else { return };

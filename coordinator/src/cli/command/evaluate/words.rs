@@ -1,5 +1,5 @@
-//! Lines of `horsehead evaluate`: what is asked for and what is said, as JSON. It knows a case's unknowns, not
-//! who scores.
+//! JSON lines of `horsehead evaluate`: parses requests, checks them against the search space, and formats
+//! results. Independent of how individuals are scored.
 use crate::cli::output::object::scored::ScoredOutput;
 use case::document::nearest;
 use protocol::job::Verdict;
@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use study::{Request, Scored};
 
-/// A line in.
+/// Input line: an individual to score.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Asked {
@@ -19,11 +19,11 @@ struct Asked {
     residual: bool,
 }
 
-/// A line out.
+/// Output line.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 pub(super) enum Line<'a> {
-    /// What came of an individual.
+    /// Result of an individual.
     Scored {
         id: &'a Value,
         #[serde(flatten)]
@@ -31,7 +31,7 @@ pub(super) enum Line<'a> {
         #[serde(skip_serializing_if = "Option::is_none")]
         residual: Option<&'a [f64]>,
     },
-    /// A line that cannot be taken.
+    /// Error for an input line that was rejected.
     Refused {
         id: &'a Value,
         line: usize,
@@ -40,13 +40,13 @@ pub(super) enum Line<'a> {
     },
 }
 
-/// Whose a request is.
+/// Identification of a request, returned with its result.
 pub(super) struct Tag {
     pub(super) id: Value,
     residual: bool,
 }
 
-/// Why a line is not taken, and what to say instead.
+/// Error for a rejected input line, with its remedy.
 #[derive(Debug)]
 pub(super) struct Refused {
     pub(super) id: Value,
@@ -54,16 +54,17 @@ pub(super) struct Refused {
     pub(super) help: String,
 }
 
-/// Reads a line about the unknowns of a space.
+/// Parses an input line and checks its individual against the search space.
 ///
 /// # Errors
-/// What is no object of this form, an unknown that is missing, not there, not finite or out of bounds.
+/// If the line is not an object of the expected form, or an unknown is missing, unrecognised, not finite or
+/// out of bounds.
 pub(super) fn read(line: &str, space: &Space) -> Result<Request<Tag>, Refused> {
     let asked: Asked = serde_json::from_str(line).map_err(|error| {
         let value: Option<Value> = serde_json::from_str(line).ok();
         Refused {
             id: value.map_or(Value::Null, |mut value| value["id"].take()),
-            error: format!("it cannot be read: {error}"),
+            error: format!("the line cannot be read: {error}"),
             help: "a line is one object, as {\"id\": 1, \"genes\": {\"stiffness\": 7e8, ..}}"
                 .to_owned(),
         }
@@ -117,7 +118,8 @@ pub(super) fn read(line: &str, space: &Space) -> Result<Request<Tag>, Refused> {
 }
 
 impl<'a> Line<'a> {
-    /// What is said of a result.
+    /// Builds the output line for a result; the residual is included if it was requested and the simulation
+    /// was complete.
     pub(super) fn of(tag: &'a Tag, scored: &'a Scored) -> Self {
         let residual = scored.as_ref().ok().filter(|own| {
             let complete = own.verdict == Verdict::Complete;

@@ -1,4 +1,5 @@
-//! `horsehead export --failed RUN`: what programs left where they failed, as folders to look into.
+//! `horsehead export --failed RUN`: writes the files that an external program left in each failed simulation
+//! into folders for inspection.
 use crate::cli::{output::problem::Problem, run::folder::RunFolder};
 use anyhow::Context as _;
 use dispatch::journal::{self, Recording};
@@ -15,49 +16,52 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Name of the folder in the run's own.
+/// Name of the folder for failed jobs within the run folder.
 const FOLDER: &str = "failed";
-/// What says why, beside what was left.
+/// File in each folder that states the reason of the failure.
 const WHY: &str = "why.txt";
 
-/// What programs read.
+/// JSON object printed by `export --failed --output json`.
 #[derive(Debug, Serialize)]
 pub(super) struct FailedOutput {
-    /// The run's folder.
+    /// Path of the run folder.
     run: String,
-    /// Where the folders are; null where there are none.
+    /// Folder that contains the folders of the failed jobs; null if no files were left.
     folder: Option<String>,
-    /// Every job that was given up.
+    /// All jobs that were given up.
     failed: Vec<OneFailed>,
-    /// What is missing, and why.
+    /// Descriptions of data missing because the journal is damaged.
     pub(super) notes: Vec<String>,
 }
 
 /// A job that was given up.
 #[derive(Debug, Serialize)]
 struct OneFailed {
-    /// Its number, as in the table `results`.
+    /// Job number, as in the table `results`.
     job: u64,
-    /// In which way.
+    /// Kind of failure.
     kind: &'static str,
-    /// Why, in words.
+    /// Description of the failure.
     why: String,
-    /// Its folder; null where nothing travelled.
+    /// Folder of this job; null if the worker sent no files.
     folder: Option<String>,
-    /// What is in it, as it lay in the run's own.
+    /// Paths of the files in the folder, relative to the program's working folder.
     files: Vec<String>,
-    /// Of which the end alone is here, or nothing.
+    /// Paths of files of which only the end, or nothing, was sent.
     shortened: Vec<String>,
 }
 
-/// Writes the folders, into a place of the caller's or the run's own, and says which there are.
+/// Writes the folders of failed jobs into `to` or into the run folder, and returns a list of all given-up
+/// jobs.
 pub(super) fn fetch(run: &Path, to: Option<&Path>, force: bool) -> anyhow::Result<FailedOutput> {
     let folder = RunFolder::at(run)?;
     let journal = folder.file(journal::FILE);
     if !journal.exists() {
         return Err(Problem {
             message: format!("{} has no journal yet", folder.path().display()),
-            remedy: "the command that began the run makes it".to_owned(),
+            remedy:
+                "start the run again with the command that created it; the journal is written then"
+                    .to_owned(),
         }
         .into());
     }
@@ -109,7 +113,8 @@ pub(super) fn fetch(run: &Path, to: Option<&Path>, force: bool) -> anyhow::Resul
     })
 }
 
-/// An empty folder: the run's own is made anew, another one must be.
+/// Creates an empty folder: replaces the run's own; a folder chosen by the user must be empty unless `force`
+/// is set.
 fn prepare(place: &Path, is_own: bool, force: bool) -> anyhow::Result<()> {
     let is_empty = fs::read_dir(place).map_or(true, |mut entries| entries.next().is_none());
     if !is_empty {
@@ -127,7 +132,8 @@ fn prepare(place: &Path, is_own: bool, force: bool) -> anyhow::Result<()> {
     fs::create_dir_all(place).with_context(|| format!("cannot make {}", place.display()))
 }
 
-/// Writes what a run left, below its folder and nowhere else.
+/// Writes the files that a failed job left; paths that would lead outside `folder` are skipped, since they
+/// come from a worker.
 fn unpack(folder: &Path, why: &str, left: &Left) -> anyhow::Result<()> {
     fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     for file in &left.files {
@@ -148,7 +154,7 @@ fn unpack(folder: &Path, why: &str, left: &Left) -> anyhow::Result<()> {
     let mut text = format!("{why}\n");
     for one in &left.shortened {
         let kept = match one.kept {
-            0 => "did not travel".to_owned(),
+            0 => "was not sent".to_owned(),
             kept => format!("its last {kept} are here"),
         };
         // writing to a string does not fail
@@ -158,14 +164,14 @@ fn unpack(folder: &Path, why: &str, left: &Left) -> anyhow::Result<()> {
     fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// What people read.
+/// Formats the list of failed jobs as text.
 pub(super) fn text(object: &FailedOutput) -> String {
     if object.failed.is_empty() {
         return "no run was given up\n".to_owned();
     }
     let one = |failed: &OneFailed| {
         let first = failed.why.lines().next().unwrap_or_default();
-        let place = failed.folder.as_deref().unwrap_or("nothing travelled");
+        let place = failed.folder.as_deref().unwrap_or("no files were sent");
         format!("{:>9}  {place}: {first}\n", failed.job)
     };
     object.failed.iter().map(one).collect()

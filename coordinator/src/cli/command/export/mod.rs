@@ -1,4 +1,5 @@
-//! `horsehead export`: a run as tables for queries, and the folders of its failed runs, from its journal.
+//! `horsehead export`: exports a run from its journal as tables for queries, or the folders of its failed
+//! simulations.
 mod failed;
 
 use crate::cli::{
@@ -37,26 +38,27 @@ pub(super) struct Arguments {
     /// Run folder of a calibration or diagnosis.
     #[arg(value_name = "RUN", env = "HORSEHEAD_RUN")]
     run: PathBuf,
-    /// Fetch what failed runs of somebody's own program left, in place of tables [default folder: failed in RUN].
+    /// Fetch the files that failed runs of an external program left, instead of tables [default folder:
+    /// failed in RUN].
     #[arg(long, conflicts_with = "format", env = "HORSEHEAD_FAILED")]
     failed: bool,
-    /// In which form.
+    /// Format of the tables.
     #[arg(long, value_enum, default_value = "sqlite", env = "HORSEHEAD_FORMAT")]
     format: Form,
     /// File, or folder for CSV and Parquet [default: run.sqlite, csv or parquet in RUN].
     #[arg(long, value_name = "PATH", env = "HORSEHEAD_TO")]
     to: Option<PathBuf>,
-    /// Replace what is there even if it is no export: the file, or the files of the same names.
+    /// Replace existing files even if they are no export: the file, or the files of the same names.
     #[arg(long, env = "HORSEHEAD_FORCE")]
     force: bool,
     #[command(flatten)]
     output: OutputChoice,
 }
 
-/// The forms, as the command line names them.
+/// Export formats as named on the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Form {
-    /// One database.
+    /// One SQLite database.
     Sqlite,
     /// One CSV file per table.
     Csv,
@@ -74,24 +76,24 @@ impl From<Form> for Format {
     }
 }
 
-/// What programs read.
+/// JSON object printed by `export --output json`.
 #[derive(Debug, Serialize)]
 struct ExportOutput {
-    /// The run's folder.
+    /// Path of the run folder.
     run: String,
-    /// The form.
+    /// Format of the tables.
     format: &'static str,
-    /// What was written.
+    /// Paths of the files that were written.
     files: Vec<String>,
-    /// Rows of each table.
+    /// Number of rows of each table.
     rows: BTreeMap<&'static str, u64>,
-    /// Whether every simulation that the run asked for is there.
+    /// Whether the results of all simulations that the run requested are exported.
     complete: bool,
-    /// What is missing, and why.
+    /// Descriptions of missing data, each with its reason.
     notes: Vec<String>,
 }
 
-/// Exports and says what there is.
+/// Exports the run and prints a summary.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.failed {
         let to = arguments.to.as_deref();

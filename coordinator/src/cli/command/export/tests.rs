@@ -1,4 +1,4 @@
-//! Exports of whole runs: what the tables say is what the search saw and the journal holds.
+//! Tests of the export of whole runs: the tables agree with the search's evaluation log and with the journal.
 use super::*;
 use crate::cli::{
     argument::output::Output,
@@ -30,8 +30,8 @@ use std::{
 };
 use study::{Completed, Crew, EvaluationLog, Evaluator, EvaluatorError};
 
-/// Evaluates as the study's own tests do and writes the journal as a run does; after so many
-/// results it has had enough.
+/// Evaluator that simulates with the test oracle and writes every result to a journal as a run does; fails
+/// after `left` results to interrupt the run.
 struct Scribe {
     oracle: Oracle,
     journal: Journal,
@@ -78,7 +78,8 @@ impl Evaluator for Scribe {
     }
 }
 
-/// A run whose journal holds so many results; the log if it came to its end.
+/// Calibrates until the journal holds the given number of results; returns the evaluation log if the run
+/// finished.
 fn run_with(folder: &Path, results: usize) -> (Scribe, Option<EvaluationLog>) {
     let case = case();
     let space = Space::new(&case.unknowns).unwrap();
@@ -137,13 +138,13 @@ fn arguments(run: &Path, format: Form, to: Option<&Path>) -> Arguments {
     }
 }
 
-/// Bytes of files by path.
+/// Returns the contents of files, by path.
 fn files(paths: &[String]) -> BTreeMap<String, Vec<u8>> {
     let read = |path: &String| (path.clone(), fs::read(path).expect("it was written"));
     paths.iter().map(read).collect()
 }
 
-/// Values of a column.
+/// Returns the values of a column of a table.
 fn column<'a>(tables: &'a Tables, table: &str, column: &str) -> Vec<&'a Value> {
     let (names, rows) = &tables[table];
     let place = names.iter().position(|name| name == column).unwrap();
@@ -159,7 +160,7 @@ fn integers(tables: &Tables, table: &str, name: &str) -> Vec<i64> {
     values.iter().map(value).map(Option::unwrap).collect()
 }
 
-/// Results of a journal in the order of the file, by the journal's own fold.
+/// Returns the results in a journal, in file order, read with `journal::fold`.
 fn results(folder: &Path) -> Vec<(Entry, Finished)> {
     let mut found = Vec::new();
     journal::fold(&folder.join(journal::FILE), |entry, event| {
@@ -171,7 +172,7 @@ fn results(folder: &Path) -> Vec<(Entry, Finished)> {
     found
 }
 
-/// The rows of the search are those of its log, to the last bit.
+/// Asserts that the exported evaluations equal those of the search's log bit by bit.
 fn expect_log(tables: &Tables, log: &EvaluationLog) {
     let case = case();
     let genes: Vec<Vec<&Value>> = (column(tables, "genes", "column").iter())
@@ -251,15 +252,15 @@ fn three_forms_hold_what_the_search_saw_and_leave_no_trace() {
     assert!(kinds.len() > 1, "no simulation failed: {kinds:?}");
 }
 
-/// The example of the README, as it stands there.
+/// Checks that the query in the manual runs and returns the best individuals.
 #[test]
-fn the_query_of_the_readme_finds_the_best_individuals() {
+fn the_query_of_the_manual_finds_the_best_individuals() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().join("run");
     let (_, log) = run_with(&folder, usize::MAX);
     export(&arguments(&folder, Form::Sqlite, None)).unwrap();
-    let readme = include_str!("../../../../../README.md");
-    let (_, behind) = readme.split_once("run.sqlite \"").unwrap();
+    let manual = include_str!("../../../../../docs/calibrate.md");
+    let (_, behind) = manual.split_once("run.sqlite \"").unwrap();
     let (query, _) = behind.split_once('"').unwrap();
     let database = rusqlite::Connection::open(folder.join("run.sqlite")).unwrap();
     let mut statement = database.prepare(query).unwrap();
@@ -355,8 +356,8 @@ fn a_run_without_results_has_empty_tables_and_another_folder_is_refused() {
     assert_eq!(left.len(), 1, "only the run: {left:?}");
 }
 
-/// What is asked is checked against what was answered, so that settings that were changed behind
-/// the run's back do not put the wrong genes beside a result.
+/// Checks that replayed jobs are compared with the recorded ones, so that no result is exported with the
+/// wrong genes after the settings in `run.json` have been edited.
 #[test]
 fn results_of_other_settings_are_not_given_genes() {
     let scratch = tempfile::tempdir().unwrap();

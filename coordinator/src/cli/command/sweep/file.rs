@@ -1,4 +1,4 @@
-//! `horsehead sweep FILE`: every search of a grid, or every individual of a table.
+//! `horsehead sweep FILE`: runs every search of a grid of settings, or scores every individual of a table.
 use super::grid::{Grid, rows};
 use crate::cli::{
     argument::{
@@ -33,7 +33,7 @@ use search::space::Space;
 use std::path::{Path, PathBuf};
 use study::{Sweep, Watch as _, score_all};
 
-/// The table that a sweep leaves in its run folder.
+/// Name of the table that a sweep writes into its run folder.
 const TABLE: &str = "sweep.csv";
 
 #[derive(Debug, Args)]
@@ -56,7 +56,7 @@ pub(super) struct FileArguments {
     output: OutputChoice,
 }
 
-/// Sweeps a file.
+/// Runs the sweep that a file defines.
 pub(super) fn run(arguments: &FileArguments) -> anyhow::Result<()> {
     let session = Session::begin(&arguments.workers);
     let (run, all) = begin(arguments)?;
@@ -66,7 +66,7 @@ pub(super) fn run(arguments: &FileArguments) -> anyhow::Result<()> {
     }
 }
 
-/// The run, with the individuals of a table; of a grid there are none.
+/// Creates or opens the run, and reads the individuals of a table; the list is empty for a grid.
 fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<Swept>, Individuals)> {
     let file = arguments.file.clone().unwrap_or_default();
     let ends = file.extension().and_then(|end| end.to_str());
@@ -90,7 +90,7 @@ fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<Swept>, Individuals)>
         .and_then(|(grid, _)| grid.case.as_ref().map(beside));
     let Some(case_folder) = arguments.case.clone().or(own) else {
         return Err(Problem {
-            message: format!("{}: of which case?", file.display()),
+            message: format!("{}: no case folder is given", file.display()),
             remedy: "name its folder with --case CASE, in a grid with `case = \"FOLDER\"`"
                 .to_owned(),
         }
@@ -163,7 +163,7 @@ fn search(
     )
 }
 
-/// Scores every individual of a table.
+/// Scores every individual of a table and writes the result table.
 fn score(
     session: &Session,
     run: &Run<Swept>,

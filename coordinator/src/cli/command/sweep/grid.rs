@@ -1,4 +1,4 @@
-//! The file of a grid: which case, which preset, which settings take which values.
+//! File format of a settings grid: case, preset, fixed settings, and the values of the varied settings.
 use crate::cli::{
     argument::settings::SettingsChoice,
     output::problem::Problem,
@@ -13,20 +13,20 @@ use serde::Deserialize;
 use std::{collections::BTreeMap, path::PathBuf};
 use study::orthogonal::Factor;
 
-/// Most searches of one sweep.
+/// Maximum number of searches in one sweep.
 const MOST: usize = 100_000;
 
-/// As it is written.
+/// Contents of a grid file, as parsed from TOML.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Grid {
-    /// Case folder, as seen from the file's own.
+    /// Case folder, relative to the folder of the grid file.
     pub(super) case: Option<PathBuf>,
     preset: Option<String>,
-    /// Settings that all searches share.
+    /// Fixed settings shared by all searches.
     #[serde(default)]
     set: BTreeMap<String, toml::Value>,
-    /// The values of every setting that is varied.
+    /// Values of every varied setting, by name.
     #[serde(rename = "grid")]
     varied: BTreeMap<String, Vec<toml::Value>>,
     seeds: Option<Vec<u64>>,
@@ -34,10 +34,11 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// The searches that it means, all of which can be built.
+    /// Converts the grid into a list of searches and checks that each of them can be built.
     ///
     /// # Errors
-    /// An unknown preset or setting, a value that it may not have, an empty list, too many searches.
+    /// If a preset or setting is unknown, a value is not allowed, a list is empty, a seed is repeated, or
+    /// there are too many searches.
     pub(super) fn searches(self, document: &Document, space: &Space) -> anyhow::Result<Searches> {
         let name = self.preset.as_deref().unwrap_or("paper");
         let Some(preset) = preset(name) else {
@@ -120,7 +121,7 @@ impl Grid {
     }
 }
 
-/// Every combination of a grid.
+/// Returns every combination of level indices of the varied settings.
 pub(super) fn rows(searches: &Searches) -> Vec<Vec<usize>> {
     let levels = searches.factors.iter().map(|factor| factor.levels.len());
     combinations(&levels.collect::<Vec<_>>())

@@ -1,4 +1,4 @@
-//! `horsehead sweep`: many searches, or many individuals, in one resumable run.
+//! `horsehead sweep`: runs many searches, or scores many individuals, in one resumable run.
 mod file;
 mod grid;
 mod orthogonal;
@@ -47,7 +47,7 @@ enum Kind {
     Scaling(scaling::Arguments),
 }
 
-/// Sweeps.
+/// Runs the selected sweep: a file, an orthogonal array or a scaling study.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match &arguments.kind {
         Some(Kind::Orthogonal(arguments)) => orthogonal::run(arguments),

@@ -1,4 +1,5 @@
-//! `horsehead sweep orthogonal`: which levels of a search's settings are best, by a few of all combinations.
+//! `horsehead sweep orthogonal`: estimates the best levels of a search's settings from an orthogonal array, a
+//! small subset of all combinations.
 use crate::cli::{
     argument::{
         case::{CaseChoice, LoadedCase},
@@ -68,7 +69,7 @@ pub(super) struct Arguments {
         value_parser = factor::parse
     )]
     factor: Vec<Factor>,
-    /// The preset that factors are settings of.
+    /// Preset to which the factors belong.
     #[arg(
         long,
         default_value = "paper",
@@ -78,13 +79,13 @@ pub(super) struct Arguments {
     preset: String,
     #[command(flatten)]
     settings: SettingsChoice,
-    /// Evaluations of each search [default: 1000; none where a factor says how long a search goes on].
+    /// Evaluations of each search [default: 1000; none if a factor determines the length of a search].
     #[arg(long, value_name = "N", env = "HORSEHEAD_EVALUATIONS", value_parser = clap::value_parser!(u64).range(4..=1_000_000))]
     evaluations: Option<u64>,
-    /// How many seeds, each of which is a block.
+    /// Number of seeds, each of which is a block.
     #[arg(long, value_name = "N", default_value_t = 5, env = "HORSEHEAD_SEEDS", value_parser = clap::value_parser!(u64).range(1..=1000))]
     seeds: u64,
-    /// The first of them.
+    /// First seed.
     #[arg(long, default_value_t = 1, env = "HORSEHEAD_SEED")]
     seed: u64,
     /// Run folder [default: runs/CASE-sweep-ARRAY-set-HASH-seedN, the hash that of factors and budget].
@@ -103,7 +104,8 @@ fn arrays() -> impl clap::builder::TypedValueParser<Value = Array> {
     })
 }
 
-/// The paper's factors with climbing trials in place of generations, which would be the budget.
+/// Returns the default factors: those of the paper, with climbing trials in place of generations, because
+/// generations would determine the budget.
 fn usual(array: Array) -> Vec<Factor> {
     // L9 takes the first three of each, with what the paper found best among them
     const LEVELS: [(&str, [&str; 5]); 4] = [
@@ -127,7 +129,7 @@ fn usual(array: Array) -> Vec<Factor> {
     LEVELS.into_iter().map(of).collect()
 }
 
-/// The factors of an array.
+/// Returns the chosen or default factors after checking that they fit the array.
 fn factors(arguments: &Arguments) -> Result<Vec<Factor>, Problem> {
     let array = arguments.array;
     let chosen = match arguments.factor.as_slice() {
@@ -195,7 +197,7 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Orthogonal>> {
     Run::begin(&path, manifest, case)
 }
 
-/// Tests from the first search to the confirmation.
+/// Runs the orthogonal test from the first search to the confirmation.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let session = Session::begin(&arguments.workers);
     let run = begin(arguments)?;

@@ -1,4 +1,5 @@
-//! `horsehead sweep scaling`: how much faster searches are on more slots, and where slot time goes.
+//! `horsehead sweep scaling`: measures the speed-up of searches with the number of slots, and how slot time
+//! is used.
 use crate::cli::{
     argument::{
         case::{CaseChoice, LoadedCase},
@@ -44,7 +45,7 @@ result.
 pub(super) struct Arguments {
     #[command(flatten)]
     choice: CaseChoice,
-    /// The searches: presets of `horsehead calibrate` with a population.
+    /// Presets of `horsehead calibrate` to search with; each must have a population.
     #[arg(
         long,
         value_name = "NAME,..",
@@ -54,7 +55,7 @@ pub(super) struct Arguments {
         value_parser = PossibleValuesParser::new(CATALOGUE.iter().map(|preset| preset.name))
     )]
     presets: Vec<String>,
-    /// Individuals of a generation.
+    /// Population sizes: individuals per generation.
     #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "80", env = "HORSEHEAD_POPULATIONS", value_parser = clap::value_parser!(u64).range(4..=100_000))]
     populations: Vec<u64>,
     /// Evaluations of each search on workers of this machine, and of a sleeping one; of that at least 8 a slot.
@@ -63,13 +64,13 @@ pub(super) struct Arguments {
     /// Worker processes of this machine that simulate [default: 1 and one per core].
     #[arg(long, value_name = "N,..", value_delimiter = ',', env = "HORSEHEAD_CREWS", value_parser = clap::value_parser!(u64).range(1..=1024))]
     crews: Vec<u64>,
-    /// Sessions that sleep; 0 for none.
+    /// Numbers of sleeping sessions; 0 for none.
     #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "64,512", env = "HORSEHEAD_SLEEPING", value_parser = clap::value_parser!(u64).range(0..=990))]
     sleeping: Vec<u64>,
-    /// For how long they sleep on average [s].
+    /// Mean sleep time of a job [s].
     #[arg(long, value_name = "S", default_value_t = 1.0, env = "HORSEHEAD_SLEEP", value_parser = seconds)]
     sleep: f64,
-    /// Slots of projections; 0 for none.
+    /// Numbers of slots to project to; 0 for none.
     #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "80,1000,10000", env = "HORSEHEAD_PROJECTED", value_parser = clap::value_parser!(u64).range(0..=20_000))]
     projected: Vec<u64>,
     /// Fixes every random choice.
@@ -91,7 +92,7 @@ fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-/// In order, each once, without what stands for none.
+/// Sorts counts, removes duplicates, and drops zeros, which stand for none.
 fn counts(all: &[u64]) -> Vec<u64> {
     let mut counts: Vec<u64> = all.iter().copied().filter(|count| *count > 0).collect();
     counts.sort_unstable();
@@ -146,7 +147,7 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Scaling>> {
     Run::begin(&path, manifest, case)
 }
 
-/// Measures, projects and shows.
+/// Measures, projects and prints the scaling of the searches.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let run = begin(arguments)?;
     let folder = run.folder.path();
@@ -163,7 +164,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let path = run.folder.path().display();
         let command = run.resume_command();
         terminal::tell(&format!(
-            "rows so far are kept in {path}; to go on:\n  {command}"
+            "the rows finished so far are kept in {path}; to resume:\n  {command}"
         ));
     })?;
     show(&run, &scaled, arguments.output)

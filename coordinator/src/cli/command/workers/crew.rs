@@ -1,4 +1,5 @@
-//! `workers list`, `drain` and `down`: asking the process that works on a run.
+//! `workers list`, `drain` and `down`: send requests to the coordinator process of a run over its control
+//! socket.
 use crate::cli::{
     argument::{nodes::HostsChoice, output::OutputChoice},
     output::{problem::Problem, terminal},
@@ -40,15 +41,15 @@ Through the run, workers finish their jobs and end, all of them if none is named
 --hosts their processes are ended at once, whether a run goes on or not; what they hold is given
 to others.";
 
-/// Which run.
+/// Argument that selects a run.
 #[derive(Debug, Args)]
 pub(super) struct RunChoice {
-    /// Run folder [default: the only one below runs/ on which a process works].
+    /// Run folder [default: the only one below runs/ with a running coordinator].
     #[arg(long, value_name = "RUN", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
 }
 
-/// What to list.
+/// Arguments of `workers list`.
 #[derive(Debug, Args)]
 pub(super) struct ListArguments {
     #[command(flatten)]
@@ -57,26 +58,26 @@ pub(super) struct ListArguments {
     output: OutputChoice,
 }
 
-/// Whom to take out of the work.
+/// Arguments of `workers drain`.
 #[derive(Debug, Args)]
 pub(super) struct DrainArguments {
     /// Workers, by name, host or id.
     #[arg(required = true, value_name = "NAME")]
     names: Vec<String>,
-    /// Hand back at once what they hold.
+    /// Return at once the jobs that the workers hold.
     #[arg(long, env = "HORSEHEAD_NOW")]
     now: bool,
     #[command(flatten)]
     run: RunChoice,
 }
 
-/// Whom to end.
+/// Arguments of `workers down`.
 #[derive(Debug, Args)]
 pub(super) struct DownArguments {
     /// Workers, by name, host or id [default: all].
     #[arg(value_name = "NAME", conflicts_with_all = ["ssh", "hosts"])]
     names: Vec<String>,
-    /// Hand back at once what they hold.
+    /// Return at once the jobs that the workers hold.
     #[arg(long, env = "HORSEHEAD_NOW")]
     now: bool,
     #[command(flatten)]
@@ -85,16 +86,16 @@ pub(super) struct DownArguments {
     hosts: HostsChoice,
 }
 
-/// What programs read; a key is never taken away, nor given another meaning.
+/// JSON object printed by `workers list --output json`; a stable format: keys are never removed or redefined.
 #[derive(Debug, Serialize)]
 struct ListOutput<'a> {
-    /// The run's folder.
+    /// Path of the run folder.
     run: String,
-    /// Everybody that takes part.
+    /// Workers that take part in the run.
     workers: &'a [Worker],
 }
 
-/// Shows who works.
+/// Prints the workers of a run.
 pub(super) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
     let folder = arguments.run.folder()?;
     let workers = ask(&folder, &Question::List)?;
@@ -105,7 +106,7 @@ pub(super) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
     terminal::print(arguments.output.output, || table(&workers), &object)
 }
 
-/// Takes workers out of the work.
+/// Stops the assignment of jobs to the named workers.
 pub(super) fn drain(arguments: &DrainArguments) -> anyhow::Result<()> {
     let question = Question::Drain {
         names: arguments.names.clone(),
@@ -117,7 +118,7 @@ pub(super) fn drain(arguments: &DrainArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Ends workers.
+/// Ends workers, through the coordinator of the run or directly over ssh.
 pub(super) fn down(arguments: &DownArguments) -> anyhow::Result<()> {
     let hosts = arguments.hosts.read()?;
     if !hosts.is_empty() {
@@ -133,7 +134,7 @@ pub(super) fn down(arguments: &DownArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Says what becomes of each.
+/// Reports for each worker what happens to it and to the jobs that it holds.
 fn tell(workers: &[Worker], now: bool, what: &str) {
     for Worker {
         name, host, jobs, ..
@@ -162,7 +163,10 @@ fn ask(folder: &Path, question: &Question) -> anyhow::Result<Vec<Worker>> {
 }
 
 impl RunChoice {
-    /// The folder that was named, or the only one below `runs/` that answers.
+    /// Returns the named run folder, or else the only one below `runs/` whose coordinator answers.
+    ///
+    /// # Errors
+    /// If no coordinator or more than one answers.
     fn folder(&self) -> anyhow::Result<PathBuf> {
         if let Some(folder) = &self.run {
             return Ok(folder.clone());
@@ -175,12 +179,12 @@ impl RunChoice {
         match (found.pop(), found.len()) {
             (Some(folder), 0) => Ok(folder),
             (None, _) => Err(Problem {
-                message: "nobody works on any run below runs/ now".to_owned(),
-                remedy: "name the folder of one elsewhere with --run RUN".to_owned(),
+                message: "no run below runs/ has a running coordinator".to_owned(),
+                remedy: "give the folder of a run in progress with --run RUN".to_owned(),
             }
             .into()),
             (Some(folder), more) => Err(Problem {
-                message: format!("{} runs go on", more + 1),
+                message: format!("{} runs are in progress", more + 1),
                 remedy: format!("name one of them, as --run {}", folder.display()),
             }
             .into()),
@@ -188,7 +192,7 @@ impl RunChoice {
     }
 }
 
-/// The table for people.
+/// Formats the workers as a text table.
 fn table(workers: &[Worker]) -> String {
     let row = |worker: &Worker| {
         let state = match worker.state {

@@ -1,4 +1,4 @@
-//! `workers up` and `workers logs`: from what was typed to a plan, printed or carried out.
+//! `workers up` and `workers logs`: builds a launch plan from the arguments, and prints or executes it.
 use crate::cli::{
     argument::nodes::HostsChoice,
     output::terminal,
@@ -33,11 +33,11 @@ Examples:
   horsehead workers logs --ssh node1
   horsehead workers logs worker-03 --tls keys";
 
-/// What to bring up, and where.
+/// Arguments of `workers up`: which workers to start, and where.
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("place").required(true).args(["ssh", "hosts", "slurm", "k8s", "systemd"]))]
 pub(super) struct Arguments {
-    /// Where workers dial, as the coordinator's `--listen` is reached from there.
+    /// Address that workers dial: the coordinator's `--listen` as reachable from their hosts.
     #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_CONNECT", value_parser = Locator::parse)]
     connect: Locator,
     /// Folder that `horsehead keys new` made, for quic/ addresses.
@@ -60,7 +60,7 @@ pub(super) struct Arguments {
     /// Simulations at a time on each [default: one per hardware thread, or `cpu` of a pod].
     #[arg(long, value_name = "N", env = "HORSEHEAD_SLOTS", value_parser = clap::value_parser!(u16).range(1..=4096))]
     slots: Option<u16>,
-    /// Workers end after so long without work; 0 for never.
+    /// Time without work after which workers end; 0 for never.
     #[arg(
         long,
         value_name = "SECONDS",
@@ -68,7 +68,7 @@ pub(super) struct Arguments {
         default_value_t = 3600
     )]
     idle_timeout: u64,
-    /// How long each host's worker may take to be seen in a run; 0 to start it and not look.
+    /// Time within which each host's worker must appear in a run; 0 to start it without checking.
     #[arg(
         long,
         value_name = "SECONDS",
@@ -92,20 +92,20 @@ pub(super) struct Arguments {
     sbatch_arg: Vec<String>,
 }
 
-/// Whose log to show.
+/// Arguments of `workers logs`.
 #[derive(Debug, Args)]
 pub(super) struct LogsArguments {
     /// Worker, by the name of its keys.
     #[arg(required_unless_present_any = ["ssh", "hosts"], requires = "tls")]
     name: Option<String>,
-    /// Folder of keys, which knows the worker's host.
+    /// Folder of keys, in which the worker's host is recorded.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
     tls: Option<PathBuf>,
     #[command(flatten)]
     hosts: HostsChoice,
 }
 
-/// Plans, and prints the plan or carries it out.
+/// Builds the launch plan, and prints it (`--dry-run`) or executes it.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let plan = plan(arguments)?;
     if arguments.dry_run {
@@ -161,7 +161,8 @@ fn plan(arguments: &Arguments) -> Result<Plan, Problem> {
     ssh::up(&order, &arguments.hosts.read()?, &programs, arguments.wait)
 }
 
-/// The folder of keys that all workers of a launch share, where they share a file system or a secret.
+/// Returns the name of the worker key folder that all workers of a launch share, for launches with a common
+/// file system or secret; `None` without TLS.
 fn one_for_all(order: &WorkerOptions) -> Result<Option<String>, Problem> {
     let Some(folder) = &order.tls else {
         return Ok(None);
@@ -191,7 +192,7 @@ fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// Shows the end of the logs of some hosts.
+/// Prints the end of the worker logs of the given hosts.
 pub(super) fn logs(arguments: &LogsArguments) -> anyhow::Result<()> {
     let hosts = match (&arguments.name, &arguments.tls) {
         (Some(name), Some(folder)) => vec![keys::host_of(folder, name)?],

@@ -1,53 +1,54 @@
-//! The objects of `horsehead calibrate` and `horsehead verify`.
+//! JSON objects of `horsehead calibrate` and `horsehead verify`.
 use super::score::{Both, ConditionOutput, ScoreOutput, Unknowns};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Of `horsehead calibrate`, and kept as `result.json` in the run folder.
+/// JSON object printed by `horsehead calibrate`, also written as `result.json` in the run folder.
 #[derive(Debug, Serialize)]
 pub(crate) struct CalibrateOutput<'a> {
-    /// The run folder.
+    /// Path of the run folder.
     pub(crate) run: String,
-    /// Name of the machine.
+    /// Name of the case.
     pub(crate) case: &'a str,
-    /// The preset.
+    /// Name of the search preset.
     pub(crate) preset: &'a str,
-    /// The seed.
+    /// Seed of the random number generator.
     pub(crate) seed: u64,
-    /// How many individuals were evaluated.
+    /// Number of evaluated individuals.
     pub(crate) evaluations: usize,
-    /// How many of them did not complete.
+    /// Number of evaluated individuals whose simulation did not complete.
     pub(crate) failed_simulations: usize,
     /// Wall time over all sessions (s).
     pub(crate) wall_s: f64,
-    /// The identified parameters by name.
+    /// Identified values of the unknowns, by name.
     #[serde(flatten)]
     pub(crate) unknowns: Unknowns,
-    /// Objective of both parameter sets, in the square of the unit that its channels share; the sum over the
-    /// calibrated conditions.
+    /// Objective of both parameter sets, summed over the calibrated conditions, in the square of the unit
+    /// that its channels share.
     pub(crate) objective: Both<Option<f64>>,
-    /// Agreement by channel, of both parameter sets, at the calibrated condition, the first one of several.
+    /// Agreement with the measurement by channel, of both parameter sets, at the first calibrated condition.
     pub(crate) channels: BTreeMap<String, Both<Option<ScoreOutput>>>,
-    /// Other conditions with a record, by name, those that are calibrated as well among them.
+    /// Scores at the other conditions with a measured record, by name, including further calibrated
+    /// conditions.
     pub(crate) other_conditions: BTreeMap<String, ConditionOutput>,
     /// Hash of the evaluation log in index order.
     pub(crate) log_digest: String,
-    /// Files that were written.
+    /// Paths of the files that were written.
     pub(crate) files: Vec<String>,
 }
 
-/// Of `horsehead verify`.
+/// JSON object printed by `horsehead verify RUN --condition NAME --output json`.
 #[derive(Debug, Serialize)]
 pub(crate) struct VerifyOutput<'a> {
-    /// The run folder.
+    /// Path of the run folder.
     pub(crate) run: String,
-    /// Name of the machine.
+    /// Name of the case.
     pub(crate) case: &'a str,
     /// Name of the condition.
     pub(crate) condition: &'a str,
     /// Wall time (s).
     pub(crate) wall_s: f64,
-    /// Scores of both parameter sets.
+    /// Scores of both parameter sets at the condition.
     #[serde(flatten)]
     pub(crate) scores: ConditionOutput,
 }

@@ -1,5 +1,5 @@
-//! What `--output json` prints: exactly one object per command. The fields are a contract with
-//! other programs; more may be added, none renamed. Numbers that are not finite become `null`.
+//! JSON objects printed by `--output json`, exactly one per command. Stable format: fields may be added, not
+//! renamed. Numbers that are not finite become `null`.
 pub(crate) mod calibration;
 pub(in crate::cli) mod diagnosis;
 pub(in crate::cli) mod identification;

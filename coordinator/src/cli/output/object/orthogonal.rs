@@ -1,20 +1,20 @@
-//! The objects of `horsehead sweep orthogonal` and of a sweep of a grid.
+//! JSON objects of `horsehead sweep orthogonal` and of a sweep of a grid.
 use serde::Serialize;
 use serde_json::{Map, Value};
 use study::orthogonal::{Anova, Confirmation, Factor, Source, Tested, Tried};
 
-/// Of `horsehead sweep orthogonal`, and kept as `result.json` in the run folder. Responses are log10 of the best
-/// objective, in the objective's unit.
+/// JSON object printed by `horsehead sweep orthogonal`, also written as `result.json` in the run folder.
+/// Responses are log10 of the best objective, in the objective's unit.
 #[derive(Debug, Serialize)]
 pub(crate) struct OrthogonalOutput {
-    /// `L9`, `L16` or `L25`.
+    /// Name of the array: `L9`, `L16` or `L25`.
     array: &'static str,
     factors: Vec<FactorOutput>,
-    /// Row by row, each with every seed.
+    /// Searches, row by row of the array, each row with every seed.
     runs: Vec<TriedOutput>,
-    /// One per factor; null where a run found nothing complete.
+    /// Range analysis, one entry per factor; null if a search found no complete individual.
     ranges: Option<Vec<RangeOutput>>,
-    /// Null where the design is saturated, too.
+    /// Analysis of variance; null if a search found no complete individual or the design is saturated.
     anova: Option<Vec<TermOutput>>,
     confirmation: Option<ConfirmationOutput>,
 }
@@ -25,13 +25,13 @@ struct FactorOutput {
     levels: Vec<Value>,
 }
 
-/// One search.
+/// Search with one combination of levels and one seed.
 #[derive(Debug, Serialize)]
 struct TriedOutput {
-    /// Value of each factor by its name.
+    /// Level of each factor, by factor name.
     levels: Map<String, Value>,
     seed: u64,
-    /// Null where nothing was complete.
+    /// Best objective; null if no individual completed its simulation.
     objective: Option<f64>,
     evaluations: u64,
 }
@@ -47,7 +47,7 @@ struct RangeOutput {
 
 #[derive(Debug, Serialize)]
 struct TermOutput {
-    /// A factor's name, `seed` or `error`.
+    /// Source of variation: a factor's name, `seed` or `error`.
     source: String,
     sum_of_squares: f64,
     freedom: usize,
@@ -60,7 +60,7 @@ struct TermOutput {
 struct ConfirmationOutput {
     levels: Map<String, Value>,
     predicted: f64,
-    /// Mean response of the runs.
+    /// Mean response of the confirmation runs.
     obtained: Option<f64>,
     runs: Vec<TriedOutput>,
 }
@@ -96,16 +96,16 @@ impl From<&Tested> for OrthogonalOutput {
     }
 }
 
-/// Of `horsehead sweep FILE.toml`, and kept as `result.json` in the run folder.
+/// JSON object printed by `horsehead sweep FILE.toml`, also written as `result.json` in the run folder.
 #[derive(Debug, Serialize)]
 pub(crate) struct GridOutput {
     factors: Vec<FactorOutput>,
-    /// Combination by combination, the last factor fastest, each with every seed.
+    /// Searches, combination by combination with the last factor varying fastest, each with every seed.
     runs: Vec<TriedOutput>,
 }
 
 impl GridOutput {
-    /// Of the searches of a grid.
+    /// Builds the object from the searches of a grid.
     pub(crate) fn new(factors: &[Factor], runs: &[Tried]) -> Self {
         Self {
             factors: listed(factors),
@@ -114,7 +114,8 @@ impl GridOutput {
     }
 }
 
-/// Searches as a table: a column per factor, `seed`, `objective` (empty where nothing was complete), `evaluations`.
+/// Formats searches as a CSV table: a column per factor, `seed`, `objective` (empty if no individual was
+/// complete), `evaluations`.
 ///
 /// # Errors
 /// If a row cannot be written.
@@ -156,7 +157,7 @@ fn terms(factors: &[Factor], anova: &Anova) -> Vec<TermOutput> {
     anova.terms.iter().map(one).collect()
 }
 
-/// Searches with their levels by name.
+/// Converts searches to their JSON form, with levels by factor name.
 fn tried(factors: &[Factor], runs: &[Tried]) -> Vec<TriedOutput> {
     let one = |run: &Tried| TriedOutput {
         levels: levels(factors, &run.levels),
@@ -173,7 +174,7 @@ fn levels(factors: &[Factor], row: &[usize]) -> Map<String, Value> {
     factors.iter().zip(row).map(one).collect()
 }
 
-/// A number or a switch where the words are one, else the words.
+/// Converts a level to a JSON number or boolean if it is one, else to a string.
 fn value(words: &str) -> Value {
     let plain = serde_json::from_str(words).ok();
     plain

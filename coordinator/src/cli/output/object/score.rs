@@ -1,4 +1,4 @@
-//! Unknowns and agreement with the record, alike in all objects.
+//! JSON forms of unknowns and of the agreement with measured records, shared by all objects.
 use crate::kind;
 use discrepancy::identify::{Seen, UnknownEstimate};
 use protocol::{
@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};
 use study::Curves;
 
-/// An unknown with its interval, in its declared unit.
+/// Unknown with its value and bounds, in its declared unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct GeneOutput {
     value: f64,
@@ -18,15 +18,15 @@ pub(crate) struct GeneOutput {
     recommended: f64,
     lower: f64,
     upper: f64,
-    /// What the record says of it to first order, where it was looked at.
+    /// First-order identifiability of the unknown; absent if it was not computed.
     #[serde(flatten)]
     seen: Option<SeenOutput>,
 }
 
-/// What a record says of an unknown.
+/// Identifiability of an unknown from the measured record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct SeenOutput {
-    /// Null for an open end; null as a whole where both are open.
+    /// 95 % interval; null for an open end, and null as a whole if both ends are open.
     ci95: Option<[Option<f64>; 2]>,
     seen: Seen,
 }
@@ -40,22 +40,22 @@ pub(crate) struct ConditionOutput {
     pub(crate) channels: BTreeMap<String, Both<Option<ScoreOutput>>>,
 }
 
-/// One thing for each parameter set.
+/// Pair of values, one for each parameter set.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Both<T> {
-    /// Of the recommended parameters.
+    /// Value for the recommended parameters.
     pub(crate) recommended: T,
-    /// Of the optimised parameters.
+    /// Value for the optimised parameters.
     pub(crate) optimised: T,
 }
 
-/// The unknowns by name, under the key by which their kind of model calls them.
+/// Unknowns by name, under a JSON key that depends on the kind of model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
 pub(crate) struct Unknowns(BTreeMap<&'static str, BTreeMap<String, GeneOutput>>);
 
 impl Unknowns {
-    /// With what a record says of them beside each.
+    /// Adds to every unknown its interval and identifiability from the given estimates.
     pub(crate) fn say(&mut self, seen: &[UnknownEstimate]) {
         for (name, own) in self.0.values_mut().flatten() {
             let said = seen.iter().find(|one| one.name == *name);
@@ -67,7 +67,7 @@ impl Unknowns {
     }
 }
 
-/// Values of all unknowns.
+/// Converts the values of all unknowns of a case to their JSON form.
 pub(crate) fn unknowns(case: &Case, values: &[f64]) -> Unknowns {
     let pairs = case.unknowns.iter().zip(values);
     let named = pairs
@@ -86,7 +86,7 @@ pub(crate) fn unknowns(case: &Case, values: &[f64]) -> Unknowns {
     Unknowns(BTreeMap::from([(case::kind::of(case).unknowns(), named)]))
 }
 
-/// Agreement of one channel, in its unit.
+/// Agreement between simulation and record in one channel, in its unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct ScoreOutput {
     unit: String,
@@ -96,12 +96,12 @@ pub(crate) struct ScoreOutput {
     rmse_over_half_range: f64,
     relative_error: f64,
     peak_to_peak_error: f64,
-    /// The same by keys of the kind of model.
+    /// Scores under the names that the kind of model uses.
     #[serde(flatten)]
     own: Map<String, Value>,
 }
 
-/// Agreement by channel, each by the key by which its kind of model calls it.
+/// Returns the agreement of each channel, by the key that the kind of model uses for the channel.
 pub(crate) fn channels(
     case: &Case,
     evaluation: Option<&Evaluation>,
@@ -125,13 +125,13 @@ pub(crate) fn channels(
     scores.iter().filter_map(output).collect()
 }
 
-/// The objective of a complete run.
+/// Returns the objective of a complete simulation; `None` otherwise.
 pub(crate) fn objective(evaluation: Option<&Evaluation>) -> Option<f64> {
     let complete = evaluation.filter(|evaluation| evaluation.verdict == Verdict::Complete)?;
     Some(complete.fitness)
 }
 
-/// Scores of both parameter sets, recommended first.
+/// Pairs the scores of the recommended and the optimised parameters under one condition.
 pub(crate) fn condition(case: &Case, recommended: &Curves, optimised: &Curves) -> ConditionOutput {
     let [before, after] =
         [recommended, optimised].map(|one| channels(case, one.evaluation.as_ref()));

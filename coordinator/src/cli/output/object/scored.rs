@@ -1,4 +1,4 @@
-//! What came of one individual, in `horsehead evaluate` and `horsehead sweep`.
+//! JSON form of the result of one individual, for `horsehead evaluate` and `horsehead sweep`.
 use super::{
     score::{ScoreOutput, channels},
     simulation::VerdictOutput,
@@ -12,13 +12,14 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use study::Scored;
 
-/// What came of an individual.
+/// Result of an individual.
 #[derive(Debug, Serialize)]
 pub(crate) struct ScoredOutput {
-    /// Of a failed run its grade, above every complete run's; null where it could not be computed.
+    /// Objective; for a failed simulation a graded value above that of every complete one; null if it could
+    /// not be computed.
     objective: Option<f64>,
     complete: bool,
-    /// How it ended; why there was no simulation where there was none.
+    /// How the simulation ended, or why there was none.
     #[serde(flatten)]
     verdict: VerdictOutput,
 }
@@ -44,26 +45,26 @@ impl From<&Scored> for ScoredOutput {
     }
 }
 
-/// Of `horsehead sweep FILE.csv`, and kept as `result.json` in the run folder.
+/// JSON object printed by `horsehead sweep FILE.csv`, also written as `result.json` in the run folder.
 #[derive(Debug, Serialize)]
 pub(crate) struct IndividualsOutput {
-    /// In the order of the table.
+    /// Results, in the order of the table.
     individuals: Vec<IndividualOutput>,
 }
 
-/// One row.
+/// Result of one row of the table.
 #[derive(Debug, Serialize)]
 struct IndividualOutput {
-    /// The row by names of unknowns.
+    /// Values of the unknowns in the row, by name.
     genes: BTreeMap<String, f64>,
     #[serde(flatten)]
     scored: ScoredOutput,
-    /// Agreement by channel; empty unless complete.
+    /// Agreement by channel; empty if the simulation did not complete.
     channels: BTreeMap<String, ScoreOutput>,
 }
 
 impl IndividualsOutput {
-    /// Of the rows of a table about unknowns of these names.
+    /// Builds the object from the rows of a table and their results; `names` are the unknowns of the columns.
     pub(crate) fn new(case: &Case, names: &[String], rows: &[Vec<f64>], found: &[Scored]) -> Self {
         let one = |(row, scored): (&Vec<f64>, &Scored)| IndividualOutput {
             genes: names.iter().cloned().zip(row.iter().copied()).collect(),
@@ -76,8 +77,8 @@ impl IndividualsOutput {
     }
 }
 
-/// The same as a table with a column for every number: the row, `objective`, `verdict`, then `CHANNEL.SCORE`, empty
-/// where there is none.
+/// Formats the results as a CSV table: the columns of the input, `objective`, `verdict`, then
+/// `CHANNEL.SCORE`, empty where there is no score.
 ///
 /// # Errors
 /// If a number cannot be written.

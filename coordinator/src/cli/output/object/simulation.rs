@@ -1,4 +1,4 @@
-//! The object of `horsehead simulate`.
+//! JSON object of `horsehead simulate`.
 use super::score::{ScoreOutput, Unknowns, channels, objective, unknowns};
 use crate::kind;
 use protocol::{
@@ -11,49 +11,50 @@ use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use study::Curves;
 
-/// Of `horsehead simulate`.
+/// JSON object printed by `horsehead simulate CASE --output json`.
 #[derive(Debug, Serialize)]
 pub(crate) struct SimulateOutput<'a> {
     /// Name of the case.
     pub(crate) case: &'a str,
     /// Name of the condition.
     pub(crate) condition: &'a str,
-    /// How it ended.
+    /// How the simulation ended.
     #[serde(flatten)]
     pub(crate) verdict: VerdictOutput,
-    /// Time on the worker (s).
+    /// Wall time of the simulation on the worker (s).
     pub(crate) wall_s: f64,
-    /// Work that was done.
+    /// Counters of the solver's work.
     pub(crate) counters: Counters,
     /// Values of the unknowns by name.
     #[serde(flatten)]
     pub(crate) unknowns: Unknowns,
-    /// Objective, in the square of the unit that its channels share; null without a record or a complete run.
+    /// Objective, in the square of the unit that its channels share; null if there is no record or the
+    /// simulation did not complete.
     pub(crate) objective: Option<f64>,
     /// Agreement by channel; empty without a record.
     pub(crate) channels: BTreeMap<String, ScoreOutput>,
-    /// The curves and what else the kind of model shows, by keys of its own.
+    /// Curves and further results, under keys that depend on the kind of model.
     #[serde(flatten)]
     pub(crate) drawn: Map<String, Value>,
-    /// Derivatives by what was asked for; absent where nothing was.
+    /// Derivatives of the curves by requested name; absent if none were requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) derivatives: Option<Map<String, Value>>,
-    /// Time on the worker with all derivatives (s); absent without any.
+    /// Wall time on the worker including all derivatives (s); absent if none were requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) derivatives_wall_s: Option<f64>,
-    /// Hash of all result bits.
+    /// Hash of all bits of the result.
     pub(crate) digest: String,
 }
 
-/// How a simulation ended: one word, and how far it got where it failed.
+/// How a simulation ended, and how far it got if it failed.
 #[derive(Debug, Serialize)]
 pub(crate) struct VerdictOutput {
-    /// `complete`, or what happened, as `load_not_lifted`.
+    /// `complete`, or the kind of failure, for example `load_not_lifted`.
     pub(crate) verdict: String,
-    /// Share of the static load that was applied; only of a run that failed in it.
+    /// Share of the static load that was applied [0, 1]; present only if the simulation failed while loading.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) load_fraction: Option<f64>,
-    /// Share of the simulated time that was reached; only of a run that failed in motion.
+    /// Share of the simulated time that was reached [0, 1]; present only if the simulation failed in motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) time_fraction: Option<f64>,
 }
@@ -75,7 +76,8 @@ impl From<Verdict> for VerdictOutput {
     }
 }
 
-/// What each name changes, by name.
+/// Converts the derivatives of the curves to their JSON form, by name: zeros with `nothing` where the curves
+/// do not depend on the name, `missing` with the reason where there is no derivative.
 fn derivatives(
     case: &Case,
     condition: usize,
@@ -105,10 +107,10 @@ fn derivatives(
     derived.iter().enumerate().map(one).collect()
 }
 
-/// Everything about one simulation, of the bits that `digest` stands for.
+/// Builds the JSON object of a simulation; `digest` is the hash of its result.
 ///
 /// # Errors
-/// If the answer says nothing of this kind of model.
+/// If the answer cannot be decoded for this kind of model.
 pub(crate) fn simulation<'a>(
     (case, condition): (&'a Case, usize),
     curves: &'a Curves,

@@ -1,12 +1,13 @@
-//! What a control file says, held against itself; what PEST++ takes in spite of it becomes a note.
+//! Consistency checks of a control file; violations that PEST++ tolerates become notes.
 use super::said::{Control, Parameter, Transform};
 use crate::Problem;
 use std::collections::BTreeSet;
 
-/// A logarithm needs a positive bound: so far below the initial value is far enough.
+/// Lower bound as a fraction of the initial value, used where a logarithmic parameter has a lower bound of 0
+/// or less, which has no logarithm.
 const BELOW: f64 = 1e-10;
 
-/// What stands there, and what should.
+/// Fault of a control file: the text found, and a description of what is allowed.
 type Fault = (String, &'static str);
 
 pub(super) fn check(file: &str, control: &mut Control) -> Result<(), Problem> {
@@ -28,29 +29,33 @@ pub(super) fn check(file: &str, control: &mut Control) -> Result<(), Problem> {
     Ok(())
 }
 
-/// There is something to calibrate, and every name is one's own.
+/// Checks that there are parameters, observations, a command and an output file, and that all names are
+/// unique.
 fn names(control: &Control) -> Result<(), Fault> {
     let (parameters, observations) = (&control.parameters, &control.observations);
     if parameters.is_empty() || observations.is_empty() {
         let (here, there) = (parameters.len(), observations.len());
         let found = format!("{here} parameters and {there} observations");
-        return Err((found, "one of each at least"));
+        return Err((found, "at least one of each"));
     }
     if control.commands.is_empty() || control.outputs.is_empty() {
         let found = "no command line, or no output file".to_owned();
-        return Err((found, "a model that is run and read"));
+        return Err((found, "at least one command line and one output file"));
     }
     let mut seen = BTreeSet::new();
     let names = parameters.iter().map(|it| &it.name);
     for name in names.chain(observations.iter().map(|it| &it.name)) {
         if !seen.insert(name) {
-            return Err((format!("`{name}` twice"), "a name of its own"));
+            return Err((
+                format!("`{name}` twice"),
+                "a name that no other parameter or observation has",
+            ));
         }
     }
     Ok(())
 }
 
-/// Every group is there, and every tie leads to what varies.
+/// Checks that every parameter group exists and that every tied parameter refers to one that varies.
 fn groups_and_ties(control: &Control) -> Result<(), Fault> {
     let known = |name: &String| name == "none" || control.groups.iter().any(|it| it.name == *name);
     for parameter in &control.parameters {
@@ -70,7 +75,7 @@ fn groups_and_ties(control: &Control) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Prior information is about parameters, and no weight is negative.
+/// Checks that prior information refers to existing parameters and that no weight is negative.
 fn equations(control: &Control) -> Result<(), Fault> {
     for prior in &control.prior {
         for term in &prior.terms {
@@ -92,13 +97,13 @@ fn equations(control: &Control) -> Result<(), Fault> {
 }
 
 impl Parameter {
-    /// Whether it is estimated itself.
+    /// Returns whether the parameter itself is estimated, i.e. neither fixed nor tied.
     const fn varies(&self) -> bool {
         matches!(self.transform, Transform::None | Transform::Log)
     }
 }
 
-/// Value and bounds of one parameter; what is accepted in spite of itself, in words.
+/// Checks the value and bounds of a parameter; returns a note where a violation is tolerated.
 fn parameter(own: &mut Parameter) -> Result<Option<String>, Fault> {
     let (name, initial) = (own.name.clone(), own.initial);
     let mut note = None;
@@ -123,11 +128,14 @@ fn parameter(own: &mut Parameter) -> Result<Option<String>, Fault> {
         return Err((found, "within its bounds"));
     }
     if own.varies() && lower >= upper {
-        return Err((format!("{name} from {lower} to {upper}"), "an interval"));
+        return Err((
+            format!("{name} from {lower} to {upper}"),
+            "a lower bound below the upper bound",
+        ));
     }
     if own.transform == Transform::Fixed && !inside {
         note = Some(format!(
-            "{name} is fixed at {initial}, outside its bounds {lower} to {upper}: the bounds mean nothing"
+            "{name} is fixed at {initial}, outside its bounds {lower} to {upper}: the bounds are ignored"
         ));
     }
     Ok(note)

@@ -1,4 +1,4 @@
-//! From the sections of a control file to what they say.
+//! Conversion of the sections of a control file to [`Control`].
 use super::{
     lines::{Lines, Section},
     prior,
@@ -32,7 +32,7 @@ const PARAMETER: [&str; 10] = [
 ];
 const OBSERVATION: [&str; 4] = ["obsnme", "obsval", "weight", "obgnme"];
 
-/// Sections that are read.
+/// Names of the sections that are read.
 const KNOWN: [&str; 12] = [
     "control data",
     "control data keyword",
@@ -50,7 +50,7 @@ const KNOWN: [&str; 12] = [
 
 type Open<'a> = &'a dyn Fn(&str) -> Result<String, String>;
 
-/// How many there are of what, in the older form.
+/// Numbers of items stated in `control data` of the older format.
 #[derive(Default)]
 struct Counts {
     parameters: usize,
@@ -72,7 +72,7 @@ pub(super) fn read(lines: &Lines, open: Open<'_>) -> Result<Control, Problem> {
             .unwrap_or(&section.name);
         if !KNOWN.contains(&plain) {
             let note = format!(
-                "section `{}` (line {}) has no meaning here and is left out",
+                "section `{}` (line {}) is not supported and is ignored",
                 section.name, section.number
             );
             control.notes.push(note);
@@ -80,7 +80,7 @@ pub(super) fn read(lines: &Lines, open: Open<'_>) -> Result<Control, Problem> {
     }
     for (name, _) in &lines.options {
         control.notes.push(format!(
-            "option ++{name} is PEST++'s own and has no effect here"
+            "option ++{name} applies to PEST++ only and is ignored"
         ));
     }
     let counts = if let Some(section) = lines.section("control data") {
@@ -119,15 +119,15 @@ pub(super) fn read(lines: &Lines, open: Open<'_>) -> Result<Control, Problem> {
                 let line = lines
                     .section("control data")
                     .map_or(1, |section| section.number);
-                let what = format!("{name} = {stated}, with {found} of them in the file");
-                return Err(lines.problem(line, what, "as many as it says"));
+                let what = format!("{name} = {stated}, although the file has {found}");
+                return Err(lines.problem(line, what, "the number of items in the file"));
             }
         }
     }
     Ok(control)
 }
 
-/// The older form's numbers by their places.
+/// Reads the numbers of `control data` in the older format, by position.
 fn counts(lines: &Lines, section: &Section, control: &mut Control) -> Result<Counts, Problem> {
     let word = |line: usize, place: usize, name: &str| {
         let found = section.lines.get(line);
@@ -137,7 +137,7 @@ fn counts(lines: &Lines, section: &Section, control: &mut Control) -> Result<Cou
             lines.problem(
                 number,
                 "a line that is too short",
-                format!("one with {name}"),
+                format!("a line that contains {name}"),
             )
         })
     };
@@ -177,7 +177,7 @@ fn counts(lines: &Lines, section: &Section, control: &mut Control) -> Result<Cou
     })
 }
 
-/// The newer form's words.
+/// Reads the keywords of `control data keyword` in the newer format.
 fn keywords(lines: &Lines, control: &mut Control) {
     let section = lines.section("control data keyword");
     for line in section.into_iter().flat_map(|section| &section.lines) {
@@ -216,7 +216,7 @@ fn group(row: &Row) -> Result<ParameterGroup, Problem> {
     })
 }
 
-/// Parameters, and behind them in the older form what they are tied to.
+/// Reads the parameters; in the older format the rows after them state what tied parameters are tied to.
 fn parameters(
     lines: &Lines,
     counts: Option<&Counts>,
@@ -259,7 +259,7 @@ fn parameters(
     Ok(())
 }
 
-/// Template and instruction files.
+/// Reads the pairs of template and instruction files with the program's files.
 fn pairs(
     lines: &Lines,
     counts: Option<&Counts>,

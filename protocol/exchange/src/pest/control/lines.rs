@@ -1,30 +1,30 @@
-//! A control file as sections of lines, without comments and options.
+//! Splitting of a control file into sections of lines, without comments; options are collected separately.
 use crate::{Problem, problem::clip};
 
-/// A line of a file.
+/// Line of a control file.
 #[derive(Clone, Debug)]
 pub(super) struct Line {
-    /// From 1.
+    /// Line number in the file, from 1.
     pub(super) number: usize,
     pub(super) text: String,
 }
 
-/// A section: what stands between one `*` and the next.
+/// Section of a control file: the lines from one `*` heading to the next.
 #[derive(Clone, Debug)]
 pub(super) struct Section {
-    /// In small letters.
+    /// Name in lower case.
     pub(super) name: String,
-    /// Line of its heading.
+    /// Line number of the heading.
     pub(super) number: usize,
     pub(super) lines: Vec<Line>,
 }
 
-/// A control file.
+/// Control file split into sections.
 #[derive(Debug)]
 pub(super) struct Lines {
     pub(super) file: String,
     pub(super) sections: Vec<Section>,
-    /// `++name(value)`.
+    /// Options `++name(value)` as pairs of name and value.
     pub(super) options: Vec<(String, String)>,
 }
 
@@ -92,12 +92,12 @@ impl Lines {
         ))
     }
 
-    /// The section of a name, if there is one.
+    /// Returns the section of the given name, if it exists.
     pub(super) fn section(&self, name: &str) -> Option<&Section> {
         self.sections.iter().find(|section| section.name == name)
     }
 
-    /// A problem in a line.
+    /// Creates a problem at a line of the file.
     pub(super) fn problem(
         &self,
         number: usize,
@@ -114,7 +114,7 @@ impl Lines {
     }
 }
 
-/// `name(value)`, as often as it stands in a line.
+/// Parses all `name(value)` options of a line.
 fn options(line: &str) -> Vec<(String, String)> {
     let each = line.split(')').filter_map(|part| part.split_once('('));
     each.map(|(name, value)| {

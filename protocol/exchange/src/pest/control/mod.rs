@@ -1,8 +1,9 @@
-//! Control files: parameters, observations and files of a calibration, in PEST's two forms.
+//! Control files: parameters, observations and files of a calibration, in both of PEST's formats.
 //!
-//! In the older one numbers stand in their places and counts say how many lines there are; in the newer one (`*
-//! control data keyword`) words say what is what and tables lie in files of their own. What PEST++ takes is taken;
-//! what has no meaning here is listed in [`Control::notes`] and never dropped in silence.
+//! In the older format numbers have fixed positions and counts state how many lines follow; in the newer one
+//! (`* control data keyword`) keywords name the values and tables are stored in separate files. Everything
+//! that PEST++ accepts is accepted; everything without a meaning here is listed in [`Control::notes`] and
+//! never dropped silently.
 mod check;
 mod data;
 mod lines;
@@ -20,10 +21,10 @@ pub use said::{
 use crate::Problem;
 
 impl Control {
-    /// Reads a control file; `open` gives the text of a file that it names, by the name that it uses.
+    /// Parses a control file; `open` returns the text of a file by the name used in the control file.
     ///
     /// # Errors
-    /// What cannot be read or contradicts itself, with file and line.
+    /// Syntax errors and contradictions, with file and line.
     pub fn parse(
         file: &str,
         text: &str,

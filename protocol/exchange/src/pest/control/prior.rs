@@ -1,8 +1,9 @@
-//! Prior information: `name factor * log(parameter) + factor * parameter = value weight group`.
+//! Parser of prior information: `name factor * log(parameter) + factor * parameter = value weight group`.
 use super::said::{PriorInformation, PriorTerm};
 use crate::{Problem, number, problem::clip};
 
-/// Reads the text of one, its name included; `refused` makes a problem of what stands there.
+/// Parses one item of prior information, including its name; `refused` builds the problem from the text found
+/// and the text allowed.
 pub(super) fn read(
     text: &str,
     refused: &dyn Fn(String, &str) -> Problem,
@@ -30,7 +31,7 @@ pub(super) fn read(
     })
 }
 
-/// `factor * parameter`, with `+` or `-` between.
+/// Parses a sum of `factor * parameter` terms joined by `+` or `-`.
 fn terms(sum: &str) -> Option<Vec<PriorTerm>> {
     let mut terms = Vec::new();
     let mut words = sum.split_whitespace().flat_map(separate);
@@ -60,7 +61,7 @@ fn terms(sum: &str) -> Option<Vec<PriorTerm>> {
     (!terms.is_empty()).then_some(terms)
 }
 
-/// `2.0*par` as `2.0`, `*`, `par`.
+/// Splits a word at `*`: `2.0*par` becomes `2.0`, `*`, `par`.
 fn separate(word: &str) -> Vec<String> {
     let mut parts = Vec::new();
     for (at, part) in word.split('*').enumerate() {

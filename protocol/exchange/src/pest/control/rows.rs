@@ -1,9 +1,9 @@
-//! Rows of a control file's tables: words of a line, or cells of a CSV under their names.
+//! Rows of a control file's tables: the words of a line, or the cells of a CSV file under its header.
 use super::lines::{Lines, Section};
 use crate::{Problem, number, problem::clip};
 use std::collections::BTreeMap;
 
-/// A row: where it stands, and its cells by name.
+/// Row of a table: its position and its cells by column name.
 pub(super) struct Row {
     pub(super) file: String,
     pub(super) line: usize,
@@ -11,7 +11,7 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// The words of a line under the names of their places.
+    /// Creates a row from the words of a line and the column names of their positions.
     pub(super) fn of(file: &str, line: usize, names: &[&str], words: &[&str]) -> Self {
         let cells = names.iter().zip(words);
         Self {
@@ -33,35 +33,35 @@ impl Row {
         )
     }
 
-    /// A cell in small letters.
+    /// Returns a cell in lower case.
     pub(super) fn word(&self, name: &str) -> Result<String, Problem> {
         self.plain(name).map(|cell| cell.to_lowercase())
     }
 
-    /// A cell as it stands.
+    /// Returns a cell unchanged.
     pub(super) fn plain(&self, name: &str) -> Result<String, Problem> {
         let found = self.cells.get(name).filter(|cell| !cell.is_empty());
         found.cloned().ok_or_else(|| {
             self.problem(
                 "a row that is too short".to_owned(),
-                &format!("one with {name}"),
+                &format!("a row with a value for {name}"),
             )
         })
     }
 
-    /// A cell in small letters, or what stands for it where there is none.
+    /// Returns a cell in lower case, or `other` if the cell is missing.
     pub(super) fn word_or(&self, name: &str, other: &str) -> String {
         self.word(name).unwrap_or_else(|_| other.to_owned())
     }
 
-    /// A number.
+    /// Parses a cell as a finite number.
     pub(super) fn number(&self, name: &str) -> Result<f64, Problem> {
         let cell = self.plain(name)?;
         number(&cell)
             .ok_or_else(|| self.problem(format!("{name} = `{}`", clip(&cell)), "a finite number"))
     }
 
-    /// A number, or what stands for it where there is none.
+    /// Parses a cell as a finite number; returns `other` if the cell is missing or empty.
     pub(super) fn number_or(&self, name: &str, other: f64) -> Result<f64, Problem> {
         if self.cells.get(name).is_none_or(String::is_empty) {
             return Ok(other);
@@ -70,8 +70,8 @@ impl Row {
     }
 }
 
-/// The rows of a section: its lines, or those of the files that an external section names. Nothing where there is
-/// neither.
+/// Returns the rows of a section: its own lines, followed by those of the CSV files named by the section of
+/// the same name with the suffix `external`. Empty if neither section exists.
 pub(super) fn rows(
     lines: &Lines,
     name: &str,
@@ -95,7 +95,7 @@ pub(super) fn rows(
     Ok(all)
 }
 
-/// The rows of an external section's files.
+/// Reads the rows of the CSV files named by an external section.
 fn files(
     lines: &Lines,
     section: &Section,

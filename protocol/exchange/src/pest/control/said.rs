@@ -1,147 +1,147 @@
-//! What a control file says, as plain data.
+//! Contents of a control file as plain data.
 
-/// A control file, read.
+/// Parsed control file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Control {
     /// Parameters in the file's order.
     pub parameters: Vec<Parameter>,
-    /// Groups of parameters, which share how they are differenced.
+    /// Parameter groups, which share the settings for finite differences.
     pub groups: Vec<ParameterGroup>,
     /// Observations in the file's order.
     pub observations: Vec<Observation>,
-    /// What runs the model.
+    /// Command lines that run the model.
     pub commands: Vec<String>,
-    /// Template files, each with the file that is written from it.
+    /// Template files, each with the model input file written from it.
     pub inputs: Vec<Pair>,
-    /// Instruction files, each with the file that is read by it.
+    /// Instruction files, each with the model output file read by it.
     pub outputs: Vec<Pair>,
-    /// What is known of parameters beside their bounds, as equations.
+    /// Prior information on parameters, as linear equations.
     pub prior: Vec<PriorInformation>,
-    /// Most iterations (NOPTMAX).
+    /// Maximum number of iterations (NOPTMAX).
     pub iterations: i64,
     /// Options of PEST++ (`++name(value)`).
     pub options: Vec<(String, String)>,
-    /// What was read otherwise than it stands, or not taken.
+    /// Notes on entries that were interpreted differently from their text or ignored.
     pub notes: Vec<String>,
 }
 
-/// One parameter.
+/// Parameter of a control file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// Name, in small letters.
+    /// Name in lower case.
     pub name: String,
-    /// How it is estimated.
+    /// Transformation under which the parameter is estimated.
     pub transform: Transform,
-    /// Where it begins.
+    /// Initial value.
     pub initial: f64,
     /// Lower bound.
     pub lower: f64,
     /// Upper bound.
     pub upper: f64,
-    /// Its group.
+    /// Name of its parameter group.
     pub group: String,
-    /// `scale x value + offset` is written into templates.
+    /// Factor in `scale x value + offset`, the number written into templates.
     pub scale: f64,
-    /// See [`Self::scale`].
+    /// Summand in `scale x value + offset`; see [`Self::scale`].
     pub offset: f64,
 }
 
-/// How a parameter is estimated.
+/// Transformation of a parameter for estimation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Transform {
-    /// As it is.
+    /// Estimated without a transformation.
     None,
-    /// By its logarithm.
+    /// Estimated by its logarithm.
     Log,
-    /// Not at all.
+    /// Held at its initial value.
     Fixed,
-    /// At the ratio of the initial values to another one.
+    /// Tied to the named parameter at the ratio of the initial values.
     Tied(String),
 }
 
-/// How the parameters of a group are differenced.
+/// Finite-difference settings of a parameter group.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterGroup {
-    /// Its name.
+    /// Name of the group.
     pub name: String,
-    /// What the increment counts.
+    /// Reference of the increment: the value, the greatest value in the group, or an absolute number.
     pub increment_kind: IncrementKind,
-    /// Increment (DERINC).
+    /// Increment (DERINC), in units given by the increment kind.
     pub increment: f64,
-    /// Least absolute increment (DERINCLB).
+    /// Minimum absolute increment (DERINCLB).
     pub floor: f64,
-    /// How many points (FORCEN).
+    /// Number of points of a difference (FORCEN).
     pub method: Method,
-    /// Factor of the increment for three points (DERINCMUL).
+    /// Factor on the increment for three-point differences (DERINCMUL).
     pub multiplier: f64,
 }
 
-/// What an increment counts.
+/// Reference of an increment (INCTYP).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum IncrementKind {
-    /// A share of the parameter's value.
+    /// Fraction of the parameter's value.
     Relative,
-    /// The parameter's own unit.
+    /// Absolute number in the parameter's unit.
     Absolute,
-    /// A share of the greatest value in the group.
+    /// Fraction of the greatest value in the group.
     RelativeToMax,
 }
 
-/// How many points a derivative takes.
+/// Number of points of a finite difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Two, later three.
+    /// Two points at first, three in later iterations.
     Switch,
-    /// Two.
+    /// Two points.
     Two,
-    /// Three.
+    /// Three points.
     Three,
 }
 
-/// One observation.
+/// Observation of a control file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observation {
-    /// Name, in small letters.
+    /// Name in lower case.
     pub name: String,
-    /// What was measured.
+    /// Measured value.
     pub value: f64,
-    /// Factor of its residual; 0 for a prediction.
+    /// Factor on the residual; 0 for a prediction.
     pub weight: f64,
-    /// Its group.
+    /// Name of its observation group.
     pub group: String,
 }
 
-/// A template or instruction file with the file of the program.
+/// Template or instruction file together with the model's file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pair {
-    /// Template or instructions.
+    /// Path of the template or instruction file.
     pub own: String,
-    /// What the program reads or leaves.
+    /// Path of the model's input or output file.
     pub program: String,
 }
 
-/// `sum of factor x parameter = value`, with a weight.
+/// Prior information: the weighted equation `sum of factor x parameter = value`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PriorInformation {
-    /// Name, in small letters.
+    /// Name in lower case.
     pub name: String,
-    /// The left side.
+    /// Terms on the left-hand side.
     pub terms: Vec<PriorTerm>,
-    /// The right side.
+    /// Right-hand side.
     pub value: f64,
-    /// Factor of its residual.
+    /// Factor on the residual of the equation.
     pub weight: f64,
-    /// Its observation group.
+    /// Name of its observation group.
     pub group: String,
 }
 
-/// A term of prior information.
+/// Term of prior information.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PriorTerm {
-    /// Its factor.
+    /// Factor on the parameter or its logarithm.
     pub factor: f64,
-    /// The parameter.
+    /// Name of the parameter.
     pub parameter: String,
-    /// Whether its decimal logarithm is meant.
+    /// Whether the term uses the parameter's decimal logarithm.
     pub log: bool,
 }

@@ -1,4 +1,4 @@
-//! Control files in both forms, three that PEST++ has run, and ones that cannot be.
+//! Tests of control files in both formats: three models that PEST++ has run, and invalid files.
 use super::*;
 use crate::pest::{Instructions, Template};
 use std::{fs, path::PathBuf};
@@ -192,7 +192,8 @@ fn what_contradicts_itself_is_refused() {
     assert!(error.contains("groups.csv is not there"), "{error}");
 }
 
-/// Cut off anywhere, or with any of its lines twice, a file is read or refused.
+/// Checks that a file truncated anywhere, or with any line duplicated or removed, is either read or refused
+/// without a panic.
 #[test]
 fn nothing_panics() {
     let text = fs::read_to_string(folder("cantilever").join("model.pst")).unwrap();

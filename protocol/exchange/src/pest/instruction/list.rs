@@ -1,44 +1,45 @@
-//! Instructions as they were read.
+//! Parsed instructions of a PEST instruction file.
 
-/// A list of instructions, read once.
+/// Parsed instruction file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Instructions {
     pub(super) file: String,
     pub(super) lines: Vec<Line>,
 }
 
-/// The instructions that are carried out on one line of a file, unless one of them moves on.
+/// Instructions applied to one line of the file that is read, unless an instruction advances to a later line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Line {
-    /// Where it begins in the list of instructions, from 1.
+    /// Line number in the instruction file, from 1.
     pub(super) number: usize,
     pub(super) all: Vec<Instruction>,
 }
 
-/// One instruction; columns count from 1.
+/// Single instruction; columns count from 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Instruction {
-    /// A text that is looked for: in the lines that follow where it stands first, else further on in this line.
+    /// Search for a text: as the first instruction in the following lines, otherwise in the rest of the
+    /// current line.
     Marker(String),
-    /// So many lines on.
+    /// Advance by a number of lines.
     Lines(usize),
-    /// On to the last blank before the next word.
+    /// Advance to the last blank before the next word.
     Word,
-    /// To a column.
+    /// Advance to a column.
     Tab(usize),
-    /// A number between two columns.
+    /// Number that lies between two columns, with the name of its observation.
     Fixed(String, usize, usize),
-    /// A number of which some part stands between two columns.
+    /// Number that overlaps the range between two columns, with the name of its observation.
     SemiFixed(String, usize, usize),
-    /// The next number.
+    /// Next number in the line, with the name of its observation.
     Free(String),
 }
 
-/// An observation of this name is read and not kept.
+/// Observation name whose value is read and discarded.
 pub(super) const NOBODY: &str = "dum";
 
 impl Instruction {
-    /// Name of the observation that it reads.
+    /// Returns the name of the observation that the instruction reads, if any.
     pub(super) fn observation(&self) -> Option<&str> {
         match self {
             Self::Fixed(name, ..) | Self::SemiFixed(name, ..) | Self::Free(name) => Some(name),

@@ -1,4 +1,4 @@
-//! Instructions: where in a file the values of observations stand. Files are read forwards only.
+//! PEST instruction files: positions of observations in a model output file, which is read forwards only.
 mod list;
 mod parse;
 mod read;
@@ -11,15 +11,15 @@ use crate::Problem;
 use list::{Instruction, NOBODY};
 
 impl Instructions {
-    /// Reads instructions: `pif` and a delimiter in the first line, then lines of instructions.
+    /// Parses an instruction file: `pif` and a delimiter in the first line, then lines of instructions.
     ///
     /// # Errors
-    /// What is no instruction, a name that stands twice, with the line.
+    /// An invalid instruction or a duplicate observation name, with the line.
     pub fn parse(file: &str, text: &str) -> Result<Self, Problem> {
         parse::parse(file, text)
     }
 
-    /// Names of the observations, in small letters, in the order in which they are read.
+    /// Returns the names of the observations in lower case, in the order in which they are read.
     pub fn observations(&self) -> Vec<String> {
         let all = self.lines.iter().flat_map(|line| &line.all);
         let named = all.filter_map(Instruction::observation);
@@ -29,10 +29,11 @@ impl Instructions {
             .collect()
     }
 
-    /// The values that a file holds; `read` is its name.
+    /// Reads the values of all observations from a file's text; `read` is the file's name.
     ///
     /// # Errors
-    /// A marker or line that is not there, what is no finite number, with the line of the instruction.
+    /// A marker or line that does not exist, or a number that is not finite, with the line of the
+    /// instruction.
     pub fn read(&self, read: &str, text: &str) -> Result<Vec<(String, f64)>, Problem> {
         read::read(self, read, text)
     }

@@ -1,10 +1,10 @@
-//! From the text of an instruction file to instructions.
+//! Parser of instruction files.
 use super::super::mark::Marked;
 use super::list::{Instruction, Instructions, Line, NOBODY};
 use crate::{Problem, problem::clip};
 use std::collections::BTreeSet;
 
-/// The file's first line.
+/// Requirements on the first line of an instruction file.
 const FIRST: Marked = Marked {
     word: "pif",
     barred: "!:&[](),",
@@ -12,7 +12,7 @@ const FIRST: Marked = Marked {
     remedy: "write it as the first line of the instructions",
 };
 
-/// Farthest column, and most lines of one step.
+/// Maximum column, and maximum number of lines of one advance.
 const FARTHEST: usize = 100_000_000;
 
 pub(super) fn parse(file: &str, text: &str) -> Result<Instructions, Problem> {
@@ -46,8 +46,8 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Instructions, Problem> {
         let own = all.into_iter().skip(usize::from(goes_on));
         let Ok(all) = own.collect::<Result<Vec<Instruction>, Continued>>() else {
             return Err(refused(
-                "`&` further on".to_owned(),
-                "`&` at the beginning alone",
+                "`&` after the beginning of the line".to_owned(),
+                "`&` only at the beginning of a line",
             ));
         };
         match (goes_on, lines.last_mut()) {
@@ -78,10 +78,10 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Instructions, Problem> {
     })
 }
 
-/// `&`: the line goes on with the one before.
+/// Continuation token `&`: the line continues the preceding line of instructions.
 struct Continued;
 
-/// The instructions of a line; what is none as text.
+/// Splits a line into instructions; the error is the text that is not an instruction.
 fn tokens(line: &str, mark: char) -> Result<Vec<Result<Instruction, Continued>>, String> {
     let mut all = Vec::new();
     let mut rest = line.trim_start();

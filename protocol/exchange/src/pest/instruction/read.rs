@@ -1,19 +1,19 @@
-//! Instructions carried out on a file.
+//! Execution of instructions on a model output file.
 use super::list::{Instruction, Instructions, Line, NOBODY};
 use crate::{Problem, number, problem::clip};
 
-/// Where reading has come to.
+/// Reading position in a file.
 struct Reader<'a> {
     lines: std::str::Lines<'a>,
-    /// The line that is read, letter by letter; nothing before the first.
+    /// Characters of the current line; empty before the first line.
     line: Vec<char>,
-    /// Its number, from 1.
+    /// Number of the current line, from 1.
     number: usize,
-    /// Letters of it that are behind.
+    /// Number of characters of the current line already consumed.
     at: usize,
 }
 
-/// Why an instruction cannot be carried out: what stands there, and what should.
+/// Failure of an instruction: the text found, and a description of what is allowed.
 struct Miss {
     found: String,
     allowed: String,
@@ -38,7 +38,7 @@ pub(super) fn read(
                 line.number,
                 format!("{} in {name}, line {}", miss.found, reader.number),
                 miss.allowed,
-                "look at what the program wrote, and correct the instruction",
+                "check the program's output file, and correct the instruction",
             )
         })?;
     }
@@ -69,7 +69,7 @@ fn carry_out(
                         continue;
                     }
                     return Err(Miss {
-                        found: format!("no `{}` further on", clip(text)),
+                        found: format!("no `{}` in the rest of the line", clip(text)),
                         allowed: "a line with that text".to_owned(),
                     });
                 }
@@ -119,7 +119,7 @@ impl Reader<'_> {
     fn advance(&mut self) -> Result<(), Miss> {
         let line = self.lines.next().ok_or_else(|| Miss {
             found: "the end".to_owned(),
-            allowed: "a file that goes on".to_owned(),
+            allowed: "a file with further lines".to_owned(),
         })?;
         self.line = line.chars().collect();
         self.number += 1;
@@ -127,7 +127,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// On to the next line with a text, behind it.
+    /// Advances to the next line that contains a text, and to the character after the text.
     fn search(&mut self, text: &str) -> Result<(), Miss> {
         loop {
             self.advance().map_err(|_| Miss {
@@ -140,7 +140,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Behind a text further on in this line; whether there is one.
+    /// Advances past the next occurrence of a text in the current line; returns whether there is one.
     fn pass(&mut self, text: &str) -> bool {
         let found = self.place(text);
         if let Some(place) = found {
@@ -149,7 +149,7 @@ impl Reader<'_> {
         found.is_some()
     }
 
-    /// Where a text stands further on in this line.
+    /// Returns the position of the next occurrence of a text in the current line.
     fn place(&self, text: &str) -> Option<usize> {
         let ahead: String = self.line.get(self.at..)?.iter().collect();
         let (before, _) = ahead.split_once(text)?;
@@ -165,7 +165,7 @@ impl Reader<'_> {
         });
         let word = word.ok_or_else(|| Miss {
             found: "no further word".to_owned(),
-            allowed: "a line with one".to_owned(),
+            allowed: "a line with another word".to_owned(),
         })?;
         self.at += word;
         Ok(())
@@ -218,7 +218,7 @@ impl Reader<'_> {
         text
     }
 
-    /// The next word, cut at a marker that is looked for behind it.
+    /// Returns the next word, cut at `next`, the marker that follows, if that begins inside the word.
     fn free(&mut self, next: Option<&str>) -> String {
         let is_between = |letter: &char| letter.is_whitespace() || *letter == ',';
         let ahead = self.line.get(self.at..).unwrap_or_default();

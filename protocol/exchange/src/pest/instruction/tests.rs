@@ -1,4 +1,4 @@
-//! Instructions of every kind, and files that do not fit them.
+//! Tests of every kind of instruction, and of files that do not match the instructions.
 use super::Instructions;
 use proptest::prelude::*;
 
@@ -37,8 +37,8 @@ fn every_kind_of_instruction_finds_its_number() {
     );
 }
 
-/// A line with the first marker but without the second is not the one that is meant, unless something was read from
-/// it.
+/// Checks that the search continues after a line that contains the first marker but not the second, unless a
+/// value was already read from that line.
 #[test]
 fn a_missing_second_marker_resumes_the_search() {
     let text = "sum 1\nsum of b 2\n";

@@ -1,6 +1,6 @@
-//! The gauges' amplifier or its anti-alias filter lags: `t s_m' + s_m = s`, periodic.
+//! Lag of the gauges' amplifier or its anti-alias filter: `t s_m' + s_m = s`, periodic.
 //!
-//! Between samples the stress is taken as straight, for which the filter's answer is exact.
+//! The stress is interpolated linearly between samples, for which the filter's response is exact.
 //!
 //! Source: first-order instruments: Doebelin, *Measurement Systems*, 5th ed. (2004), chapter 3.
 use crate::effect::descriptor::{Descriptor, Place};
@@ -34,7 +34,7 @@ impl Reading for Lag {
     }
 }
 
-/// Filters one period in place; `ratio` is the spacing over the time constant.
+/// Filters one period in place; `ratio` is the sample spacing divided by the time constant.
 fn lagged(curve: &mut [f64], ratio: f64) {
     let kept = exp(-ratio);
     let mixed = (1.0 - kept) / ratio;
@@ -62,7 +62,7 @@ mod tests {
     use crate::math::elementary::sin_cos;
     use std::f64::consts::TAU;
 
-    /// `cos(w t)` becomes `(cos(w t) + w tau sin(w t)) / (1 + (w tau)^2)`.
+    /// Checks that `cos(w t)` becomes `(cos(w t) + w tau sin(w t)) / (1 + (w tau)^2)`.
     #[test]
     fn a_wave_lags_as_the_filter_says() {
         let n = 2000;

@@ -1,5 +1,5 @@
-//! Beam and heads are not balanced as described: another moment of their own weight about the saddle,
-//! `M = (M_0 + m) cos(theta)`, positive towards the well.
+//! Unbalance of beam and heads: a moment of their own weight about the saddle that differs from the
+//! description, `M = (M_0 + m) cos(theta)`, positive towards the well.
 //!
 //! Source: structural unbalance: API Spec 11E, *Pumping Units* (2013); Takacs, *Sucker-Rod Pumping Handbook*
 //! (2015).

@@ -1,4 +1,4 @@
-//! Another inertia of beam and heads, or ice on them: `J (1 + x)`.
+//! Deviating inertia of beam and heads, for example from ice: `J (1 + x)`.
 //!
 //! Source: articulating inertia of a pumping unit: Takacs, *Sucker-Rod Pumping Handbook* (2015).
 use crate::effect::descriptor::{Descriptor, Place};

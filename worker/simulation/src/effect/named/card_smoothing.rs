@@ -1,13 +1,13 @@
-//! The card was smoothed before it was delivered, and lacks the rod string's own vibrations.
+//! Smoothing of the card before delivery, which removed the rod string's own vibrations.
 //!
-//! Two ways back. What the card still has above a number of harmonics is restored by a share:
-//! `F + x (F - F_kept)`; -1 takes it out. And where nothing is left to be amplified, the string
-//! itself rings after each transfer of the load, at its fundamental `a / 4 L` and decaying:
-//! `+- (A sin w t + B cos w t (1 - exp(-t / 0.1 s))) exp(-c t)` after the steepest rise (+) and the
-//! steepest fall (-) of the smoothed card. Sine and cosine together have any phase.
+//! Two corrections are available. Harmonics above a given number that the card still has are amplified by a
+//! share: `F + x (F - F_kept)`; -1 removes them. Where none are left to amplify, the rod string itself rings
+//! after each load transfer, at its fundamental `a / 4 L` and decaying: `+- (A sin w t + B cos w t (1 -
+//! exp(-t / 0.1 s))) exp(-c t)` after the steepest rise (+) and the steepest fall (-) of the smoothed card.
+//! Sine and cosine together represent any phase.
 //!
-//! Source: what a smoothed card loses are the rod string's reflections: Gibbs, "Predicting the
-//! Behavior of Sucker-Rod Pumping Systems", JPT 15 (1963).
+//! Source: a smoothed card loses the rod string's reflections: Gibbs, "Predicting the Behavior of Sucker-Rod
+//! Pumping Systems", JPT 15 (1963).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::math::elementary::{exp, sin_cos};
@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new(
         "card_smoothing",
-        "Rod-string vibrations that smoothing took out of the card",
+        "Rod-string vibrations removed from the card by smoothing",
     )
     .at("load_cell", Place::Load)
     .size("restored", Unit::One, 0.5, [-1.0, 5.0])
@@ -47,10 +47,10 @@ struct Smoothing {
     decay: f64,
 }
 
-/// Time in which the cosine's part sets in \[s\].
+/// Time constant of the onset of the cosine part \[s\].
 const ONSET: f64 = 0.1;
 
-/// Earlier revolutions of which something may still ring.
+/// Number of revolutions whose ringing is summed, including the current one.
 const EARLIER: u32 = 6;
 
 impl Effect for Smoothing {
@@ -84,7 +84,7 @@ impl Effect for Smoothing {
 }
 
 impl Smoothing {
-    /// Load \[N\] a time after a rise \[s\] that comes every period \[s\].
+    /// Computes the ringing load \[N\] at a time \[s\] after a periodic rise with a given period \[s\].
     fn ringing(&self, since: f64, period: f64) -> f64 {
         let mut sum = 0.0;
         for earlier in 0..EARLIER {

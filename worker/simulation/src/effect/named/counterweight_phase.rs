@@ -1,9 +1,9 @@
-//! The counterweight stands before or behind its place, or has another moment.
+//! Phase error of the counterweight, or a deviation of its moment.
 //!
-//! Under a prescribed crank that shows only where the motor slips: this effect is the difference that
-//! the counterweight makes to the ripple of the crank's speed, at the slip of a usual motor, so that it
-//! stands apart from the ripple itself. Slip would be no shape but a factor of phase and moment: a
-//! record tells their product alone.
+//! With a prescribed crank motion this effect is visible only through the slip of the motor: it is the change
+//! of the crank speed ripple due to the counterweight, at the slip of a usual motor, so that it is separate
+//! from the ripple itself. Slip is no shape here, since it would be a factor of phase and moment, and a
+//! record determines only their product.
 //!
 //! Source: counterbalance moment with its phase angle: API Spec 11E.
 use super::crank_speed_ripple::{RATED, sampled, warp};
@@ -14,7 +14,7 @@ use crate::model::hook::{Effect, Hooks, Site};
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new(
         "counterweight_phase",
-        "Phase or moment of the counterweight, seen through the slip of the motor",
+        "Phase or moment of the counterweight, visible through the slip of the motor",
     )
     .at("crank", Place::Drive)
     .size("phase", Unit::Degree, 5.0, [-45.0, 45.0])
@@ -31,7 +31,7 @@ struct Counterweight {
     moment: f64,
 }
 
-/// Slip at [`RATED`] torque \[1\].
+/// Slip of the motor at [`RATED`] torque \[1\].
 const SLIP: f64 = 0.0267;
 
 impl Effect for Counterweight {

@@ -1,18 +1,20 @@
-//! The record's angle is wrong: `sigma_m(phi) = sigma(phi + d)`, all channels together.
+//! Zero offset of the recorded crank angle: `sigma_m(phi) = sigma(phi + d)`, equal for all channels.
 //!
-//! Source: angles of a pumping unit: Svinos, "Exact Kinematic Analysis of Pumping Units", SPE 12201
-//! (1983).
+//! Source: angles of a pumping unit: Svinos, "Exact Kinematic Analysis of Pumping Units", SPE 12201 (1983).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::model::hook::{Effect, Hooks, Site};
 
 pub(super) fn descriptor() -> Descriptor {
-    Descriptor::new("crank_angle_offset", "Zero of the record's crank angle")
-        .at("crank", Place::Drive)
-        .size("angle", Unit::Degree, 2.0, [-15.0, 15.0])
-        .builds(|v| Offset {
-            angle: v.get("angle"),
-        })
+    Descriptor::new(
+        "crank_angle_offset",
+        "Zero offset of the recorded crank angle",
+    )
+    .at("crank", Place::Drive)
+    .size("angle", Unit::Degree, 2.0, [-15.0, 15.0])
+    .builds(|v| Offset {
+        angle: v.get("angle"),
+    })
 }
 
 #[derive(Clone, Copy, Debug)]

@@ -1,14 +1,13 @@
-//! The motor slips under load and the crank's speed ripples: `J dw/dt = T_m(s) - T_net` with an induction
-//! motor by Kloss, `T_m = 2 T_k / (s / s_k + s_k / s)`.
+//! Ripple of the crank speed due to motor slip under load: `J dw/dt = T_m(s) - T_net` with an induction motor
+//! by Kloss, `T_m = 2 T_k / (s / s_k + s_k / s)`.
 //!
-//! Without inertia that is `w / w_0 = 1 - s(T_net)`, `s = s_k (T / T_k) / (1 + sqrt(1 - (T / T_k)^2))`; a
-//! heavy crank follows with the time constant `J w_0 s_r / T_r`. The record is on uniform angle between one
-//! mark per revolution, so only what the crank is ahead of uniform rotation matters: `u = c int dphi /
-//! (w / w_0)`, with `c` such that a turn stays a turn. The net torque is that of the ideal mechanism,
-//! counterweight included.
+//! Without inertia, `w / w_0 = 1 - s(T_net)` with `s = s_k (T / T_k) / (1 + sqrt(1 - (T / T_k)^2))`; with
+//! inertia the crank follows with the time constant `J w_0 s_r / T_r`. The record is sampled at uniform angle
+//! between one mark per revolution, so only the lead of the crank over uniform rotation matters: `u = c int
+//! dphi / (w / w_0)`, with `c` such that one revolution remains one revolution. The net torque is that of the
+//! ideal mechanism, counterweight included.
 //!
-//! Source: Kloss, "Drehmoment und Schlüpfung des Drehstrommotors", Archiv für Elektrotechnik 5
-//! (1916).
+//! Source: Kloss, "Drehmoment und Schlüpfung des Drehstrommotors", Archiv für Elektrotechnik 5 (1916).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::math::harmonics::filter;
@@ -31,25 +30,25 @@ pub(super) fn descriptor() -> Descriptor {
         })
 }
 
-/// Torque at the crank at which slip is stated [N m]: 242 N m of the motor, 28 and 5.21 times. Only the
-/// ratio of both acts, so a record knows no torque of its own.
+/// Torque at the crank at which slip is stated [N m]: 242 N m of the motor times the ratios 28 and 5.21. Only
+/// the quotient of slip and rated torque acts, so a record does not determine the rated torque.
 pub(super) const RATED: f64 = 35.3e3;
 
 #[derive(Clone, Copy, Debug)]
 struct Ripple {
     /// Slip at [`RATED`] torque \[1\].
     slip: f64,
-    /// Largest torque of the motor over [`RATED`] \[1\].
+    /// Breakdown torque of the motor divided by [`RATED`] \[1\].
     breakdown: f64,
-    /// Of motor, gear and cranks, at the crank [kg m2].
+    /// Moment of inertia of motor, gear and cranks, reduced to the crank [kg m2].
     inertia: f64,
 }
 
-/// Share of the breakdown torque that a quasi-static motor is taken to bear.
+/// Share of the breakdown torque to which the load of the quasi-static motor is limited.
 const MOST: f64 = 0.98;
 
 impl Ripple {
-    /// Slip that holds a torque, on the stable branch.
+    /// Computes the slip at a load torque, on the stable branch of the motor characteristic.
     fn holding(&self, torque: f64) -> f64 {
         let k = self.breakdown;
         let share = (torque / (k * RATED)).clamp(-MOST, MOST);
@@ -58,7 +57,7 @@ impl Ripple {
         breakdown * share / (1.0 + (1.0 - share * share).sqrt())
     }
 
-    /// Loss of speed over the turn, at [`NODES`] equal angles.
+    /// Computes the relative loss of crank speed over the revolution, at [`NODES`] equal angles.
     fn loss(&self, speed: f64, torque: impl Fn(f64) -> f64) -> Vec<f64> {
         let held = sampled(|turn| self.holding(torque(turn)));
         // in turns of the crank
@@ -82,21 +81,21 @@ impl Effect for Ripple {
     }
 }
 
-/// Share of the speed that a motor may lose and still turn.
+/// Upper limit of the relative deviation of the crank speed from its mean.
 const SLOWEST: f64 = 0.9;
 
-/// Samples of the turn.
+/// Number of samples per crank revolution.
 const NODES: usize = 720;
 
-/// A function of the turn at [`NODES`] equal angles.
+/// Samples a function of the turn angle at [`NODES`] equal angles.
 pub(super) fn sampled(of: impl Fn(f64) -> f64) -> Vec<f64> {
     (0..NODES)
         .map(|k| of(TAU * k as f64 / NODES as f64))
         .collect()
 }
 
-/// What the crank is ahead of uniform rotation, over the uniform angle, where its speed is
-/// `1 - slow` up to a constant factor; `slow` at [`NODES`] equal angles.
+/// Computes the lead of the crank over uniform rotation, as a function of the uniform angle, for a speed of
+/// `1 - slow` up to a constant factor; `slow` is sampled at [`NODES`] equal angles.
 pub(super) fn warp(slow: &[f64]) -> Splines {
     let step = TAU / NODES as f64;
     let mean = slow.iter().sum::<f64>() / NODES as f64;
@@ -131,7 +130,8 @@ mod tests {
     use super::*;
     use crate::math::elementary::{atan2, sin_cos};
 
-    /// `w = 1 - a cos phi` gives `tan(u / 2) = sqrt((1 + a) / (1 - a)) tan(phi / 2)`.
+    /// Checks the lead against the closed form: `w = 1 - a cos phi` gives `tan(u / 2) = sqrt((1 + a) / (1 -
+    /// a)) tan(phi / 2)`.
     #[test]
     fn a_known_ripple_gives_its_lead() {
         let a = 0.02_f64;
@@ -148,8 +148,8 @@ mod tests {
         }
     }
 
-    /// Kloss's own formula gives the torque back, and a lag of a quarter of a turn's radian moves a wave of
-    /// the crank's order by its arc tangent.
+    /// Checks that Kloss's formula returns the torque, and that a time constant of 0.25 crank radians delays
+    /// a first-order load by its arc tangent.
     #[test]
     fn a_motor_holds_its_torque_and_a_heavy_crank_follows() {
         let motor = Ripple {

@@ -1,11 +1,11 @@
-//! The pump does not fill: on the downstroke the plunger carries the load until it meets the liquid.
+//! Fluid pound from incomplete pump fillage: on the downstroke the plunger carries the load until it meets
+//! the liquid.
 //!
-//! From top dead centre on the load stays what it was there, by the share `held`, until the
-//! suspension point has come down by `1 - fillage` of its stroke; there it falls to the card's value
-//! within `fall` degrees. The blow, `dF = Z v`, rings in the rods:
-//! `-impact sin(w t) exp(-t / 3 s)` from then on.
+//! From top dead centre the load keeps its value there, by the share `held`, until the suspension point has
+//! descended by `1 - fillage` of its stroke; there it falls to the card's value within `fall` degrees. The
+//! impact, `dF = Z v`, rings in the rods: `-impact sin(w t) exp(-t / 3 s)` from then on.
 //!
-//! Source: Takacs, *Sucker-Rod Pumping Handbook* (2015); the blow's wave: Gibbs, JPT 15 (1963).
+//! Source: Takacs, *Sucker-Rod Pumping Handbook* (2015); the impact's wave: Gibbs, JPT 15 (1963).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::effect::value::Values;
@@ -16,17 +16,20 @@ use crate::model::description::Description;
 use std::f64::consts::TAU;
 
 pub(super) fn descriptor() -> Descriptor {
-    Descriptor::new("fluid_pound", "Fluid pound: the pump does not fill")
-        .at("suspension", Place::Load)
-        .size("held", Unit::One, 1.0, [0.0, 1.5])
-        .size("impact", Unit::Newton, 3000.0, [0.0, 3e4])
-        .shape("fillage", Unit::One, 0.85, [0.3, 0.99])
-        .shape("fall", Unit::Degree, 8.0, [1.0, 60.0])
-        .shape("frequency", Unit::Hertz, 0.739, [0.2, 3.0])
-        .edits(pound)
+    Descriptor::new(
+        "fluid_pound",
+        "Fluid pound: the pump does not fill completely",
+    )
+    .at("suspension", Place::Load)
+    .size("held", Unit::One, 1.0, [0.0, 1.5])
+    .size("impact", Unit::Newton, 3000.0, [0.0, 3e4])
+    .shape("fillage", Unit::One, 0.85, [0.3, 0.99])
+    .shape("fall", Unit::Degree, 8.0, [1.0, 60.0])
+    .shape("frequency", Unit::Hertz, 0.739, [0.2, 3.0])
+    .edits(pound)
 }
 
-/// Time in which the blow's ringing decays to 1/e \[s\].
+/// Time constant of the decay of the impact's ringing \[s\].
 const DECAY: f64 = 3.0;
 
 fn pound(v: &Values, d: &mut Description) {

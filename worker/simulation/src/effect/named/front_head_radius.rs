@@ -1,7 +1,7 @@
-//! The front head's arc has another radius, or its centre lies above or below the pivot.
+//! Deviation of the front head's arc: another radius, or a centre above or below the pivot.
 //!
-//! A centre lower by `e` makes the arm `A + e sin(theta)`: it differs with the sign of the beam
-//! angle. The suspension point stays under the arc's foremost point at beam angle 0.
+//! A centre lower by `e` makes the lever arm `A + e sin(theta)`, which depends on the sign of the beam angle.
+//! The suspension point stays below the arc's foremost point at beam angle 0.
 //!
 //! Source: the lever arm is geometry; arms of pumping units: Svinos, SPE 12201 (1983).
 use crate::effect::descriptor::{Descriptor, Place};

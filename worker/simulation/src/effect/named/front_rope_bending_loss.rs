@@ -1,7 +1,7 @@
-//! The front rope loses power where it winds on and off the front head: `M = e T A sign(theta')`.
+//! Bending loss of the front rope as it winds on and off the front head: `M = e T A sign(theta')`.
 //!
-//! The tension is that of the load alone, from the card and the ideal motion. The rope always leaves
-//! the arc at the height of its centre, so it winds as the beam turns.
+//! The tension is that of the load alone, from the card and the ideal motion. The rope always leaves the arc
+//! at the height of its centre, so it winds with the rotation of the beam.
 //!
 //! Source: efficiency of ropes over sheaves: Feyrer, *Wire Ropes*, 2nd ed. (2015).
 use crate::drive::DriveState;

@@ -1,8 +1,8 @@
-//! Gas in the pump must be compressed before the travelling valve opens: the load falls later and more
-//! gently, `F(phi) -> F(phi - d(phi))`.
+//! Gas interference: gas in the pump must be compressed before the travelling valve opens, so that the load
+//! falls later and more gradually, `F(phi) -> F(phi - d(phi))`.
 //!
-//! The delay grows from top dead centre on, is greatest 60 deg later and gone after 120 deg:
-//! `d = d_0 sin^2(pi (phi - phi_top) / 120 deg)`.
+//! The delay starts at top dead centre, is greatest 60 deg later and ends after 120 deg: `d = d_0 sin^2(pi
+//! (phi - phi_top) / 120 deg)`.
 //!
 //! Source: Takacs, *Sucker-Rod Pumping Handbook* (2015).
 use crate::effect::descriptor::{Descriptor, Place};
@@ -21,7 +21,7 @@ pub(super) fn descriptor() -> Descriptor {
         .edits(late)
 }
 
-/// Turn over which the load is late \[rad\].
+/// Crank angle from top dead centre over which the load is delayed \[rad\].
 const LATE: f64 = 120.0 * PI / 180.0;
 
 fn late(v: &Values, d: &mut Description) {

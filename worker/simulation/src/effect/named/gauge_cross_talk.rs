@@ -1,5 +1,5 @@
-//! A gauge feels what its partner on the other cheek measures: `s_i + x_i s_j`, partners 1 and 3,
-//! 2 and 4. Wrong placement and misalignment mix the same two components.
+//! Cross-talk from a gauge's partner on the other cheek: `s_i + x_i s_j`, partners 1 and 3, 2 and 4.
+//! Misplacement and misalignment of a gauge mix the same two components.
 //!
 //! Source: Hoffmann, *An Introduction to Measurements using Strain Gages* (1989).
 use crate::effect::descriptor::{Descriptor, Place};

@@ -1,6 +1,6 @@
-//! Zeros drift over the revolution, as a cheek warms in the sun: `s + k t / t_rev`.
+//! Zero drift of the gauges over the revolution, as when the sun heats one cheek: `s + k t / t_rev`.
 //!
-//! A saw-tooth in the averaged record, with its jump at the mark.
+//! In the averaged record the drift is a saw-tooth with its jump at the index mark.
 //!
 //! Source: Hoffmann, *An Introduction to Measurements using Strain Gages* (1989).
 use crate::effect::descriptor::{Descriptor, Place};

@@ -1,5 +1,4 @@
-//! A gauge reads too much or too little: `(1 + g) s`, by its factor, its leads, its amplifier, its
-//! place.
+//! Gain errors of the gauges, `(1 + g) s`, from gauge factor, leads, amplifier or position.
 //!
 //! Source: Hoffmann, *An Introduction to Measurements using Strain Gages* (1989).
 use crate::effect::descriptor::{Descriptor, Place};

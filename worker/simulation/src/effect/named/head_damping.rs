@@ -1,4 +1,4 @@
-//! Bolted and welded joints damp the back head's modes more than assumed: `zeta + x`.
+//! Additional damping of the back head's modes by bolted and welded joints: `zeta + x`.
 //!
 //! Source: modal damping: Craig and Kurdila, *Fundamentals of Structural Dynamics*, 2nd ed. (2006).
 use crate::effect::descriptor::{Descriptor, Place};

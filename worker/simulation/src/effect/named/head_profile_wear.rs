@@ -1,8 +1,7 @@
-//! Local wear of the back head's surface, a groove or (negative) a weld seam:
-//! `h(psi) - depth exp(-((psi - psi_0) / r)^2)`, with `r` such that the hollow is half as deep over
-//! `width`.
+//! Local wear of the back head's surface, a groove or (negative) a weld seam: `h(psi) - depth exp(-((psi -
+//! psi_0) / r)^2)`, with `r` such that `width` is the full width at half depth.
 //!
-//! The rope passes the same place twice a turn, winding on and off.
+//! The rope passes the same position twice per revolution, winding on and off.
 //!
 //! Source: the lever arm is geometry; arms of pumping units: Svinos, SPE 12201 (1983).
 use crate::effect::descriptor::{Descriptor, Place};
@@ -29,7 +28,7 @@ struct Wear {
     width: f64,
 }
 
-/// `2 sqrt(ln 2)`: full width at half depth over the distance at which 1/e is left.
+/// Ratio `2 sqrt(ln 2)` of the full width at half depth to the distance at which the depth has fallen to 1/e.
 const HALF_WIDTH: f64 = 1.665_109_222_315_395_4;
 
 impl Effect for Wear {

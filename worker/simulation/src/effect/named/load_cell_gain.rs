@@ -1,4 +1,4 @@
-//! The load cell reads a share too little: `F (1 + g)`.
+//! Gain error of the load cell; the true load is `F (1 + g)` where the card states `F`.
 //!
 //! Source: static calibration: Doebelin, *Measurement Systems*, 5th ed. (2004), chapter 3.
 use crate::effect::descriptor::{Descriptor, Place};

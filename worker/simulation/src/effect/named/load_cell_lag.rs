@@ -1,12 +1,12 @@
-//! The load cell or its logger lags: `t F_m' + F_m = F`, where the card holds `F_m` and the machine
-//! feels `F`.
+//! Lag of the load cell or its logger: `t F_m' + F_m = F`, where the card holds `F_m` and `F` acts on the
+//! machine.
 //!
-//! A logger's filter has more than one pole: with `p` of them, of one time constant each, harmonic `n`
-//! of the card is multiplied by `(1 + i n w t / p)^p`. `t` is the delay of slow changes, whatever `p`; one
-//! pole is a load cell, many are nearly a pure delay. For a negative time the card is the true load and
-//! the machine is loaded by a lagged one, `(1 + i n w |t| / p)^-p`; the two agree to first order. What is
-//! restored is noise from some harmonic on: the gain's change fades out as `1 / (1 + (n / 90)^4)`, above
-//! the ropes' own modes (orders 60 to 80).
+//! A logger's filter may have several poles: with `p` poles of equal time constant, harmonic `n` of the card
+//! is multiplied by `(1 + i n w t / p)^p`. `t` is the delay of slow changes for any `p`; one pole represents
+//! a load cell, many are nearly a pure delay. For a negative time the card is the true load and a lagged load
+//! acts on the machine, `(1 + i n w |t| / p)^-p`; the two agree to first order. Above some harmonic the
+//! restored signal is noise, so the change of gain fades out as `1 / (1 + (n / 90)^4)`, above the ropes' own
+//! modes (orders 60 to 80).
 //!
 //! Source: first-order instruments: Doebelin, *Measurement Systems*, 5th ed. (2004), chapter 3.
 use crate::effect::descriptor::{Descriptor, Place};
@@ -24,7 +24,7 @@ pub(super) fn descriptor() -> Descriptor {
         .edits(lag)
 }
 
-/// Harmonic at which half of the correction is left.
+/// Harmonic at which the fade-out halves the correction.
 const FADES: f64 = 90.0;
 
 fn lag(v: &Values, d: &mut Description) {

@@ -1,6 +1,6 @@
-//! The load cell's zero is wrong, the beam is out of balance, or a steady wind blows: `F + F_0`.
+//! Load offset, from the zero of the load cell, unbalance of the beam or steady wind: `F + F_0`.
 //!
-//! The three have the same shape in the rope's tension to within a few per cent, so they are one
+//! The three causes have the same shape in the rope's tension to within a few per cent, so they are one
 //! effect.
 //!
 //! Source: zero of the cell: Doebelin, *Measurement Systems*, 5th ed. (2004), chapter 3; structural

@@ -1,4 +1,5 @@
-//! Effects that have a cause and a name: one file each, and its two lines here.
+//! Named effects, which have a physical cause: one file each, with two lines in this module (`mod` and an
+//! entry of `IN_ORDER`).
 mod amplifier_lag;
 mod beam_balance;
 mod beam_inertia;
@@ -33,8 +34,8 @@ mod valve_leakage;
 
 use super::descriptor::Descriptor;
 
-/// In the order in which they act: the load, the machine, the crank, the structure beside the gauges,
-/// the gauges.
+/// Descriptors of the named effects in their order of action: load, machine, crank, structure next to the
+/// gauges, gauges.
 const IN_ORDER: &[fn() -> Descriptor] = &[
     card_time_shift::descriptor,
     load_cell_lag::descriptor,
@@ -69,7 +70,7 @@ const IN_ORDER: &[fn() -> Descriptor] = &[
     amplifier_lag::descriptor,
 ];
 
-/// Every named effect, in the order in which they act.
+/// Returns the descriptors of all named effects in their order of action.
 pub(super) fn all() -> impl Iterator<Item = Descriptor> {
     IN_ORDER.iter().map(|descriptor| descriptor())
 }

@@ -1,19 +1,18 @@
-//! Clearance in the pins that hold the back head: the load path switches where the head's push on a
-//! pin turns round.
+//! Clearance in the pins that hold the back head: the load path switches where the head's force on a pin
+//! reverses.
 //!
-//! The rope pushes the head along the beam with `f = -T sin(psi)`, backwards or forwards in turn; a
-//! pin's share of push and couple turns round in a direction of its own, `d`, and under a bias `f_1`
-//! of the head's weight. There the head shifts by the clearance and bears on the other side of the
-//! hole, which moves the stress in the steel about it by a step:
-//! `s_i + c_i tanh((R.d - f_1) / f_0)`, with `R` the rope's force on the head and `f_0` the force over
-//! which the bearing side changes. How high the step `c_i` is at each gauge depends on the gap and on
-//! the steel between pin and gauge; gauges see the product alone.
+//! The rope pushes the head along the beam with `f = -T sin(psi)`, alternately backwards and forwards; a
+//! pin's share of force and couple reverses along a direction `d` and under a bias `f_1` from the head's
+//! weight. There the head shifts by the clearance and bears on the other side of the hole, which changes the
+//! stress in the surrounding steel by a step: `s_i + c_i tanh((R.d - f_1) / f_0)`, with `R` the rope's force
+//! on the head and `f_0` the force over which the bearing side changes. The height `c_i` of the step at each
+//! gauge depends on the gap and on the steel between pin and gauge; gauges determine only the product.
 //!
-//! Direction and bias by default are those at which the records of the CYJS10-5-37HB show their
-//! steps: turn 128.5 and 276 deg at 5 as at 4 rpm, rope tensions of 135 and 88 kN.
+//! The default direction and bias are those at which the records of the CYJS10-5-37HB show steps: turn 128.5
+//! and 276 deg at both 5 and 4 rpm, rope tensions of 135 and 88 kN.
 //!
-//! Source: joints with clearance: Flores, Ambrósio, Claro and Lankarani, *Kinematics and Dynamics
-//! of Multibody Systems with Imperfect Joints* (2008); how it shows at the gauges is our own.
+//! Source: joints with clearance: Flores, Ambrósio, Claro and Lankarani, *Kinematics and Dynamics of
+//! Multibody Systems with Imperfect Joints* (2008); the relation to gauge readings is our own.
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::math::elementary::{sin_cos, tanh};
@@ -48,7 +47,7 @@ pub(super) fn descriptor() -> Descriptor {
 #[derive(Clone, Copy, Debug)]
 struct Clearance {
     step: [f64; 4],
-    /// In the beam frame.
+    /// Unit vector in the beam frame along which the pin force reverses.
     direction: [f64; 2],
     bias: f64,
     force: f64,

@@ -1,7 +1,7 @@
 //! Friction of the saddle bearing: `M = [M_c (1 + (r - 1) exp(-(w / w_s)^2)) + k |w|] sign(w)`.
 //!
-//! Coulomb friction with Stribeck's rise towards rest, and a viscous part; `tanh(w / w_0)` for the
-//! sign.
+//! Coulomb friction with the Stribeck rise at low speed and a viscous part; the sign is regularised as
+//! `tanh(w / w_0)`.
 //!
 //! Source: Armstrong-Hélouvry, Dupont and Canudas de Wit, "A survey of models, analysis tools and
 //! compensation methods for the control of machines with friction", Automatica 30 (1994).

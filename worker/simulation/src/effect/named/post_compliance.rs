@@ -1,12 +1,11 @@
-//! Post and foundation yield: the beam's pivot moves, `u / c + D u' = T + F + W`.
+//! Compliance of post and foundation: the beam's pivot moves, `u / c + D u' = T + F + W`.
 //!
-//! The pivot's displacement is two more modes of the back head, whose shapes are a rigid translation
-//! along the axes of the beam frame: contact, anchor and weight act on them as on any mode. The front
-//! side is not modelled twice: its pull, the load with the carrier's weight, hangs on the pivot as a
-//! given force. The post is equally stiff along and across; `mass` moves with the pivot.
+//! The pivot's displacement is represented by two additional modes of the back head, whose shapes are rigid
+//! translations along the axes of the beam frame: contact, anchor and weight act on them as on any mode. The
+//! front side is not modelled twice: the load with the carrier's weight acts on the pivot as a prescribed
+//! force. The post is equally stiff along and across the beam; `mass` moves with the pivot.
 //!
-//! Source: elastic supports: Craig and Kurdila, *Fundamentals of Structural Dynamics*, 2nd ed.
-//! (2006).
+//! Source: elastic supports: Craig and Kurdila, *Fundamentals of Structural Dynamics*, 2nd ed. (2006).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::linear::Bordered;
@@ -39,7 +38,8 @@ struct Post {
 }
 
 impl Post {
-    /// Twice what rests on the pivot at most in slow motion \[N\]; no swing comes near it.
+    /// Computes an upper bound of the load on the pivot, twice its maximum in slow motion \[N\]; dynamic
+    /// loads stay well below.
     fn heaviest(&self, d: &Description, cycle: &Cycle) -> f64 {
         let turns = (0..360_u32).map(|k| TAU * f64::from(k) / 360.0);
         let rope = turns.map(|turn| cycle.tension(turn)).fold(0.0, f64::max);
@@ -47,7 +47,7 @@ impl Post {
         2.0 * (rope + load + (d.suspension_mass + self.mass) * d.gravity)
     }
 
-    /// Angular frequency of the mass on the post [rad/s].
+    /// Computes the angular frequency of `mass` on the compliant post [rad/s].
     fn frequency(&self) -> f64 {
         (1.0 / (self.compliance * self.mass)).sqrt()
     }
@@ -107,8 +107,8 @@ impl Effect for Post {
     }
 }
 
-/// The load hangs on a pivot that is displaced by `(x, y) / sqrt(m)` in the beam frame:
-/// `V = P (x sin theta + y cos theta) / sqrt(m)`.
+/// Force of the load on a pivot displaced by `(x, y) / sqrt(m)` in the beam frame, with the potential `V = P
+/// (x sin theta + y cos theta) / sqrt(m)`.
 #[derive(Clone, Copy, Debug)]
 struct FrontPull {
     weight: f64,
@@ -119,8 +119,8 @@ struct FrontPull {
 }
 
 impl FrontPull {
-    /// Pull per root of mass, height of the pivot times that root, and its derivative by the beam
-    /// angle.
+    /// Returns the load divided by `sqrt(m)`; the height of the pivot times `sqrt(m)` with its derivative by
+    /// the beam angle; and sine and cosine of that angle.
     fn parts(&self, at: &Instant<'_>) -> (f64, [f64; 2], (f64, f64)) {
         let (s, c) = sin_cos(at.q[self.beam]);
         let (x, y) = (at.q[self.along], at.q[self.across]);
@@ -155,7 +155,7 @@ impl Force for FrontPull {
         pull * height
     }
 
-    /// The load takes what the sinking pivot gives it.
+    /// Computes the power that the load receives from the sinking pivot.
     fn lost(&self, at: &Instant<'_>) -> f64 {
         let (pull, [_, turned], (s, c)) = self.parts(at);
         pull * (s * at.v[self.along] + c * at.v[self.across] + turned * at.v[self.beam])

@@ -1,11 +1,11 @@
-//! The rod string answers the motion that the card does not know: `F + Z (v - v_m)`.
+//! Reaction of the rod string to motion that the card does not contain: `F + Z (v - v_m)`.
 //!
-//! The card was measured while the suspension point moved with `v_m`, here that of the ideal
-//! mechanism; a rope that swings the suspension point drives a wave down the rods, whose impedance
-//! is `Z = sqrt(E A mu)`, 20.5 kN s/m for 25 mm rods.
+//! The card was measured while the suspension point moved with `v_m`, taken as that of the ideal mechanism; a
+//! rope vibration that moves the suspension point sends a wave down the rods, whose impedance is `Z = sqrt(E
+//! A mu)`, 20.5 kN s/m for 25 mm rods.
 //!
-//! Source: characteristic impedance of a rod: Graff, *Wave Motion in Elastic Solids* (1975); the
-//! string: Gibbs, JPT 15 (1963).
+//! Source: characteristic impedance of a rod: Graff, *Wave Motion in Elastic Solids* (1975); the string:
+//! Gibbs, JPT 15 (1963).
 use crate::drive::DriveState;
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
@@ -15,7 +15,7 @@ use crate::model::hook::{Along, Effect, Hooks, LineForce, Site};
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new(
         "rod_string_reaction",
-        "Reaction of the rod string to motion that the card does not know",
+        "Reaction of the rod string to motion that the card does not contain",
     )
     .at("suspension", Place::Dynamics)
     .size("impedance", Unit::NewtonSecondPerMetre, 20500.0, [0.0, 1e5])

@@ -1,9 +1,9 @@
-//! The back rope loses power where it winds on and off the back head: capstan loss.
+//! Bending loss of the back rope as it winds on and off the back head (capstan loss).
 //!
-//! The tension that pulls the head is `T (1 -+ e)` as the rope winds on or off, so that the same
-//! moment needs `dT = -e T sign(psi')`: a couple `M = e T h sign(psi')` on the head, with `psi` the
-//! angle of the tangent point on it. It changes sign where the winding turns round, which is not at the
-//! dead centres, and with `tanh(psi' / w_0)`, since one wire slips after another. Tension, arm and speed
+//! The tension that pulls the head is `T (1 -+ e)` as the rope winds on or off, so that the same moment needs
+//! `dT = -e T sign(psi')`: a couple `M = e T h sign(psi')` on the head, with `psi` the angle of the tangent
+//! point on it. The couple changes sign where the winding reverses, which is not at the dead centres; the
+//! sign is regularised as `tanh(psi' / w_0)`, since the wires slip one after another. Tension, arm and speed
 //! of winding are those of the ideal mechanism.
 //!
 //! Source: efficiency of ropes over sheaves: Feyrer, *Wire Ropes*, 2nd ed. (2015).

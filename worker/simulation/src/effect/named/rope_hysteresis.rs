@@ -1,16 +1,15 @@
 //! Friction between the wires of a rope: Bouc-Wen hysteresis along both ropes.
 //!
-//! `T = (1 - a) EA e + a EA z`, `dz/de = 1 - (sgn(z de) + 1) |z| / 2 e_y` (exponent 1,
-//! `beta = gamma`): a share `a` of the rope's stiffness slips, gradually, and carries at most
-//! `a EA e_y`. Small swings feel the whole stiffness, large ones lose up to `4 a EA e_y` times their
-//! range a cycle. The law has no time
-//! in it, so along a strain that moves one way `z` has a closed form: unloading is straight, loading
-//! goes as `e_y (1 - exp(-x / e_y))`. Every joint remembers strain and `z` of the last accepted step
-//! and follows that form from there: between steps nothing is split, and the only error is that
-//! a turn of the motion within a step is seen at its end.
+//! `T = (1 - a) EA e + a EA z`, `dz/de = 1 - (sgn(z de) + 1) |z| / 2 e_y` (exponent 1, `beta = gamma`): a
+//! share `a` of the rope's stiffness slips gradually and carries at most `a EA e_y`. Small oscillations see
+//! the whole stiffness; large ones lose up to `4 a EA e_y` times their range per cycle. The law is
+//! rate-independent, so `z` has a closed form over a monotonic change of strain: linear in unloading, `e_y
+//! (1 - exp(-x / e_y))` in loading. Every joint stores strain and `z` of the last accepted step and follows the
+//! closed form from there, without substeps; the only error is that a reversal of the motion within a step is
+//! taken at the step's end.
 //!
-//! Source: Wen, "Method for Random Vibration of Hysteretic Systems", ASCE Journal of the
-//! Engineering Mechanics Division 102 (1976).
+//! Source: Wen, "Method for Random Vibration of Hysteretic Systems", ASCE Journal of the Engineering
+//! Mechanics Division 102 (1976).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::math::elementary::exp;
@@ -34,7 +33,7 @@ pub(super) fn descriptor() -> Descriptor {
 #[derive(Clone, Copy, Debug)]
 struct BoucWen {
     share: f64,
-    /// Strain at which the wires slip.
+    /// Yield strain, at which the wires slip.
     yields: f64,
 }
 
@@ -47,7 +46,7 @@ impl Effect for BoucWen {
 }
 
 impl BoucWen {
-    /// Inner variable after a strain that moved one way, and its derivative by that strain.
+    /// Computes the hysteretic variable after a monotonic change of strain, and its derivative by the strain.
     fn advanced(&self, [strain, z]: Memory, now: f64) -> [f64; 2] {
         let moved = now - strain;
         let sense = if moved < 0.0 { -1.0 } else { 1.0 };
@@ -93,7 +92,7 @@ impl Axial for BoucWen {
 mod tests {
     use super::*;
 
-    /// Steps of any size end at the same `z`, and small steps follow the differential equation.
+    /// Checks that the closed form gives the same `z` for any step size and solves the differential equation.
     #[test]
     fn the_closed_form_solves_the_law_whatever_the_steps() {
         let law = BoucWen {

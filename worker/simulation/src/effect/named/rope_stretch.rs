@@ -1,6 +1,6 @@
-//! The back rope is longer than drawn: construction stretch, bedding, creep, warmth.
+//! Excess length of the back rope over the drawing: construction stretch, bedding, creep, thermal expansion.
 //!
-//! The length is put where the rope hangs on the crossbeam: `L_0 + x`.
+//! The length is added where the rope is attached to the crossbeam: `L_0 + x`.
 //!
 //! Source: permanent elongation: Feyrer, *Wire Ropes*, 2nd ed. (2015).
 use crate::effect::descriptor::{Descriptor, Place};
@@ -9,7 +9,7 @@ use crate::effect::unit::Unit;
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new(
         "rope_stretch",
-        "Length of the back rope: stretch, bedding, warmth",
+        "Length of the back rope: stretch, bedding, thermal expansion",
     )
     .at("back_rope", Place::Dynamics)
     .size("length", Unit::Metre, 0.02, [-0.1, 0.1])

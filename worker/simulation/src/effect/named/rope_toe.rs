@@ -1,7 +1,7 @@
-//! A rope is soft until its wires have bedded: strain `T / EA + e_0 (1 - exp(-T / T_0))`.
+//! Toe region of the ropes, soft until the wires have bedded: strain `T / EA + e_0 (1 - exp(-T / T_0))`.
 //!
-//! The law is solved for the pull at a strain; what it differs from the individual's straight line is
-//! added between all cylinders of both ropes. Below zero tension the toe goes on with its slope.
+//! The law is solved for the tension at a strain; the difference from the individual's linear law is added
+//! between all cylinders of both ropes. Below zero tension the law continues with its slope at zero.
 //!
 //! Source: modulus that grows with stress: Feyrer, *Wire Ropes*, 2nd ed. (2015).
 use crate::effect::descriptor::{Descriptor, Place};
@@ -36,7 +36,7 @@ impl Effect for Toe {
 }
 
 impl Toe {
-    /// Strain and its derivative at a tension \[N\], for a rope of a stiffness \[N\].
+    /// Computes the strain at a tension \[N\] and its derivative, for a rope of stiffness `EA` \[N\].
     fn strain_at(&self, tension: f64, stiffness: f64) -> [f64; 2] {
         let straight = tension / stiffness;
         let slope = 1.0 / stiffness;

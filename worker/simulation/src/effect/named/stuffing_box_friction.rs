@@ -1,15 +1,15 @@
-//! Friction of the stuffing box that the load cell does not see: `F - F_s sign(v)` on the suspension
-//! point, with `tanh(v / v_0)` for the sign: packing gives before it slides.
+//! Friction of the stuffing box that the load cell does not measure: `F - F_s sign(v)` on the suspension
+//! point, with the sign regularised as `tanh(v / v_0)`, since packing deforms before it slides.
 //!
-//! Source: the law: Armstrong-Hélouvry, Dupont and Canudas de Wit, Automatica 30 (1994); packings:
-//! Takacs, *Sucker-Rod Pumping Handbook* (2015).
+//! Source: the law: Armstrong-Hélouvry, Dupont and Canudas de Wit, Automatica 30 (1994); packings: Takacs,
+//! *Sucker-Rod Pumping Handbook* (2015).
 use crate::drive::DriveState;
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::model::hook::{Along, Effect, Hooks, LineForce, Site, dry_friction};
 
 pub(super) fn descriptor() -> Descriptor {
-    Descriptor::new("stuffing_box_friction", "Friction of the stuffing box that the load cell does not see")
+    Descriptor::new("stuffing_box_friction", "Friction of the stuffing box that the load cell does not measure")
         .at("suspension", Place::Dynamics)
         .size("force", Unit::Newton, 800.0, [0.0, 2e4])
         // at which three quarters of the friction are there; the stroke reaches 1 m/s

@@ -1,11 +1,12 @@
-//! Two ropes of unequal length share the pull unequally: `T / 2 (1 +- e)`, `e = dL EA / (2 T L)`.
+//! Unequal lengths of the two parallel back ropes, which share the tension unequally: `T / 2 (1 +- e)`, `e =
+//! dL EA / (2 T L)`.
 //!
-//! `EA` and `T` are those of both ropes together, `L` is the back rope's length. The gauges on one
-//! cheek (1, 2) feel `1 + e`, those on the other (3, 4) `1 - e`. A rope that is slack carries
-//! nothing: `|e| <= 1`.
+//! `EA` and `T` are those of both ropes together, `L` is the back rope's length. The stress at the gauges on
+//! one cheek (1, 2) is multiplied by `1 + e`, on the other (3, 4) by `1 - e`. A slack rope carries nothing:
+//! `|e| <= 1`.
 //!
-//! Where a description has twin ropes the length is cut off the back rope at +z instead, and everything
-//! follows from the motion.
+//! For a description with twin ropes the length of the back rope at +z is changed instead, and the sharing
+//! follows from the simulation.
 //!
 //! Source: sharing among parallel ropes: Feyrer, *Wire Ropes*, 2nd ed. (2015).
 use crate::effect::descriptor::{Descriptor, Place};
@@ -49,13 +50,13 @@ impl Effect for Twins {
     }
 }
 
-/// How one rope's length and another's share the pull.
+/// Sharing of the tension between two parallel ropes of unequal length.
 #[derive(Clone, Copy, Debug)]
 struct Sharing {
-    /// By how much one rope is longer, and the length of both \[m\].
+    /// Difference of the two rope lengths \[m\]; `length` is the back rope's length \[m\].
     difference: f64,
     length: f64,
-    /// Length of rope that a joint stands for \[m\].
+    /// Length of rope represented by one joint \[m\].
     pitch: f64,
 }
 

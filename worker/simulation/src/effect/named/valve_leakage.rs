@@ -1,9 +1,9 @@
-//! A pump valve leaks: the load slips away while it should stay.
+//! Leakage of a pump valve, which changes the load gradually where it should be constant.
 //!
-//! Where the travelling valve leaks, the upper line falls by a ramp from 40 to 190 deg of turn, and is
-//! back at 210 deg; where the standing valve leaks, the lower line rises from 210 to 350 deg and is
-//! back at 370 deg. Only what the card does not know already counts, if it was not measured on the
-//! same strokes.
+//! Leakage of the travelling valve lowers the upper line of the card by a ramp from 40 to 190 deg of turn,
+//! back to zero at 210 deg; leakage of the standing valve raises the lower line from 210 to 350 deg, back to
+//! zero at 370 deg. The effect covers only leakage that the card does not contain already, as for a card
+//! measured on other strokes.
 //!
 //! Source: Takacs, *Sucker-Rod Pumping Handbook* (2015).
 use crate::effect::descriptor::{Descriptor, Place};
@@ -28,7 +28,7 @@ pub(super) fn descriptor() -> Descriptor {
     })
 }
 
-/// From 0 at the first angle to 1 at the second and back to 0 at the third.
+/// Computes a triangular ramp: 0 at the first angle, 1 at the second and 0 again at the third.
 fn ramp(turn: f64, [from, top, until]: [f64; 3]) -> f64 {
     if turn < top {
         ((turn - from) / (top - from)).max(0.0)

@@ -1,4 +1,5 @@
-//! Descriptions, absence, bounds and order.
+//! Contract tests of all effects: complete descriptors, no change at absent values, bounds and order of
+//! action.
 use crate::effect::{Asked, Descriptor, Refused, Role, Selection, catalogue};
 use crate::model::Machine;
 use crate::observe::Recorder;
@@ -10,7 +11,7 @@ use std::collections::BTreeSet;
 
 const SAMPLES: usize = 72;
 
-/// A run of the reference machine with effects; its gauge bits and its cost.
+/// Simulates the reference machine with effects; returns the result and the gauge curves.
 fn run(asked: &[Asked<'_>]) -> (RunResult, [Vec<f64>; 4]) {
     let selection = Selection::new(asked).unwrap();
     let machine = Machine::with_effects(reference::description(), 2, selection.effects()).unwrap();
@@ -98,7 +99,8 @@ fn descriptors_are_complete_and_consistent() {
     assert!(catalogue().iter().filter(|d| d.generic).count() >= 60);
 }
 
-/// All effects at their absent values, one after the other and all together, shapes anywhere.
+/// Checks that effects at their absent values, singly and together and with any shapes, change no bit of the
+/// results.
 #[test]
 fn absent_effects_leave_every_bit_alone() {
     let plain: (Vec<u64>, Statistics) = reference::bits();
@@ -120,7 +122,7 @@ fn absent_effects_leave_every_bit_alone() {
     assert_eq!((bits(&gauges), result.statistics), plain);
 }
 
-/// Every effect at its typical size completes a revolution and changes what the gauges read.
+/// Checks that every effect at its typical size completes a revolution and changes the gauge readings.
 #[test]
 fn every_effect_at_its_typical_size_acts() {
     let (_, plain) = run(&[]);
@@ -136,8 +138,8 @@ fn every_effect_at_its_typical_size_acts() {
     }
 }
 
-/// Every parameter at both of its bounds, the others typical: a run ends in a verdict, what it gives
-/// are numbers, and they are not the same at both.
+/// Checks every parameter at both bounds with the others typical: the run ends in a verdict, the gauge curves
+/// are finite, and the two bounds give different curves.
 #[test]
 fn bounds_end_in_a_verdict() {
     let settings = RunSettings {
@@ -180,7 +182,7 @@ fn bounds_end_in_a_verdict() {
     assert!(complete > 9 * failed.len(), "{complete} {failed:?}");
 }
 
-/// The order of asking does not matter: all named effects at once, forwards and backwards.
+/// Checks that all named effects give the same bits when requested in forward and in reverse order.
 #[test]
 fn the_order_of_asking_changes_no_bit() {
     let mut asked: Vec<Asked<'_>> = catalogue()

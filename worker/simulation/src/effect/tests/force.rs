@@ -1,4 +1,4 @@
-//! Forces of every effect against differences: the tangent, and the potential at rest.
+//! Tests of the forces of every effect against finite differences: the tangent, and the potential at rest.
 use super::contract::typical;
 use crate::drive::Drive;
 use crate::effect::{Asked, Descriptor, Selection, catalogue};
@@ -9,8 +9,8 @@ use crate::reference;
 use crate::run::RunSettings;
 use crate::system::{Shift, StateRef, System};
 
-/// The reference machine with one effect at its typical size; nothing where the effect leaves
-/// forces, surfaces and inertia alone.
+/// Builds the reference machine with one effect at its typical size; `None` if the effect changes neither
+/// forces nor surfaces.
 fn machine(d: &'static Descriptor) -> Option<Machine> {
     let selection = Selection::new(&[typical(d)]).unwrap();
     let machine = Machine::with_effects(reference::description(), 2, selection.effects()).unwrap();
@@ -32,7 +32,8 @@ fn individual(machine: &Machine, turning: bool) -> System<Individual<'_>> {
     System::new(Individual::new(machine, machine.ropes(&law), drive))
 }
 
-/// A disturbed, moving state in which what rubs is about to turn, and laws with a past have one.
+/// Checks the tangent in a disturbed, moving state in which friction is about to reverse and laws with memory
+/// have a history.
 #[test]
 fn tangent_is_the_derivative_of_the_forces() {
     let mut checked = 0;
@@ -94,7 +95,8 @@ fn tangent_is_the_derivative_of_the_forces() {
     assert!(checked > 100, "{checked}");
 }
 
-/// At rest every force is the gradient of the potential that the search for equilibrium lowers.
+/// Checks that at rest every force is the negative gradient of the potential that the equilibrium solver
+/// minimises.
 #[test]
 fn forces_at_rest_are_the_gradient_of_the_potential() {
     for d in catalogue() {
@@ -128,7 +130,7 @@ fn forces_at_rest_are_the_gradient_of_the_potential() {
     }
 }
 
-/// In the plane every effect does what it does in space.
+/// Checks that every effect gives equal results in the planar and the spatial model.
 #[test]
 fn plane_and_space_agree() {
     for d in catalogue() {
@@ -138,8 +140,7 @@ fn plane_and_space_agree() {
     }
 }
 
-/// A surface that effects raise above what the head's own deflection reaches is touched there all
-/// the same.
+/// Checks that contact is detected on a surface that an effect raises above the head's own deflection.
 #[test]
 fn nothing_of_a_raised_surface_lies_out_of_reach() {
     for (id, parameter, value) in [

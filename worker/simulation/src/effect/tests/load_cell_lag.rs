@@ -1,12 +1,12 @@
-//! The load cell's lag against waves whose answer is known.
+//! Tests of the load cell's lag on harmonic loads with a known response.
 use crate::effect::catalogue;
 use crate::math::elementary::{powf, sin_cos};
 use crate::model::description::Description;
 use crate::reference;
 use std::f64::consts::TAU;
 
-/// A logger of any number of poles delays a slow wave by its lag and weakens a fast one as it should; the
-/// same lag of the other sign restores it.
+/// Checks that a logger with any number of poles delays a slow wave by its lag and attenuates a fast one as
+/// predicted, and that the lag of opposite sign restores the wave.
 #[test]
 fn what_a_logger_took_is_restored() {
     let known = catalogue().iter().find(|d| d.id == "load_cell_lag");

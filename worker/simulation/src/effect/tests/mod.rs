@@ -1,4 +1,4 @@
-//! What holds for every effect of the catalogue.
+//! Tests that apply to every effect of the catalogue.
 mod contract;
 mod force;
 mod load_cell_lag;

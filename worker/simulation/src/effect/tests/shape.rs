@@ -1,4 +1,5 @@
-//! No shape is a factor of a size: what an effect does, looked at piece by piece and without a run.
+//! Test that no shape parameter is a mere factor of a size, from the contributions of each effect without a
+//! simulation.
 use crate::drive::DriveState;
 use crate::effect::{Descriptor, Effect, Hollow, Place, Role, Sampled, Unit, catalogue};
 use crate::model::hook::axial::Carrier;
@@ -8,13 +9,13 @@ use crate::reference;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Numbers without a pattern, between -1 and 1.
+/// Returns a pseudo-random number between -1 and 1.
 fn scattered(k: usize) -> f64 {
     libm::sin(12.9898 * k as f64 + 0.3)
 }
 
-/// Everything that an effect changes on the reference machine, one number behind the other: load,
-/// modes that it adds, lead of the crank, forces, laws along the ropes, surface, readings.
+/// Concatenates all changes that an effect makes to the reference machine: load, added modes, lead of the
+/// crank, forces, laws along the ropes, surface, readings.
 fn trace(effect: Arc<dyn Effect>) -> Vec<f64> {
     let plain = Machine::new(reference::description(), 2).unwrap();
     let machine = Machine::with_effects(reference::description(), 2, &[effect]).unwrap();
@@ -87,14 +88,14 @@ fn trace(effect: Arc<dyn Effect>) -> Vec<f64> {
     trace
 }
 
-/// Whether two traces are of one form, and by what the second is larger.
+/// Returns the ratio of the second trace to the first if they are proportional.
 fn ratio(a: &[f64], b: &[f64]) -> Option<f64> {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let (aa, ab, bb) = (dot(a, a), dot(a, b), dot(b, b));
     (a.len() == b.len() && ab * ab >= (1.0 - 1e-5) * aa * bb).then(|| ab / aa)
 }
 
-/// The first shape that is a factor of a size, with that size.
+/// Returns a description of the first shape that is a factor of a size, with that size.
 fn factor(d: &Descriptor) -> Option<String> {
     let of = |role: Role| {
         d.parameters
@@ -119,7 +120,8 @@ fn factor(d: &Descriptor) -> Option<String> {
     None
 }
 
-/// Six signatures are taken for every shape of every size; those of a factor would be one.
+/// Checks that no shape is a factor of a size: the six signatures computed per shape would then be identical
+/// up to scale.
 #[test]
 fn no_shape_is_a_factor_of_a_size() {
     let mut shapes = 0;
@@ -134,7 +136,7 @@ fn no_shape_is_a_factor_of_a_size() {
     assert!(shapes > 20, "{shapes}");
 }
 
-/// A groove of a depth \[m\].
+/// Groove in the back head, of a given depth \[m\].
 #[derive(Debug)]
 struct Groove(f64);
 
@@ -148,7 +150,7 @@ impl Effect for Groove {
     }
 }
 
-/// A groove whose depth is a size times a shape is refused.
+/// Checks that a groove whose depth is a size times a shape is detected.
 #[test]
 fn a_factor_is_found() {
     let groove = Descriptor::new("groove", "Groove")

@@ -1,31 +1,35 @@
-//! Faces of elements under a rope: where a line of constant angle crosses one, and what it feels there.
+//! Faces of elements under a rope: intersection of a face with a line of constant angle, and interpolation of
+//! displacements there.
 //!
-//! Every node of a face has an angle about the rope arc's centre and a height along its axis; both
-//! are interpolated as displacement is. Knows one face, no mesh and no arc.
+//! Every node of a face has an angle about the rope arc's centre and a height along its axis; both are
+//! interpolated with the shape functions of displacement. This module handles a single face and knows neither
+//! the mesh nor the arc.
 
-/// An angle \[rad\] and a height \[m\] of a node.
+/// Function from a node's index to its angle \[rad\] about the rope arc's centre and its height \[m\] along
+/// the arc's axis.
 pub(in super::super) type Seen<'a> = &'a dyn Fn(usize) -> [f64; 2];
 
-/// A point of a face.
+/// Point of a face where a line of constant angle crosses it.
 #[derive(Clone, Debug)]
 pub(in super::super) struct Crossing {
-    /// Nodes and their shape functions.
+    /// Nodes and the values of their shape functions at the point.
     pub(in super::super) nodes: Vec<(usize, f64)>,
-    /// Its height \[m\].
+    /// Height of the point \[m\].
     pub(in super::super) height: f64,
 }
 
-/// The line of constant angle across one face, from edge to edge.
+/// Line of constant angle across one face, from edge to edge.
 #[derive(Clone, Debug)]
 pub(in super::super) enum Cut {
-    /// Displacement is taken as linear between two ends.
+    /// Cut along which displacement is linear, given by its two ends.
     Linear([Crossing; 2]),
-    /// It is quadratic, with a point in the middle.
+    /// Cut along which displacement is quadratic, given by its start, middle and end.
     Quadratic([Crossing; 3]),
 }
 
 impl Cut {
-    /// Points along the cut and their shares of its mean: the trapezium's, Simpson's.
+    /// Returns the points along the cut with their weights in the mean over the cut (trapezoidal or Simpson's
+    /// rule).
     pub(in super::super) fn points(&self) -> impl Iterator<Item = (&Crossing, f64)> {
         let (points, shares): (&[Crossing], &[f64]) = match self {
             Self::Linear(points) => (points, &[0.5, 0.5]),
@@ -34,14 +38,15 @@ impl Cut {
         points.iter().zip(shares.iter().copied())
     }
 
-    /// Heights of its ends \[m\].
+    /// Returns the heights of the cut's two ends \[m\].
     pub(in super::super) const fn ends(&self) -> [f64; 2] {
         match self {
             Self::Linear([p, q]) | Self::Quadratic([p, _, q]) => [p.height, q.height],
         }
     }
 
-    /// Points along the cut and their shares of its point at a height \[m\] between its ends.
+    /// Returns the points along the cut with their interpolation weights for the point at a height \[m\]
+    /// between the ends.
     pub(in super::super) fn at(&self, height: f64) -> Vec<(&Crossing, f64)> {
         match self {
             Self::Linear([p, q]) => {
@@ -57,22 +62,24 @@ impl Cut {
     }
 }
 
-/// A kind of face. Nodes are always all of one face, in Gmsh's order.
+/// Kind of element face. Arguments `face` are the indices of all nodes of one face, in Gmsh's order.
 pub(in super::super) trait Face: Sync {
     /// Number of nodes.
     fn nodes(&self) -> usize;
 
-    /// Where a face is cut by the line at an angle \[rad\], if it is.
+    /// Returns the intersection of a face with the line at angle `psi` \[rad\], or `None` if the line misses
+    /// the face.
     fn cut(&self, face: &[usize], seen: Seen<'_>, psi: f64) -> Option<Cut>;
 }
 
-/// Whether the line at an angle passes between two corners. One on the line belongs to the side
-/// above it: no edge is crossed twice.
+/// Returns whether the line at angle `psi` passes between two corners. A corner exactly on the line counts as
+/// lying below it, so that no edge is crossed twice.
 fn crosses(a: f64, b: f64, psi: f64) -> bool {
     (a <= psi) != (b <= psi)
 }
 
-/// The 4-node face of a brick: edges are cut, and what lies between is taken as linear.
+/// 4-node face of a brick: the cut is found on its edges, and displacement between the two points is taken as
+/// linear.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quadrilateral;
 
@@ -97,13 +104,13 @@ impl Face for Quadrilateral {
     }
 }
 
-/// The 6-node face of a tetrahedron: three corners, then the nodes of the edges 01, 12, 20. The cut
-/// is straight in its area coordinates; along it displacement is quadratic.
+/// 6-node face of a tetrahedron: three corners, then the nodes of the edges 01, 12, 20. The cut is a straight
+/// line in area coordinates; displacement along it is quadratic.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Triangle;
 
 impl Triangle {
-    /// Shape functions at area coordinates.
+    /// Returns the shape functions at area coordinates.
     fn shape(l: &[f64; 3]) -> [f64; 6] {
         std::array::from_fn(|node| match node.checked_sub(3) {
             None => l[node] * (2.0 * l[node] - 1.0),
@@ -149,7 +156,7 @@ impl Face for Triangle {
     }
 }
 
-/// Quadratic shape functions of the start, the middle and the end of a line.
+/// Returns the quadratic shape functions of the start, middle and end of a line at `t` in 0..1.
 fn along(t: f64) -> [f64; 3] {
     [
         (1.0 - t) * (1.0 - 2.0 * t),
@@ -158,8 +165,8 @@ fn along(t: f64) -> [f64; 3] {
     ]
 }
 
-/// Where a quadratic function with given values at 0, 1/2 and 1 reaches a level between the first and
-/// the last.
+/// Returns the argument at which the quadratic with given values at 0, 1/2 and 1 equals `level`, which lies
+/// between the first and the last value.
 fn reach([start, middle, end]: [f64; 3], level: f64) -> f64 {
     let constant = start - level;
     let linear = 4.0 * middle - 3.0 * start - end;

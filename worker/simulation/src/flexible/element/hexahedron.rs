@@ -1,31 +1,32 @@
-//! The 8-node brick with incompatible modes: stiffness, mass and stress of one element.
+//! 8-node brick element with incompatible modes: stiffness and mass of one element.
 //!
-//! Displacement is `sum_i N_i d_i + sum_k (1 - xi_k^2) a_k`. The nine amplitudes `a` belong to the
-//! element alone and are condensed out; they let a brick bend without locking ([Wilson1973]). Their
-//! gradients are taken with the Jacobian of the element's centre and scaled by `det J0 / det J`, so
-//! that they integrate to zero and distorted elements pass the patch test ([Taylor1976]). They move
-//! mass too: the inertia of the whole displacement is condensed by the same static shapes (Guyan
-//! 1965), without which a thin plate of one brick rings up to 2 % too high. All integrals by
-//! 2 x 2 x 2 Gauss points. Knows one element, no mesh.
+//! Displacement is `sum_i N_i d_i + sum_k (1 - xi_k^2) a_k`. The nine amplitudes `a` are internal to the
+//! element and are condensed out; they let a brick bend without locking ([Wilson1973]). Their gradients are
+//! taken with the Jacobian at the element's centre and scaled by `det J0 / det J`, so that they integrate to
+//! zero and distorted elements pass the patch test ([Taylor1976]). The incompatible modes also carry mass:
+//! the inertia of the full displacement is condensed with the same static shapes (Guyan 1965); without this
+//! the frequencies of a thin plate of one brick layer are up to 2 % too high. All integrals use 2 x 2 x 2
+//! Gauss points. This module knows one element and no mesh.
 //!
-//! `CalculiX`'s C3D8I is the same element without the factor `det J0 / det J`, for which it fails the
-//! patch test; so changed, this one gives its frequencies to 1e-4, and as it stands to 0.6 %.
+//! `CalculiX`'s C3D8I is this element without the factor `det J0 / det J`, for which reason it fails the
+//! patch test. With the factor removed, this element reproduces the frequencies of C3D8I to 1e-4; with the
+//! factor, to 0.6 %.
 use super::face::{Face, Quadrilateral};
 use super::integral::{add_stiffness, add_weight, jacobian};
 use super::law::{Element, InsideOut, Matrices};
 use super::steel::Steel;
 use nalgebra::{DMatrix, SMatrix, Vector3};
 
-/// Displacements of one element, node by node.
+/// Number of nodal displacements of one element (24).
 const DOFS: usize = 24;
-/// Amplitudes of the incompatible modes.
+/// Number of amplitudes of the incompatible modes.
 const INNER: usize = 9;
-/// Nodes and incompatible modes.
+/// Number of scalar shape functions: 8 nodes and 3 incompatible modes.
 const SHAPES: usize = 8 + INNER / 3;
-/// A matrix of one element.
+/// Matrix over all nodal displacements of one element.
 type Square = SMatrix<f64, DOFS, DOFS>;
 
-/// The 8-node brick.
+/// 8-node brick element with incompatible modes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hexahedron;
 
@@ -41,7 +42,7 @@ const CORNERS: [[f64; 3]; 8] = [
     [-1.0, 1.0, 1.0],
 ];
 
-/// Shape functions at a point of the reference cube.
+/// Returns the nodal shape functions at a point of the reference cube.
 fn shape(point: &[f64; 3]) -> [f64; 8] {
     CORNERS.map(|corner| {
         0.125
@@ -51,7 +52,7 @@ fn shape(point: &[f64; 3]) -> [f64; 8] {
     })
 }
 
-/// Their slopes in the reference cube.
+/// Returns the gradients of the nodal shape functions with respect to the reference coordinates.
 fn slopes(point: &[f64; 3]) -> [Vector3<f64>; 8] {
     CORNERS.map(|[a, b, c]| {
         let [r, s, t] = [1.0 + a * point[0], 1.0 + b * point[1], 1.0 + c * point[2]];
@@ -59,7 +60,7 @@ fn slopes(point: &[f64; 3]) -> [Vector3<f64>; 8] {
     })
 }
 
-/// Shape functions of the nodes, then of the incompatible modes.
+/// Returns the shape functions of the nodes, then those of the incompatible modes.
 fn all_shapes(point: &[f64; 3]) -> [f64; SHAPES] {
     let nodes = shape(point);
     std::array::from_fn(|i| {
@@ -70,7 +71,7 @@ fn all_shapes(point: &[f64; 3]) -> [f64; SHAPES] {
     })
 }
 
-/// The eight integration points; all weights are 1.
+/// Returns the 2 x 2 x 2 Gauss points; all weights are 1.
 fn gauss() -> [[f64; 3]; 8] {
     let at = 1.0 / 3.0_f64.sqrt();
     CORNERS.map(|corner| corner.map(|sign| sign * at))
@@ -101,7 +102,7 @@ impl Element for Hexahedron {
         point.iter().fold(0.0_f64, |most, x| most.max(x.abs())) - 1.0
     }
 
-    /// After condensation of the incompatible modes.
+    /// Returns stiffness and mass after condensation of the incompatible modes.
     fn matrices(&self, nodes: &[[f64; 3]], steel: &Steel) -> Result<Matrices, InsideOut> {
         const ALL: usize = DOFS + INNER;
         let lame = steel.lame();
@@ -143,7 +144,7 @@ impl Element for Hexahedron {
     }
 }
 
-/// `T' M T` with the mass of all shapes and `T = (1, -follow)`.
+/// Returns the condensed mass `T' M T`, with M the mass over all shape functions and `T = (1, -follow)`.
 fn condensed(weight: &[[f64; SHAPES]; SHAPES], follow: &SMatrix<f64, INNER, DOFS>) -> Square {
     // M T, of which every direction is its own
     let part = |shape: usize, k: usize, column: usize| {

@@ -1,7 +1,7 @@
-//! What all kinds add up at an integration point.
+//! Contributions of one integration point, shared by all element kinds: Jacobian, stiffness and mass.
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
-/// `d x_column / d xi_row` from the slopes of the shape functions.
+/// Returns the Jacobian `d x_column / d xi_row` from the gradients of the shape functions.
 pub(super) fn jacobian(slopes: &[Vector3<f64>], nodes: &[[f64; 3]]) -> Matrix3<f64> {
     let mut jacobian = Matrix3::zeros();
     for (slope, node) in slopes.iter().zip(nodes) {
@@ -10,8 +10,8 @@ pub(super) fn jacobian(slopes: &[Vector3<f64>], nodes: &[[f64; 3]]) -> Matrix3<f
     jacobian
 }
 
-/// Adds one integration point to a stiffness: for gradients `g` and an isotropic material the block
-/// of shapes i, j is `lambda g_i g_j' + mu (g_j g_i' + g_i . g_j)`.
+/// Adds the contribution of one integration point to a stiffness matrix: for gradients `g` and an isotropic
+/// material the block of shapes i, j is `lambda g_i g_j' + mu (g_j g_i' + g_i . g_j)`.
 pub(super) fn add_stiffness<const ALL: usize>(
     full: &mut SMatrix<f64, ALL, ALL>,
     gradients: &[Vector3<f64>],
@@ -34,7 +34,8 @@ pub(super) fn add_stiffness<const ALL: usize>(
     }
 }
 
-/// Adds one integration point to the mass between shapes, the same for every direction.
+/// Adds the contribution of one integration point to the scalar mass matrix of the shape functions, which is
+/// the same for x, y and z.
 pub(super) fn add_weight<const SHAPES: usize>(
     weight: &mut [[f64; SHAPES]; SHAPES],
     shapes: &[f64; SHAPES],

@@ -1,15 +1,15 @@
-//! The kinds of element that a mesh may be made of: one line each.
+//! Element kinds that a mesh may consist of.
 use super::law::Element;
 use super::{hexahedron::Hexahedron, tetrahedron::Tetrahedron};
 
-/// What a mesh is made of: one kind throughout. Bricks and tetrahedra do not fit face to face, so a
-/// mesh of both would be cracked.
+/// Element kind of a mesh; all elements are of one kind, because the faces of bricks and tetrahedra do not
+/// match and a mixed mesh would have cracks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ElementKind {
-    /// Bricks of 8 nodes with incompatible modes; faces of 4 nodes.
+    /// 8-node bricks with incompatible modes; faces have 4 nodes.
     #[default]
     Hexahedron,
-    /// Quadratic tetrahedra of 10 nodes, edges straight or curved; faces of 6 nodes.
+    /// 10-node quadratic tetrahedra with straight or curved edges; faces have 6 nodes.
     Tetrahedron,
 }
 

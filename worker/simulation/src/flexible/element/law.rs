@@ -1,55 +1,56 @@
-//! What a kind of element gives: shape functions on its reference body, stiffness, mass and stress.
+//! Interface of an element kind: shape functions on the reference element, stiffness, mass and stress.
 use super::face::Face;
 use super::integral::jacobian;
 use super::steel::Steel;
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-/// What one element weighs in a structure; rows and columns node by node, x y z.
+/// Stiffness and mass matrices of one element; rows and columns are ordered node by node, x y z within a
+/// node.
 #[derive(Clone, Debug)]
 pub(in crate::flexible) struct Matrices {
-    /// Stiffness over the nodes alone [N/m].
+    /// Stiffness over the nodal displacements [N/m].
     pub(in crate::flexible) stiffness: DMatrix<f64>,
-    /// Mass over the nodes alone \[kg\].
+    /// Mass over the nodal displacements \[kg\].
     pub(in crate::flexible) mass: DMatrix<f64>,
 }
 
-/// An element whose volume vanishes or is negative somewhere.
+/// Error: an element whose Jacobian determinant is zero or negative at some integration point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::flexible) struct InsideOut;
 
-/// Steps of Newton's method towards a point within an element.
+/// Largest number of Newton steps when searching for reference coordinates.
 const STEPS: usize = 30;
 
-/// A kind of element on its reference body. Nodes are always all of one element, in Gmsh's order;
-/// points are coordinates of the reference body.
+/// Element kind, defined on its reference element. Arguments `nodes` are the positions of all nodes of one
+/// element, in Gmsh's order; points are reference coordinates.
 pub(in crate::flexible) trait Element: Sync {
-    /// Number of nodes n.
+    /// Returns the number of nodes per element, called n below.
     fn nodes(&self) -> usize;
 
-    /// Its faces.
+    /// Returns the kind of the element's faces.
     fn face(&self) -> &'static dyn Face;
 
-    /// A point well inside.
+    /// Returns the reference coordinates of the element's centre.
     fn center(&self) -> [f64; 3];
 
-    /// Shape functions at a point; n.
+    /// Returns the n shape functions at a point.
     fn shape(&self, point: &[f64; 3]) -> Vec<f64>;
 
-    /// Their slopes in the reference body; n.
+    /// Returns the n gradients of the shape functions with respect to the reference coordinates.
     fn slopes(&self, point: &[f64; 3]) -> Vec<Vector3<f64>>;
 
-    /// How far a point lies outside the reference body, in its coordinates; negative inside.
+    /// Returns how far a point lies outside the reference element, in reference coordinates; negative inside.
     fn outside(&self, point: &[f64; 3]) -> f64;
 
-    /// Stiffness and mass of an element with its nodes in place \[m\].
+    /// Computes stiffness and mass of an element from the positions of its nodes \[m\].
     ///
     /// # Errors
-    /// [`InsideOut`] if the Jacobian is not positive at an integration point.
+    /// [`InsideOut`] if the determinant of the Jacobian is not positive at an integration point.
     fn matrices(&self, nodes: &[[f64; 3]], steel: &Steel) -> Result<Matrices, InsideOut>;
 }
 
 impl dyn Element {
-    /// `d x_column / d xi_row` at a point.
+    /// Returns the Jacobian `d x_column / d xi_row` at a point.
     pub(in crate::flexible) fn jacobian(
         &self,
         nodes: &[[f64; 3]],
@@ -58,7 +59,8 @@ impl dyn Element {
         jacobian(&self.slopes(point), nodes)
     }
 
-    /// Coordinates of a place in the reference body, if Newton finds them.
+    /// Computes the reference coordinates of a position by Newton's method, or `None` if the iteration does
+    /// not converge.
     pub(in crate::flexible) fn invert(
         &self,
         nodes: &[[f64; 3]],
@@ -83,7 +85,8 @@ impl dyn Element {
         None
     }
 
-    /// Stress at the centre \[Pa\]: xx, yy, zz, xy, yz, zx. Incompatible modes have no slope there.
+    /// Returns the stress at the centre \[Pa\]: xx, yy, zz, xy, yz, zx. The incompatible modes have zero
+    /// gradient there and do not contribute.
     pub(in crate::flexible) fn center_stress(
         &self,
         steel: &Steel,

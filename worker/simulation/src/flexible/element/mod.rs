@@ -1,6 +1,7 @@
-//! Kinds of finite elements: what the head asks of one, whatever its shape.
+//! Finite element kinds of the flexible head, behind one interface.
 //!
-//! A kind is one file and one line of `ElementKind::law`. Knows one element in its place, no mesh.
+//! A kind is implemented by one file and one line of `ElementKind::law`. The module handles single elements
+//! and knows no mesh.
 mod face;
 mod hexahedron;
 mod integral;

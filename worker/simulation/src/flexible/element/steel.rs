@@ -1,4 +1,4 @@
-//! What a head is made of.
+//! Material of the head.
 
 /// Isotropic, linear elastic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub struct Steel {
 }
 
 impl Steel {
-    /// Lamé's coefficients \[Pa\]: first, and the shear modulus.
+    /// Returns Lamé's first coefficient and the shear modulus \[Pa\].
     pub(super) fn lame(&self) -> (f64, f64) {
         let shear = self.young / (2.0 * (1.0 + self.poisson));
         (

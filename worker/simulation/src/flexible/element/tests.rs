@@ -1,4 +1,5 @@
-//! One tetrahedron: its rules of integration, its motions without strain, its mass; and a cut face.
+//! Tests of a single tetrahedron (quadrature rules, rigid motions, mass, inverse map) and of the cut through
+//! a triangular face.
 use super::face::{Face, Triangle};
 use super::law::InsideOut;
 use super::tetrahedron::{EDGES, degree_2, degree_5};
@@ -11,14 +12,14 @@ const STEEL: Steel = Steel {
     density: 7850.0,
 };
 
-/// A tetrahedron whose nodes are those of the reference tetrahedron, moved by `place`.
+/// Returns the nodes of the reference tetrahedron, each mapped by `place`.
 fn tetrahedron(place: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<[f64; 3]> {
     let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let middles = EDGES.map(|[a, b]| [0, 1, 2].map(|k| 0.5 * (corners[a][k] + corners[b][k])));
     corners.into_iter().chain(middles).map(place).collect()
 }
 
-/// Straight edges, no right angle.
+/// Maps the reference tetrahedron to one with straight edges and no right angle.
 fn straight([x, y, z]: [f64; 3]) -> [f64; 3] {
     [
         1.1 * x + 0.2 * y - 0.1 * z,
@@ -27,7 +28,8 @@ fn straight([x, y, z]: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// Curved edges: a quadratic map, which ten nodes represent exactly.
+/// Maps the reference tetrahedron to one with curved edges; the map is quadratic, hence represented exactly
+/// by ten nodes.
 fn curved([x, y, z]: [f64; 3]) -> [f64; 3] {
     [x + 0.4 * y * z, y + 0.3 * x * x, z]
 }
@@ -36,8 +38,8 @@ fn factorial(n: i32) -> f64 {
     (1..=n).map(f64::from).product()
 }
 
-/// Integrals of `r^a s^b t^c` are `a! b! c! / (a + b + c + 3)!`: exact up to the degree that a rule
-/// claims, and not beyond.
+/// Checks that each quadrature rule integrates `r^a s^b t^c`, whose integral is `a! b! c! / (a + b + c +
+/// 3)!`, exactly up to the stated degree and not beyond.
 #[test]
 fn rules_are_exact_to_their_degree_and_no_further() {
     for degree in [2, 5] {
@@ -70,7 +72,7 @@ fn rules_are_exact_to_their_degree_and_no_further() {
     }
 }
 
-/// Six motions cost no energy, and no others.
+/// Checks that the stiffness has exactly six modes of zero energy, the rigid motions.
 #[test]
 fn only_rigid_motions_cost_no_energy() {
     let law = ElementKind::Tetrahedron.law();
@@ -105,8 +107,8 @@ fn only_rigid_motions_cost_no_energy() {
     }
 }
 
-/// Mass moved as a whole is density times volume, and its lever is that of the centre of mass, for
-/// curved edges too. The Jacobian of [`curved`] has the determinant `1 - 0.24 x z`.
+/// Checks that the mass of a rigid translation is density times volume and its first moment is that of the
+/// centre of mass, with curved edges too. The Jacobian of [`curved`] has the determinant `1 - 0.24 x z`.
 #[test]
 fn mass_is_density_times_volume_with_curved_edges() {
     let nodes = tetrahedron(curved);
@@ -141,7 +143,8 @@ fn an_element_that_is_turned_over_or_folded_is_inside_out() {
     assert_eq!(law.matrices(&folded, &STEEL).unwrap_err(), InsideOut);
 }
 
-/// A place is found again from its coordinates, inside and outside.
+/// Checks that the inverse map returns the reference coordinates of a position, for points inside and
+/// outside.
 #[test]
 fn places_are_found_in_a_curved_element() {
     let nodes = tetrahedron(curved);
@@ -157,8 +160,8 @@ fn places_are_found_in_a_curved_element() {
     }
 }
 
-/// A cut through a triangle has the mean and the values of a quadratic field: exactly where the
-/// face's edges are straight, at any angle.
+/// Checks that a cut through a triangle with straight edges reproduces the mean and the values of a quadratic
+/// field exactly, at any angle.
 #[test]
 fn a_cut_through_a_triangle_is_quadratic() {
     // angle and height of the nodes: corners, then middles of 01, 12, 20
@@ -201,7 +204,7 @@ fn a_cut_through_a_triangle_is_quadratic() {
     assert!(Triangle.cut(&face, &seen, 2.31).is_none());
 }
 
-/// On a bent edge the cut is where the angle is, not where a chord has it; steep or even.
+/// Checks that the ends of a cut on curved edges lie at the interpolated angle and not at that of the chord.
 #[test]
 fn a_bent_edge_is_cut_where_its_angle_is() {
     let angles = [2.0, 2.4, 2.1, 2.17, 2.31, 2.05];

@@ -1,27 +1,26 @@
-//! The 10-node tetrahedron: quadratic displacement on straight or curved edges.
+//! 10-node tetrahedron: quadratic displacement on straight or curved edges.
 //!
-//! Nodes are the four corners and six points near the middles of the edges, which also give the
-//! element its shape. In volume coordinates `L_0 + L_1 + L_2 + L_3 = 1` a corner has
-//! `N = L (2 L - 1)` and an edge `N = 4 L_a L_b` ([Zienkiewicz2013]). It bends, as its strain is
-//! linear; the 4-node tetrahedron, whose strain is constant, locks (a layer is five times too stiff) and
-//! is no element here.
+//! Nodes are the four corners and six points near the middles of the edges, which also define the element's
+//! geometry. In volume coordinates `L_0 + L_1 + L_2 + L_3 = 1` a corner has `N = L (2 L - 1)` and an edge `N
+//! = 4 L_a L_b` ([Zienkiewicz2013]). Its strain is linear, so that it can bend; the 4-node tetrahedron, whose
+//! strain is constant, locks (one layer is five times too stiff) and is not offered.
 //!
-//! Stiffness by 4 points of degree 2, exact for straight edges and without modes of zero energy;
-//! mass by 15 points of degree 5 ([Stroud1971], T3:5-1), exact for straight edges, and
-//! for curved ones as far as the total mass goes. Knows one element, no mesh.
+//! Stiffness is integrated with 4 points of degree 2, exact for straight edges and free of spurious
+//! zero-energy modes; mass with 15 points of degree 5 ([Stroud1971], T3:5-1), exact for straight edges, and
+//! exact in the total mass for curved edges. This module knows one element and no mesh.
 use super::face::{Face, Triangle};
 use super::integral::{add_stiffness, add_weight, jacobian};
 use super::law::{Element, InsideOut, Matrices};
 use super::steel::Steel;
 use nalgebra::{DMatrix, SMatrix, Vector3};
 
-/// Nodes of one element.
+/// Number of nodes of one element.
 const NODES: usize = 10;
-/// Displacements of one element, node by node.
+/// Number of nodal displacements of one element.
 const DOFS: usize = 3 * NODES;
-/// Ends of the edges that nodes 4 to 9 lie on, in Gmsh's order.
+/// End nodes of the edges on which nodes 4 to 9 lie, in Gmsh's order.
 pub(super) const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
-/// Slopes of the volume coordinates along the reference coordinates, which are the last three.
+/// Gradients of the four volume coordinates; the last three volume coordinates are the reference coordinates.
 const DIRECTIONS: [Vector3<f64>; 4] = [
     Vector3::new(-1.0, -1.0, -1.0),
     Vector3::new(1.0, 0.0, 0.0),
@@ -29,16 +28,16 @@ const DIRECTIONS: [Vector3<f64>; 4] = [
     Vector3::new(0.0, 0.0, 1.0),
 ];
 
-/// The 10-node tetrahedron.
+/// 10-node tetrahedron element.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tetrahedron;
 
-/// Volume coordinates of a point.
+/// Returns the volume coordinates of a point of the reference tetrahedron.
 fn volume_coordinates(&[r, s, t]: &[f64; 3]) -> [f64; 4] {
     [1.0 - r - s - t, r, s, t]
 }
 
-/// Shape functions at a point.
+/// Returns the shape functions at a point.
 fn shape(point: &[f64; 3]) -> [f64; NODES] {
     let l = volume_coordinates(point);
     std::array::from_fn(|node| match node.checked_sub(4) {
@@ -50,7 +49,7 @@ fn shape(point: &[f64; 3]) -> [f64; NODES] {
     })
 }
 
-/// Their slopes in the reference tetrahedron.
+/// Returns the gradients of the shape functions with respect to the reference coordinates.
 fn slopes(point: &[f64; 3]) -> [Vector3<f64>; NODES] {
     let l = volume_coordinates(point);
     std::array::from_fn(|node| match node.checked_sub(4) {
@@ -62,7 +61,8 @@ fn slopes(point: &[f64; 3]) -> [Vector3<f64>; NODES] {
     })
 }
 
-/// A point with three equal volume coordinates `rest`, and the corner where the fourth is.
+/// Returns the reference coordinates of the point whose volume coordinates all equal `rest`, except that of
+/// `corner`.
 fn towards(corner: usize, rest: f64) -> [f64; 3] {
     let at = |k: usize| {
         if k == corner { 1.0 - 3.0 * rest } else { rest }
@@ -70,13 +70,13 @@ fn towards(corner: usize, rest: f64) -> [f64; 3] {
     [at(1), at(2), at(3)]
 }
 
-/// Integration points of degree 2 and their shares of the volume.
+/// Returns the quadrature points of degree 2 with their shares of the volume.
 pub(super) fn degree_2() -> impl Iterator<Item = ([f64; 3], f64)> {
     let rest = (5.0 - 5.0_f64.sqrt()) / 20.0;
     (0..4).map(move |corner| (towards(corner, rest), 0.25))
 }
 
-/// Integration points of degree 5 and their shares of the volume: the centre, four points towards
+/// Returns the quadrature points of degree 5 with their shares of the volume: the centre, four points towards
 /// the faces, four towards the corners, six towards the edges.
 pub(super) fn degree_5() -> impl Iterator<Item = ([f64; 3], f64)> {
     let root = 15.0_f64.sqrt();
@@ -152,7 +152,8 @@ impl Element for Tetrahedron {
     }
 }
 
-/// Volume of a tetrahedron by the determinant of its Jacobian.
+/// Returns the volume of a tetrahedron from the determinant of its Jacobian, or [`InsideOut`] if the
+/// determinant is not positive.
 fn positive(determinant: f64) -> Result<f64, InsideOut> {
     if determinant > 0.0 {
         Ok(determinant / 6.0)

@@ -1,4 +1,5 @@
-//! The factor against faer's, whose bits depend on the processor and whose values must not.
+//! Comparison of the Cholesky factor with that of faer, whose results depend on the processor only in their
+//! last bits.
 use super::*;
 use faer::{
     Side,
@@ -10,7 +11,7 @@ use faer::{
     },
 };
 
-/// Solution by faer's own numbers.
+/// Solves the system with faer's Cholesky factorisation.
 fn by_faer(matrix: &Symmetric, right: &[f64]) -> Vec<f64> {
     let (starts, rows) = matrix.pattern();
     let values: Vec<f64> = matrix.entries().map(|(_, _, value)| value).collect();
@@ -24,7 +25,8 @@ fn by_faer(matrix: &Symmetric, right: &[f64]) -> Vec<f64> {
     solution
 }
 
-/// From one supernode to hundreds, with panels narrower and wider than a tile and than a block.
+/// Checks solutions against faer and against a known solution, for factors of one to hundreds of supernodes,
+/// with panels narrower and wider than a tile and than a block.
 #[test]
 fn solutions_are_those_of_faer_and_of_the_matrix() {
     for counts in [[1, 1, 1], [3, 1, 1], [7, 2, 3], [9, 7, 6], [30, 6, 4]] {

@@ -1,4 +1,4 @@
-//! Shares of load patterns, and what is picked by them.
+//! Tests of the modes' shares of load patterns and of the selection of modes by them.
 use super::super::{arc::Rim, coupling::Patterns, mesh::Half, problem::Problem};
 use super::*;
 
@@ -8,7 +8,7 @@ const ROPE: Wrap = Wrap {
     leaves: 0.12,
 };
 
-/// All modes of a body together hold all of the static energy under every load pattern.
+/// Checks that the shares of all modes of a body add up to the whole static energy, for every load pattern.
 #[test]
 fn shares_of_all_modes_add_up_to_one() {
     let mesh = mirrored();
@@ -32,8 +32,8 @@ fn shares_of_all_modes_add_up_to_one() {
     }
 }
 
-/// What is kept couples more than what is left out, and no antisymmetric mode couples at all; both lists
-/// ascend.
+/// Checks that every kept mode couples more than every omitted one, that antisymmetric modes do not couple,
+/// and that both lists ascend in frequency.
 #[test]
 fn modes_that_couple_most_are_kept() {
     let mesh = mirrored();

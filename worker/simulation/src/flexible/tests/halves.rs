@@ -1,14 +1,15 @@
-//! For every kind of element: both halves against the whole, tables against loads, and what is refused.
+//! Tests for every element kind: both halves against the whole, tables against direct loads, and rejected
+//! inputs.
 use super::*;
 
-/// The same body of every kind of element.
+/// Returns the same body meshed with each element kind.
 fn of_every_kind() -> [Mesh; 2] {
     let bricks = mirrored();
     let tetrahedra = tetrahedra::of_bricks(&bricks);
     [bricks, tetrahedra]
 }
 
-/// Modes of both halves together are the modes of the whole body.
+/// Checks that the symmetric and antisymmetric modes together are the modes of the whole body.
 #[test]
 fn both_families_are_the_whole() {
     for mesh in of_every_kind() {
@@ -38,7 +39,7 @@ fn families_are_the_whole(mesh: &Mesh) {
     assert!((reduction.mass / (volume * STEEL.density) - 1.0).abs() < 1e-12);
 }
 
-/// A body that comes as its half is the body.
+/// Checks that a mesh given as its half yields the same reduction as the whole mesh.
 #[test]
 fn a_half_is_as_good_as_the_whole() {
     for whole in of_every_kind() {
@@ -65,7 +66,8 @@ fn a_half_is_as_good_as_the_whole() {
     }
 }
 
-/// The reading under a load by the gauge's own solve is that of the strain of the displacement.
+/// Checks that the reading from a gauge's influence line equals the stress computed from the displacement
+/// under the load.
 #[test]
 fn influence_lines_are_the_stress_under_each_load() {
     for mesh in of_every_kind() {
@@ -105,9 +107,9 @@ fn influence_is_stress(mesh: &Mesh) {
     }
 }
 
-/// The same for two ropes beside the middle, solved on the whole body: a pair of opposite forces in the
-/// plane of motion, and two equal ones along z. And the shapes are those of the whole body's modes at
-/// the points where the ropes lie.
+/// Checks the tables of a pair of ropes against direct solutions on the whole body: a pair of opposite forces
+/// in the plane of motion and a pair of equal forces along z. Also checks that the shapes are those of the
+/// whole body's modes at the points where the ropes lie.
 #[test]
 fn a_pair_of_ropes_strains_the_whole_as_its_tables_say() {
     for mesh in of_every_kind() {

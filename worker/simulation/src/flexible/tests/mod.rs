@@ -1,4 +1,5 @@
-//! Bricks on bodies with known answers, and for every kind of element both halves against the whole.
+//! Tests of brick elements on bodies with known solutions, and of the two halves against the whole for every
+//! element kind.
 mod cholesky;
 mod coupling;
 mod halves;
@@ -20,7 +21,8 @@ const STEEL: Steel = Steel {
     density: 7850.0,
 };
 
-/// A box of equal bricks from `origin` on; its nodes are then moved by `warp`.
+/// Returns a box of equal bricks starting at `origin`, whose nodes are then moved by `warp`; the face x = min
+/// is held, the face x = max is the rope surface.
 fn bricks(
     counts: [usize; 3],
     size: [f64; 3],
@@ -67,7 +69,7 @@ fn bricks(
     mesh
 }
 
-/// Moves the inside of the box 0..1 x 0..2 x 0..1.5, not its surface, by up to 6 % of a brick.
+/// Moves interior points of the box 0..1 x 0..2 x 0..1.5, not its surface, by up to 6 % of a brick.
 fn distort([x, y, z]: [f64; 3]) -> [f64; 3] {
     let bump = x * (1.0 - x) * y * (2.0 - y) * z * (1.5 - z);
     let wave = |phase: f64| 0.4 * bump * sin_cos(phase + 3.1 * x + 2.3 * y + 4.7 * z).0;
@@ -81,8 +83,8 @@ fn problem(mesh: &Mesh) -> (Unknowns, Assembly) {
     (unknowns, assembly)
 }
 
-/// Under a linear displacement of distorted elements no inner node feels a force, and every element
-/// bears the same stress, by Hooke's law.
+/// Checks the patch test: under a linear displacement of distorted elements no interior node carries a force,
+/// and every element has the stress given by Hooke's law.
 #[test]
 fn distorted_bricks_pass_the_patch_test() {
     assert_eq!(
@@ -91,7 +93,7 @@ fn distorted_bricks_pass_the_patch_test() {
     );
 }
 
-/// The patch test on a mesh of the box 1 x 2 x 1.5; returns the number of inner nodes.
+/// Runs the patch test on a mesh of the box 1 x 2 x 1.5; returns the number of interior nodes.
 fn patch(mut mesh: Mesh) -> usize {
     mesh.held.clear();
     let slope = [
@@ -152,7 +154,7 @@ fn patch(mut mesh: Mesh) -> usize {
     mesh.nodes.iter().filter(|n| inner(n)).count()
 }
 
-/// One brick over the height bends like a beam: without the incompatible modes it would be half
+/// Checks that one brick over the height bends like a beam; without the incompatible modes it would be half
 /// as stiff again.
 #[test]
 fn a_row_of_bricks_bends_like_a_beam() {
@@ -160,10 +162,10 @@ fn a_row_of_bricks_bends_like_a_beam() {
     assert!((share - 1.0).abs() < 0.02, "{share}");
 }
 
-/// Length, height, width of a beam \[m\].
+/// Length, height and width of the beam in the bending test \[m\].
 const BEAM: [f64; 3] = [2.0, 0.1, 0.08];
 
-/// Deflection of the end of [`BEAM`] under a force there, over that of the beam with shear.
+/// Returns the tip deflection of [`BEAM`] under a tip force, divided by that of beam theory with shear.
 fn deflection(mesh: &Mesh) -> f64 {
     let [length, height, width] = BEAM;
     let (unknowns, assembly) = problem(mesh);
@@ -190,11 +192,11 @@ fn a_cantilever_rings_at_its_natural_frequencies() {
     }
 }
 
-/// Length, height, width of a cantilever \[m\].
+/// Length, height and width of the cantilever in the frequency test \[m\].
 const CANTILEVER: [f64; 3] = [3.0, 0.1, 0.06];
 
-/// The four lowest frequencies of [`CANTILEVER`] over those of the slender beam; checks that modes
-/// are orthogonal.
+/// Returns the four lowest frequencies of [`CANTILEVER`] divided by those of the slender beam; checks that
+/// the modes are orthogonal.
 fn cantilever(mesh: &Mesh) -> [f64; 4] {
     let [length, height, width] = CANTILEVER;
     let (_, assembly) = problem(mesh);
@@ -222,8 +224,8 @@ fn cantilever(mesh: &Mesh) -> [f64; 4] {
     std::array::from_fn(|k| modes.eigenvalues[k].sqrt() / beam[k])
 }
 
-/// Held modes with their participation, and a rotation of the whole, are a bar that turns freely about its
-/// end: what couples the head's modes to the beam is right.
+/// Checks the coupling of the head's modes to the beam: clamped modes with their participation factors,
+/// combined with a rigid rotation, must have the frequencies of a bar hinged at its end.
 #[test]
 fn held_modes_that_turn_with_their_base_ring_like_a_hinged_bar() {
     let [length, height, width] = CANTILEVER;
@@ -276,14 +278,14 @@ fn request<'a>(mesh: &'a Mesh, gauges: &'a [Gauge], families: &'a [Family]) -> R
     }
 }
 
-/// A lopsided block that is its own mirror image in z = 0, far enough from the origin that its
-/// end face is an arc of a few degrees about it.
+/// Returns an irregular block that is symmetric about z = 0, far enough from the origin that its end face is
+/// an arc of a few degrees about the origin.
 fn mirrored() -> Mesh {
     let warp = |[x, y, z]: [f64; 3]| [x + 0.1 * y * y, y * (1.0 + 0.3 * x), z * (1.2 - 0.2 * x)];
     bricks([6, 2, 4], [0.9, 0.2, 0.4], [-1.0, 0.05, -0.2], warp)
 }
 
-/// Volume by the mass of a body that is free everywhere, moved along x.
+/// Returns the volume of a body, computed from its mass under a translation along x.
 fn assembly_volume(mesh: &Mesh) -> f64 {
     let unknowns = Unknowns::new(mesh.nodes.len(), |_, axis| axis == 0);
     let mass: Symmetric = Assembly::new(mesh, &STEEL, &unknowns).unwrap().mass;

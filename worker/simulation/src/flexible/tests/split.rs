@@ -1,8 +1,9 @@
-//! Bricks cut into 10-node tetrahedra, face to face: a mesh with a known answer for the other kind.
+//! Division of bricks into 10-node tetrahedra with matching faces: a mesh with a known solution for the
+//! second element kind.
 //!
-//! Every brick is a cone from its node of lowest rank over the faces that do not hold it; every face
-//! is cut from its own node of lowest rank, so that neighbours cut it alike. Ranks that are equal on
-//! both sides of a plane give a mesh that is its own mirror image in it.
+//! Every brick is divided from its node of lowest rank towards the faces that do not contain it; every face
+//! is divided from its own node of lowest rank, so that neighbours divide it alike. Ranks that are equal on
+//! both sides of a plane give a mesh that is symmetric about it.
 use std::collections::BTreeMap;
 
 /// Faces of a brick, nodes counterclockwise as seen from outside.
@@ -15,21 +16,22 @@ const FACES: [[usize; 4]; 6] = [
     [3, 0, 4, 7],
 ];
 
-/// Corners of the edges that further nodes lie on: of a triangle, of a tetrahedron, as Gmsh counts.
+/// End nodes of the edges that carry mid-edge nodes, in Gmsh's order: for a triangle and for a tetrahedron.
 const OF_TRIANGLE: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 const OF_TETRAHEDRON: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [3, 0], [2, 3], [3, 1]];
 
-/// A mesh that is being cut.
+/// Mesh of bricks under division into tetrahedra.
 pub(crate) struct Split<R> {
-    /// Positions \[m\]: the bricks' nodes, then the middles of edges.
+    /// Positions \[m\]: the bricks' nodes, then the mid-edge nodes.
     pub(crate) nodes: Vec<[f64; 3]>,
-    /// Nodes in the middle of edges, by the edges' ends in ascending order.
+    /// Mid-edge nodes, keyed by the edge's end nodes in ascending order.
     pub(crate) middles: BTreeMap<[usize; 2], usize>,
     rank: R,
 }
 
 impl<R: Fn(usize) -> usize> Split<R> {
-    /// A mesh of bricks by its nodes and their ranks, of which no two in a brick are equal.
+    /// Creates the division of a brick mesh from its nodes and their ranks; no two nodes of a brick may have
+    /// equal rank.
     pub(crate) const fn new(nodes: Vec<[f64; 3]>, rank: R) -> Self {
         Self {
             nodes,
@@ -38,7 +40,7 @@ impl<R: Fn(usize) -> usize> Split<R> {
         }
     }
 
-    /// Tetrahedra of bricks, 10 nodes each.
+    /// Divides bricks into tetrahedra of 10 nodes each.
     pub(crate) fn tetrahedra(&mut self, bricks: &[usize]) -> Vec<usize> {
         let mut tetrahedra = Vec::new();
         for brick in bricks.chunks_exact(8) {
@@ -53,7 +55,7 @@ impl<R: Fn(usize) -> usize> Split<R> {
         tetrahedra
     }
 
-    /// Triangles of faces, 6 nodes each.
+    /// Divides faces into triangles of 6 nodes each.
     pub(crate) fn triangles(&mut self, faces: &[usize]) -> Vec<usize> {
         let mut triangles = Vec::new();
         for face in faces.chunks_exact(4) {
@@ -69,7 +71,7 @@ impl<R: Fn(usize) -> usize> Split<R> {
         ranked.expect("an element has nodes")
     }
 
-    /// A face in two, the way round that it has.
+    /// Divides a face into two triangles that keep its orientation.
     fn corners(&self, face: &[usize]) -> [[usize; 3]; 2] {
         let first = self.lowest(face);
         let at = face.iter().position(|&node| node == first);

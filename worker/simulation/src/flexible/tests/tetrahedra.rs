@@ -1,15 +1,17 @@
-//! Quadratic tetrahedra on bodies with known answers, beside the bricks that they were cut from.
+//! Tests of quadratic tetrahedra on bodies with known solutions, compared with the bricks that they were
+//! divided from.
 use super::{split::Split, *};
 use std::collections::BTreeSet;
 
-/// Millionths of a metre, without a sign for z: equal for a node and its image.
+/// Returns a position in micrometres, with z without sign, so that a node and its mirror image are equal.
 fn place(&[x, y, z]: &[f64; 3]) -> [i64; 3] {
     #[expect(clippy::cast_possible_truncation, reason = "bodies of some metres")]
     let cell = |x: f64| (x * 1e6).round() as i64;
     [cell(x), cell(y), cell(z.abs())]
 }
 
-/// Every brick cut into six tetrahedra with straight edges; its own mirror image if the bricks are.
+/// Divides every brick into six tetrahedra with straight edges; the result is symmetric about z = 0 if the
+/// bricks are.
 pub(super) fn of_bricks(bricks: &Mesh) -> Mesh {
     let places: BTreeSet<[i64; 3]> = bricks.nodes.iter().map(place).collect();
     let order: Vec<[i64; 3]> = places.into_iter().collect();
@@ -45,7 +47,8 @@ fn distorted_tetrahedra_pass_the_patch_test() {
     assert_eq!(patch(mesh), 175);
 }
 
-/// One layer of tetrahedra bends: 4-node ones would be almost five times too stiff.
+/// Checks that one layer of tetrahedra bends like a beam; 4-node tetrahedra would be almost five times too
+/// stiff.
 #[test]
 fn a_row_of_tetrahedra_bends_like_a_beam() {
     for (n, limit) in [(1, 0.015), (2, 0.008)] {
@@ -58,7 +61,8 @@ fn a_row_of_tetrahedra_bends_like_a_beam() {
     }
 }
 
-/// Beside the slender beam as bricks are, and nearer to a finer mesh than the bricks they were cut from.
+/// Checks that the frequencies are as close to the slender beam as those of bricks, and closer to a finer
+/// mesh than those of the bricks they were divided from.
 #[test]
 fn a_cantilever_of_tetrahedra_rings_at_its_natural_frequencies() {
     let coarse = bricks([40, 2, 2], CANTILEVER, [0.0; 3], |x| x);
@@ -71,10 +75,10 @@ fn a_cantilever_of_tetrahedra_rings_at_its_natural_frequencies() {
     }
 }
 
-/// A box between smooth walls rings in standing waves without any singular corner. The lowest is a
-/// wave of shear over the two longer sides: `omega^2 = (mu / rho) pi^2 (1 / a^2 + 1 / b^2)`. Its
-/// computed square converges with the fourth power of the size of tetrahedra, from above, and with the
-/// second power of that of bricks.
+/// Checks the order of convergence on a box between frictionless walls, whose standing waves have no singular
+/// corner. The lowest is a shear wave over the two longer sides: `omega^2 = (mu / rho) pi^2 (1 / a^2 + 1 /
+/// b^2)`. Its computed square converges from above with the fourth power of the size of tetrahedra, and with
+/// the second power of that of bricks.
 #[test]
 fn frequencies_converge_with_the_fourth_power_of_the_size() {
     let sides = [1.0, 1.3, 0.7];
@@ -102,8 +106,8 @@ fn frequencies_converge_with_the_fourth_power_of_the_size() {
     assert!(tetrahedra[1] > 0.0 && tetrahedra[1] < 0.05 * bricks[1].abs());
 }
 
-/// Edges that follow a round body give its volume and its frequencies where straight ones do not: a
-/// quarter of a ring of a few elements, against many bricks.
+/// Checks that curved edges give volume and frequencies of a round body where straight edges do not: a
+/// quarter ring of a few elements, against many bricks.
 #[test]
 fn curved_edges_make_a_body_round() {
     let (inner, outer, width) = (0.45, 0.55, 0.08);

@@ -1,26 +1,27 @@
-//! A weighted sum of splines over one grid, as one spline.
+//! Weighted sum of splines on one grid, evaluated as a single spline.
 //!
-//! Where many places are asked for under the same weights, the curves are summed knot by knot once
-//! and every place costs one curve. The way back is the same: what acts at places is spread over
-//! the knots, and each curve gathers its share from them at the end.
+//! If many places are evaluated with the same weights, the curves are summed knot by knot once, and every
+//! place costs the evaluation of one curve. The adjoint works likewise: forces at places are distributed to
+//! the knots, and the generalised force on each curve is gathered from the knots at the end.
 use super::{Jet, Place, Splines};
 
-/// Weighted sums of the curves of [`Splines`], under weights and under their rates.
+/// Weighted sums of the curves of [`Splines`]: with the weights and with the weights' time derivatives.
 #[derive(Clone, Debug, Default)]
 pub struct Sum {
-    /// Value and bend under the weights, then under their rates, per knot.
+    /// Per knot: value and scaled second derivative of the sum with the weights, then of the sum with their
+    /// rates.
     knots: Vec<[f64; 4]>,
 }
 
-/// What acts at places of a grid, spread over its knots: per knot with the weight of its value and
-/// with that of its bend.
+/// Forces at places of a grid, distributed to its knots: per knot, the sums weighted for its value and for
+/// its scaled second derivative.
 #[derive(Clone, Debug, Default)]
 pub struct Spread {
     knots: Vec<[f64; 2]>,
 }
 
 impl Sum {
-    /// Sums the curves with `weights`, and with their `rates`; one of each per curve.
+    /// Computes the sums of the curves with `weights` and with `rates`; both hold one entry per curve.
     pub fn weigh(&mut self, splines: &Splines, weights: &[f64], rates: &[f64]) {
         let points = splines.points();
         self.knots.resize(points, [0.0; 4]);
@@ -37,7 +38,8 @@ impl Sum {
         }
     }
 
-    /// The sum under the weights at a place, and its value under their rates.
+    /// Returns value and derivatives of the sum with the weights at a place, and the value of the sum with
+    /// the rates.
     #[inline]
     pub fn at(&self, splines: &Splines, place: &Place) -> (Jet, f64) {
         let [y0, m0, dy0, dm0] = self.knots[place.left];
@@ -62,7 +64,8 @@ impl Sum {
         (jet, rate)
     }
 
-    /// The sum under the weights at places, its slopes, and its values under their rates.
+    /// Computes, at several places, values and slopes of the sum with the weights and values of the sum with
+    /// the rates.
     pub fn heights(&self, splines: &Splines, places: &[Place], sums: [&mut [f64]; 3]) {
         let [values, slopes, rates] = sums;
         let sums = values.iter_mut().zip(slopes).zip(rates);
@@ -76,7 +79,7 @@ impl Sum {
 }
 
 impl Spread {
-    /// Takes everything away, for the grid of `splines`.
+    /// Sets all forces to zero and resizes to the grid of `splines`.
     pub fn clear(&mut self, splines: &Splines) {
         self.knots.clear();
         self.knots.resize(splines.points(), [0.0; 2]);
@@ -94,7 +97,7 @@ impl Spread {
         *bend += force * cubic_b;
     }
 
-    /// Fills `sums`, one per curve, with the sum over all places of force times the curve's value.
+    /// Computes, for each curve, the sum over all places of force times the curve's value.
     pub fn gather(&self, splines: &Splines, sums: &mut [f64]) {
         sums.fill(0.0);
         let curves = splines.knots.chunks_exact(splines.curves.max(1));

@@ -1,6 +1,6 @@
-//! Laws of effects along a rope: pulls between its cylinders beside the joints' own.
+//! Axial effect laws of a rope: forces between its cylinders in addition to those of the joints.
 //!
-//! A law knows extension and rate alone, not whether the cylinders move in the plane or in space.
+//! A law depends only on extension and its rate, not on whether the cylinders move in the plane or in space.
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
 use crate::element::bushing::{LinkLoad, Pull};
@@ -12,8 +12,8 @@ use crate::model::hook::Along;
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// What laws along the rope say of a joint between two cylinders, and the extension \[m\] and its
-    /// rate [m/s] at which they say it; nothing where there are none, or at an end.
+    /// Returns the result of the axial effect laws for a joint between two cylinders, with its extension
+    /// \[m\] and rate [m/s]; `None` for an end joint or without such laws.
     #[inline]
     pub(super) fn along(
         &self,
@@ -28,7 +28,8 @@ impl Chain {
         Some((laws.pull(extension, rate, memories.unwrap_or(&[])), at))
     }
 
-    /// What they pull there.
+    /// Returns the axial force of the effect laws at a joint, with its derivatives and its dissipated power;
+    /// `None` as for `along`.
     #[inline]
     pub(super) fn pull(
         &self,
@@ -45,7 +46,7 @@ impl Chain {
         })
     }
 
-    /// Adds what the laws along the rope pull, without the joints' own forces.
+    /// Adds the forces of the axial effect laws, without the joints' own forces.
     pub(crate) fn add_pulls(&self, joints: &Joints<'_>, state: &ChainState, force: &mut [f64]) {
         for joint in 1..self.count {
             let Some(pull) = self.pull(joint, joints, state) else {
@@ -70,7 +71,7 @@ impl Chain {
         }
     }
 
-    /// Lets laws with a past remember the step that ended in these poses.
+    /// Updates the memory of history-dependent axial laws at the end of a step.
     pub(crate) fn remember(&self, joints: &Joints<'_>, state: &mut ChainState) {
         let Some(laws) = joints.axial else { return };
         let first = state.memory.is_empty();
@@ -92,7 +93,7 @@ impl Chain {
         state.memory = memory;
     }
 
-    /// Extension \[m\] of a joint between two cylinders and its rate [m/s].
+    /// Returns extension \[m\] and rate [m/s] of a joint between two cylinders.
     fn extension(&self, joint: usize, joints: &Joints<'_>, state: &ChainState) -> Option<[f64; 2]> {
         if self.in_plane(joint) {
             let [i, j] = self.plane_markers(joint, &state.plane);

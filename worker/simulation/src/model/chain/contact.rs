@@ -1,4 +1,4 @@
-//! Forces of a chain's contact with an arc, on the cylinders and on whoever carries the arc.
+//! Contact forces between a chain and an arc, on the cylinders and on the structure that carries the arc.
 use super::parts::Chain;
 use super::points::{Points, Pressed};
 use super::state::ChainState;
@@ -13,7 +13,7 @@ use crate::model::pose::InPlane;
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Evaluates the points of contact at the poses that `state` holds.
+    /// Evaluates the contact points for the poses in `state`.
     pub(crate) fn touch(&self, surface: &Surface<'_>, law: &Impact, state: &mut ChainState) {
         let points = &mut state.points;
         match self.motion {
@@ -22,8 +22,8 @@ impl Chain {
         }
     }
 
-    /// Adds the contact forces on the cylinders and on the `border`: the beam angle, then the
-    /// modes. An arc that is fixed in W has no border.
+    /// Adds the contact forces on the cylinders and on the `border` coordinates: the beam angle, then the
+    /// modes. An arc fixed in W has no border.
     pub(crate) fn add_contact(
         &self,
         surface: &Surface<'_>,
@@ -37,7 +37,7 @@ impl Chain {
         state.deepest = state.points.deepest();
     }
 
-    /// Adds the forces of the points of contact that are in `state`.
+    /// Adds the forces of the contact points already evaluated in `state`.
     pub(crate) fn add_pressed(
         &self,
         surface: &Surface<'_>,
@@ -73,7 +73,7 @@ impl Chain {
         }
     }
 
-    /// Adds the forces of all points to the cylinders' rows; returns what they do to whoever carries
+    /// Adds the forces of all contact points to the cylinders' rows; returns the reaction on the carrier of
     /// the arc.
     fn press<const A: usize>(
         &self,

@@ -1,7 +1,7 @@
-//! A chain's contact in two matrices, without what rates change and whole.
+//! Contact tangent of a chain in two matrices: without the rate-dependent part, and complete.
 //!
-//! With the derivatives `G` of a point's penetration and `c` of its force by the penetration's rate, the
-//! rates' part is `c G G^T`: it bends nothing.
+//! With the derivatives `G` of a point's penetration and `c` of its force with respect to the penetration's
+//! rate, the rate-dependent part is `c G G^T`, without any second derivatives.
 use super::contact_point::{BORDER, Derivatives, FEW};
 use super::contact_tangent::{Sums, Tangent};
 use super::parts::Chain;
@@ -64,7 +64,7 @@ impl Chain {
     }
 }
 
-/// A chain's contact in the plane, compiled for each set of instructions.
+/// Arguments of `add_parts` for a chain in the plane, compiled separately for each SIMD instruction set.
 struct Parts<'a, 'm, const B: usize> {
     tangent: Tangent<'a, B>,
     gamma: f64,
@@ -131,7 +131,8 @@ fn add_parts<const A: usize, const B: usize>(
     tangent.add_corner(matrix);
 }
 
-/// Adds `c G G^T` of a point to the sums of its cylinder, without the rows of the border, and to the corner.
+/// Adds the damping part `c G G^T` of a point to the sums of its cylinder (without the border's rows) and to
+/// the corner.
 #[expect(
     clippy::inline_always,
     reason = "compiled for each set of instructions"

@@ -1,4 +1,4 @@
-//! What one point of a chain's contact has as derivatives, of its penetration and of its force.
+//! Derivatives of the penetration and the force of one contact point of a chain.
 use super::points::Touch;
 use super::state::ChainState;
 use crate::element::impact::Impact;
@@ -9,30 +9,33 @@ use nalgebra::Vector2;
 
 type V2 = Vector2<f64>;
 
-/// Coordinates that move a point of a cylinder: two, and one or two angles.
+/// Largest number of cylinder coordinates that move a contact point: two displacements and one or two angles.
 pub(super) const OWN: usize = 4;
-/// Most coordinates of the border: the beam angle, then the modes.
+/// Largest number of border coordinates: the beam angle and the modes.
 pub(crate) const BORDER: usize = MAX_MODES + 1;
-/// Those of a usual head, whose sums are short enough to be unrolled.
+/// Number of border coordinates that suffices for a usual head; with this bound, sums are short enough to be
+/// unrolled.
 pub(crate) const FEW: usize = 8;
 
-/// A point's derivatives; there is room for `B` coordinates of the border.
+/// Derivatives of a contact point, with room for `B` border coordinates.
 pub(super) struct Derivatives<const B: usize> {
-    /// Of the penetration and of the force by the cylinder's coordinates.
+    /// Derivatives of the penetration with respect to the cylinder's coordinates; `own_force` holds those of
+    /// the force.
     pub(super) own: [f64; OWN],
     pub(super) own_force: [f64; OWN],
-    /// How those move the point.
+    /// Derivatives of the point's position with respect to the cylinder's coordinates.
     pub(super) moved: [V2; OWN],
-    /// Of the penetration and of the force by the border's coordinates.
+    /// Derivatives of the penetration with respect to the border coordinates; `force_by` holds those of the
+    /// force.
     pub(super) gradient: [f64; B],
     pub(super) force_by: [f64; B],
-    /// Slopes of the modes' shapes over the arc; the beam angle has none.
+    /// Slopes of the mode shapes along the arc; zero for the beam angle.
     pub(super) slope: [f64; B],
 }
 
 impl<const B: usize> Derivatives<B> {
-    /// Derivatives of penetration and force by all coordinates.
-    /// Rates change `gamma` times as much as coordinates; so many coordinates of the border take part.
+    /// Computes the derivatives of penetration and force with respect to all coordinates. Rates change
+    /// `gamma` times as much as coordinates; `border` is the number of border coordinates included.
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
     pub(super) fn new<const A: usize>(
@@ -96,24 +99,26 @@ impl<const B: usize> Derivatives<B> {
     }
 }
 
-/// A pressed point as a reading asks for it, of a cylinder that moves in the plane.
+/// Loaded contact point with its derivatives, for a measured channel; its cylinder moves in the plane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reached<const B: usize> {
-    /// Force \[N\] and arc angle \[rad\].
+    /// Contact force \[N\]; `angle` is the arc angle \[rad\].
     pub(crate) force: f64,
     pub(crate) angle: f64,
-    /// Derivatives of the force by stiffness and by damping of the law.
+    /// Derivatives of the force with respect to stiffness and damping of the contact law.
     pub(crate) by_law: [f64; 2],
-    /// Derivatives of the force by the cylinder's coordinates and by their rates, and of the angle.
+    /// Derivatives of the force with respect to the cylinder's coordinates and to their rates; `angle_by`
+    /// holds those of the arc angle.
     pub(crate) force_by: [[f64; 3]; 2],
     pub(crate) angle_by: [f64; 3],
-    /// The same by the beam angle, then by the modes, which turn no angle.
+    /// Derivatives of the force with respect to the border coordinates (beam angle, then modes) and to their
+    /// rates. Of these coordinates, only the beam angle changes the arc angle (`angle_by_beam`).
     pub(crate) force_by_border: [[f64; B]; 2],
     pub(crate) angle_by_beam: f64,
 }
 
-/// Gives every pressed point of a chain's cylinders that move in the plane, and its cylinder; there is room for
-/// `B` coordinates of the border.
+/// Calls `visit` with every loaded contact point and its cylinder's index, for a chain in the plane; there is
+/// room for `B` border coordinates.
 pub(crate) fn each_reached<const B: usize>(
     (surface, law): (&Surface<'_>, &Impact),
     state: &ChainState,

@@ -1,12 +1,13 @@
 //! Tangent of a chain's contact with an arc.
 //!
-//! For the force `Q = -f grad d` of one Gauss point, `-dQ = grad d (df)^T + f H dq` with
-//! `df = (f_d + gamma c) grad d + c H q'`: `f_d` and `c` are the law's derivatives by penetration
-//! and rate, `H` the second derivatives of the penetration.
+//! For the force `Q = -f grad d` of one Gauss point, `-dQ = grad d (df)^T + f H dq` with `df = (f_d + gamma
+//! c) grad d + c H q'`: `f_d` and `c` are the law's derivatives with respect to penetration and rate, `H` the
+//! second derivatives of the penetration.
 //!
-//! Seen from a point, the coordinates are those of its cylinder that move it (`x`, `y` and the
-//! angles that turn the axis), then those of the border. With the derivatives `G` of the penetration
-//! and `F` of the force by all of them, a point adds `G F^T` and the force times what bends.
+//! The coordinates of a point are those of its cylinder that move it (`x`, `y` and the angles that turn the
+//! axis), then those of the border. With the derivatives `G` of the penetration and `F` of the force with
+//! respect to all of them, a point adds `G F^T` and the force times the second derivatives of the
+//! penetration.
 use super::contact_point::{BORDER, Derivatives, FEW, OWN};
 use super::parts::Chain;
 use super::points::{Points, Touch};
@@ -17,23 +18,23 @@ use crate::model::contact::Surface;
 use crate::model::layout::Motion;
 use crate::model::pose::InPlane;
 
-/// One chain's contact while its tangent is added up; there is room for `B` coordinates of the border.
+/// Accumulator for the contact tangent of one chain, with room for `B` border coordinates.
 pub(super) struct Tangent<'a, const B: usize> {
     pub(super) chain: &'a Chain,
     pub(super) surface: &'a Surface<'a>,
     pub(super) law: &'a Impact,
     pub(super) gamma: f64,
-    /// Coordinates of the border that take part.
+    /// Number of border coordinates included.
     pub(super) border: usize,
     pub(super) corner: [[f64; B]; B],
 }
 
-/// What the points of one cylinder add.
+/// Sums over the contact points of one cylinder.
 pub(super) struct Sums<const B: usize> {
     pub(super) own: [[f64; OWN]; OWN],
-    /// Rows of the cylinder, columns of the border.
+    /// Entries in the cylinder's rows and the border's columns.
     pub(super) right: [[f64; B]; OWN],
-    /// Rows of the border, columns of the cylinder, transposed.
+    /// Entries in the border's rows and the cylinder's columns, transposed.
     pub(super) bottom: [[f64; B]; OWN],
 }
 
@@ -93,7 +94,7 @@ impl<const B: usize> Sums<B> {
         }
     }
 
-    /// Adds what rates change: rows and columns of the border alike.
+    /// Adds the rate-dependent part, which is symmetric: its border rows are taken from its border columns.
     pub(super) fn add_damping(&mut self, damped: &Self) {
         let pairs = [
             (self.own.as_flattened_mut(), damped.own.as_flattened()),
@@ -138,7 +139,7 @@ impl<const B: usize> Tangent<'_, B> {
         }
     }
 
-    /// Adds what the points of one cylinder add to its block and to the border.
+    /// Adds the sums of one cylinder to its block and to the border of the matrix.
     pub(super) fn add_sums<const A: usize>(
         &self,
         block: usize,
@@ -160,7 +161,7 @@ impl<const B: usize> Tangent<'_, B> {
         }
     }
 
-    /// Adds what one point adds.
+    /// Adds the contribution of one contact point.
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
     pub(super) fn add_point<const A: usize>(
@@ -223,7 +224,8 @@ impl<const B: usize> Tangent<'_, B> {
     }
 }
 
-/// Adds to a cylinder's own block, but for the bending of its axis.
+/// Adds a point's contribution to its cylinder's own block, except for the second derivatives of the
+/// cylinder's axis.
 #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
 #[inline(always)]
 fn add_own<const A: usize, const B: usize>(

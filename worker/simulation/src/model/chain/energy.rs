@@ -1,4 +1,4 @@
-//! Energy of a chain and what it loses.
+//! Potential energy of a chain.
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
 use crate::element::impact::Impact;
@@ -9,7 +9,8 @@ use nalgebra::Vector3;
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// What of the potential at rest of laws along the rope is no stored energy \[J\].
+    /// Returns the part of the static potential of axial effect laws that is not stored energy \[J\]:
+    /// non-elastic force times extension.
     pub(crate) fn potential_beyond_energy(&self, joints: &Joints<'_>, state: &ChainState) -> f64 {
         let mut sum = 0.0;
         if joints.axial.is_none() {
@@ -23,8 +24,8 @@ impl Chain {
         sum
     }
 
-    /// Adds the elastic energy of joints and contact and the gravitational energy of the cylinders
-    /// to `sum` \[J\]. Points of contact are those of [`Self::touch`].
+    /// Adds the elastic energy of joints and contact and the gravitational energy of the cylinders to `sum`
+    /// \[J\]. The contact points must have been evaluated by [`Self::touch`].
     pub(crate) fn add_potential(
         &self,
         sum: &mut f64,

@@ -1,4 +1,4 @@
-//! Forces of weight and joints on the cylinders of a chain.
+//! Forces of gravity and joints on the cylinders of a chain.
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
 use crate::element::bushing::LinkLoad;
@@ -16,7 +16,7 @@ type V3 = Vector3<f64>;
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Fills the poses of all cylinders.
+    /// Computes the poses of all cylinders.
     pub(crate) fn pose(&self, q: &[f64], v: &[f64], state: &mut ChainState) {
         let width = self.motion.width();
         let (q, v) = (&q[self.range()], &v[self.range()]);
@@ -38,7 +38,7 @@ impl Chain {
         }
     }
 
-    /// Adds the weight of the cylinders under `gravity` [m/s2] and their velocity terms.
+    /// Adds the weight of the cylinders under `gravity` [m/s2] and their velocity-dependent inertia terms.
     pub(crate) fn add_weights(&self, gravity: &V3, state: &ChainState, force: &mut [f64]) {
         let [along, across] = self.inertia;
         let weight = gravity * self.mass;
@@ -64,14 +64,14 @@ impl Chain {
         }
     }
 
-    /// The load of the joint at the head alone, into `state`.
+    /// Computes only the load of the joint at the head, and stores it in `state`.
     pub(crate) fn load_head(&self, joints: &Joints<'_>, state: &mut ChainState) {
         if let Some(([i, j], law)) = self.link(self.count, joints, state) {
             state.joints[self.count] = law.load(&i, &j);
         }
     }
 
-    /// Adds the joints' forces on the cylinders; the loads stay in `state`.
+    /// Adds the joints' forces on the cylinders; the loads are stored in `state`.
     pub(crate) fn add_joints(
         &self,
         joints: &Joints<'_>,
@@ -87,7 +87,7 @@ impl Chain {
         }
     }
 
-    /// The same of the joints that hold the ends.
+    /// Adds the forces of the two end joints only; the loads are stored in `state`.
     pub(crate) fn add_ends(&self, joints: &Joints<'_>, state: &mut ChainState, force: &mut [f64]) {
         if self.motion == Motion::Plane {
             self.add_plane_ends(joints, state, force);
@@ -116,7 +116,7 @@ impl Chain {
         state.joints[joint] = load;
     }
 
-    /// Adds a joint's load to the cylinders that it holds in space.
+    /// Adds a joint's load to the one or two cylinders that it connects, in space.
     pub(super) fn add_load(
         &self,
         joint: usize,

@@ -10,7 +10,7 @@ use crate::state::StateRef;
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// `out -= M(q) a` of the cylinders.
+    /// Subtracts `M(q) a` of the cylinders from `out`.
     pub(crate) fn subtract_inertia<T: Entry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
         let [along, across] = self.inertia;
         let of = self.range();
@@ -36,7 +36,7 @@ impl Chain {
         }
     }
 
-    /// Adds `mass M(q)` of the cylinders.
+    /// Adds the cylinders' `M(q)` times the factor `mass` to the matrix.
     pub(crate) fn add_inertia_blocks(&self, q: &[f64], mass: f64, matrix: &mut Bordered) {
         let [along, across] = self.inertia;
         match matrix {
@@ -65,7 +65,7 @@ impl Chain {
         }
     }
 
-    /// Adds to `-damping D - K` the derivatives of the velocity terms and of `M(q) a`.
+    /// Adds the derivatives of the velocity-dependent terms and of `M(q) a` to the matrix `-damping D - K`.
     pub(crate) fn add_spin_tangent(
         &self,
         StateRef { q, v, .. }: StateRef<'_>,
@@ -91,8 +91,8 @@ impl Chain {
         }
     }
 
-    /// Derivatives of the three generalised inertial torques of a cylinder by its tilt and by the
-    /// rates of its angles.
+    /// Returns the derivatives of the three generalised inertial torques of a cylinder with respect to its
+    /// tilt and to the rates of its angles.
     fn spin_derivatives(&self, tilt: f64, v: &[f64], a: &[f64]) -> [(f64, [f64; 3]); 3] {
         let [along, across] = self.inertia;
         let (s, c) = sin_cos(tilt);
@@ -126,7 +126,8 @@ impl Chain {
         ]
     }
 
-    /// Adds `lambda W`: `W` measures a metre of a cylinder, or a turn that moves its end by as much.
+    /// Adds `lambda W`, with the diagonal `W` weighting a cylinder's displacement by 1 and its rotations by
+    /// the squared length, so that both measure displacement of its ends.
     pub(crate) fn add_static_weight(&self, lambda: f64, matrix: &mut Bordered) {
         let turning = lambda * self.pitch * self.pitch;
         for j in self.first..self.first + self.count {

@@ -1,4 +1,4 @@
-//! The markers of a chain's joints.
+//! Markers of a chain's joints.
 use super::parts::{Chain, Held, Joints};
 use super::state::ChainState;
 use crate::element::bushing::{Bushing, LinkLoad, Marker};
@@ -8,7 +8,7 @@ use crate::model::layout::Motion;
 use crate::model::pose::{PlanePose, Pose};
 use nalgebra::{Matrix3, Vector2};
 
-/// Which body of a joint a block's rows belong to.
+/// Side of a joint to which the rows of a block belong.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Side {
     I,
@@ -20,12 +20,12 @@ pub(super) enum Side {
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Whether a joint lies between two cylinders that move in the plane.
+    /// Returns whether a joint lies between two cylinders that move in the plane.
     pub(super) const fn in_plane(&self, joint: usize) -> bool {
         matches!(self.motion, Motion::Plane) && joint > 0 && joint < self.count
     }
 
-    /// Markers I and J of a joint between two cylinders.
+    /// Returns the markers I and J of a joint between two cylinders in the plane.
     #[inline]
     pub(super) fn plane_markers(&self, joint: usize, poses: &[PlanePose]) -> [PlaneMarker; 2] {
         let half = 0.5 * self.pitch;
@@ -35,7 +35,8 @@ impl Chain {
         ]
     }
 
-    /// Load of the joint at the head at coordinates and rates, whatever pose the cylinder was left in.
+    /// Returns the load of the joint at the head for the given coordinates and rates, independent of the
+    /// poses stored in a `ChainState`; `None` if the end is free.
     pub(crate) fn head_load(&self, joints: &Joints<'_>, q: &[f64], v: &[f64]) -> Option<LinkLoad> {
         let held = joints.head?;
         let pose = self.pose_at(self.count - 1, q, v);
@@ -43,7 +44,8 @@ impl Chain {
         Some(held.law.load(&i, &j))
     }
 
-    /// The same of the joint at the base.
+    /// Returns the load of the joint at the base for the given coordinates and rates; `None` if the end is
+    /// free.
     pub(crate) fn base_load(&self, joints: &Joints<'_>, q: &[f64], v: &[f64]) -> Option<LinkLoad> {
         let held = joints.base?;
         let pose = self.pose_at(0, q, v);
@@ -51,7 +53,7 @@ impl Chain {
         Some(held.law.load(&i, &j))
     }
 
-    /// Where the coordinates of a cylinder lie in a vector of unknowns.
+    /// Returns the index range of a cylinder's coordinates in a vector of unknowns.
     pub(crate) fn cylinder(&self, at: usize) -> std::ops::Range<usize> {
         let (first, width) = (self.range().start, self.motion.width());
         first + at * width..first + (at + 1) * width
@@ -69,8 +71,8 @@ impl Chain {
         }
     }
 
-    /// Markers I and J of a joint and its law; nothing where an end is free. Between cylinders that
-    /// move in the plane there are plane markers instead.
+    /// Returns the markers I and J of a joint and its law; `None` for a free end. Joints between cylinders in
+    /// the plane use `plane_markers` instead.
     pub(super) fn link<'a>(
         &self,
         joint: usize,
@@ -94,7 +96,8 @@ impl Chain {
 }
 
 impl Held<'_> {
-    /// Markers of a joint with the axes that its law refers to.
+    /// Returns the markers of a joint with their axes permuted for a pinned law, whose axis is the holding
+    /// body's z axis.
     fn with_law_axes(&self, markers: &[Marker; 2]) -> [Marker; 2] {
         if !self.pinned {
             return *markers;

@@ -1,8 +1,8 @@
-//! A chain of equal cylinders: its joints, its weight, its contact with one arc, and their tangent.
+//! Chain of equal cylinders: its joints, weight, contact with one arc, and their tangent.
 //!
-//! The kernels of every rope, in a machine or alone on a test rig. A chain knows the markers that
-//! hold its ends, not whose they are: what an end joint does to the body that holds it is that
-//! body's business. Joint 0 is before the first cylinder, joint n behind the last; J is the marker
+//! These are the kernels of every rope, in a machine or alone on a test rig. A chain knows the markers that
+//! hold its ends, not the bodies to which they belong; the effect of an end joint on the holding body is
+//! computed by that body. Joint 0 is before the first cylinder, joint n behind the last; J is the marker
 //! nearer to the chain's base, I the one nearer to its head.
 mod axial;
 mod contact;

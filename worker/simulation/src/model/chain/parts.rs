@@ -1,31 +1,31 @@
-//! What a chain is made of, and what holds it at an instant.
+//! Constant data of a chain (blocks, cylinders), and its joints at one instant.
 use crate::element::bushing::{Bushing, Marker};
 use crate::model::contact::{GAUSS, POINTS};
 use crate::model::hook::axial::AxialLaws;
 use crate::model::layout::Motion;
 
-/// The blocks that a chain takes among the unknowns, and what its cylinders are.
+/// Position of a chain's blocks among the unknowns, and the properties of its cylinders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chain {
-    /// Block of the first cylinder.
+    /// Index of the first cylinder's block.
     pub first: usize,
     /// Number of cylinders, at least one.
     pub count: usize,
-    /// Coordinates of a cylinder.
+    /// Kind of motion, in the plane or in space, which determines the coordinates of a cylinder.
     pub motion: Motion,
     /// Length of a cylinder \[m\].
     pub pitch: f64,
     /// Mass of a cylinder \[kg\].
     pub mass: f64,
-    /// Moments of inertia of a cylinder along and across its axis [kg m2].
+    /// Moments of inertia of a cylinder about its axis and about a transverse axis [kg m2].
     pub inertia: [f64; 2],
-    /// Where along a cylinder its contact is evaluated, in half lengths, and the shares of its
-    /// coefficients; what has no share does not count.
+    /// Contact evaluation points: positions along a cylinder in half lengths, and their shares of the contact
+    /// coefficients; a point with zero share is ignored.
     pub contact_points: &'static [(f64, f64); POINTS],
 }
 
 impl Chain {
-    /// Solid cylinders of a diameter \[m\], a length \[m\] and a density [kg/m3].
+    /// Creates a chain of solid cylinders with a diameter \[m\], a length \[m\] and a density [kg/m3].
     pub fn solid(first: usize, count: usize, diameter: f64, pitch: f64, density: f64) -> Self {
         let radius = 0.5 * diameter;
         let mass = density * std::f64::consts::PI * radius * radius * pitch;
@@ -43,33 +43,33 @@ impl Chain {
         }
     }
 
-    /// Where the cylinders' coordinates lie in a vector of unknowns.
+    /// Returns the index range of the cylinders' coordinates in a vector of unknowns.
     pub(crate) const fn range(&self) -> std::ops::Range<usize> {
         let width = self.motion.width();
         self.first * width..(self.first + self.count) * width
     }
 }
 
-/// An end of a chain that is held: the marker on the body that holds it, and the joint's law.
+/// Held end of a chain: marker on the holding body and law of the joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Held<'a> {
     /// Marker on the holding body.
     pub marker: Marker,
     /// Law of the joint.
     pub law: &'a Bushing,
-    /// Whether the law's axis is a pin along the holding body's z axis in place of the chain's own.
+    /// Whether the law's axis is a pin along the holding body's z axis instead of the chain's axis.
     pub pinned: bool,
 }
 
-/// The joints of a chain at one instant.
+/// Joints of a chain at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Joints<'a> {
-    /// Law between two cylinders.
+    /// Law of the joints between two cylinders.
     pub inner: &'a Bushing,
-    /// What holds the first cylinder, if anything does.
+    /// Joint that holds the first cylinder; `None` if that end is free.
     pub base: Option<Held<'a>>,
-    /// What holds the last cylinder, if anything does.
+    /// Joint that holds the last cylinder; `None` if that end is free.
     pub head: Option<Held<'a>>,
-    /// Laws of effects along the rope, between its cylinders.
+    /// Axial effect laws between the cylinders.
     pub axial: Option<AxialLaws<'a>>,
 }

@@ -1,6 +1,6 @@
 //! Joints between cylinders that move in the plane, and their tangent.
 //!
-//! The joints that hold a chain's ends have their spatial form here too: there are two of them.
+//! The two end joints use their spatial form here too.
 use super::link::Side;
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
@@ -13,7 +13,7 @@ use crate::linear::{Block, Blocks};
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Adds the joints' forces on cylinders that move in the plane; the loads stay in `state`.
+    /// Adds the joints' forces on cylinders in the plane; the loads are stored in `state`.
     pub(super) fn add_plane_joints(
         &self,
         joints: &Joints<'_>,
@@ -48,8 +48,8 @@ impl Chain {
         force[(self.count - 1) * 3..].copy_from_slice(&carried);
     }
 
-    /// Adds to each coordinate what the joints between cylinders do there per unit of their coefficients,
-    /// as [`Bushing::plane_units`] has them; nothing in space.
+    /// Adds, per coordinate, the forces of the joints between cylinders per unit of each joint coefficient,
+    /// as defined by [`Bushing::plane_units`]; does nothing for a chain in space.
     pub(crate) fn add_plane_units(&self, state: &ChainState, units: &mut [[f64; PLANE_UNITS]]) {
         let Some(units) = units.get_mut(self.range()) else {
             return;
@@ -65,7 +65,7 @@ impl Chain {
         }
     }
 
-    /// The same of the joints that hold the ends.
+    /// Adds the forces of the two end joints; the loads are stored in `state`.
     pub(super) fn add_plane_ends(
         &self,
         joints: &Joints<'_>,
@@ -109,7 +109,8 @@ impl Chain {
         }
     }
 
-    /// Subtracts the same without what rates change from the first matrix, whole from the second.
+    /// Subtracts the joints' tangent, without the rate-dependent part from the first matrix and complete from
+    /// the second.
     pub(super) fn add_plane_parts(
         &self,
         joints: &Joints<'_>,
@@ -129,7 +130,7 @@ impl Chain {
     }
 }
 
-/// Subtracts the tangent of the joint between `block` (I) and the one before it (J).
+/// Subtracts the tangent of the joint between `block` (I) and the block before it (J).
 #[inline]
 fn subtract_joint(matrix: &mut Blocks<3>, block: usize, [by_i, by_j]: &[[PlaneColumn; 3]; 2]) {
     subtract(matrix.diagonal_mut(block - 1), by_j, Side::J);
@@ -139,7 +140,7 @@ fn subtract_joint(matrix: &mut Blocks<3>, block: usize, [by_i, by_j]: &[[PlaneCo
     subtract(matrix.diagonal_mut(block), by_i, Side::I);
 }
 
-/// Subtracts the rows of one side's cylinder.
+/// Subtracts the rows of the cylinder on one side of a joint from a block.
 #[inline]
 fn subtract(block: &mut Block<3>, columns: &[PlaneColumn; 3], side: Side) {
     for (k, column) in columns.iter().enumerate() {

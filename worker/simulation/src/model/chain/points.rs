@@ -1,7 +1,6 @@
-//! The points of a chain where contact with its arc is evaluated, side by side: one array per
-//! quantity, so that the arithmetic of many points is one plain loop that compilers turn into
-//! vectors. Here alone are the geometry of contact and its law evaluated: forces, tangent and energy
-//! read what stands here.
+//! Contact points of a chain with its arc, stored as one array per quantity (structure of arrays), so that
+//! compilers vectorise the arithmetic over many points. The geometry of contact and its law are evaluated
+//! only here; forces, tangent and energy read the results.
 use super::parts::Chain;
 use crate::element::impact::{By, Impact, ImpactForce};
 use crate::math::spline::{Place, sum::Spread};
@@ -11,77 +10,81 @@ use nalgebra::Vector2;
 
 type V2 = Vector2<f64>;
 
-/// A number for each point of a cylinder.
+/// One value per contact point of a cylinder.
 type Each = [f64; POINTS];
 
-/// Points of those cylinders that may touch, of one evaluation; allocated once.
+/// Contact points of the cylinders that may touch, for one evaluation; allocated once.
 #[derive(Clone, Debug, Default)]
 pub struct Points {
-    /// Cylinders with points, in order.
+    /// Indices of the cylinders that may touch, in ascending order.
     cylinders: Vec<usize>,
-    /// Where along their cylinders they lie \[m\], and their shares of its law.
+    /// Position of each point along its cylinder, from the centre \[m\]; `share` is the point's share of the
+    /// contact coefficients.
     along: Each,
     share: Each,
-    /// Their cylinders' centres, and they themselves, from the arc's centre \[m\].
+    /// Position of the cylinder's centre relative to the arc's centre \[m\]; `place` is that of the point.
     toward: [Vec<Each>; 2],
     place: [Vec<Each>; 2],
-    /// Velocity [m/s].
+    /// Velocities of the points [m/s].
     velocity: [Vec<Each>; 2],
-    /// Arc angles of their cylinders and their own, in the beam frame \[rad\]; 0 where the surface is
-    /// a circle.
+    /// Arc angle of the cylinder's centre in the beam frame \[rad\]; `angle` is that of the point. Both are 0
+    /// for a circular surface.
     bearing: Vec<Each>,
     angle: Vec<Each>,
-    /// Where on the grid of the arc's shapes they lie, if it has any.
+    /// Positions of the points on the grid of the arc's mode shapes, if the arc has any.
     on_grid: Vec<[Place; POINTS]>,
-    /// Height of the surface above its circle \[m\], slope over the arc angle [m/rad], rate [m/s].
+    /// Height of the surface above its circle \[m\]; `slope` is its derivative with respect to the arc angle
+    /// [m/rad], `rising` its rate [m/s].
     height: Vec<Each>,
     slope: Vec<Each>,
     rising: Vec<Each>,
-    /// Penetration \[m\] and its rate [m/s].
+    /// Penetration \[m\]; `rate` is its rate [m/s].
     depth: Vec<Each>,
     rate: Vec<Each>,
-    /// Derivatives of the penetration by the point and by the beam angle.
+    /// Derivatives of the penetration with respect to the point's position; `by_beam` is that with respect to
+    /// the beam angle.
     by_point: [Vec<Each>; 2],
     by_beam: Vec<Each>,
-    /// Force that presses, never negative \[N\], and the power that the damping takes \[W\].
+    /// Normal contact force, never negative \[N\]; `lost` is the power dissipated by the damping \[W\].
     force: Vec<Each>,
     lost: Vec<Each>,
 }
 
-/// What a cylinder's points add up to.
+/// Sums over the contact points of one cylinder.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pressed {
-    /// How hard the cylinder is pressed \[N\].
+    /// Sum of the normal contact forces \[N\].
     pub(super) total: f64,
-    /// Force on it \[N\], and its first moment along the axis [N m].
+    /// Force on the cylinder \[N\]; `bend` is its first moment along the axis [N m].
     pub(super) push: V2,
     pub(super) bend: V2,
-    /// Moment that the beam takes up [N m].
+    /// Moment on the beam [N m].
     pub(super) beam: f64,
-    /// Power that the damping takes \[W\].
+    /// Power dissipated by the damping \[W\].
     pub(super) lost: f64,
 }
 
-/// A point that is pressed, as a tangent asks for it.
+/// Loaded contact point with the quantities that a tangent needs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
-    /// Where along its cylinder it lies \[m\], and its velocity [m/s].
+    /// Position along the cylinder from its centre \[m\]; `velocity` is the point's velocity [m/s].
     pub(super) along: f64,
     pub(super) velocity: V2,
-    /// Arc angle, in the beam frame \[rad\]; 0 where the surface is a circle.
+    /// Arc angle in the beam frame \[rad\]; 0 for a circular surface.
     pub(super) angle: f64,
-    /// Derivatives of the penetration by the point and by the beam angle, and second ones.
+    /// First derivatives of the penetration with respect to the point (`by_point`) and the beam angle
+    /// (`by_beam`); `curvature` holds the second derivatives.
     pub(super) by_point: V2,
     pub(super) by_beam: f64,
     pub(super) curvature: Curvature,
-    /// Where on the grid of the arc's shapes it lies, if it has any.
+    /// Position on the grid of the arc's mode shapes, if the arc has any.
     pub(super) on_grid: Place,
-    /// Its share of the law.
+    /// Force of the contact law with its derivatives, multiplied by the point's share.
     pub(super) law: ImpactForce,
 }
 
 impl Points {
-    /// Room for a chain.
+    /// Allocates the points of a chain.
     pub(super) fn new(chain: &Chain) -> Self {
         let zeros = || vec![[0.0; POINTS]; chain.count];
         let half = 0.5 * chain.pitch;
@@ -107,12 +110,12 @@ impl Points {
         }
     }
 
-    /// Cylinders with points, in order.
+    /// Returns the indices of the cylinders that may touch, in ascending order.
     pub(super) fn cylinders(&self) -> &[usize] {
         &self.cylinders
     }
 
-    /// Collects the points of all cylinders that may touch, and evaluates a law there.
+    /// Collects the points of all cylinders that may touch, and evaluates the contact law there.
     pub(super) fn evaluate<'a, const A: usize, P: InPlane<A> + 'a>(
         &mut self,
         chain: &Chain,
@@ -135,7 +138,7 @@ impl Points {
         );
     }
 
-    /// Puts the derivatives of the forces in their place.
+    /// Replaces the forces by their derivatives with respect to the parameter `by` of the law.
     pub(crate) fn vary(&mut self, law: &Impact, by: By) {
         let n = self.cylinders.len();
         let force = self.force[..n].as_flattened_mut();
@@ -174,7 +177,7 @@ impl Points {
         }
     }
 
-    /// Arc angles.
+    /// Computes the arc angles of the points.
     fn turn(&mut self) {
         let c = self.cylinders.len();
         let [ax, ay] = self.toward.each_ref().map(|x| x[..c].as_flattened());
@@ -187,7 +190,7 @@ impl Points {
         }
     }
 
-    /// Heights of the surface above its circle.
+    /// Computes the heights of the surface above its circle, with slopes and rates.
     fn shape(&mut self, surface: &Surface<'_>) {
         let c = self.cylinders.len();
         let height = self.height[..c].as_flattened_mut();
@@ -215,7 +218,7 @@ impl Points {
         }
     }
 
-    /// Penetrations, their rates and derivatives.
+    /// Computes the penetrations with their rates and derivatives.
     fn penetrate(&mut self, surface: &Surface<'_>) {
         let c = self.cylinders.len();
         let n = c * POINTS;
@@ -253,7 +256,7 @@ impl Points {
         }
     }
 
-    /// Adds up the points of the `k`-th of [`Self::cylinders`].
+    /// Sums up the points of the `k`-th of [`Self::cylinders`].
     #[inline]
     pub(super) fn pressed(&self, k: usize) -> Pressed {
         let (force, lost) = (&self.force[k], &self.lost[k]);
@@ -272,14 +275,14 @@ impl Points {
         sum
     }
 
-    /// Those points of the `k`-th of [`Self::cylinders`] that are pressed.
+    /// Iterates over the loaded points of the `k`-th of [`Self::cylinders`].
     pub(super) fn touching(&self, k: usize) -> impl Iterator<Item = usize> {
         let pressed = move |&i: &usize| self.share[i] * self.force[k][i] != 0.0;
         (0..POINTS).filter(pressed)
     }
 
-    /// Point `i` of the `k`-th of [`Self::cylinders`], on the surface and under the law that it was
-    /// evaluated with.
+    /// Returns point `i` of the `k`-th of [`Self::cylinders`]; surface and law must be those of the last
+    /// evaluation.
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
     pub(super) fn touch(
@@ -301,13 +304,14 @@ impl Points {
         }
     }
 
-    /// Derivatives of the same point's force by stiffness and by damping of the law.
+    /// Returns the derivatives of the force at point `i` of the `k`-th of [`Self::cylinders`] with respect to
+    /// stiffness and damping of the law.
     pub(super) fn by_law(&self, (k, i): (usize, usize), law: &Impact) -> [f64; 2] {
         let by = law.force_by(self.depth[k][i], self.rate[k][i]);
         by.map(|by| self.share[i] * by)
     }
 
-    /// Second derivatives of a penetration.
+    /// Returns the second derivatives of a point's penetration.
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
     fn curvature(&self, k: usize, i: usize, surface: &Surface<'_>) -> Curvature {
@@ -316,7 +320,7 @@ impl Points {
         surface.curvature(&toward, angle, &self.on_grid[k][i], slope)
     }
 
-    /// Adds the energy that a law stores at the points to `sum` \[J\].
+    /// Adds the elastic energy of the contact at all points to `sum` \[J\].
     pub(super) fn add_energy(&self, sum: &mut f64, law: &Impact) {
         for depths in &self.depth[..self.cylinders.len()] {
             for (share, &depth) in self.share.iter().zip(depths) {
@@ -325,14 +329,14 @@ impl Points {
         }
     }
 
-    /// Deepest penetration, not negative \[m\].
+    /// Returns the largest penetration, not negative \[m\].
     pub(super) fn deepest(&self) -> f64 {
         let depths = self.depth[..self.cylinders.len()].as_flattened();
         let deeper = |deepest: f64, &depth: &f64| if depth > deepest { depth } else { deepest };
         depths.iter().fold(0.0, deeper)
     }
 
-    /// Spreads the forces over the knots of the arc's shapes.
+    /// Distributes the contact forces to the knots of the arc's mode shapes.
     pub(super) fn spread(&self, pressure: &mut Spread) {
         for (k, places) in self.on_grid[..self.cylinders.len()].iter().enumerate() {
             for (i, place) in places.iter().enumerate() {
@@ -344,7 +348,7 @@ impl Points {
         }
     }
 
-    /// Arc angles \[rad\] and forces \[N\] of the points.
+    /// Iterates over arc angle \[rad\] and force \[N\] of all points.
     pub(crate) fn forces(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let points = self.angle.iter().zip(&self.force);
         let each = points.take(self.cylinders.len());
@@ -364,7 +368,7 @@ mod tests {
     use crate::model::hook::profile::{Hollow, Profile};
     use crate::model::pose::PlanePose;
 
-    /// A point of contact and all its derivatives.
+    /// Contact point with all its derivatives.
     struct Seen {
         depth: f64,
         rate: f64,
@@ -374,7 +378,8 @@ mod tests {
         curvature: Curvature,
     }
 
-    /// Where everything is, and how it moves: centre of the cylinder and its angle, beam, modes.
+    /// Coordinates of the test configuration: centre of the cylinder and its angle, beam angle, modal
+    /// coordinates; `MOTION` holds their rates.
     const PLACE: [f64; 6] = [-1.9, -0.4, 1.3, 0.2, 0.3, -0.2];
     const MOTION: [f64; 6] = [0.4, -0.9, 0.8, 0.6, 0.5, 0.7];
 

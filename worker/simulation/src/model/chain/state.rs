@@ -11,31 +11,31 @@ use nalgebra::Vector2;
 /// Poses and loads of a chain at the last evaluation of its forces; allocated once.
 #[derive(Clone, Debug)]
 pub struct ChainState {
-    /// Pose of each cylinder that moves in space; empty where they move in the plane.
+    /// Poses of the cylinders of a chain in space; empty for a chain in the plane.
     pub poses: Vec<Pose>,
-    /// Pose of each cylinder that moves in the plane; empty where they move in space.
+    /// Poses of the cylinders of a chain in the plane; empty for a chain in space.
     pub plane: Vec<PlanePose>,
-    /// Angles of those \[rad\], their sines and cosines.
+    /// Angles of the cylinders in the plane \[rad\], their sines and cosines.
     pub(super) turns: [Vec<f64>; 3],
-    /// Load of each joint, one more than cylinders; zero where an end is free.
+    /// Loads of all joints, one more than cylinders; zero for a free end.
     pub joints: Vec<LinkLoad>,
     /// Contact force of each cylinder \[N\].
     pub contact: Vec<f64>,
-    /// Points of contact of the last evaluation.
+    /// Contact points of the last evaluation.
     pub points: Points,
-    /// Contact forces on a deflected arc, spread over the knots of its shapes.
+    /// Contact forces on a deflected arc, distributed to the knots of its mode shapes.
     pub pressure: Spread,
-    /// Deepest penetration \[m\].
+    /// Largest penetration \[m\].
     pub deepest: f64,
-    /// Power that the contact's damping takes \[W\].
+    /// Power dissipated by the contact damping \[W\].
     pub dissipated: f64,
-    /// What laws along the rope remember of the last accepted step, joint by joint and law by law;
-    /// empty where none has a past, or before the run has begun to move.
+    /// Memory of history-dependent axial laws at the last accepted step, joint by joint and law by law; empty
+    /// if no law has memory, or before the first step.
     pub memory: Vec<Memory>,
 }
 
 impl ChainState {
-    /// Buffers for a chain.
+    /// Allocates the buffers for a chain.
     pub fn new(chain: &Chain) -> Self {
         let (poses, plane) = match chain.motion {
             Motion::Plane => (0, chain.count),
@@ -55,20 +55,20 @@ impl ChainState {
         }
     }
 
-    /// Pose of cylinder `j` in space.
+    /// Returns the pose of cylinder `j` in space.
     pub fn pose(&self, j: usize) -> Pose {
         self.plane
             .get(j)
             .map_or_else(|| self.poses[j], PlanePose::in_space)
     }
 
-    /// Power that the damping of joints and contact takes \[W\].
+    /// Returns the power dissipated by joints and contact \[W\].
     pub fn losses(&self) -> f64 {
         let joints = self.joints.iter().map(|load| load.dissipated);
         joints.sum::<f64>() + self.dissipated
     }
 
-    /// Tension in a joint, positive where it pulls \[N\].
+    /// Returns the tension in a joint \[N\], positive in tension.
     pub fn tension(&self, joint: usize) -> f64 {
         -self.joints[joint].axial
     }

@@ -1,7 +1,7 @@
 //! Tangent of a chain's joints.
 //!
-//! Interior joints couple two neighbouring blocks. An end joint couples the cylinder with whatever
-//! holds it: the cylinder's own block is filled here, the rest is handed to the holder.
+//! Interior joints couple two neighbouring blocks. An end joint couples the cylinder with the body that holds
+//! it: the cylinder's own block is filled here, the remaining derivatives are returned for the holding body.
 use super::link::Side;
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
@@ -13,33 +13,34 @@ use nalgebra::{Matrix3, Vector3};
 type V3 = Vector3<f64>;
 type M3 = Matrix3<f64>;
 
-/// Derivatives of force, torque on I and torque on J by one generalised coordinate.
+/// Derivatives of force, torque on I and torque on J with respect to one generalised coordinate.
 pub(crate) type Column = [V3; 3];
 
-/// The same by the position and the angles of a cylinder.
+/// Derivatives of a joint's force and torques with respect to the position and the angles of a cylinder.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CylinderColumns {
     position: [M3; 3],
     angles: [M3; 3],
 }
 
-/// An end joint, differentiated: by its cylinder and by the body that holds it, whatever their rates are of.
+/// Derivatives of an end joint's load with respect to the motion of its cylinder and of the holding body,
+/// before rates are related to coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HeldEnd {
     side: Side,
-    /// Block and pose of the cylinder.
+    /// Matrix block of the cylinder; `pose` is its pose.
     block: usize,
     pose: Pose,
     by_own: LinkTangent,
     by_body: LinkTangent,
 }
 
-/// Tangent of an end joint, for the body that holds the chain there.
+/// Derivatives of an end joint's load, for the body that holds the chain there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EndTangent {
-    /// By the motion of the holding body.
+    /// Derivatives with respect to the motion of the holding body.
     pub(crate) by_body: LinkTangent,
-    /// By the coordinates of the cylinder.
+    /// Derivatives with respect to the coordinates of the cylinder.
     pub(crate) by_cylinder: CylinderColumns,
 }
 
@@ -69,8 +70,8 @@ impl Chain {
         }
     }
 
-    /// The same without what rates change to the first matrix, whole to the second; whether there is such a
-    /// thing, which is so in the plane.
+    /// Adds the joints' tangent, without the rate-dependent part to the first matrix and complete to the
+    /// second; returns whether this was done, which requires a chain in the plane.
     pub(crate) fn add_joint_parts(
         &self,
         joints: &Joints<'_>,
@@ -86,7 +87,7 @@ impl Chain {
         true
     }
 
-    /// The joints that hold the chain at base and head, differentiated.
+    /// Returns the derivatives of the joints at base and head; `None` for a free end.
     pub(crate) fn ends(&self, joints: &Joints<'_>, state: &ChainState) -> [Option<HeldEnd>; 2] {
         [(0, 0, Side::I), (self.count, self.count - 1, Side::J)].map(|(joint, cylinder, side)| {
             let ([i, j], law) = self.link(joint, joints, state)?;
@@ -105,8 +106,8 @@ impl Chain {
         })
     }
 
-    /// Adds the tangent of the joints at base and head to the own blocks of the cylinders that they
-    /// hold; returns it for their holders.
+    /// Adds the tangent of the end joints to the blocks of the cylinders that they hold; returns the
+    /// derivatives for the holding bodies.
     pub(crate) fn add_end_tangent(
         &self,
         ends: &[Option<HeldEnd>; 2],
@@ -131,7 +132,8 @@ impl Chain {
         })
     }
 
-    /// The torques of both joints of a cylinder turn with its angles.
+    /// Adds the derivative of each cylinder's joint torques due to the change of their generalised components
+    /// with its angles.
     fn add_turning(&self, state: &ChainState, matrix: &mut Blocks<BLOCK>) {
         for (j, pose) in state.poses.iter().enumerate() {
             let torque = state.joints[j].torque_i + state.joints[j + 1].torque_j;
@@ -143,7 +145,7 @@ impl Chain {
         }
     }
 
-    /// A joint between two cylinders in space.
+    /// Adds the tangent of a joint between two cylinders in space.
     fn add_inner_tangent(
         &self,
         joint: usize,
@@ -182,14 +184,14 @@ impl CylinderColumns {
         }
     }
 
-    /// Derivatives by coordinate `k` of the cylinder.
+    /// Returns the derivatives with respect to coordinate `k` of the cylinder.
     pub(crate) fn column(&self, k: usize) -> Column {
         let of = if k < 3 { &self.position } else { &self.angles };
         std::array::from_fn(|row| of[row].column(k % 3).into_owned())
     }
 }
 
-/// Subtracts the rows of one side's cylinder: force and generalised torque.
+/// Subtracts the rows of the cylinder on one side of a joint: force and generalised torque.
 fn subtract_own(block: &mut Block, columns: &CylinderColumns, angular: &M3, side: Side) {
     let (sign, torque) = match side {
         Side::I => (1.0, 1),

@@ -1,22 +1,22 @@
-//! A force along a line with what belongs to it: energy, and derivatives for the tangent.
+//! Force along a line with its energy and its derivatives for the tangent matrix.
 
-/// A force along a line, positive where it drives towards growing place, and what belongs to it.
+/// Force along a line, positive in the direction of increasing `place`, with its energy and derivatives.
 ///
-/// `spring` is a function of the place alone, and `energy` its potential. `other` may depend on the
-/// place, its rate and the drive ([`DriveState`](crate::drive::DriveState): turn, rate of the pin, load,
-/// time), but **at rest not on the place**: the search for equilibrium takes it there as a given force,
-/// whose potential is `-other` times the place. What depends on place and rate has its derivatives by
-/// both stated; derivatives by drive and time are asked by nobody.
+/// `spring` depends on the place only, and `energy` is its potential. `other` may depend on the place, its
+/// rate and the drive ([`DriveState`](crate::drive::DriveState): turn, rate of the pin, load, time), but **at
+/// rest not on the place**: the equilibrium solver treats it as a constant force with the potential `-other`
+/// times the place. Derivatives are required with respect to place and rate; derivatives with respect to
+/// drive and time are not needed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Along {
-    /// Part that derives from `energy`.
+    /// Conservative part of the force, which derives from `energy`.
     pub spring: f64,
-    /// Part that does not: friction, or a function of time.
+    /// Part of the force that does not derive from `energy`: friction, or a function of time.
     pub other: f64,
-    /// Stored energy.
+    /// Stored energy, the potential of `spring`.
     pub energy: f64,
-    /// Derivative of the sum of both parts by the place along the line.
+    /// Derivative of the total force with respect to the place along the line.
     pub by_place: f64,
-    /// The same by its rate.
+    /// Derivative of the total force with respect to the rate of the place.
     pub by_rate: f64,
 }

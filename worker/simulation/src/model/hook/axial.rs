@@ -1,56 +1,58 @@
-//! Laws of effects along a rope: pulls between its cylinders by strain and rate.
+//! Axial laws of effects: tensile forces between neighbouring cylinders of a rope as functions of strain and
+//! strain rate.
 use super::along::Along;
 use crate::drive::DriveState;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// A force along a rope between two cylinders, as a law of its strain; positive where it pulls.
+/// Axial force between two neighbouring cylinders of a rope as a function of the strain; positive in tension.
 pub trait Axial: Debug + Send + Sync {
-    /// Pull \[N\] at a strain \[1\] and its rate [1/s]; energies are per length [J/m].
+    /// Returns the tensile force \[N\] at a strain \[1\] and its rate [1/s]; energies are per unit length
+    /// [J/m].
     fn pull(&self, at: &Strain<'_>) -> Along;
 
-    /// The pull \[N\] of a law that says the same all along the rope, whatever its strain: those of a force
-    /// that only time and the drive know.
+    /// Returns the tensile force \[N\] if it is constant along the rope and independent of the strain, that
+    /// is, a function of time and drive only; otherwise `None`.
     fn uniform(&self, _drive: &DriveState) -> Option<f64> {
         None
     }
 
-    /// What the law wants to know at the next step of this joint; a law without a past wants nothing.
+    /// Returns the state that the law needs at the next step of this joint; `None` for a law without memory.
     fn remember(&self, _at: &Strain<'_>) -> Option<Memory> {
         None
     }
 }
 
-/// State of a law with a past: strain \[1\] and inner variable at the last accepted step.
+/// State of a law with memory: strain \[1\] and internal variable at the last accepted step.
 pub type Memory = [f64; 2];
 
-/// A joint of a rope.
+/// State of a rope joint at which an axial law is evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct Strain<'a> {
-    /// Crank and load.
+    /// State of crank and load.
     pub drive: &'a DriveState,
-    /// Strain \[1\].
+    /// Axial strain of the joint \[1\].
     pub strain: f64,
-    /// Its rate [1/s].
+    /// Strain rate [1/s].
     pub rate: f64,
-    /// Stiffness of the individual's rope, force per strain \[N\].
+    /// Axial stiffness of the individual's rope, force per unit strain \[N\].
     pub stiffness: f64,
-    /// What this law remembered of this joint; nothing before the run has begun to move.
+    /// State stored by this law for this joint at the last accepted step; `None` before the first step.
     pub memory: Option<Memory>,
 }
 
-/// The rope that laws act along.
+/// Properties of the rope on which axial laws act.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Carrier {
-    /// Force per strain of all ropes of a head together \[N\].
+    /// Axial stiffness, force per unit strain, of all ropes on a head together \[N\].
     pub(crate) stiffness: f64,
-    /// What of the laws this rope carries: half of them where there are two.
+    /// Share of the force of each law that this rope carries: 1 for a single rope, 0.5 for twin ropes.
     pub(crate) share: f64,
-    /// Length of rope that a joint stands for \[m\].
+    /// Length of rope represented by a joint \[m\].
     pub(crate) length: f64,
 }
 
-/// The laws along one rope at an instant.
+/// Axial laws of one rope at an instant.
 #[derive(Clone, Copy, Debug)]
 pub struct AxialLaws<'a> {
     pub(super) laws: &'a [Arc<dyn Axial>],
@@ -59,14 +61,15 @@ pub struct AxialLaws<'a> {
 }
 
 impl AxialLaws<'_> {
-    /// How many laws there are: each has a memory of its own in every joint.
+    /// Returns the number of laws; each law has its own memory in every joint.
     pub(crate) const fn len(&self) -> usize {
         self.laws.len()
     }
 
-    /// Sum of the laws at an extension \[m\] and its rate [m/s]; derivatives by those, energy in J.
+    /// Returns the sum of the laws at an extension \[m\] and its rate [m/s], with derivatives with respect to
+    /// both and the energy in J.
     ///
-    /// `memories` are those of the joint, law by law, or empty before the run has begun to move.
+    /// `memories` holds the memory of each law at this joint; empty before the first step.
     pub(crate) fn pull(&self, extension: f64, rate: f64, memories: &[Memory]) -> Along {
         let mut at = self.strain(extension, rate);
         let Carrier { share, length, .. } = self.carrier;
@@ -89,15 +92,15 @@ impl AxialLaws<'_> {
         }
     }
 
-    /// The sum of the laws where it is the same all along the rope.
+    /// Returns the sum of the laws if all of them are constant along the rope, otherwise `None`.
     pub(crate) fn uniform(&self) -> Option<f64> {
         let each = self.laws.iter().map(|law| law.uniform(self.drive));
         let sum: Option<f64> = each.sum();
         sum.map(|sum| sum * self.carrier.share)
     }
 
-    /// Replaces the memories of a joint by what the laws want to know at the next step; `first`: there
-    /// are none yet. Whether any law has a past.
+    /// Updates the memories of a joint for the next step; `first` states that no memory exists yet. Returns
+    /// whether any law has memory.
     pub(crate) fn remember(
         &self,
         extension: f64,
@@ -132,7 +135,7 @@ impl AxialLaws<'_> {
 mod tests {
     use super::*;
 
-    /// Pulls by the largest strain that it has seen, times a factor.
+    /// Test law with memory: a force proportional to the largest strain so far.
     #[derive(Debug)]
     struct Largest(f64);
 
@@ -151,7 +154,7 @@ mod tests {
         }
     }
 
-    /// Has no past.
+    /// Test law without memory.
     #[derive(Debug)]
     struct Straight;
 
@@ -190,8 +193,8 @@ mod tests {
         extensions.iter().map(follow).collect()
     }
 
-    /// Each law along a rope has a past of its own: together they pull what they pull one by one,
-    /// whatever stands between them.
+    /// Checks that each axial law has its own memory: several laws acting together give the sum of their
+    /// separate forces, also with laws without memory between them.
     #[test]
     fn laws_with_a_past_share_no_memory() {
         let laws: [Arc<dyn Axial>; 4] = [

@@ -1,4 +1,4 @@
-//! What an effect is to the machine: something that edits its description, or hangs pieces on it.
+//! Interface of an effect: editing the description of a machine, or adding hooks to the machine.
 use super::set::Hooks;
 use crate::math::spline::Splines;
 use crate::model::cycle::Cycle;
@@ -8,31 +8,31 @@ use crate::model::layout::Layout;
 use crate::model::strand::Face;
 use std::fmt::Debug;
 
-/// An effect with its values.
+/// Effect with its parameter values.
 pub trait Effect: Debug + Send + Sync {
-    /// Edits the machine before it is built: geometry, inertia, samples of the card; `modes` is the
-    /// number of head modes that are kept.
+    /// Edits the description before the machine is built (geometry, inertia, samples of the card) and the
+    /// number `modes` of head modes that are kept.
     fn describe(&self, _description: &mut Description, _modes: &mut usize) {}
 
-    /// Hangs pieces on the built machine.
+    /// Adds the hooks of the effect (forces, laws, readings) to the built machine.
     fn install(&self, _site: &Site<'_>, _hooks: &mut Hooks) {}
 }
 
-/// What an effect sees of the machine that it is installed on.
+/// Properties of a machine that are available to an effect when it is installed.
 #[derive(Clone, Copy, Debug)]
 pub struct Site<'a> {
-    /// What the machine was made from, as the effects have edited it.
+    /// Description that the machine was built from, including the edits of effects.
     pub description: &'a Description,
-    /// Where its coordinates live.
+    /// Indices of the machine's coordinates.
     pub layout: Layout,
-    /// One turn of its ideal mechanism.
+    /// Curves of the machine's ideal mechanism over one turn.
     pub cycle: &'a Cycle,
-    /// Bottom dead centre of the inextensible mechanism: where the turn angle is zero.
+    /// Bottom dead centre of the inextensible mechanism, where the turn angle is zero.
     pub bottom: Position,
-    /// Height in W of the suspension point's lowest design position \[m\].
+    /// Height in W of the suspension point at its lowest design position \[m\].
     pub lowest_suspension: f64,
-    /// Load over the turn \[N\].
+    /// Load as a function of the turn angle \[N\].
     pub card: &'a Splines,
-    /// The back head as each back rope sees it.
+    /// Back-head mode shapes for each back rope.
     pub(crate) faces: &'a [Face],
 }

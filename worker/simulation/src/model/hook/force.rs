@@ -1,22 +1,24 @@
-//! A generalised force that an effect adds to those of the machine.
+//! Interface of a generalised force that an effect adds to those of the machine.
 use crate::linear::Bordered;
 use crate::model::instant::Instant;
 use std::fmt::Debug;
 
-/// A generalised force.
+/// Generalised force added by an effect.
 pub trait Force: Debug + Send + Sync {
-    /// Adds it.
+    /// Adds the generalised force to `force`.
     fn add(&self, at: &Instant<'_>, force: &mut [f64]);
 
-    /// Adds its part of `-K - gamma D`, with `K` and `D` its derivatives by coordinates and rates.
+    /// Adds the force's contribution to `-K - gamma D`, where `K` and `D` are its derivatives with respect to
+    /// coordinates and rates.
     fn add_tangent(&self, at: &Instant<'_>, gamma: f64, matrix: &mut Bordered);
 
-    /// Energy that it stores \[J\].
+    /// Returns the stored energy of the force \[J\].
     fn energy(&self, at: &Instant<'_>) -> f64;
 
-    /// Potential from which it derives at rest and at a fixed time, stored energy included \[J\].
+    /// Returns the potential from which the force derives at rest and at a fixed time, including the stored
+    /// energy \[J\].
     fn potential(&self, at: &Instant<'_>) -> f64;
 
-    /// Power that it takes out of the machine beyond what it stores \[W\].
+    /// Returns the power extracted from the machine by the force, excluding stored energy \[W\].
     fn lost(&self, at: &Instant<'_>) -> f64;
 }

@@ -1,6 +1,7 @@
 //! Forces along one coordinate: `Q = f(d, d', drive)`.
 //!
-//! So the tangent is one number on the diagonal, and power and potential are products.
+//! Their tangent is a single diagonal entry, and their power and potential are products with the rate and the
+//! coordinate.
 use super::along::Along;
 use super::force::Force;
 use crate::drive::DriveState;
@@ -9,14 +10,15 @@ use crate::math::elementary::tanh;
 use crate::model::instant::Instant;
 use std::fmt::Debug;
 
-/// A law of one coordinate and its rate; which coordinate, [`Hooks::on`](super::set::Hooks::on) says.
+/// Force law of one coordinate and its rate; the coordinate is chosen in
+/// [`Hooks::on`](super::set::Hooks::on).
 pub trait LineForce: Debug + Send + Sync {
-    /// Force, positive where it drives towards growing `place`; see [`Along`] for what it may depend
-    /// on.
+    /// Returns the force, positive in the direction of increasing `place`; see [`Along`] for its admissible
+    /// dependences.
     fn along(&self, drive: &DriveState, place: f64, rate: f64) -> Along;
 }
 
-/// A law on the coordinate that it acts along.
+/// Force law together with the index of the coordinate on which it acts.
 #[derive(Debug)]
 pub(super) struct OnCoordinate<L> {
     pub(super) coordinate: usize,
@@ -59,7 +61,7 @@ impl<L: LineForce> Force for OnCoordinate<L> {
 /// Viscous damping of one coordinate.
 #[derive(Clone, Copy, Debug)]
 pub struct Dashpot {
-    /// Force per rate.
+    /// Damping coefficient, force per unit rate.
     pub damping: f64,
 }
 
@@ -73,8 +75,8 @@ impl LineForce for Dashpot {
     }
 }
 
-/// Dry friction `-size tanh(rate / regularisation)`, smooth where the motion turns: it creeps below
-/// the regularisation speed instead of sticking.
+/// Returns the dry friction `-size tanh(rate / regularisation)`, smooth at reversal of the motion: below the
+/// regularisation speed it creeps instead of sticking.
 pub(crate) fn dry_friction(size: f64, rate: f64, regularisation: f64) -> Along {
     let t = tanh(rate / regularisation);
     Along {

@@ -1,8 +1,7 @@
-//! Where effects take hold of a machine: the kinds of piece that one may hang there, and what an effect
-//! is to the machine.
+//! Interfaces through which effects modify a machine: the kinds of hooks and the trait of an effect.
 //!
-//! A machine without effects has an empty set of pieces and computes what it always did. Nothing here
-//! knows which effect a piece belongs to, nor what effects there are.
+//! A machine without effects has an empty set of hooks and computes the plain model. This module does not
+//! depend on individual effects.
 pub(crate) mod along;
 pub(crate) mod axial;
 pub(crate) mod effect;

@@ -1,41 +1,42 @@
-//! The back head's surface where it is not the circle of the description.
+//! Deviation of the back head's surface from the circle of the description.
 use crate::math::elementary::exp;
 
-/// A sum of smooth hollows over the arc angle.
+/// Surface profile as a sum of smooth hollows over the arc angle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Profile {
     hollows: Vec<Hollow>,
 }
 
-/// Missing material `depth exp(-((s - centre) / reach)^2)`.
+/// Hollow of depth `depth exp(-((s - centre) / reach)^2)` at arc angle `s`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hollow {
     /// Greatest depth, positive into the head \[m\].
     pub depth: f64,
-    /// Where it is deepest, arc angle in the beam frame \[rad\].
+    /// Arc angle of greatest depth, in the beam frame \[rad\].
     pub centre: f64,
-    /// Distance at which it is 1/e as deep \[rad\].
+    /// Angular distance from the centre at which the depth has fallen to 1/e \[rad\].
     pub reach: f64,
 }
 
 impl Profile {
-    /// Adds a hollow.
+    /// Adds a hollow to the profile.
     pub fn dig(&mut self, hollow: Hollow) {
         self.hollows.push(hollow);
     }
 
-    /// Whether there is none.
+    /// Returns whether the profile has no hollows.
     pub const fn is_flat(&self) -> bool {
         self.hollows.is_empty()
     }
 
-    /// What no height exceeds \[m\].
+    /// Returns an upper bound of the height of the profile above the circle \[m\].
     pub fn highest(&self) -> f64 {
         let seams = self.hollows.iter().map(|hollow| (-hollow.depth).max(0.0));
         seams.sum()
     }
 
-    /// Height above the circle \[m\] with its first and second derivative over the arc angle.
+    /// Returns the height above the circle \[m\] with its first and second derivatives with respect to the
+    /// arc angle.
     pub fn height(&self, angle: f64) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for hollow in &self.hollows {

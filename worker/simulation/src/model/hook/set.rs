@@ -1,5 +1,5 @@
-//! Everything that effects have hung on one machine. Pieces of one kind add up in the order in which
-//! they were hung there.
+//! Set of all hooks that effects have added to a machine. Hooks of one kind are summed in the order in which
+//! they were added.
 use super::axial::{Axial, AxialLaws, Carrier};
 use super::force::Force;
 use super::line::{LineForce, OnCoordinate};
@@ -11,68 +11,70 @@ use crate::math::spline::Splines;
 use crate::model::instant::Instant;
 use std::sync::Arc;
 
-/// Everything that effects have hung on a machine.
+/// Set of all hooks that effects have added to a machine.
 #[derive(Clone, Debug, Default)]
 pub struct Hooks {
-    /// What the crank is ahead of uniform rotation \[rad\], over the uniform turn angle \[rad\].
+    /// Lead of the crank over uniform rotation \[rad\] as functions of the uniform turn angle \[rad\].
     warps: Vec<Splines>,
-    /// How far behind the record's zero the crank's zero lies \[rad\].
+    /// Angle by which the crank's zero lies behind the recording's zero \[rad\].
     index_offset: f64,
     forces: Vec<Arc<dyn Force>>,
-    /// Of the back rope and of the front rope.
+    /// Axial laws of the back rope (0) and of the front rope (1).
     axial: [Vec<Arc<dyn Axial>>; 2],
     profile: Profile,
-    /// How far the back head's surface may rise towards the rope beside its own deflection \[m\].
+    /// Largest rise of the back head's surface towards the rope, in addition to the head's own deflection
+    /// \[m\].
     rise: f64,
     readings: Vec<Arc<dyn Reading>>,
 }
 
 impl Hooks {
-    /// Hangs a force on the machine.
+    /// Adds a generalised force.
     pub fn add_force(&mut self, force: impl Force + 'static) {
         self.forces.push(Arc::new(force));
     }
 
-    /// Hangs a law on one coordinate.
+    /// Adds a force law on one coordinate.
     pub fn on(&mut self, coordinate: usize, law: impl LineForce + 'static) {
         self.add_force(OnCoordinate { coordinate, law });
     }
 
-    /// Adds a law along the back rope (0) or the front rope (1).
+    /// Adds an axial law to the back rope (0) or the front rope (1).
     ///
     /// # Panics
-    /// If there is no such rope.
+    /// If `rope` is neither 0 nor 1.
     pub fn add_axial(&mut self, rope: usize, law: impl Axial + 'static) {
         self.axial[rope].push(Arc::new(law));
     }
 
-    /// Adds a link of the chain from strain to reading, behind those that are there.
+    /// Appends a stage to the measuring chain.
     pub fn add_reading(&mut self, reading: impl Reading + 'static) {
         self.readings.push(Arc::new(reading));
     }
 
-    /// Moves the crank's zero behind the record's by so much more \[rad\].
+    /// Increases the angle by which the crank's zero lies behind the recording's zero \[rad\].
     pub const fn move_index(&mut self, angle: f64) {
         self.index_offset += angle;
     }
 
-    /// Lets the crank go ahead of uniform rotation \[rad\], by a curve over the uniform turn \[rad\].
+    /// Adds a lead of the crank over uniform rotation \[rad\], as a curve over the uniform turn angle
+    /// \[rad\].
     pub fn add_warp(&mut self, ahead: Splines) {
         self.warps.push(ahead);
     }
 
-    /// Takes material from the back head's surface.
+    /// Removes material from the back head's surface.
     pub fn dig(&mut self, hollow: Hollow) {
         self.profile.dig(hollow);
     }
 
-    /// Lets the back head's surface rise towards the rope beside its own deflection, by no more
-    /// than this \[m\].
+    /// Increases the upper bound \[m\] of the rise of the back head's surface towards the rope, in addition
+    /// to the head's own deflection.
     pub fn add_rise(&mut self, rise: f64) {
         self.rise += rise;
     }
 
-    /// Turn angle, rate and acceleration of the crank, from those of uniform rotation.
+    /// Returns angle, rate and acceleration of the crank's turn from those of uniform rotation.
     pub(crate) fn turn(&self, uniform: [f64; 3]) -> [f64; 3] {
         let [turn, rate, acceleration] = uniform;
         let mut warped = uniform;
@@ -85,42 +87,42 @@ impl Hooks {
         warped
     }
 
-    /// How far behind the record's zero the crank's zero lies \[rad\].
+    /// Returns the angle by which the crank's zero lies behind the recording's zero \[rad\].
     pub(crate) const fn index_offset(&self) -> f64 {
         self.index_offset
     }
 
-    /// Adds the forces.
+    /// Adds the generalised forces of the effects to `force`.
     pub(crate) fn add_forces(&self, at: &Instant<'_>, force: &mut [f64]) {
         for one in &self.forces {
             one.add(at, force);
         }
     }
 
-    /// Adds their tangent.
+    /// Adds the tangent of the generalised forces of the effects to `matrix`.
     pub(crate) fn add_tangent(&self, at: &Instant<'_>, gamma: f64, matrix: &mut Bordered) {
         for one in &self.forces {
             one.add_tangent(at, gamma, matrix);
         }
     }
 
-    /// Energy that they store \[J\].
+    /// Returns the energy stored by the forces of the effects \[J\].
     pub(crate) fn energy(&self, at: &Instant<'_>) -> f64 {
         self.forces.iter().map(|one| one.energy(at)).sum()
     }
 
-    /// What of their potential at rest is no stored energy \[J\].
+    /// Returns the part of the potential at rest of the effects' forces that is not stored energy \[J\].
     pub(crate) fn potential_beyond_energy(&self, at: &Instant<'_>) -> f64 {
         let beyond = |one: &Arc<dyn Force>| one.potential(at) - one.energy(at);
         self.forces.iter().map(beyond).sum()
     }
 
-    /// Power that they take \[W\].
+    /// Returns the power dissipated by the forces of the effects \[W\].
     pub(crate) fn lost(&self, at: &Instant<'_>) -> f64 {
         self.forces.iter().map(|one| one.lost(at)).sum()
     }
 
-    /// The laws along the back rope (0) or the front rope (1), if it has any.
+    /// Returns the axial laws of the back rope (0) or the front rope (1); `None` if there are none.
     pub(crate) fn axial<'a>(
         &'a self,
         rope: usize,
@@ -135,49 +137,50 @@ impl Hooks {
         })
     }
 
-    /// Whether the crank leaves uniform rotation.
+    /// Returns whether the crank deviates from uniform rotation.
     pub(crate) fn has_warps(&self) -> bool {
         !self.warps.is_empty()
     }
 
-    /// Whether the back head's surface is another one with other pieces.
+    /// Returns whether the back head's surface is the same as with the hooks of `other`.
     pub(crate) fn digs_as(&self, other: &Self) -> bool {
         (&self.profile, self.rise) == (&other.profile, other.rise)
     }
 
-    /// Whether there are laws along a rope.
+    /// Returns whether any rope has axial laws.
     pub(crate) fn has_axial(&self) -> bool {
         self.axial.iter().any(|laws| !laws.is_empty())
     }
 
-    /// Whether there is nothing that acts on the motion of bodies.
+    /// Returns whether no hook acts on the motion of the bodies.
     pub(crate) fn is_empty(&self) -> bool {
         self.forces.is_empty() && !self.has_axial()
     }
 
-    /// What the back head's surface lacks, if anything.
+    /// Returns the profile of the back head's surface; `None` if the surface is the plain circle.
     pub(crate) fn profile(&self) -> Option<&Profile> {
         (!self.profile.is_flat()).then_some(&self.profile)
     }
 
-    /// How much farther from the arc's centre than without effects the rope may touch \[m\].
+    /// Returns the increase, due to effects, of the distance from the arc's centre at which the rope may
+    /// touch \[m\].
     pub(crate) fn bulge(&self) -> f64 {
         self.profile.highest() + self.rise
     }
 
-    /// Whether readings ask for more than the stress.
+    /// Returns whether any stage modifies the readings.
     pub(crate) fn has_readings(&self) -> bool {
         !self.readings.is_empty()
     }
 
-    /// Reads one sample.
+    /// Applies all stages of the measuring chain to the readings of one sample.
     pub(crate) fn read(&self, at: &Sampled, stress: &mut [f64; 4]) {
         for reading in &self.readings {
             reading.sample(at, stress);
         }
     }
 
-    /// Reads a whole revolution.
+    /// Applies all stages of the measuring chain to the readings of a whole revolution.
     pub(crate) fn read_series(&self, spacing: f64, stress: &mut [Vec<f64>; 4]) {
         for reading in &self.readings {
             reading.series(spacing, stress);

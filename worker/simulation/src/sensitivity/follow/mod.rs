@@ -1,4 +1,5 @@
-//! A run with its columns: what a run reports of its steps and samples, differentiated behind it.
+//! Forward sensitivity of a run: an observer that differentiates each step and sample after the run has
+//! computed it.
 mod read;
 mod step;
 
@@ -20,8 +21,8 @@ use crate::run::{Observe, RunResult, RunSettings};
 use crate::system::{State, System};
 use crate::verdict::Verdict;
 
-/// Simulates one individual and differentiates the run; verdict, samples and counters are those of
-/// [`run::simulate`](crate::run::simulate), bit for bit. A run that fails has no columns.
+/// Simulates one individual and differentiates the run. Verdict, samples and counters are those of
+/// [`run::simulate`](crate::run::simulate), bit for bit. A failed run has no columns.
 pub fn simulate(
     machine: &Machine,
     law: &RopeLaw,
@@ -34,8 +35,8 @@ pub fn simulate(
     })
 }
 
-/// The same on the steps of another run, with stages that are solved to rounding; see
-/// [`run::simulate_on`](crate::run::simulate_on).
+/// Simulates and differentiates one individual on the step grid of another run, with stages solved to
+/// rounding; see [`run::simulate_on`](crate::run::simulate_on).
 pub fn simulate_on(
     (machine, law): (&Machine, &RopeLaw),
     settings: &RunSettings,
@@ -61,34 +62,34 @@ fn follow<'a>(
     (result, columns)
 }
 
-/// Follows a run.
+/// Observer that propagates the columns along a run.
 struct Follower<'a, 'o> {
     observer: &'o mut dyn Observe,
     settings: RunSettings,
-    /// The machine that runs.
+    /// Machine that is simulated.
     own: Side<'a>,
     active: Vec<Active<'a>>,
     blocks: Vec<Block>,
-    /// Begins with the run.
+    /// Buffers, allocated at the start of the run.
     room: Option<Room>,
-    /// Why nothing is followed any more.
+    /// Reason why propagation of the columns has stopped.
     missing: Option<Missing>,
-    /// The last step.
+    /// States at both ends of the last step.
     ends: [State; 2],
-    /// What the gauges read at each sample, before what filters whole curves.
+    /// Gauge readings at each sample, before filters that act on whole curves.
     read: [Vec<f64>; 4],
 }
 
-/// Buffers.
+/// Buffers of the sensitivity analysis.
 struct Room {
-    /// Stages of a step, all of them or one after the other; the first one serves the equilibrium too.
+    /// Linearised stages of a step, all of them or one at a time; the first also serves the equilibrium.
     stages: Vec<Linearized>,
     bases: Bases,
     scratch: Scratch,
     right: Vec<Lanes>,
     force: [Vec<f64>; 2],
     state: State,
-    /// Derivatives of the stress, where there is such a thing.
+    /// Analytic derivatives of the stress, if available for the machine.
     gradient: Option<Gradient>,
     torque: TorqueBy,
     factorizations: u64,
@@ -126,7 +127,7 @@ impl<'a, 'o> Follower<'a, 'o> {
         }
     }
 
-    /// Each column in the order of the plan.
+    /// Returns the result of each column in the order of the plan.
     fn columns(self, plan: &Plan) -> Columns {
         let missing = self.missing;
         let mut columns: Vec<_> = plan
@@ -211,7 +212,7 @@ impl Observe for Follower<'_, '_> {
     }
 }
 
-/// A column that was worked out.
+/// Classifies computed curves as zero, finite, or unavailable because of non-finite values.
 fn judged(changes: Changes) -> Derivative {
     let all = |is: fn(&f64) -> bool| changes.each().flatten().all(is);
     if all(|x| *x == 0.0) {

@@ -1,4 +1,4 @@
-//! What is read more at a sample.
+//! Derivatives of the recorded quantities at a sample.
 use super::super::active::{Active, Sample};
 use super::super::between::{add_column, shaft, stress};
 use super::super::block::Motion;
@@ -9,12 +9,13 @@ use crate::linear::{LANES, Lanes};
 use crate::model::Scratch;
 use crate::system::State;
 
-/// By how much the farthest coordinate is moved where readings are differenced along a column \[m\],
-/// \[rad\].
+/// Step by which the coordinate with the largest derivative is moved when readings are differenced along a
+/// column \[m\], \[rad\].
 const MOVED: f64 = 1e-8;
 
 impl Follower<'_, '_> {
-    /// Notes what the gauges read at a sample, and the derivatives.
+    /// Stores the gauge readings at a sample, and computes the derivatives of readings, suspension height and
+    /// torque.
     pub(super) fn read(&mut self, index: usize, state: &State) {
         let Some(Room {
             scratch,
@@ -99,7 +100,7 @@ impl Follower<'_, '_> {
     }
 }
 
-/// Derivatives of the readings along a column, by their difference.
+/// Returns the derivatives of the readings along a column, by central differences.
 fn differenced(
     own: &mut Side<'_>,
     (ends, lane, weights): ([&Motion; 2], usize, &Weights),

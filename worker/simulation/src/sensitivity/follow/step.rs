@@ -1,4 +1,4 @@
-//! Columns behind a step that was taken.
+//! Propagation of the columns through a step that the run has completed.
 use super::super::active::Active;
 use super::super::between::add_column;
 use super::super::block::{Bases, Block};
@@ -14,8 +14,8 @@ use crate::model::{Individual, Scratch};
 use crate::observe::{Gradient, TorqueBy};
 use crate::system::{State, System};
 
-/// As many blocks as stay in cache beside a stage: they take a stage one after the other, more of them a
-/// whole step.
+/// Largest number of blocks that stay in cache together with a stage. Up to this number, each stage is
+/// applied to all blocks in turn; above it, each block is taken through a whole step.
 const FEW: usize = 6;
 
 #[expect(
@@ -23,7 +23,7 @@ const FEW: usize = 6;
     reason = "steps and samples are files of their own"
 )]
 impl Follower<'_, '_> {
-    /// `dR/dp` of the columns of one block at a stage into `room.right`.
+    /// Computes `dR/dp` of the columns of one block at a stage into `room.right`.
     fn right(&mut self, (block, stage): (usize, usize), individual: &mut Individual<'_>) {
         let Some(Room {
             stages,
@@ -55,7 +55,8 @@ impl Follower<'_, '_> {
         std::mem::swap(&mut individual.scratch, &mut at.scratch);
     }
 
-    /// Lets laws with a past remember where the columns stand now.
+    /// Updates the memory of axial laws, for the machine and for its perturbed machines at the current
+    /// columns.
     fn remember(&mut self, state: &State) {
         let Some(Room {
             scratch,
@@ -82,8 +83,8 @@ impl Follower<'_, '_> {
         }
     }
 
-    /// Takes the columns through a step: a block through as many of its stages as are kept, so that it stays
-    /// in cache.
+    /// Propagates the columns through a step. Each block is taken through all stages that are kept, so that
+    /// it stays in cache.
     pub(super) fn follow(
         &mut self,
         system: &mut System<Individual<'_>>,
@@ -129,7 +130,8 @@ impl Follower<'_, '_> {
         Ok(())
     }
 
-    /// Begins with the columns of the equilibrium; the method has so many stages.
+    /// Allocates the buffers and computes the columns of the equilibrium; `stages` is the number of stages of
+    /// the method.
     pub(super) fn start(
         &mut self,
         system: &mut System<Individual<'_>>,

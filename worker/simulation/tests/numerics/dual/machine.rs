@@ -1,7 +1,7 @@
-//! The machine's equations, in the plane and for a rigid head, written down once more.
+//! Independent second implementation of the machine's equations, for planar motion and a rigid head.
 //!
-//! The machine's description, where its coordinates stand, the crank's motion and the card come from the code
-//! under test, and nothing else.
+//! Only the machine's description, the layout of its coordinates, the crank's motion and the load card come
+//! from the code under test.
 use super::number::{Dual, Vector, number};
 use simulation::drive::DriveState;
 use simulation::model::Machine;
@@ -10,7 +10,8 @@ use simulation::model::description::RopeLaw;
 use simulation::sensitivity::Coefficient;
 use std::f64::consts::{FRAC_PI_2, LN_10, PI, TAU};
 
-/// A place on a body: the body's reference point and its velocity, the arm to the place, turn and its rate.
+/// Point on a body: the body's reference point and its velocity, the arm to the point, the body's angle and
+/// its rate.
 #[derive(Clone, Copy, Default)]
 struct Marker {
     point: Vector,
@@ -30,10 +31,11 @@ impl Marker {
     }
 }
 
-/// Stiffness and damping along the axis, across it and in bending.
+/// Stiffness and damping of a bushing: axial, lateral and in bending.
 type Law = [[Dual; 2]; 3];
 
-/// Force on I, torques on I and on J (paper, Eqs. 1 to 3, in the axes of J).
+/// Computes the force of a bushing on body I and its torques on I and J (paper, Eqs. 1 to 3, in the axes of
+/// J).
 fn bushing([along, across, bending]: Law, i: &Marker, j: &Marker) -> (Vector, [Dual; 2]) {
     let apart = i.place().minus(j.place());
     let speed = i.moves().minus(j.moves());
@@ -49,15 +51,16 @@ fn bushing([along, across, bending]: Law, i: &Marker, j: &Marker) -> (Vector, [D
     (force, [torque + i.arm.moment(force), -torque - on_j])
 }
 
-/// Coordinates, rates and accelerations with their derivatives.
+/// Coordinates, rates and accelerations, each with its derivative.
 pub(super) type Motion = [Vec<Dual>; 3];
 
-/// The machine under one law, whose derivatives are by the decimal logarithm of one coefficient.
+/// Machine with one rope law, evaluated in dual numbers whose derivative is by the decimal logarithm of one
+/// coefficient.
 pub(super) struct Twin<'a> {
     machine: &'a Machine,
-    /// Between cylinders, at the base, at the head.
+    /// Bushing laws: between cylinders, at the rope's base, at the head.
     laws: [Law; 3],
-    /// Stiffness and damping of the contact, and the penetration of its full damping.
+    /// Stiffness and damping of the contact, and the penetration at which its damping is fully active.
     contact: [Dual; 3],
 }
 
@@ -86,7 +89,7 @@ impl<'a> Twin<'a> {
         }
     }
 
-    /// The residual `Q - M a`, and the torque that the rod asks of the crank.
+    /// Computes the residual `Q - M a` and the torque that the crank must supply.
     pub(super) fn residual(&self, drive: &DriveState, motion: &Motion) -> (Vec<Dual>, Dual) {
         let mut out = vec![Dual::default(); motion[0].len()];
         let mut pin = self.rigid(drive, motion, &mut out);
@@ -102,7 +105,8 @@ impl<'a> Twin<'a> {
         (out, arm.moment(pin))
     }
 
-    /// Rod, suspension and beam; gives the force that the rod alone asks of the pin.
+    /// Adds the forces on rod, suspension and beam; returns the force that the rod alone requires at the
+    /// crank pin.
     fn rigid(&self, drive: &DriveState, [q, v, a]: &Motion, out: &mut [Dual]) -> Vector {
         let (d, layout) = (&self.machine.description, &self.machine.layout);
         let (rod, hook, beam) = (layout.rod(), layout.suspension(), layout.beam());
@@ -121,7 +125,7 @@ impl<'a> Twin<'a> {
         asked
     }
 
-    /// A place along a cylinder, in half lengths.
+    /// Returns a point along a cylinder's axis; `along` is measured from its centre in half lengths.
     fn on(&self, [q, v, _]: &Motion, (chain, j): (usize, usize), along: f64) -> Marker {
         let at = 3 * (self.machine.layout.first(chain) + j);
         let half = number(0.5 * along * self.machine.description.rope.pitch);
@@ -134,7 +138,7 @@ impl<'a> Twin<'a> {
         }
     }
 
-    /// Centre of a head, which the beam carries.
+    /// Returns the centre of a head's arc for a given beam angle.
     fn center(&self, beam: Dual, chain: usize) -> Vector {
         let d = &self.machine.description;
         let [x, y] = [&d.back_arc, &d.front_arc][chain].center;
@@ -142,7 +146,7 @@ impl<'a> Twin<'a> {
         axis.times(number(x)).plus(axis.across().times(number(y)))
     }
 
-    /// Joints of a rope; gives the force on its first cylinder.
+    /// Adds the joint forces of a rope; returns the force on its first cylinder.
     fn joints(
         &self,
         (drive, motion): (&DriveState, &Motion),
@@ -206,7 +210,7 @@ impl<'a> Twin<'a> {
         first_pull
     }
 
-    /// Weight, inertia and contact of a rope's cylinders (paper, Eqs. 4 and 6).
+    /// Adds weight, inertia and contact forces of a rope's cylinders (paper, Eqs. 4 and 6).
     fn cylinders(&self, motion: &Motion, chain: usize, out: &mut [Dual]) {
         let (d, layout) = (&self.machine.description, &self.machine.layout);
         let (arc, count) = [(&d.back_arc, layout.back), (&d.front_arc, layout.front)][chain];
@@ -247,7 +251,7 @@ impl<'a> Twin<'a> {
     }
 }
 
-/// Adds a force and a torque to a cylinder's rows.
+/// Adds a force and a torque to a cylinder's rows of the residual.
 fn push(rows: &mut [Dual], force: Vector, torque: Dual) {
     for (row, x) in rows.iter_mut().zip([force.0[0], force.0[1], torque]) {
         *row = *row + x;

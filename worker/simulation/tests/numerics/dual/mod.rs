@@ -1,8 +1,8 @@
-//! Columns of whole runs of a small machine against dual numbers: its equations are written down once more in
-//! numbers that carry their derivative by one coefficient, and its stages are differentiated with a dense
-//! matrix that these numbers give column by column.
+//! Derivatives (columns) of whole runs of a small machine compared with dual numbers: an independent
+//! implementation of the equations uses numbers that carry the derivative by one coefficient, and the stages
+//! of the method are differentiated with a dense matrix that these numbers give column by column.
 //!
-//! Both are derivatives at the run's own states, so they agree as far as rounding lets them.
+//! Both are derivatives at the run's own states, so they agree up to rounding.
 mod machine;
 mod number;
 
@@ -18,13 +18,13 @@ use simulation::run::{Observe, RunSettings};
 use simulation::sensitivity::{self, Coefficient, Column, Derivative, Origin, Plan};
 use simulation::system::{State, System};
 
-/// Follows a run with derivatives by one coefficient.
+/// Observer of a run that integrates the derivatives by one coefficient along its stages.
 struct Follower<'a> {
     machine: &'a Machine,
     twin: Twin<'a>,
-    /// Derivatives of the last step's ends.
+    /// Derivatives of the states at the start and at the end of the last step.
     ends: [State; 2],
-    /// Derivatives of the suspension's height and of the torque at each sample.
+    /// Derivatives of the suspension's height and of the crank torque at each sample.
     curves: [Vec<f64>; 2],
 }
 
@@ -36,8 +36,8 @@ fn dual(real: [&[f64]; 3], by: &[Vec<f64>; 3]) -> Motion {
 }
 
 impl Follower<'_> {
-    /// Derivatives of coordinates, rates and accelerations that leave the residual zero, where they are
-    /// `base` and so many times one unknown per coordinate.
+    /// Solves for the derivatives of coordinates, rates and accelerations that keep the residual zero; each
+    /// is `base` plus the factor in `times` times one common unknown per coordinate.
     fn solve(
         &self,
         system: &mut System<Individual<'_>>,
@@ -140,9 +140,9 @@ impl Observe for Follower<'_> {
     }
 }
 
-/// Ten cylinders on a rigid head, three times as fast: by each coefficient columns of height and torque are
-/// those of dual numbers (measured: to 2e-13, and to 3e-7 of the torque, whose derivatives by the state are
-/// differenced).
+/// Checks the derivatives of height and torque by each coefficient against dual numbers, for a rigid head, a
+/// sixth of the cylinders and three times the speed (measured: agreement to 2e-13 in height and to 3e-7 in
+/// torque, whose derivatives by the state are obtained by differences).
 #[test]
 fn columns_are_what_dual_numbers_say() {
     let mut description = reference::description();

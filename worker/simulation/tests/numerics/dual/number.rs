@@ -1,7 +1,7 @@
-//! Numbers that carry their derivative by one parameter, and vectors of them in the plane.
+//! Dual numbers, which carry the derivative by one parameter, and planar vectors of dual numbers.
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A number and its derivative.
+/// Dual number: a value and its derivative.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Dual(pub(super) f64, pub(super) f64);
 
@@ -49,7 +49,7 @@ impl Dual {
     }
 }
 
-/// A vector in the plane.
+/// Planar vector of dual numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Vector(pub(super) [Dual; 2]);
 
@@ -58,7 +58,7 @@ impl Vector {
         Self([number(x), number(y)])
     }
 
-    /// Direction at an angle.
+    /// Returns the unit vector at an angle from the x axis.
     pub(super) fn at(angle: Dual) -> Self {
         let (s, c) = angle.0.sin_cos();
         Self([Dual(c, -s * angle.1), Dual(s, c * angle.1)])
@@ -80,12 +80,12 @@ impl Vector {
         self.0[0] * r.0[0] + self.0[1] * r.0[1]
     }
 
-    /// `z x r`.
+    /// Returns `z x r`, the vector turned by 90 degrees counter-clockwise.
     pub(super) fn across(self) -> Self {
         Self([-self.0[1], self.0[0]])
     }
 
-    /// The z component of `r x f`.
+    /// Returns the z component of `r x f`.
     pub(super) fn moment(self, f: Self) -> Dual {
         self.across().dot(f)
     }

@@ -1,26 +1,26 @@
-//! The elements of a mesh file: which of Gmsh's are taken, and why others are not.
+//! Reading of the elements of a mesh file, with a check of Gmsh's element types.
 use super::{lines::Lines, sections::Sections};
 use crate::error::CaseError;
 use protocol::pumping_unit::ElementKind;
 use std::collections::BTreeMap;
 
-/// What a mesh may consist of.
+/// Remedy for a mesh with element types that are not allowed.
 const ALLOWED: &str = "mesh all volumes alike: 8-node hexahedra of order 1, or 10-node tetrahedra \
                        (gmsh -order 2, Mesh.ElementOrder = 2)";
 
-/// What Gmsh means by the number of an element type.
+/// Meaning of a Gmsh element type number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Type {
-    /// Elements of a mesh.
+    /// Volume elements of an allowed kind.
     Volume(ElementKind),
-    /// Faces of such elements.
+    /// Faces of volume elements of an allowed kind.
     Face(ElementKind),
-    /// Tetrahedra of order 1, or their faces.
+    /// First-order tetrahedra, or their faces, which are refused.
     Linear,
     Other,
 }
 
-/// Meaning and name of a type.
+/// Returns the meaning and the name of a Gmsh element type.
 const fn known(number: i64) -> (Type, &'static str) {
     match number {
         2 => (Type::Linear, "3-node triangles"),
@@ -39,7 +39,7 @@ const fn known(number: i64) -> (Type, &'static str) {
     }
 }
 
-/// Blocks of elements, each of one type and one entity.
+/// Reads the blocks of elements, each of one type and one geometric entity.
 pub(super) fn read(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(), CaseError> {
     let [blocks, _, _, _] = lines.integers::<4>()?;
     // what the mesh consists of, and which line said so first
@@ -97,7 +97,7 @@ fn refused(lines: &Lines<'_>, of: Type, (number, name): (i64, &str)) -> CaseErro
     lines.wrong_with(&problem, ALLOWED)
 }
 
-/// `count` elements: a tag and the tags of its nodes each, which become indices.
+/// Reads `count` elements, each a tag followed by its node tags; returns the node indices.
 fn block(
     lines: &mut Lines<'_>,
     count: i64,

@@ -1,12 +1,12 @@
-//! The lines of a mesh file, counted: numbers come out, errors name the line.
+//! Reading of the lines of a mesh file as numbers, with the line number in errors.
 use crate::error::{CaseError, damaged};
 use std::path::Path;
 
-/// What to do about a mesh that cannot be read.
+/// Remedy for a mesh that cannot be read.
 pub(super) const SAVE_AGAIN: &str = "save the mesh again as MSH 4.1 ASCII (gmsh -format msh41), \
                           8-node hexahedra of order 1 or 10-node tetrahedra";
 
-/// Lines of the file, counted.
+/// Lines of the mesh file with the current line number.
 pub(super) struct Lines<'a> {
     path: &'a Path,
     rest: std::str::Lines<'a>,
@@ -27,28 +27,28 @@ impl<'a> Lines<'a> {
         self.rest.next()
     }
 
-    /// The number of the line that was read last, from 1.
+    /// Returns the number of the line read last, from 1.
     pub(super) const fn number(&self) -> usize {
         self.number
     }
 
-    /// An error at the line that was read last.
+    /// Builds an error at the line read last, with the remedy [`SAVE_AGAIN`].
     pub(super) fn wrong(&self, problem: &str) -> CaseError {
         self.wrong_with(problem, SAVE_AGAIN)
     }
 
-    /// The same with a remedy of its own.
+    /// Builds an error at the line read last, with a given remedy.
     pub(super) fn wrong_with(&self, problem: &str, help: &str) -> CaseError {
         damaged(self.path, format!("line {}: {problem}", self.number), help)
     }
 
-    /// The next line, which must be there.
+    /// Returns the next line; an error at the end of the file.
     pub(super) fn line(&mut self) -> Result<&'a str, CaseError> {
         self.next()
             .ok_or_else(|| self.wrong("the file ends inside a section"))
     }
 
-    /// The numbers of the next line; at least `least` of them.
+    /// Parses the numbers of the next line, of which there must be at least `least`.
     pub(super) fn numbers<T: std::str::FromStr>(
         &mut self,
         least: usize,
@@ -62,7 +62,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Exactly `N` integers; further numbers of the line are ignored.
+    /// Parses `N` integers of the next line; further numbers are ignored.
     pub(super) fn integers<const N: usize>(&mut self) -> Result<[i64; N], CaseError> {
         let numbers = self.numbers::<i64>(N)?;
         numbers
@@ -71,7 +71,7 @@ impl<'a> Lines<'a> {
             .ok_or_else(|| self.wrong("numbers are missing"))
     }
 
-    /// The end of a section.
+    /// Reads the end tag of a section.
     pub(super) fn end(&mut self, tag: &str) -> Result<(), CaseError> {
         if self.line()?.trim() == tag {
             Ok(())

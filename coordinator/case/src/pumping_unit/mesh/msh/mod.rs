@@ -1,9 +1,8 @@
-//! Reads Gmsh MSH 4.1, ASCII: nodes, elements and their faces, physical groups.
+//! Reader of Gmsh MSH 4.1 ASCII files: nodes, elements and their faces, physical groups.
 //!
-//! The reader is our own, for two reasons found with the crate `mshio` 0.4.2: it skips
-//! `$PhysicalNames` and the physical tags of entities, without which nothing says what a pin hole
-//! is, and it panics on a malformed node count. It stays the judge of nodes and elements in the
-//! tests.
+//! The crate `mshio` 0.4.2 is not used, for two reasons: it skips `$PhysicalNames` and the physical tags of
+//! entities, without which pin holes cannot be identified, and it panics on a malformed node count. The tests
+//! use it as a reference for nodes and elements.
 mod elements;
 mod lines;
 mod reader;

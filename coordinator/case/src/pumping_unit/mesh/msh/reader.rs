@@ -1,4 +1,4 @@
-//! A mesh file from its first line to its last: format, sections in any order, then the whole.
+//! Reading of a whole mesh file: format, sections in any order, then the checks of the complete mesh.
 use super::{
     super::body::Mesh,
     elements,
@@ -16,14 +16,14 @@ use std::path::Path;
 /// Reads a mesh.
 ///
 /// # Errors
-/// Another version or a binary file, malformed sections (with the line), elements that are not taken
-/// or of two kinds, a missing physical group, a group with a node that no element has, an element that
-/// is inside out, a half that is none.
+/// Returns an error for another version or a binary file, malformed sections (with the line), elements of a
+/// type that is not allowed or of two kinds, a missing physical group, a group with a node that belongs to no
+/// element, an inverted element, and a half mesh that does not end at the plane z = 0.
 pub fn read(path: &Path) -> Result<Mesh, CaseError> {
     read_hashed(path).map(|(mesh, _)| mesh)
 }
 
-/// Reads a mesh, and names its content by its BLAKE3 hash in hexadecimal digits.
+/// Reads a mesh; returns it with the BLAKE3 hash of the file's content in hexadecimal digits.
 pub(in super::super::super) fn read_hashed(path: &Path) -> Result<(Mesh, String), CaseError> {
     let bytes = file::read(path, "the mesh of the back head, `flexible_head.mesh_file`")?;
     let hash = blake3::hash(&bytes).to_hex().to_string();
@@ -48,7 +48,7 @@ fn parse(path: &Path, bytes: Vec<u8>) -> Result<Mesh, CaseError> {
     whole::finished(path, sections)
 }
 
-/// The format line, before the bytes are taken for text.
+/// Checks the format line before the bytes are decoded as text.
 fn check_version(path: &Path, bytes: &[u8]) -> Result<(), CaseError> {
     let head = String::from_utf8_lossy(bytes.get(..bytes.len().min(200)).unwrap_or_default());
     let mut lines = head.lines();

@@ -1,21 +1,21 @@
-//! Sections of a mesh file that say what there is: names of groups, entities in them, nodes.
+//! Reading of the mesh file sections for group names, entities and nodes.
 use super::{super::body::Mesh, lines::Lines};
 use crate::error::CaseError;
 use std::collections::BTreeMap;
 
-/// What has been read so far.
+/// Contents of the sections read so far.
 #[derive(Debug, Default)]
 pub(super) struct Sections {
-    /// (dimension, physical tag) to group name.
+    /// Map from (dimension, physical tag) to group name.
     pub(super) names: BTreeMap<(usize, i64), String>,
-    /// (dimension, entity tag) to physical tags.
+    /// Map from (dimension, entity tag) to physical tags.
     pub(super) groups: BTreeMap<(usize, i64), Vec<i64>>,
-    /// Node tag to index.
+    /// Map from node tag to index.
     pub(super) index: BTreeMap<i64, usize>,
     pub(super) mesh: Mesh,
 }
 
-/// `dimension tag "name"` per group.
+/// Reads the names of the physical groups, one line `dimension tag "name"` each.
 pub(super) fn physical_names(
     lines: &mut Lines<'_>,
 ) -> Result<BTreeMap<(usize, i64), String>, CaseError> {
@@ -40,7 +40,7 @@ pub(super) fn physical_names(
     Ok(names)
 }
 
-/// Physical tags per entity; everything else of the entities is not needed.
+/// Reads the physical tags of each entity; the other data of the entities are ignored.
 pub(super) fn entities(
     lines: &mut Lines<'_>,
 ) -> Result<BTreeMap<(usize, i64), Vec<i64>>, CaseError> {
@@ -61,7 +61,7 @@ pub(super) fn entities(
     Ok(groups)
 }
 
-/// An integer that was read as a floating-point number.
+/// Converts an integer that was read as a floating-point number.
 fn integer(value: f64) -> i64 {
     #[expect(
         clippy::cast_possible_truncation,
@@ -71,7 +71,7 @@ fn integer(value: f64) -> i64 {
     integer
 }
 
-/// Blocks of node tags, then of positions.
+/// Reads the blocks of nodes: first the tags, then the positions.
 pub(super) fn nodes(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(), CaseError> {
     let [blocks, total, _, _] = lines.integers::<4>()?;
     for _ in 0..blocks {
@@ -83,7 +83,7 @@ pub(super) fn nodes(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<()
             let [tag] = lines.integers::<1>()?;
             let index = sections.index.len();
             if sections.index.insert(tag, index).is_some() {
-                return Err(lines.wrong(&format!("node {tag} stands twice")));
+                return Err(lines.wrong(&format!("node {tag} is defined twice")));
             }
         }
         for _ in 0..count {
@@ -101,7 +101,7 @@ pub(super) fn nodes(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<()
     }
     if i64::try_from(sections.index.len()) != Ok(total) {
         return Err(lines.wrong(&format!(
-            "{total} nodes are announced, {} are there",
+            "the section declares {total} nodes but contains {}",
             sections.index.len()
         )));
     }

@@ -1,4 +1,4 @@
-//! A file of one tetrahedron, and what is said about files that are not like it.
+//! Tests of the mesh reader with a mesh of one tetrahedron, and of the messages for invalid meshes.
 use super::{
     super::body::{Mesh, SYMMETRY, VOLUME},
     reader::read,
@@ -6,7 +6,7 @@ use super::{
 use protocol::pumping_unit::ElementKind;
 use std::{fmt::Write as _, fs};
 
-/// Corners of the unit tetrahedron, then the middles of its edges as Gmsh orders them.
+/// Corners of the unit tetrahedron, then the midpoints of its edges in Gmsh's order.
 const NODES: [[f64; 3]; 10] = [
     [0.0, 0.0, 0.0],
     [1.0, 0.0, 0.0],
@@ -20,7 +20,7 @@ const NODES: [[f64; 3]; 10] = [
     [0.5, 0.0, 0.5],
 ];
 
-/// Blocks of elements: dimension, entity, type, and nodes of its only element from 1.
+/// Block of one element: dimension, entity, type, and node tags from 1.
 type Block = (usize, usize, usize, &'static [usize]);
 
 const TETRAHEDRON: Block = (3, 1, 11, &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10]);
@@ -29,7 +29,7 @@ const PIN_B: Block = (2, 2, 9, &[1, 4, 3, 8, 9, 7]);
 const ROPE: Block = (2, 3, 9, &[2, 3, 4, 6, 9, 10]);
 const FLOOR: Block = (2, 4, 9, &[1, 3, 2, 7, 6, 5]);
 
-/// Reads a mesh of blocks; the name of the surface 4 is `floor`.
+/// Reads a mesh made of blocks; `floor` is the group name of surface 4.
 fn read_blocks(blocks: &[Block], nodes: &[[f64; 3]], floor: &str) -> Result<Mesh, String> {
     let mut text = format!(
         "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n2 1 \"pin_a\"\n2 2 \"pin_b\"\n\
@@ -81,7 +81,7 @@ fn quadratic_tetrahedra_are_read_whole_or_as_a_half() {
     assert!((half.volume_m3() - 1.0 / 3.0).abs() < 1e-15);
 }
 
-/// File, line and remedy.
+/// Checks that errors name the file, the line and a remedy.
 #[test]
 fn what_cannot_be_taken_is_named_with_its_line_and_a_remedy() {
     let good = [PIN_A, PIN_B, ROPE, TETRAHEDRON];
@@ -151,7 +151,8 @@ fn what_cannot_be_taken_is_named_with_its_line_and_a_remedy() {
     }
 }
 
-/// A node that no element has is left out, wherever it stands; a face that hangs on one is refused.
+/// Checks that nodes without an element are removed, wherever they stand, and that a face with such a node is
+/// refused.
 #[test]
 fn nodes_without_an_element_are_left_out() {
     const MOVED: Block = (3, 1, 11, &[2, 3, 4, 5, 6, 7, 8, 9, 10, 11]);

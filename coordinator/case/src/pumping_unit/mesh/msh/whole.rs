@@ -1,5 +1,5 @@
-//! The whole of a mesh that was read: its groups are there, no element is inside out, no node is loose, and
-//! a half is a half.
+//! Checks of the complete mesh: all groups present, no inverted element, no node without an element, and a
+//! half mesh that ends at the plane z = 0.
 use super::{
     super::body::{Mesh, SURFACES, SYMMETRY, VOLUME},
     sections::Sections,
@@ -10,11 +10,11 @@ use crate::{
 };
 use std::path::Path;
 
-/// The mesh of all sections, if a head can be reduced from it.
+/// Returns the mesh of all sections, if it is suitable for a reduction of the head.
 ///
 /// # Errors
-/// A missing physical group, a group with a node that no element has, an element that is inside out, a half
-/// that is none.
+/// Returns an error for a missing physical group, a group with a node that belongs to no element, an inverted
+/// element, and a half mesh that does not end at the plane z = 0.
 pub(super) fn finished(path: &Path, sections: Sections) -> Result<Mesh, CaseError> {
     for wanted in SURFACES {
         require(
@@ -50,7 +50,7 @@ pub(super) fn finished(path: &Path, sections: Sections) -> Result<Mesh, CaseErro
     Ok(mesh)
 }
 
-/// A group that is needed has elements.
+/// Checks that a required group has elements.
 fn require(path: &Path, sections: &Sections, wanted: &str, count: usize) -> Result<(), CaseError> {
     if count > 0 {
         return Ok(());
@@ -66,8 +66,8 @@ fn require(path: &Path, sections: &Sections, wanted: &str, count: usize) -> Resu
     ))
 }
 
-/// Without nodes that no element has, such as the centres of arcs: nothing would hold them. The order
-/// of the others is kept.
+/// Removes nodes that belong to no element, such as the centres of arcs, because nothing would constrain
+/// them. The order of the other nodes is kept.
 fn only_used(path: &Path, mut mesh: Mesh) -> Result<Mesh, CaseError> {
     let mut place = vec![None; mesh.nodes_m.len()];
     for node in mesh.volumes.values().flatten() {
@@ -102,7 +102,7 @@ fn only_used(path: &Path, mut mesh: Mesh) -> Result<Mesh, CaseError> {
     Ok(mesh)
 }
 
-/// A half ends on the plane z = 0, and nothing of it lies beyond.
+/// Checks that the cut face of a half mesh lies in the plane z = 0 and that no node is beyond it.
 fn check_half(path: &Path, mesh: &Mesh) -> Result<(), CaseError> {
     const NEAR_M: f64 = 1e-6;
     let wrong = |[x, y, z]: &[f64; 3], problem: &str| {

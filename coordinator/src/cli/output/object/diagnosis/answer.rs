@@ -1,4 +1,4 @@
-//! The object as a whole.
+//! Complete JSON object of `horsehead diagnose`.
 use super::{
     effects::{EffectOutput, ForceOutput, RoundOutput, effect, force, rounds},
     gap::{GapOutput, PredictionOutput, gap, predictions},
@@ -14,50 +14,50 @@ use report::diagnosis::Subject;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Of `horsehead diagnose`.
+/// JSON object printed by `horsehead diagnose CASE --output json`.
 #[derive(Debug, Serialize)]
 pub(crate) struct DiagnoseOutput {
     run: String,
     case: String,
     verdict: Verdict,
-    /// Why, where the verdict needs a reason.
+    /// Reason for the verdict; null if it needs none.
     reason: Option<String>,
-    /// Added effects, then the other members of their ambiguity sets; the best first. Empty where the
-    /// verdict names nothing: suspects stand in the rounds.
+    /// Added effects, followed by the other members of their ambiguity sets, best first. Empty if the verdict
+    /// names no effect: suspected effects are listed in the rounds.
     effects: Vec<EffectOutput>,
-    /// Form and joint of a force that beats every name.
+    /// Form and joint of a generic force that fits better than every named effect.
     generic: Option<String>,
-    /// That force with its size, also where the verdict does not believe it.
+    /// Best generic force with its size, reported even if the verdict does not accept it.
     generic_force: Option<ForceOutput>,
     rounds: Vec<RoundOutput>,
     #[serde(rename = "where")]
     whereabouts: Option<WhereOutput>,
     wander: WanderedOutput,
     detection_limits: Vec<Limit>,
-    /// What the instruments are off by, beside the answer.
+    /// Estimated instrument errors (nuisance parameters), reported besides the effects.
     nuisances: Vec<NeverExact>,
-    /// Effects that this record cannot show, for the unknowns take them up, the largest share first.
+    /// Effects that this record cannot show because the unknowns absorb them, largest absorbed share first.
     absorbed: Vec<Absorbed>,
-    /// Pairs that this record cannot tell apart at three times their detection limits.
+    /// Pairs of effects that this record cannot distinguish at three times their detection limits.
     inseparable: Vec<[String; 2]>,
-    /// What would part those pairs, in their order.
+    /// Measurements that would distinguish the inseparable pairs, in the order of the pairs.
     data_worth: Vec<LookAlikes>,
     gap: GapOutput,
-    /// Predictive scores of the answer, or of what is withheld as a suspect, on everything that took no part in the
-    /// fit.
+    /// Predictive scores of the accepted model, or of the suspect that was withheld, on all data excluded
+    /// from the fit.
     prediction: Vec<PredictionOutput>,
     whiteness: Option<WhitenessOutput>,
     rival: Option<RivalOutput>,
     assumed_noise: bool,
     numerical_error: Option<NumericalOutput>,
     genes: BTreeMap<String, f64>,
-    /// Stages that used up the simulations that they may cost.
+    /// Stages that exhausted their simulation budget.
     ran_out: Vec<&'static str>,
     stages: Vec<StageOutput>,
     wall_s: f64,
 }
 
-/// Tail probabilities that what is left is white noise.
+/// P-values of the whiteness test of the residual, before and after the effects were added.
 #[derive(Debug, Serialize)]
 struct WhitenessOutput {
     p_before: f64,
@@ -70,13 +70,13 @@ struct RivalOutput {
     gap: GapOutput,
 }
 
-/// How far a finer model moves the channels (in their units).
+/// Discretisation error: change of the channels under a finer model, by channel (in their units).
 #[derive(Debug, Serialize)]
 struct NumericalOutput {
     rms: Vec<f64>,
     rms_after_recalibration: Vec<f64>,
     standard_error: Vec<f64>,
-    /// The same at the answer, where there is one.
+    /// Discretisation error of the final model, with the found effects; absent if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     at_answer: Option<Box<Self>>,
 }
@@ -101,7 +101,7 @@ struct StageOutput {
     wall_s: f64,
 }
 
-/// The object of a diagnosis.
+/// Builds the JSON object of a diagnosis.
 pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
     let diagnosis = &subject.diagnosed.diagnosis;
     let genes = diagnosis
@@ -167,7 +167,7 @@ pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
     }
 }
 
-/// Effects of an answer that names some.
+/// Returns the effects if the verdict names any, else an empty slice.
 fn named(diagnosis: &Diagnosis) -> &[Estimate] {
     match diagnosis.verdict {
         Verdict::Named | Verdict::Ambiguous | Verdict::Unlisted => &diagnosis.effects,
@@ -183,7 +183,8 @@ fn numerical_error(diagnosis: &Diagnosis) -> Option<NumericalOutput> {
     })
 }
 
-/// A limit as programs read it: null where no size within the effect's bounds would be seen.
+/// Replaces the size of a detection limit by infinity (null in JSON) if no size within the effect's bounds
+/// would be detected.
 fn bounded(limit: &Limit) -> Limit {
     Limit {
         size: if limit.is_within_bounds() {

@@ -1,10 +1,10 @@
-//! Effects, suspects and forces with their sizes and tests.
+//! Effects, suspected effects and generic forces, with their sizes and tests.
 use super::gap::{GapOutput, gap};
 use discrepancy::diagnose::{Diagnosis, Estimate, Force, ParameterEstimate, Round};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// An effect with its size.
+/// Effect with its estimated parameters and its test.
 #[derive(Debug, Serialize)]
 pub(super) struct EffectOutput {
     id: String,
@@ -22,7 +22,7 @@ struct ParameterOutput {
     ci95: [f64; 2],
 }
 
-/// A round of the search for effects.
+/// Round of the search for effects: its test, its suspects and the effect that was added.
 #[derive(Debug, Serialize)]
 pub(super) struct RoundOutput {
     p_value: f64,
@@ -33,32 +33,33 @@ pub(super) struct RoundOutput {
     suspects: Vec<SuspectOutput>,
 }
 
-/// One suspect: its test, and its refit where it was refitted.
+/// Suspected effect in a round: its score test, and the results of its refit if it was refitted.
 #[derive(Debug, Serialize)]
 struct SuspectOutput {
     id: String,
     p_value: f64,
     statistic: f64,
     absorbed: Option<f64>,
-    /// Its numbers by its own refit, named or not; null where it was not refitted.
+    /// Parameters estimated in the effect's own refit, whether or not the verdict names the effect; null
+    /// without a refit.
     parameters: Option<BTreeMap<String, ParameterOutput>>,
     ln_evidence: Option<f64>,
 }
 
-/// A force without a cause.
+/// Generic force at a joint, of a given form but with no named cause.
 #[derive(Debug, Serialize)]
 pub(super) struct ForceOutput {
     id: String,
     joint: String,
     form: String,
     amplitude: ParameterOutput,
-    /// Of a harmonic.
+    /// Phase of a harmonic force (degrees); null for other forms.
     phase_deg: Option<f64>,
     ln_evidence: f64,
     gap: GapOutput,
 }
 
-/// A parameter by its name.
+/// Converts a parameter estimate to its name and its JSON form.
 fn parameter(own: &ParameterEstimate) -> (String, ParameterOutput) {
     let output = ParameterOutput {
         value: own.value,
@@ -68,7 +69,7 @@ fn parameter(own: &ParameterEstimate) -> (String, ParameterOutput) {
     (own.name.clone(), output)
 }
 
-/// An effect of the answer.
+/// Converts an effect of the diagnosis to its JSON form.
 pub(super) fn effect(diagnosis: &Diagnosis, found: &Estimate) -> EffectOutput {
     EffectOutput {
         id: found.id.clone(),
@@ -83,7 +84,7 @@ pub(super) fn effect(diagnosis: &Diagnosis, found: &Estimate) -> EffectOutput {
     }
 }
 
-/// The force that the answer names.
+/// Converts a generic force of the diagnosis to its JSON form.
 pub(super) fn force(found: &Force) -> ForceOutput {
     ForceOutput {
         id: found.id.clone(),
@@ -100,7 +101,7 @@ pub(super) fn force(found: &Force) -> ForceOutput {
     }
 }
 
-/// All rounds, in order.
+/// Converts all rounds of the diagnosis, in order, to their JSON form.
 pub(super) fn rounds(diagnosis: &Diagnosis) -> Vec<RoundOutput> {
     let round = |(at, round): (usize, &Round)| RoundOutput {
         p_value: round.p_value,

@@ -1,21 +1,23 @@
-//! The gap before and after.
+//! Gap (unexplained share of the measured variance) before and after the effects were added, and predictive
+//! scores.
 use discrepancy::proof::closed::Closed;
 use discrepancy::proof::compare::{Portion, Row};
 use discrepancy::proof::predictive::Prediction;
 use protocol::case::Case;
 use serde::Serialize;
 
-/// How much likelier a record that took no part in the fit is with the answer than without it.
+/// Predictive score: log-likelihood gain (nats) of the found effects on a record excluded from the fit.
 #[derive(Debug, Serialize)]
 pub(super) struct PredictionOutput {
-    /// Name of its condition.
+    /// Name of the condition under which the record was measured.
     record: String,
     nats: f64,
-    /// What of the records it is: `cycles`, `channel`, `segment`, `condition`, or `left_out` for blocks of the fitted one.
+    /// Kind of held-out data: `cycles`, `channel`, `segment`, `condition`, or `left_out` for blocks of the
+    /// fitted record.
     held_out: &'static str,
 }
 
-/// Predictive scores by record.
+/// Converts the predictive scores to their JSON form; scores of fitted data are omitted.
 pub(super) fn predictions(case: &Case, scores: &[Prediction]) -> Vec<PredictionOutput> {
     let one = |score: &Prediction| {
         Some(PredictionOutput {
@@ -34,18 +36,19 @@ pub(super) fn predictions(case: &Case, scores: &[Prediction]) -> Vec<PredictionO
     scores.iter().filter_map(one).collect()
 }
 
-/// The gap of the answer.
+/// Gap before and after the effects were added, on the fitted record and on held-out data.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct GapOutput {
     calibration: Option<Closed>,
-    /// What the case holds out: a condition, a channel or a part of its record; else the cycles that were held out.
+    /// Gap on the data that the case holds out (a condition, a channel or a part of its record); on the
+    /// held-out cycles if the case holds out nothing.
     held_out: Option<Closed>,
     #[serde(skip_serializing_if = "Option::is_none")]
     held_out_cycles: Option<Closed>,
     other_condition: Option<Closed>,
 }
 
-/// The gap of an answer by its rows.
+/// Selects the gaps from the comparison rows.
 pub(super) fn gap(rows: &[Row]) -> GapOutput {
     let one = |part: Portion| {
         let row = rows.iter().find(|row| row.part == part)?;

@@ -1,4 +1,5 @@
-//! The object that `horsehead diagnose CASE --output json` prints: a contract, more may be added.
+//! JSON object printed by `horsehead diagnose CASE --output json`. Stable format: fields may be added, not
+//! renamed.
 pub(in crate::cli) mod answer;
 mod effects;
 mod gap;

@@ -1,9 +1,10 @@
-//! Where simulation and record part: windows of the abscissa, orders of the period, joints.
+//! Localisation of the difference between simulation and record: windows of the abscissa, orders of the
+//! period, joints.
 use discrepancy::place::joint::Harmonic;
 use report::diagnosis::Subject;
 use serde::Serialize;
 
-/// Where simulation and record part.
+/// Localisation of the residual.
 #[derive(Debug, Serialize)]
 pub(super) struct WhereOutput {
     windows: Vec<WindowOutput>,
@@ -32,14 +33,15 @@ struct PeakOutput {
 struct JointOutput {
     joint: String,
     ln_bayes: f64,
-    /// Whether it is not told apart from the best.
+    /// Whether this joint is statistically indistinguishable from the best one.
     equivalent: bool,
-    /// Unit of the likeliest force, and its harmonics of the turn from bottom dead centre.
+    /// Unit of the most likely force at this joint, whose harmonics over the turn, counted from bottom dead
+    /// centre, are in `force`.
     unit: String,
     force: Vec<Harmonic>,
 }
 
-/// Where they part, if that was looked for.
+/// Builds the localisation of the residual; `None` if the diagnosis did not perform it.
 pub(super) fn whereabouts(subject: &Subject<'_>) -> Option<WhereOutput> {
     let seen = subject.diagnosed.diagnosis.whereabouts.as_ref()?;
     let record = subject

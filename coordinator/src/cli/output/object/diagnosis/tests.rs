@@ -1,4 +1,5 @@
-//! The contract of `horsehead diagnose CASE --output json`: fields by name, for every verdict.
+//! Tests of the JSON object printed by `horsehead diagnose CASE --output json`: field names and values for
+//! every verdict.
 use super::{answer::object, times::Times};
 use discrepancy::{
     diagnose::{Diagnosis, Estimate, Force, Limit, LookAlikes, ParameterEstimate, Round},
@@ -64,7 +65,7 @@ fn estimate(id: &str) -> Estimate {
     }
 }
 
-/// Nothing but a verdict and its reason.
+/// Returns a diagnosis with nothing but a verdict and its reason.
 fn bare(verdict: Verdict) -> Diagnosis {
     Diagnosis {
         verdict,
@@ -73,7 +74,7 @@ fn bare(verdict: Verdict) -> Diagnosis {
     }
 }
 
-/// Everything that can be said without a fit.
+/// Returns a diagnosis with every field filled that does not require a fit.
 fn full(verdict: Verdict) -> Diagnosis {
     let set = vec!["gauge_drift".to_owned(), "gauge_gain".to_owned()];
     let parts = [
@@ -219,7 +220,7 @@ fn every_verdict_has_its_word_and_every_field_of_the_contract() {
     }
 }
 
-/// The fit of a force needs a record; everything else of it is as documented.
+/// Checks the JSON form of a generic force; its fit is left empty because fitting would need a record.
 #[test]
 fn a_force_without_a_cause_is_printed_with_its_size() {
     let case = case();
@@ -258,7 +259,8 @@ fn a_force_without_a_cause_is_printed_with_its_size() {
     assert!(printed(full(Verdict::Named))["generic_force"].is_null());
 }
 
-/// Parts of the turn have angles, other conditions their name, and both a value.
+/// Checks the JSON form of drifting genes: parts of the turn are given by angles, other conditions by name,
+/// both with a value.
 #[test]
 fn wandering_genes_have_their_values() {
     let case = case();

@@ -1,10 +1,10 @@
-//! The times of the stages in an object that was written earlier.
+//! Stage times read back from a diagnosis result that was written earlier.
 use discrepancy::laboratory::Stage;
 use serde::Deserialize;
 use std::time::Duration;
 use study::StageCost;
 
-/// The times in an object that was written earlier.
+/// Wall times of the stages in a result written earlier.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Times {
     stages: Vec<StageTime>,
@@ -17,7 +17,7 @@ struct StageTime {
 }
 
 impl Times {
-    /// Puts the times of the stages back.
+    /// Restores the wall times of the stages; stages that are not in the result keep theirs.
     pub(crate) fn restore(&self, accounts: &mut [(Stage, StageCost)]) {
         for (stage, account) in accounts {
             let known = self.stages.iter().find(|time| time.stage == stage.name());

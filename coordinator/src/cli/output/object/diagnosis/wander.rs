@@ -1,4 +1,5 @@
-//! Genes that would have to wander along the turn or between conditions.
+//! Unknowns whose fitted value would have to change along the turn or between conditions, a sign of missing
+//! physics.
 use discrepancy::{
     model::Fit,
     place::wander::{Part, Shift, Wander},
@@ -6,35 +7,36 @@ use discrepancy::{
 use report::diagnosis::Subject;
 use serde::Serialize;
 
-/// Genes that would have to wander under the recalibrated model, and under the answer; empty where
-/// nothing was added.
+/// Unknowns whose values would have to vary under the recalibrated baseline model, and under the final model;
+/// empty for the latter if no effect was added.
 #[derive(Debug, Serialize)]
 pub(super) struct WanderedOutput {
     before: Vec<WanderOutput>,
     after: Vec<WanderOutput>,
 }
 
-/// A gene refitted alone on parts of the turn and under other conditions.
+/// Unknown refitted alone on parts of the turn and under other conditions.
 #[derive(Debug, Serialize)]
 struct WanderOutput {
     gene: String,
-    /// Share of what is left along the turn that it would take up [1].
+    /// Share of the residual along the turn that the varying unknown would explain [1].
     explained: f64,
     parts: Vec<PartOutput>,
 }
 
 #[derive(Debug, Serialize)]
 struct PartOutput {
-    /// Part of the turn; null for the whole turn under another condition.
+    /// Angular sector of the turn (degrees); null for the whole turn under another condition.
     sector_deg: Option<[f64; 2]>,
-    /// That condition.
+    /// Name of the other condition; null for a sector of the turn.
     condition: Option<String>,
-    /// The value that it would take (declared unit).
+    /// Value of the unknown refitted on this part (declared unit).
     value: f64,
     p_value: f64,
 }
 
-/// Genes that would have to wander, before and after the answer.
+/// Converts the unknowns whose values would have to vary, before and after effects were added, to their JSON
+/// form.
 pub(super) fn wandered(subject: &Subject<'_>) -> WanderedOutput {
     let diagnosis = &subject.diagnosed.diagnosis;
     WanderedOutput {

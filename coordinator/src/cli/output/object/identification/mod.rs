@@ -1,4 +1,4 @@
-//! Of `horsehead identify`.
+//! JSON object of `horsehead identify`.
 use crate::kind;
 use discrepancy::{
     diagnose::NeverExact,
@@ -11,43 +11,44 @@ use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use study::StageCost;
 
-/// What a record sees.
+/// JSON object printed by `horsehead identify CASE --output json`: what the measured records determine.
 #[derive(Debug, Serialize)]
 pub(crate) struct IdentifyOutput {
     run: String,
     case: String,
-    /// By name.
+    /// Estimates of the unknowns, by name.
     unknowns: BTreeMap<String, UnknownOutput>,
-    /// From the best seen to the blind ones.
+    /// Directions in the space of unknowns, from the best determined to the undetermined ones.
     directions: Vec<Direction>,
-    /// By condition.
+    /// Prediction bands, by condition.
     prediction: BTreeMap<String, Map<String, Value>>,
     nuisances: Vec<NeverExact>,
-    /// What further measurements would pin down.
+    /// Further measurements, each with the unknowns that it would determine better.
     further: Vec<Further>,
-    /// How many times the noise the fit leaves: root mean square over that of the noise.
+    /// Root mean square of the residual divided by that of the noise [1].
     times_noise: f64,
-    /// Whether that is more than noise: then intervals are widened, and a diagnosis comes first.
+    /// Whether the residual exceeds the noise: intervals are then widened, and a diagnosis should be run
+    /// first.
     diagnose_first: bool,
     assumed_noise: bool,
     notes: Vec<String>,
-    /// Simulations, by how they were asked for.
+    /// Number of simulations requested in all stages.
     simulations: u64,
     wall_s: f64,
 }
 
-/// An unknown with what the record says of it.
+/// Unknown with its estimate, interval, correlations and likelihood profile.
 #[derive(Debug, Serialize)]
 struct UnknownOutput {
     value: f64,
     unit: String,
-    /// Null for an open end; null as a whole where both are open.
+    /// 95 % interval; null for an open end, and null as a whole if both ends are open.
     ci95: Option<[Option<f64>; 2]>,
     seen: Seen,
     correlated_with: Vec<CorrelationOutput>,
-    /// How each side ends: `rises`, `bound`, `fails`, `given_up`.
+    /// Reason why the profile ends on each side: `rises`, `bound`, `fails`, `given_up`.
     ends: [discrepancy::identify::End; 2],
-    /// Values with the rise of -2 ln L, all else refitted.
+    /// Likelihood profile: pairs of the value and the rise of -2 ln L, with all other unknowns refitted.
     profile: Vec<[f64; 2]>,
 }
 
@@ -75,7 +76,7 @@ fn unknown(own: &UnknownEstimate) -> UnknownOutput {
     }
 }
 
-/// The object.
+/// Builds the JSON object of an identifiability analysis.
 pub(crate) fn object(subject: &Subject<'_>, accounts: &[(Stage, StageCost)]) -> IdentifyOutput {
     let (case, identified) = (subject.case, subject.identified);
     let unknowns = identified.unknowns.iter();

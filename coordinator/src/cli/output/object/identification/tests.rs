@@ -1,4 +1,4 @@
-//! The contract of `horsehead identify CASE --output json`: fields by name.
+//! Tests of the JSON object printed by `horsehead identify CASE --output json`: field names and values.
 use super::*;
 use case::{Overrides, load};
 use discrepancy::{
@@ -9,7 +9,7 @@ use protocol::case::Case;
 use report::{Origin, identification::report};
 use std::path::Path;
 
-/// Four unknowns, one seen in each way.
+/// Returns an analysis with four unknowns: bounded on both sides, only below, only above, and not at all.
 fn identified(case: &Case) -> Identified {
     let own = |name: &str, interval: [Option<f64>; 2]| UnknownEstimate {
         name: name.to_owned(),
@@ -48,7 +48,7 @@ fn identified(case: &Case) -> Identified {
                 name: "kb56".to_owned(),
                 part: 1.0,
             }],
-            words: "kb56: not seen by this record".to_owned(),
+            words: "kb56: not determined by this record".to_owned(),
         }],
         nuisances: Vec::new(),
         bands: vec![Band {
@@ -70,8 +70,8 @@ fn identified(case: &Case) -> Identified {
     }
 }
 
-/// Gauges by number over the crank's angle, open ends as null, what both sides leave open as one null; and
-/// the page says the same in words.
+/// Checks the fields of the JSON object (gauges by number over the crank angle, an open interval end as null,
+/// an interval open on both sides as a single null) and that the text report states the same results.
 #[test]
 fn fields_are_a_contract() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
@@ -124,7 +124,7 @@ fn fields_are_a_contract() {
         "sees 1 of 4 unknowns",
         "at least",
         "at most",
-        "not seen by this record",
+        "not determined by this record",
         "1.41 times the noise",
         "4 times as many cycles",
     ] {
