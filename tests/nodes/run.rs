@@ -148,7 +148,7 @@ async fn workers_come_up_are_listed_drained_thrown_out_and_ended_without_a_resta
     let nobody = site.horsehead(&["workers", "list", "--run", "run"]);
     assert_eq!(nobody.status.code(), Some(2));
     assert!(
-        errors(&nobody).contains("nobody works on run now"),
+        errors(&nobody).contains("no `horsehead` process is working on the run"),
         "{}",
         errors(&nobody)
     );

@@ -112,7 +112,7 @@ impl Verdict {
         let bytes = fs::read(path).with_context(|| format!("reading {}", path.display()))?;
         serde_json::from_slice(&bytes).with_context(|| {
             format!(
-                "{} is not a valid verdict of `horsehead diagnose --output json`",
+                "{} is not a valid verdict of `horsehead diagnose CASE --output json`",
                 path.display()
             )
         })

@@ -60,7 +60,7 @@ fn another_test_need_not_repeat_every_condition() {
     let card = |case| Machine::of(case).unwrap().conditions.swap_remove(1).card;
     assert_eq!(card(&part.case), card(&own.case));
     assert_eq!((part.case.is_measured(1), part.cycles.len()), (false, 1));
-    let said = "test_4rpm.csv.gz is not there: condition `4rpm` was not measured";
+    let said = "test_4rpm.csv.gz does not exist: condition `4rpm` has no record";
     assert!(
         part.notes
             .iter()

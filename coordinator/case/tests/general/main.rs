@@ -230,7 +230,7 @@ fn another_folder_replaces_the_records() {
         loaded
             .notes
             .iter()
-            .any(|note| note.to_string().contains("`fast` was not measured"))
+            .any(|note| note.to_string().contains("`fast` has no record"))
     );
     fs::remove_file(other.join("slow.csv")).unwrap();
     let message = case::load(case.0.path(), &overrides)

@@ -106,11 +106,11 @@ mod tests {
         assert_eq!(said(1e-4, 3.0), None);
         assert_eq!(
             said(0.0432, 7.0).unwrap(),
-            "over the family p = 4.3e-2, above 0.01"
+            "the family-wise p-value is 4.3e-2, above the level 0.01"
         );
         assert_eq!(
             said(6.4e-5, 1.74).unwrap(),
-            "it gains 1.7 nats and 3 are needed, at p = 6.4e-5 over the family"
+            "it gains 1.7 nats where 3 are required, at a family-wise p-value of 6.4e-5"
         );
         let both = said(0.5, -2.0).unwrap();
         assert!(

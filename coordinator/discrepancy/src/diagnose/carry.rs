@@ -111,7 +111,7 @@ mod tests {
         assert!(
             said(std::slice::from_ref(&nothing))
                 .unwrap()
-                .contains("does nothing")
+                .contains("effect vanishes")
         );
         // one size of several is enough, and of another effect it is none
         assert_eq!(said(&[nothing.clone(), size(0.3, [0.2, 0.4])]), None);
@@ -128,7 +128,7 @@ mod tests {
             tolerance: Some(0.1),
             ..size(value, [value - 0.01, value + 0.01])
         };
-        assert!(doubt(&[toleranced(0.29)]).unwrap().contains("good to"));
+        assert!(doubt(&[toleranced(0.29)]).unwrap().contains("tolerance"));
         assert_eq!(doubt(&[toleranced(-0.31)]), None);
     }
 

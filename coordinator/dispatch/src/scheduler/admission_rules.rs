@@ -104,10 +104,14 @@ pub(super) fn objection(core: &Core, announcement: &Announcement) -> Option<Stri
         let kinds = announcement.models.iter();
         let kinds: Vec<&str> = kinds.map(|model| model.kind.as_str()).collect();
         return Some(format!(
-            "models has no `{}`, which is the model kind of this run's case; the worker has {}: start a worker \
-             program that simulates that kind",
+            "models has no `{}`, which is the model kind of this run's case; the worker has \
+             {}: start a worker program that simulates that kind",
             core.options.model,
-            shown(&kinds.join(", "))
+            if kinds.is_empty() {
+                "none".to_owned()
+            } else {
+                shown(&kinds.join(", "))
+            }
         ));
     };
     if let Some(expected) = &core.options.model_digest

@@ -134,7 +134,7 @@ mod tests {
         assert!(
             check
                 .found
-                .contains(&format!("protocol {}", wire::VERSION + 1)),
+                .contains(&format!("protocol version {}", wire::VERSION + 1)),
             "{check:?}"
         );
     }

@@ -35,7 +35,7 @@ use serde::{Deserialize, Serialize};
 /// Preset with races of descents before and after a line scan.
 pub const QUICK: Preset = Preset {
     name: "quick",
-    summary: "least-squares descents from scattered points, a line scan of a narrow valley, more descents",
+    summary: "least-squares descents from many points, a scan of a narrow valley, more descents",
     strategy: QuickSettings::STRATEGY,
     settings: |plan| Settings::of(&QuickSettings::quick(plan.space)),
     groups: &[

@@ -508,5 +508,5 @@ fn unknown_settings_and_values_are_refused_with_what_there_is() {
     });
     let error = quick.set(&mut settings, "scan_step", "0.1").unwrap_err();
     let words = error.to_string();
-    assert!(words.starts_with("`scan_step` sets nothing"), "{words}");
+    assert!(words.starts_with("`scan_step` has no effect"), "{words}");
 }

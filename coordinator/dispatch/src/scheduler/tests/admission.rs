@@ -64,7 +64,7 @@ fn absurd_announcements_are_refused_by_the_name_of_the_field() {
     let long = || "x".repeat(256);
     let absurd = [
         (
-            "host has 256 bytes, allowed are 255",
+            "host has 256 bytes, at most 255 are allowed",
             Announcement {
                 host: long(),
                 ..announcement("m")
@@ -86,7 +86,7 @@ fn absurd_announcements_are_refused_by_the_name_of_the_field() {
         ),
         ("models.digest has 256 bytes", announcement(&long())),
         (
-            "job_kinds has 8008 bytes, allowed are 4096",
+            "job_kinds has 8008 bytes, at most 4096 are allowed",
             Announcement {
                 job_kinds: vec![String::new(); 1000],
                 ..announcement("m")
@@ -132,25 +132,25 @@ fn whoever_differs_is_refused_by_the_name_of_the_field() {
             with(announcement("another"), both()),
         ),
         (
-            "models has no `model`, which the case of this run is of; it has ",
+            "models has no `model`, which is the model kind of this run",
             Announcement {
                 models: Vec::new(),
                 ..first()
             },
         ),
         (
-            "slots is 0, allowed are 1 to",
+            "slots is 0, but must be 1 to",
             Announcement {
                 slots: 0,
                 ..first()
             },
         ),
         (
-            "effects has no base_motion",
+            "effects has no `base_motion`",
             with(first(), vec![effect("pivot_friction")]),
         ),
         (
-            "effects has fluid_pound that",
+            "effects has `fluid_pound`, which",
             with(first(), [both(), vec![effect("fluid_pound")]].concat()),
         ),
     ];

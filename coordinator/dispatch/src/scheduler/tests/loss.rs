@@ -339,7 +339,7 @@ fn the_reason_of_a_loss_tells_an_end_from_a_silence() {
         });
         lost.unwrap()
     };
-    assert!(lost(0).contains("it was killed"));
-    assert!(lost(3).contains("nothing was heard of it for 3 s: it is frozen"));
-    assert!(lost(9).contains("nothing was heard of it for 4 s: it is frozen"));
+    assert!(lost(0).contains("the worker was killed"));
+    assert!(lost(3).contains("no message arrived from it for 3 s: the worker is frozen"));
+    assert!(lost(9).contains("no message arrived from it for 4 s: the worker is frozen"));
 }

@@ -57,7 +57,7 @@ use std::collections::{BTreeMap, VecDeque};
 /// Preset of the memetic algorithm with the paper's settings, without generations.
 pub const WINDOW: Preset = Preset {
     name: "window",
-    summary: "the paper's memetic algorithm without generations: workers never wait, results stay reproducible",
+    summary: "the paper's algorithm without generations: no worker waits, results stay the same",
     strategy: WindowSettings::STRATEGY,
     settings: |plan| Settings::of(&WindowSettings::for_workers(plan.workers)),
     groups: &[

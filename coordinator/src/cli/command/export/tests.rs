@@ -370,7 +370,7 @@ fn results_of_other_settings_are_not_given_genes() {
     // the recommended individual comes first whatever the seed: scored and drawn under both conditions, then searched
     assert_eq!((made.rows["results"], made.rows["evaluations"]), (200, 5));
     assert!(
-        made.notes.join(" ").contains("is not the one"),
+        made.notes.join(" ").contains("differs from the job"),
         "{:?}",
         made.notes
     );
