@@ -205,7 +205,7 @@ const MISTAKES: &[Mistake] = &[
         "simulate case",
         0,
         &[
-            "with --out DIR",
+            "add --out DIR",
             "Against the record",
             "gauge 1: relative error",
         ],

@@ -110,7 +110,7 @@ pub(super) const SETTINGS: &[Setting] = &[
     Setting::new(
         "derivatives",
         Values::Words(&["exact", "differences"]),
-        "Jacobian columns: all from one simulation where the model gives them, or by finite differences",
+        "Jacobian columns: from one simulation where the model gives them, or by differences",
     ),
 ];
 

@@ -25,10 +25,9 @@ Examples:
   horsehead identify cases/cyjs10-5-37hb --measured tests/of/march --output json
 
 A case is fitted first; a finished run of `calibrate`, or a gene file, gives the start. Every
-unknown gets its value with a 95 % interval, a bound on one side, or \"not determined by this record\":
-where the likelihood profile, all else refitted, rises by 3.84 within the bounds. Where the fit
-leaves more than noise the intervals are widened by that, and `diagnose` is the next thing to
-do.
+unknown gets a 95 % interval, a bound on one side, or \"not determined by this record\": the
+likelihood profile, with all other unknowns refitted, does not rise by 3.84 within its bounds.
+Where the fit leaves more than noise, intervals are widened accordingly; run `diagnose` next.
 Ctrl-C stops cleanly: results so far are kept, and the same command goes on.
 {EXIT_CODES}"))]
 pub(super) struct Arguments {

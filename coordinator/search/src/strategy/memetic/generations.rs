@@ -39,7 +39,7 @@ pub const PAPER: Preset = Preset {
 /// Preset of the paper's settings, with trials in batches.
 pub const PAPER_BATCH: Preset = Preset {
     name: "paper-batch",
-    summary: "the paper's algorithm with batches of 40 + 40 climbing trials, the best of which wins",
+    summary: "the paper's algorithm with the best of 40 + 40 climbing trials at once",
     settings: |_| Settings::of(&MemeticSettings::paper_batch()),
     ..PAPER
 };

@@ -328,7 +328,7 @@ pub(in crate::strategy) const SETTINGS: &[Setting] = &[
     Setting::new(
         "speculation",
         Values::Whole(1, 1_000_000),
-        "trials evaluated ahead; the result is the same, a larger number takes fewer batches but more evaluations",
+        "trials evaluated ahead; same result, fewer batches and more evaluations the more there are",
     )
     .or("all"),
     Setting::new(

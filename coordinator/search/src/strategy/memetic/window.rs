@@ -83,7 +83,7 @@ pub const WINDOW: Preset = Preset {
 const WINDOWED: &[Setting] = &[Setting::new(
     "window",
     Values::Whole(1, 1_000_000),
-    "lag in results between an individual and the population that it is bred from; 3 per planned worker",
+    "lag in results of the population that an individual is bred from; 3 per planned worker",
 )
 .following_workers()];
 
