@@ -7,7 +7,8 @@ use protocol::job::{Counters, Reached, Verdict};
 pub(crate) struct Digest(blake3::Hasher);
 
 impl Digest {
-    /// Begins a digest; for a failed simulation, with the load or time fraction that was reached.
+    /// Begins the digest of a simulation from its verdict; for a failed simulation this includes the load or
+    /// time fraction that was reached.
     pub(crate) fn of(verdict: Verdict) -> Self {
         let mut digest = Self(blake3::Hasher::new());
         if let Verdict::Failed { reached, .. } = verdict {
@@ -17,12 +18,12 @@ impl Digest {
         digest
     }
 
-    /// Adds a number.
+    /// Adds a number to the digest.
     pub(crate) fn number(&mut self, value: f64) {
         self.bytes(&value.to_bits().to_le_bytes());
     }
 
-    /// Adds a curve, preceded by its length.
+    /// Adds a curve to the digest, preceded by its length.
     pub(crate) fn curve(&mut self, curve: &[f64]) {
         self.number(curve.len() as f64);
         for value in curve {
@@ -30,14 +31,14 @@ impl Digest {
         }
     }
 
-    /// Adds raw bytes.
+    /// Adds raw bytes to the digest.
     pub(crate) fn bytes(&mut self, bytes: &[u8]) {
         self.0.update(bytes);
     }
 
     /// Adds counters and verdict, and returns the digest as 64 hexadecimal digits.
     pub(crate) fn end(mut self, verdict: Verdict, counters: &Counters) -> String {
-        for (_, _, count) in counters.named() {
+        for (_, _, count) in counters.labelled() {
             self.bytes(&count.to_le_bytes());
         }
         let word = match &verdict {

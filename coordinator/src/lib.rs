@@ -8,10 +8,10 @@
 pub mod cli;
 mod digest;
 mod kind;
-#[cfg(test)]
-#[path = "../study/src/oracle.rs"]
-mod oracle;
 pub mod pumping_unit;
 #[cfg(test)]
 #[path = "../store/src/read_back.rs"]
 mod read_back;
+#[cfg(test)]
+#[path = "../study/src/test_evaluator.rs"]
+mod test_evaluator;

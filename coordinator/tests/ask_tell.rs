@@ -10,7 +10,7 @@ use std::{
     process::{Child, ChildStdin, ChildStdout, Command, Stdio},
 };
 
-/// Session with a running `horsehead ask-tell`.
+/// Test client of a running `horsehead ask-tell` process.
 struct Peer {
     child: Child,
     to: Option<ChildStdin>,
@@ -72,7 +72,7 @@ fn residual(point: &Value) -> [f64; 2] {
     [x(0).log10() - 2.0, x(1) - 0.3]
 }
 
-/// Returns the result of a point, with its residual.
+/// Returns the input line that reports the result of a proposed point, with its residual.
 fn answer(point: &Value) -> Value {
     let residual = residual(point);
     let f: f64 = residual.iter().map(|r| r * r).sum();
@@ -168,7 +168,7 @@ fn what_cannot_be_taken_is_answered_and_nothing_is_lost() {
     }
 }
 
-/// Checks that an opening line with invalid space or settings is refused.
+/// Checks that a first input line with an invalid search space or settings is refused.
 #[test]
 fn a_first_line_that_makes_no_search_is_refused() {
     let axis = |lower: f64, upper: f64, scale: &str| json!({"space": [{"name": "x", "lower": lower, "upper": upper, "scale": scale}]});

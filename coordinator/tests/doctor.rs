@@ -45,8 +45,8 @@ fn fails(words: &[&str], layer: &str) {
     );
 }
 
-/// Creates an authority with a coordinator certificate for loopback and worker certificates of the given
-/// validity.
+/// Creates a certificate authority with a coordinator certificate for loopback and worker certificates of the
+/// given validity.
 fn keys(folder: &Path, workers: &[(&str, Validity)]) {
     let authority = Authority::create(folder).unwrap();
     let hosts = ["127.0.0.1".to_owned(), "localhost".to_owned()];

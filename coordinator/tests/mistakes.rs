@@ -14,11 +14,11 @@ use std::{
 use tempfile::TempDir;
 
 /// Temporary folder with a copy of the shipped case; commands run in it.
-struct Desk {
+struct TestFolder {
     folder: TempDir,
 }
 
-impl Desk {
+impl TestFolder {
     fn new() -> Self {
         let desk = Self {
             folder: TempDir::new().unwrap(),
@@ -97,7 +97,7 @@ impl Desk {
 /// the output must contain.
 type Mistake = (
     &'static str,
-    fn(&Desk),
+    fn(&TestFolder),
     &'static str,
     i32,
     &'static [&'static str],
@@ -495,7 +495,7 @@ fn table(name: &str, value: &str) -> String {
 fn every_mistake_is_answered_with_what_to_do() {
     let mut wrong = Vec::new();
     for (name, prepare, command, code, words) in MISTAKES {
-        let desk = Desk::new();
+        let desk = TestFolder::new();
         prepare(&desk);
         let (ended, said) = desk.run(command);
         let missing: Vec<&&str> = words.iter().filter(|part| !said.contains(**part)).collect();
@@ -512,7 +512,7 @@ fn every_mistake_is_answered_with_what_to_do() {
 /// change, and that the command it suggests works.
 #[test]
 fn a_case_that_was_edited_after_its_run_begins_another_one() {
-    let desk = Desk::new();
+    let desk = TestFolder::new();
     desk.write("table.csv", &table("kb1", "3.2e8"));
     let sweep = "sweep table.csv --case case --run first";
     assert_eq!(desk.run(sweep).0, 0);
@@ -535,7 +535,7 @@ fn a_case_that_was_edited_after_its_run_begins_another_one() {
 /// names carry units and further columns hold the results.
 #[test]
 fn tables_that_were_written_are_read() {
-    let desk = Desk::new();
+    let desk = TestFolder::new();
     desk.write("table.csv", &table("kb1", "3.2e8"));
     let (code, said) = desk.run("sweep table.csv --case case --run first");
     assert_eq!(code, 0, "{said}");
@@ -563,11 +563,11 @@ fn tables_that_were_written_are_read() {
     }
 }
 
-/// Checks that the output ends with exactly one newline, so that the shell prompt starts on a line of its
-/// own.
+/// Checks that the output of `case check` ends with exactly one newline, so that the shell prompt starts on a
+/// line of its own.
 #[test]
 fn a_check_ends_its_last_line() {
-    let desk = Desk::new();
+    let desk = TestFolder::new();
     let output = Command::new(env!("CARGO_BIN_EXE_horsehead"))
         .args(["case", "check", "case"])
         .current_dir(desk.folder.path())

@@ -25,7 +25,7 @@ pub struct Announcement {
 /// Kind of model as implemented by one build of a worker.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelDescriptor {
-    /// Name of the kind, as stated in cases ([`crate::case::ModelSettings::kind`]).
+    /// Name of the model kind, as stated in cases ([`crate::case::ModelSettings::kind`]).
     pub kind: String,
     /// Digest of the numerics: equal digests guarantee bitwise equal results.
     pub digest: String,
@@ -44,7 +44,8 @@ pub struct EffectDescriptor {
     pub joint: String,
     /// Part of the model that the effect changes.
     pub place: Place,
-    /// Whether the effect is a generic form of force without a physical cause, used only for localisation.
+    /// Whether the effect is a generic force without a physical cause, used only to find where a model is
+    /// wrong.
     pub generic: bool,
     /// Parameters of the effect.
     pub parameters: Vec<ParameterDescriptor>,
@@ -56,7 +57,7 @@ pub struct EffectDescriptor {
 pub enum Place {
     /// Geometry, inertia or forces.
     Dynamics,
-    /// Driving motion, or the zero of its angle.
+    /// Driving motion, or the zero of the driving angle.
     Drive,
     /// Applied load.
     Load,
@@ -75,15 +76,16 @@ pub struct ParameterDescriptor {
     pub role: Role,
     /// Signs that the parameter may have.
     pub sign: Sign,
-    /// Lower bound.
+    /// Lower bound of the parameter.
     pub lower: f64,
-    /// Upper bound.
+    /// Upper bound of the parameter.
     pub upper: f64,
     /// Value at which the effect vanishes; for a shape parameter its typical value.
     pub absent: f64,
-    /// Value at which the signature of the effect is computed; the default of a shape parameter.
+    /// Parameter value at which the effect's influence on the channels is computed; the default of a shape
+    /// parameter.
     pub typical: f64,
-    /// Typical magnitude on machines of this kind.
+    /// Typical magnitude of the parameter on machines of this kind.
     pub scale: f64,
 }
 
@@ -101,8 +103,8 @@ pub enum Role {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sign {
-    /// Values on both sides of its absent value.
+    /// Values above and below the value at which the effect vanishes.
     Either,
-    /// Values not below its absent value, as for dissipation, distances and times.
+    /// Values not below the one at which the effect vanishes, as for dissipation, distances and times.
     Positive,
 }

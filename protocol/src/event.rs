@@ -4,7 +4,7 @@ use crate::{
     id::{ContentHash, JobId, RunId, WorkerId},
     job::Outcome,
     message::{Attempt, Cost},
-    proof::Proof,
+    proof::ReferenceResult,
 };
 use serde::{Deserialize, Serialize};
 
@@ -51,10 +51,10 @@ pub enum Event {
     Left {
         /// Id of the worker.
         worker: WorkerId,
-        /// Reason in words.
+        /// Reason in words why the worker left or is considered lost.
         reason: String,
     },
-    /// A job was created by the search.
+    /// A job was requested by the study.
     Asked {
         /// Id of the job.
         job: JobId,
@@ -62,7 +62,7 @@ pub enum Event {
         /// a run.
         work: ContentHash,
     },
-    /// A job has its only accepted result.
+    /// The only accepted result of a job was recorded.
     Finished(Box<Finished>),
     /// The coordinator ended the run regularly.
     Closed,
@@ -70,7 +70,7 @@ pub enum Event {
     /// reproduce.
     Proved {
         /// Bits, or a selection of the values, of the reference result.
-        proof: Proof,
+        proof: ReferenceResult,
     },
     /// Use of the slots' time up to now; written periodically, when workers leave, and at the end. The last
     /// account of a worker counts.
@@ -82,9 +82,9 @@ pub enum Event {
 pub struct Account {
     /// Number of the coordinator process, from 1.
     pub epoch: u32,
-    /// Time since that process began \[ms\].
+    /// Time since the coordinator process began \[ms\].
     pub at_ms: u64,
-    /// Accounts of the workers.
+    /// Slot time of each worker by use.
     pub workers: Vec<WorkerAccount>,
 }
 
@@ -108,7 +108,7 @@ pub struct WorkerAccount {
 /// Slot time by use \[us\]; all uses add up to the time for which slots were connected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spent {
-    /// Number of slots times the time for which they were connected.
+    /// Total time for which slots were connected: number of slots times duration.
     pub connected_us: u64,
     /// Time spent on computing accepted results.
     pub useful_us: u64,
@@ -126,7 +126,7 @@ pub struct Spent {
 }
 
 impl Spent {
-    /// Returns the uses with their names.
+    /// Returns each use of slot time with its name \[us\].
     pub const fn kinds(&self) -> [(&'static str, u64); 6] {
         [
             ("useful", self.useful_us),
@@ -164,7 +164,7 @@ pub struct Finished {
     pub work: ContentHash,
     /// Worker that computed the result; `None` for a failure that the coordinator recorded itself.
     pub worker: Option<WorkerId>,
-    /// Cost of the attempt.
+    /// Time that the attempt took in the slot.
     pub cost: Cost,
     /// Outcome of the job.
     pub outcome: Outcome,

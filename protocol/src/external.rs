@@ -17,12 +17,12 @@ pub const KIND: &str = "command";
 /// Maximum total size of all files of a case (bytes), because they travel with the case in one message.
 pub const MOST_BYTES: usize = 12 << 20;
 
-/// Returns the kind of an entry's models as used in messages.
+/// Returns the model kind of an external program's entry, as used in messages.
 pub fn kind_of(entry: &str) -> String {
     format!("{KIND}:{entry}")
 }
 
-/// Returns the entry of a kind used in messages, if the kind denotes an external model.
+/// Returns the name of the entry if a model kind in a message denotes an external program.
 pub fn entry_of(kind: &str) -> Option<&str> {
     kind.strip_prefix(KIND)?.strip_prefix(':')
 }
@@ -30,12 +30,13 @@ pub fn entry_of(kind: &str) -> Option<&str> {
 /// Description of one evaluation by an external program.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct External {
-    /// Static files copied into the program's folder before others are filled in.
+    /// Files that are the same for every individual, copied into the program's folder before the input files
+    /// are written.
     pub files: Vec<File>,
     /// Input files written for every individual.
-    pub fills: Vec<Fill>,
+    pub fills: Vec<InputFile>,
     /// Output files read after the program has ended.
-    pub readings: Vec<Reading>,
+    pub readings: Vec<OutputFile>,
     /// Values computed from the parameters alone, without the program.
     pub equations: Vec<Equation>,
     /// Names and scaling of the case's unknowns in input files, in the case's order.
@@ -43,23 +44,23 @@ pub struct External {
     /// Names and values that each condition of the case sets in addition to the unknowns.
     pub conditions: Vec<Vec<(String, f64)>>,
     /// Source of each channel's values, in the case's order.
-    pub curves: Vec<Source>,
+    pub curves: Vec<ChannelSource>,
     /// Exit statuses by which the program reports a verdict on the individual, with the name of each verdict.
     pub verdicts: Vec<(i32, String)>,
 }
 
 /// Input file written for every individual.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Fill {
+pub struct InputFile {
     /// Path of the file below the program's folder.
     pub file: String,
     /// Format and template of the file.
-    pub form: FillForm,
+    pub form: InputFormat,
 }
 
 /// Format of an input file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum FillForm {
+pub enum InputFormat {
     /// PEST template: the text of the `.tpl` file.
     Pest(String),
     /// Text template with `{name}` fields.
@@ -70,20 +71,21 @@ pub enum FillForm {
 
 /// Output file of the program, with the method to read it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Reading {
+pub struct OutputFile {
     /// Path of the file below the program's folder.
     pub file: String,
     /// Format of the file.
-    pub form: ReadingForm,
+    pub form: OutputFormat,
 }
 
 /// Format of an output file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum ReadingForm {
-    /// File read by PEST instructions, given as the text of the `.ins` file; its observations are named
-    /// values.
+pub enum OutputFormat {
+    /// Text file read by PEST instructions (the text of an `.ins` file); each observation yields a named
+    /// value.
     Pest(String),
-    /// Dakota results file, with the names of its functions in the file's order; these are named values.
+    /// Dakota results file, with the names of its functions in the file's order; each function yields a named
+    /// value.
     Dakota(Vec<String>),
     /// Table with columns under a header.
     Table,
@@ -114,22 +116,22 @@ pub struct EquationTerm {
 /// Name and scaling of an unknown in input files.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
-    /// Name in templates.
+    /// Name of the parameter in input file templates.
     pub name: String,
     /// Factor in `factor x value + offset`, the number written into input files.
     pub factor: f64,
-    /// Summand in `factor x value + offset`; see [`Self::factor`].
+    /// Summand `offset` in `factor x value + offset`, the number written into input files.
     pub offset: f64,
 }
 
 /// Source of the values of a channel.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Source {
-    /// Named values, one per point of the channel's abscissa.
+pub enum ChannelSource {
+    /// Named values read from output files, one per point of the channel's abscissa.
     Named(Vec<String>),
     /// Column of a table, interpolated to the channel's abscissa along another column, or used unchanged.
     Column {
-        /// Index of the table among the readings.
+        /// Index of the table among the output files.
         reading: usize,
         /// Name of the abscissa column; `None` if the rows correspond to the channel's points.
         at: Option<String>,
@@ -138,7 +140,7 @@ pub enum Source {
     },
     /// Number or list of numbers in a JSON object.
     Pointer {
-        /// Index of the object among the readings.
+        /// Index of the JSON file among the output files.
         reading: usize,
         /// JSON pointer to the values.
         values: String,
@@ -161,9 +163,9 @@ impl External {
         wire::decode(&settings.settings)
     }
 
-    /// Returns the digest of all files placed in the program's folder, static and filled in. A program
-    /// interprets its input files like code, so a permission covers exactly the files that were reviewed with
-    /// it.
+    /// Returns the digest of all files, static and filled in, that are placed in the program's folder. A
+    /// program interprets its input files like code, so a permission to run it covers only the files that
+    /// were reviewed.
     pub fn digest(&self) -> String {
         let bytes = wire::encode(&(&self.files, &self.fills)).unwrap_or_default();
         ContentHash::of(&bytes).to_string()

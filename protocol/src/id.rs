@@ -42,7 +42,7 @@ number!(
     "{:016x}"
 );
 
-/// BLAKE3 hash of some bytes, by which they are identified wherever they are stored.
+/// BLAKE3 hash of a content (case, job, file), by which the content is identified wherever it is stored.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ContentHash(pub [u8; 32]);
 

@@ -28,9 +28,9 @@ pub const ROOT: &str = "horsehead/1";
 /// Channel of a message between coordinator and worker: bulk data must not delay control messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Lane {
-    /// Lane of jobs and results.
+    /// Lane of jobs (to a worker) and of results (from a worker).
     Data,
-    /// Lane of short messages that must not wait.
+    /// Lane of short messages that must not wait behind bulk data: admission, acknowledgements, heartbeats.
     Control,
 }
 
@@ -52,7 +52,8 @@ pub fn from_worker(run: RunId, worker: &WorkerName, lane: Lane) -> String {
     format!("{ROOT}/{run}/{lane}/{worker}")
 }
 
-/// Returns the key expression for all workers in one lane, of any run, since new workers do not know the run.
+/// Returns the key expression that matches all workers' keys in one lane, in any run, since new workers do
+/// not know the run.
 pub fn all_from_workers(lane: Lane) -> String {
     match lane {
         Lane::Data => format!("{ROOT}/*/res/*/*"),
@@ -60,22 +61,22 @@ pub fn all_from_workers(lane: Lane) -> String {
     }
 }
 
-/// Returns the key of a worker's presence (liveliness token) in a run.
+/// Returns the key under which a worker declares its presence (liveliness token) in a run.
 pub fn alive(run: RunId, worker: &WorkerName) -> String {
     format!("{ROOT}/{run}/alive/{worker}")
 }
 
-/// Returns the key expression of the presence of any worker in a run.
+/// Returns the key expression that matches the presence keys of all workers of a run.
 pub fn all_alive(run: RunId) -> String {
     format!("{ROOT}/{run}/alive/*/*")
 }
 
-/// Returns the key of one chunk of a blob.
+/// Returns the key at which a worker requests one chunk of a blob.
 pub fn blob(run: RunId, hash: ContentHash, chunk: u32) -> String {
     format!("{ROOT}/{run}/blob/{hash}/{chunk}")
 }
 
-/// Returns the key expression of any chunk of any blob of a run.
+/// Returns the key expression that matches every chunk of every blob of a run.
 pub fn all_blobs(run: RunId) -> String {
     format!("{ROOT}/{run}/blob/*/*")
 }
@@ -90,29 +91,29 @@ pub fn worker_of(key: &str) -> Option<WorkerName> {
 /// Permissions of all workers with the same certificate, as key expressions; everything else is denied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Grant {
-    /// Keys to which the workers may subscribe.
-    pub hear: String,
-    /// Keys on which the workers may publish.
-    pub speak: [String; 2],
-    /// Keys on which the workers may declare their presence.
-    pub appear: String,
+    /// Key expression of the keys to which the workers may subscribe.
+    pub subscribe: String,
+    /// Key expressions of the keys on which the workers may publish: results and heartbeats.
+    pub publish: [String; 2],
+    /// Key expression of the keys on which the workers may declare their presence.
+    pub liveliness: String,
 }
 
 impl Grant {
-    /// Returns the permissions of the workers of `owner`.
+    /// Returns the permissions of all workers whose certificate has the name `owner`.
     pub fn of(owner: &str) -> Self {
         Self {
-            hear: format!("{ROOT}/w/{owner}/*/*"),
-            speak: [
+            subscribe: format!("{ROOT}/w/{owner}/*/*"),
+            publish: [
                 format!("{ROOT}/*/res/{owner}/*"),
                 format!("{ROOT}/*/hb/{owner}/*"),
             ],
-            appear: format!("{ROOT}/*/alive/{owner}/*"),
+            liveliness: format!("{ROOT}/*/alive/{owner}/*"),
         }
     }
 
     /// Returns the key expression that every worker may query: blobs of any run.
-    pub fn fetch() -> String {
+    pub fn blob_queries() -> String {
         format!("{ROOT}/*/blob/*/*")
     }
 }

@@ -3,16 +3,16 @@ use crate::{
     announce::Announcement,
     id::{AttemptId, ContentHash, JobId},
     job::{Job, Outcome},
-    proof::Proof,
+    proof::ReferenceResult,
 };
 use serde::{Deserialize, Serialize};
 
 /// Dispatch of one job to one worker; leases, results and acknowledgements refer to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Attempt {
-    /// The job.
+    /// Id of the dispatched job.
     pub job: JobId,
-    /// Number of the dispatch of that job.
+    /// Number of the dispatch among those of the same job, from 0.
     pub attempt: AttemptId,
 }
 
@@ -32,11 +32,11 @@ pub enum ToWorker {
     },
     /// The worker is not admitted.
     Refused {
-        /// Field of the announcement that does not match, and the remedy.
+        /// Field of the worker's announcement that does not match the run, and the remedy.
         reason: String,
     },
     /// Job to do; repeating it does no harm (idempotent).
-    Run(Box<Order>),
+    Run(Box<Assignment>),
     /// The result of the attempt is no longer needed.
     Cancel(Attempt),
     /// The results of these attempts are in the journal; the worker can discard them.
@@ -47,8 +47,8 @@ pub enum ToWorker {
 
 /// Job as dispatched to a worker, with attempt and deadline.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Order {
-    /// Attempt that the result must refer to.
+pub struct Assignment {
+    /// Job id and dispatch number that the worker must return with the result.
     pub attempt: Attempt,
     /// Time from start to forced termination \[ms\].
     pub deadline_ms: u64,
@@ -62,26 +62,26 @@ pub enum FromWorker {
     /// Description of the worker when it joins.
     Announce(Box<Announcement>),
     /// Heartbeat with the attempts that the worker holds.
-    Beat(Beat),
+    Beat(Heartbeat),
     /// Result of an attempt.
     Done(Box<Done>),
     /// The worker is shutting down; its attempts must be dispatched to other workers.
     Leaving {
-        /// Reason for leaving.
+        /// Reason why the worker leaves, as text.
         reason: String,
     },
 }
 
 /// Heartbeat, sent each second; its lists of the attempts that a worker holds are authoritative.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Beat {
+pub struct Heartbeat {
     /// Sequence number, counted from 0.
     pub number: u64,
     /// Hash of the case that the worker has fetched and verified; without a case only [`Job::Nothing`] can be
     /// done.
     pub case: Option<ContentHash>,
     /// Result of the case's reference individual on this worker; without it the worker receives no jobs.
-    pub proof: Option<Proof>,
+    pub proof: Option<ReferenceResult>,
     /// Attempts being computed in a slot.
     pub running: Vec<Attempt>,
     /// Attempts queued for a slot.
@@ -138,7 +138,7 @@ pub enum ToSlot {
 pub enum FromSlot {
     /// The slot process is ready.
     Ready,
-    /// The job is finished.
+    /// The slot process has finished a job.
     Done {
         /// Answer or failure of the job.
         outcome: Box<Outcome>,

@@ -8,11 +8,11 @@ use crate::id::WorkerId;
 use std::fmt;
 
 /// Owner name of workers without a certificate, which connect over loopback.
-pub const ANYONE: &str = "anyone";
+pub const NO_CERTIFICATE: &str = "anyone";
 /// Longest name of an owner (bytes).
 pub const OWNER_BYTES: usize = 64;
 
-/// A worker's name on the bus.
+/// Name of a worker on the bus: name of its certificate and number of its process.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct WorkerName {
     owner: String,
@@ -23,7 +23,7 @@ pub struct WorkerName {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "\"{name}\" cannot name a worker: use 1 to {OWNER_BYTES} characters from a-z, 0-9, '-', '_' and '.', beginning \
-     with a letter or digit, and not \"{ANYONE}\""
+     with a letter or digit, and not \"{NO_CERTIFICATE}\""
 )]
 pub struct NameError {
     /// Rejected text, cut to [`OWNER_BYTES`] characters.
@@ -46,22 +46,22 @@ impl WorkerName {
     /// Creates the name of a process without a certificate.
     pub fn anyone(process: u64) -> Self {
         Self {
-            owner: ANYONE.to_owned(),
+            owner: NO_CERTIFICATE.to_owned(),
             process,
         }
     }
 
-    /// Parses the last two parts of a key.
+    /// Parses a worker's name from the last two parts of a key; `None` if they are not valid.
     pub(crate) fn parse(owner: &str, process: &str) -> Option<Self> {
         (process.len() == 16).then_some(())?;
         let process = u64::from_str_radix(process, 16).ok()?;
-        if owner == ANYONE {
+        if owner == NO_CERTIFICATE {
             return Some(Self::anyone(process));
         }
         Self::of(owner, process).ok()
     }
 
-    /// Returns the name of the certificate; [`ANYONE`] without one.
+    /// Returns the name of the certificate; [`NO_CERTIFICATE`] without one.
     pub fn owner(&self) -> &str {
         &self.owner
     }
@@ -87,7 +87,7 @@ impl fmt::Display for WorkerName {
 ///
 /// # Errors
 /// [`NameError`] if the name is empty, too long, contains characters that are not permitted, or is
-/// [`ANYONE`].
+/// [`NO_CERTIFICATE`].
 pub fn check_owner(name: &str) -> Result<(), NameError> {
     let permitted = |byte: u8| {
         byte.is_ascii_lowercase() || byte.is_ascii_digit() || matches!(byte, b'-' | b'_' | b'.')
@@ -96,7 +96,7 @@ pub fn check_owner(name: &str) -> Result<(), NameError> {
         .bytes()
         .next()
         .is_some_and(|b| b.is_ascii_alphanumeric());
-    if first && name.len() <= OWNER_BYTES && name.bytes().all(permitted) && name != ANYONE {
+    if first && name.len() <= OWNER_BYTES && name.bytes().all(permitted) && name != NO_CERTIFICATE {
         Ok(())
     } else {
         Err(NameError {

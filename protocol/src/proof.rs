@@ -3,22 +3,22 @@ use crate::id::ContentHash;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Largest number of values that represent a result.
-pub const MOST_SAMPLES: usize = 64;
+/// Largest number of values in [`ReferenceResult::Values`].
+pub const MAX_SAMPLES: usize = 64;
 
-/// Result of the case's reference individual.
+/// Result of a case's reference individual on one machine, by which machines are compared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Proof {
+pub enum ReferenceResult {
     /// Hash of the encoded result, for a model that is reproducible bit by bit.
     Bits(ContentHash),
     /// Selected values of the result, for a model that is not reproducible bit by bit; at most
-    /// [`MOST_SAMPLES`].
+    /// [`MAX_SAMPLES`].
     Values(Vec<Sample>),
     /// The reference individual failed in a model that is not reproducible bit by bit.
     Failed,
 }
 
-/// Selected value of a result.
+/// Selected value of the reference individual's result, with the scale for its comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// The value, in its channel's unit.
@@ -27,13 +27,13 @@ pub struct Sample {
     pub scale: f64,
 }
 
-impl Proof {
+impl ReferenceResult {
     /// Compares the result with that of another machine: hashes must be equal; values may differ by at most
     /// `tolerance` times the larger of their scales.
     ///
     /// # Errors
     /// Description of the difference, in words.
-    pub fn agrees(&self, other: &Self, tolerance: f64) -> Result<(), String> {
+    pub fn compare(&self, other: &Self, tolerance: f64) -> Result<(), String> {
         match (self, other) {
             (Self::Bits(own), Self::Bits(others)) if own == others => Ok(()),
             (Self::Values(own), Self::Values(others)) if own.len() == others.len() => {
@@ -58,7 +58,7 @@ impl Sample {
     }
 }
 
-impl fmt::Display for Proof {
+impl fmt::Display for ReferenceResult {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Bits(hash) => write!(to, "{hash}"),
@@ -76,22 +76,22 @@ mod tests {
     fn values_may_differ_by_a_share_of_their_channel_s_size() {
         let values = |values: [f64; 2]| {
             let sample = |value| Sample { value, scale: 10.0 };
-            Proof::Values(values.map(sample).to_vec())
+            ReferenceResult::Values(values.map(sample).to_vec())
         };
         let own = values([1.0, -9.0]);
-        assert_eq!(own.agrees(&values([1.0005, -9.0005]), 1e-4), Ok(()));
-        let told = own.agrees(&values([1.0, -9.002]), 1e-4).unwrap_err();
+        assert_eq!(own.compare(&values([1.0005, -9.0005]), 1e-4), Ok(()));
+        let told = own.compare(&values([1.0, -9.002]), 1e-4).unwrap_err();
         assert!(told.contains("-9.002 where this run's is -9"), "{told}");
         for other in [
             values([f64::NAN, -9.0]),
-            Proof::Values(Vec::new()),
-            Proof::Failed,
-            Proof::Bits(ContentHash([1; 32])),
+            ReferenceResult::Values(Vec::new()),
+            ReferenceResult::Failed,
+            ReferenceResult::Bits(ContentHash([1; 32])),
         ] {
-            assert!(own.agrees(&other, 1.0).is_err(), "{other:?}");
+            assert!(own.compare(&other, 1.0).is_err(), "{other:?}");
         }
-        let bits = |byte| Proof::Bits(ContentHash([byte; 32]));
-        assert_eq!(bits(1).agrees(&bits(1), 0.0), Ok(()));
-        assert!(bits(1).agrees(&bits(2), 1.0).is_err());
+        let bits = |byte| ReferenceResult::Bits(ContentHash([byte; 32]));
+        assert_eq!(bits(1).compare(&bits(1), 0.0), Ok(()));
+        assert!(bits(1).compare(&bits(2), 1.0).is_err());
     }
 }

@@ -25,7 +25,7 @@ const MAGIC: [u8; 2] = *b"HH";
 
 /// Type of the body in a frame; a new kind gets a new number, numbers are never reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum FrameKind {
     /// [`crate::message::ToWorker`].
     ToWorker,
     /// [`crate::message::FromWorker`].
@@ -36,7 +36,7 @@ pub enum Kind {
     FromSlot,
 }
 
-impl Kind {
+impl FrameKind {
     /// All kinds of frames.
     pub const ALL: [Self; 4] = [
         Self::ToWorker,
@@ -45,7 +45,7 @@ impl Kind {
         Self::FromSlot,
     ];
 
-    /// Returns the number of the kind in the header.
+    /// Returns the number that stands for the kind in a frame's header.
     pub const fn number(self) -> u8 {
         match self {
             Self::ToWorker => 1,
@@ -72,7 +72,7 @@ impl Kind {
 pub enum WireError {
     /// The frame is truncated.
     #[error("the frame is truncated: {found} of {expected} bytes were received")]
-    Cut {
+    Truncated {
         /// Number of bytes received.
         found: usize,
         /// Number of bytes that the header requires.
@@ -132,12 +132,12 @@ pub enum WireError {
     },
 }
 
-/// Frame whose header and checksum are valid.
+/// Content of a frame whose header and checksum are valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
-    /// Run that the frame belongs to; 0 before the worker has been told the run.
+    /// Run that the frame belongs to; 0 if the worker does not know the run yet.
     pub run: RunId,
-    /// The encoded value.
+    /// Encoded value in the frame.
     pub body: &'a [u8],
 }
 
@@ -172,7 +172,11 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, WireError> {
 ///
 /// # Errors
 /// Those of [`encode`], with the limit of the kind.
-pub fn seal<T: Serialize>(kind: Kind, run: RunId, value: &T) -> Result<Vec<u8>, WireError> {
+pub fn encode_frame<T: Serialize>(
+    kind: FrameKind,
+    run: RunId,
+    value: &T,
+) -> Result<Vec<u8>, WireError> {
     let mut frame = Vec::with_capacity(256);
     frame.extend_from_slice(&MAGIC);
     frame.push(VERSION);
@@ -195,16 +199,16 @@ pub fn seal<T: Serialize>(kind: Kind, run: RunId, value: &T) -> Result<Vec<u8>, 
 ///
 /// # Errors
 /// Any of [`WireError`] but [`WireError::Malformed`].
-pub fn open(kind: Kind, frame: &[u8]) -> Result<Frame<'_>, WireError> {
+pub fn parse_frame(kind: FrameKind, frame: &[u8]) -> Result<Frame<'_>, WireError> {
     let (header, body) = frame
         .split_first_chunk::<HEADER_BYTES>()
-        .ok_or(WireError::Cut {
+        .ok_or(WireError::Truncated {
             found: frame.len(),
             expected: HEADER_BYTES,
         })?;
     let length = check_header(kind, header)?;
     match body.len() {
-        found if found < length => Err(WireError::Cut {
+        found if found < length => Err(WireError::Truncated {
             found: frame.len(),
             expected: HEADER_BYTES + length,
         }),
@@ -230,20 +234,23 @@ pub fn open(kind: Kind, frame: &[u8]) -> Result<Frame<'_>, WireError> {
 ///
 /// # Errors
 /// Any of [`WireError`].
-pub fn unseal<T: DeserializeOwned>(kind: Kind, frame: &[u8]) -> Result<(RunId, T), WireError> {
-    let opened = open(kind, frame)?;
+pub fn decode_frame<T: DeserializeOwned>(
+    kind: FrameKind,
+    frame: &[u8],
+) -> Result<(RunId, T), WireError> {
+    let opened = parse_frame(kind, frame)?;
     Ok((opened.run, decode(opened.body)?))
 }
 
 /// Returns the length of the body that follows a header on a stream (bytes).
 ///
 /// # Errors
-/// Those of [`open`] that concern the header.
-pub fn body_length(kind: Kind, header: &[u8; HEADER_BYTES]) -> Result<usize, WireError> {
+/// Those of [`parse_frame`] that concern the header.
+pub fn body_length(kind: FrameKind, header: &[u8; HEADER_BYTES]) -> Result<usize, WireError> {
     check_header(kind, header)
 }
 
-fn check_header(kind: Kind, header: &[u8; HEADER_BYTES]) -> Result<usize, WireError> {
+fn check_header(kind: FrameKind, header: &[u8; HEADER_BYTES]) -> Result<usize, WireError> {
     let [m0, m1, version, found, ..] = *header;
     if [m0, m1] != MAGIC {
         return Err(WireError::Magic { found: [m0, m1] });

@@ -12,12 +12,12 @@ use protocol::{
     file::File,
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
     job::{
-        Answer, Column, Failure, Individual, Job, Left, Numerics, Outcome, Reply, Shortened,
-        SimulateSpec,
+        Answer, Column, Failure, FailureFiles, Individual, Job, Numerics, Outcome, Reply,
+        SimulateSpec, TruncatedFile,
     },
-    message::{Attempt, Beat, Cost, Done, FromSlot, FromWorker, Order, ToSlot, ToWorker},
-    proof::{Proof, Sample},
-    wire::{self, Kind, WireError},
+    message::{Assignment, Attempt, Cost, Done, FromSlot, FromWorker, Heartbeat, ToSlot, ToWorker},
+    proof::{ReferenceResult, Sample},
+    wire::{self, FrameKind, WireError},
 };
 
 fn attempt() -> impl Strategy<Value = Attempt> {
@@ -74,7 +74,7 @@ fn job() -> impl Strategy<Value = Job> {
                 },
                 numerics: Numerics(numerics),
                 reply: Reply::Channels,
-                columns: vec![Column::of("size")],
+                columns: vec![Column::new("size")],
             })
         }),
     ]
@@ -89,26 +89,24 @@ fn outcome() -> impl Strategy<Value = Outcome> {
     ]
 }
 
-fn left() -> impl Strategy<Value = Left> {
+fn left() -> impl Strategy<Value = FailureFiles> {
     let file = (".{0,20}", bytes(), any::<bool>()).prop_map(|(path, content, executable)| File {
         path,
         content,
         executable,
     });
-    let short = (".{0,20}", any::<u64>(), any::<u64>()).prop_map(|(path, bytes, kept)| Shortened {
-        path,
-        bytes,
-        kept,
-    });
-    (vec(file, 0..4), vec(short, 0..4)).prop_map(|(files, shortened)| Left { files, shortened })
+    let short = (".{0,20}", any::<u64>(), any::<u64>())
+        .prop_map(|(path, bytes, kept)| TruncatedFile { path, bytes, kept });
+    (vec(file, 0..4), vec(short, 0..4))
+        .prop_map(|(files, shortened)| FailureFiles { files, shortened })
 }
 
-fn proof() -> impl Strategy<Value = Proof> {
+fn proof() -> impl Strategy<Value = ReferenceResult> {
     let sample = (-1e9..1e9, 0.0..1e9).prop_map(|(value, scale)| Sample { value, scale });
     prop_oneof![
-        Just(Proof::Failed),
-        any::<[u8; 32]>().prop_map(|hash| Proof::Bits(ContentHash(hash))),
-        vec(sample, 0..9).prop_map(Proof::Values),
+        Just(ReferenceResult::Failed),
+        any::<[u8; 32]>().prop_map(|hash| ReferenceResult::Bits(ContentHash(hash))),
+        vec(sample, 0..9).prop_map(ReferenceResult::Values),
     ]
 }
 
@@ -124,7 +122,7 @@ fn to_worker() -> impl Strategy<Value = ToWorker> {
             }
         }),
         (attempt(), any::<u64>(), job()).prop_map(|(attempt, deadline_ms, job)| {
-            ToWorker::Run(Box::new(Order {
+            ToWorker::Run(Box::new(Assignment {
                 attempt,
                 deadline_ms,
                 job,
@@ -145,7 +143,7 @@ fn from_worker() -> impl Strategy<Value = FromWorker> {
             vec(attempt(), 0..9)
         )
             .prop_map(|(number, case, proof, running, waiting)| {
-                FromWorker::Beat(Beat {
+                FromWorker::Beat(Heartbeat {
                     number,
                     case: case.map(ContentHash),
                     proof: Some(proof),
@@ -171,37 +169,37 @@ fn from_worker() -> impl Strategy<Value = FromWorker> {
 proptest! {
     #[test]
     fn every_message_survives_the_wire(run: u64, down in to_worker(), up in from_worker()) {
-        let frame = wire::seal(Kind::ToWorker, RunId(run), &down).unwrap();
-        prop_assert_eq!(wire::unseal(Kind::ToWorker, &frame), Ok((RunId(run), down)));
-        let frame = wire::seal(Kind::FromWorker, RunId(run), &up).unwrap();
-        prop_assert_eq!(wire::unseal(Kind::FromWorker, &frame), Ok((RunId(run), up)));
+        let frame = wire::encode_frame(FrameKind::ToWorker, RunId(run), &down).unwrap();
+        prop_assert_eq!(wire::decode_frame(FrameKind::ToWorker, &frame), Ok((RunId(run), down)));
+        let frame = wire::encode_frame(FrameKind::FromWorker, RunId(run), &up).unwrap();
+        prop_assert_eq!(wire::decode_frame(FrameKind::FromWorker, &frame), Ok((RunId(run), up)));
     }
 
     #[test]
     fn a_frame_cut_anywhere_is_refused_as_cut(message in to_worker()) {
-        let frame = wire::seal(Kind::ToWorker, RunId(3), &message).unwrap();
+        let frame = wire::encode_frame(FrameKind::ToWorker, RunId(3), &message).unwrap();
         for length in 0..frame.len() {
-            let cut = wire::unseal::<ToWorker>(Kind::ToWorker, &frame[..length]);
-            prop_assert!(matches!(cut, Err(WireError::Cut { .. })), "{length}: {cut:?}");
+            let cut = wire::decode_frame::<ToWorker>(FrameKind::ToWorker, &frame[..length]);
+            prop_assert!(matches!(cut, Err(WireError::Truncated { .. })), "{length}: {cut:?}");
         }
     }
 
     #[test]
     fn one_flipped_bit_in_the_body_or_its_length_is_seen(message in from_worker(), at: usize, bit in 0..8) {
-        let mut frame = wire::seal(Kind::FromWorker, RunId(3), &message).unwrap();
+        let mut frame = wire::encode_frame(FrameKind::FromWorker, RunId(3), &message).unwrap();
         let from = 12;
         let at = from + at % (frame.len() - from);
         frame[at] ^= 1_u8 << bit;
-        prop_assert!(wire::unseal::<FromWorker>(Kind::FromWorker, &frame).is_err());
+        prop_assert!(wire::decode_frame::<FromWorker>(FrameKind::FromWorker, &frame).is_err());
     }
 
     #[test]
     fn arbitrary_bytes_are_refused_or_written_in_one_way_only(noise in vec(any::<u8>(), 0..400)) {
         is_a_frame_or_refused(&noise);
-        is_canonical_in_frame::<ToWorker>(Kind::ToWorker, &noise);
-        is_canonical_in_frame::<FromWorker>(Kind::FromWorker, &noise);
-        is_canonical_in_frame::<ToSlot>(Kind::ToSlot, &noise);
-        is_canonical_in_frame::<FromSlot>(Kind::FromSlot, &noise);
+        is_canonical_in_frame::<ToWorker>(FrameKind::ToWorker, &noise);
+        is_canonical_in_frame::<FromWorker>(FrameKind::FromWorker, &noise);
+        is_canonical_in_frame::<ToSlot>(FrameKind::ToSlot, &noise);
+        is_canonical_in_frame::<FromSlot>(FrameKind::FromSlot, &noise);
         is_canonical::<Event>(&noise);
         is_canonical::<protocol::case::Case>(&noise);
     }
@@ -209,11 +207,11 @@ proptest! {
 
 #[test]
 fn what_does_not_belong_is_named() {
-    let good = wire::seal(Kind::ToWorker, RunId(7), &ToWorker::Identify).unwrap();
+    let good = wire::encode_frame(FrameKind::ToWorker, RunId(7), &ToWorker::Identify).unwrap();
     let with = |at: usize, value: u8| {
         let mut frame = good.clone();
         frame[at] = value;
-        wire::unseal::<ToWorker>(Kind::ToWorker, &frame).unwrap_err()
+        wire::decode_frame::<ToWorker>(FrameKind::ToWorker, &frame).unwrap_err()
     };
     assert_eq!(with(0, b'X'), WireError::Magic { found: *b"XH" });
     assert_eq!(with(2, 99), WireError::Version { found: 99 });
@@ -229,7 +227,7 @@ fn what_does_not_belong_is_named() {
     let mut longer = good;
     longer.push(0);
     assert_eq!(
-        wire::unseal::<ToWorker>(Kind::ToWorker, &longer).unwrap_err(),
+        wire::decode_frame::<ToWorker>(FrameKind::ToWorker, &longer).unwrap_err(),
         WireError::Leftover { bytes: 1 }
     );
     let body = wire::encode(&(ToWorker::Identify, 0_u8)).unwrap();
@@ -261,10 +259,10 @@ fn what_a_slot_can_hand_in_can_be_sent_on_and_stored() {
             outcome: Box::new(outcome(bytes)),
             cpu_us: u64::MAX,
         };
-        wire::seal(Kind::FromSlot, RunId(0), &message)
+        wire::encode_frame(FrameKind::FromSlot, RunId(0), &message)
     };
     let around = from_slot(0).unwrap().len() - wire::HEADER_BYTES;
-    let most = Kind::FromSlot.limit() - around;
+    let most = FrameKind::FromSlot.limit() - around;
     from_slot(most).unwrap();
     assert!(matches!(
         from_slot(most + 1),
@@ -286,15 +284,15 @@ fn what_a_slot_can_hand_in_can_be_sent_on_and_stored() {
             cost,
             outcome: outcome(bytes),
         };
-        wire::seal(
-            Kind::FromWorker,
+        wire::encode_frame(
+            FrameKind::FromWorker,
             RunId(1),
             &FromWorker::Done(Box::new(done)),
         )
     };
     // what is not of ours may be longer than any slot's, up to the limit of its kind
     let around = sent(0).unwrap().len() - wire::HEADER_BYTES;
-    let longest = Kind::FromWorker.limit() - around;
+    let longest = FrameKind::FromWorker.limit() - around;
     assert!(most <= longest && sent(longest).is_ok() && sent(longest + 1).is_err());
     let event = Event::Finished(Box::new(Finished {
         attempt,

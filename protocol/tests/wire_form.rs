@@ -5,22 +5,23 @@
 //! derived from the types.
 use protocol::{
     announce::{Place, Role, Sign},
-    case::{Case, Offset, Repeats, Scale},
+    case::{Case, Offset, Reproducibility, Scale},
     event::Event,
     id::{AttemptId, ContentHash, JobId, RunId},
     job::{Answer, Derivative, Failure, Job, Outcome, Per, Reached, Reply, Verdict},
-    message::{Attempt, Beat, FromSlot, FromWorker, ToSlot, ToWorker},
-    proof::Proof,
+    message::{Attempt, FromSlot, FromWorker, Heartbeat, ToSlot, ToWorker},
+    proof::ReferenceResult,
     pumping_unit::{
         Discretisation, ElementKind, Integrator, Machine, ModeFamily, ReduceHeadSpec, ReducedHead,
         RopeEnds, Simulation, Smoothing, StressRecovery, TurnSense,
     },
-    wire::{self, Kind},
+    wire::{self, FrameKind},
 };
 use serde_reflection::{Samples, Tracer, TracerConfig};
 use std::{fs, path::Path};
 
-/// Returns one line for each type that is part of a message, of a case or of the journal.
+/// Returns the expected content of `wire_form.txt`: one line for each type that is part of a message, a case
+/// or the journal.
 fn form() -> String {
     let mut tracer = Tracer::new(TracerConfig::default());
     let samples = Samples::new();
@@ -35,7 +36,7 @@ fn form() -> String {
     trace!(Simulation Discretisation ReduceHeadSpec ReducedHead);
     trace!(Job Reply Answer Outcome Failure Verdict Reached Derivative Per ModeFamily ElementKind);
     trace!(Place Role Sign Scale Integrator Offset RopeEnds Smoothing StressRecovery);
-    trace!(TurnSense Repeats Proof);
+    trace!(TurnSense Reproducibility ReferenceResult);
     let registry = tracer.registry().expect("every variant was seen");
     let mut text = format!("wire version {}\n", wire::VERSION);
     for (name, form) in registry {
@@ -77,16 +78,21 @@ fn a_frame_is_laid_out_as_it_was() {
         job: JobId(0x0102),
         attempt: AttemptId(0x0003_0004),
     };
-    let beat = Beat {
+    let beat = Heartbeat {
         number: 5,
         case: None,
-        proof: Some(Proof::Bits(ContentHash([6; 32]))),
+        proof: Some(ReferenceResult::Bits(ContentHash([6; 32]))),
         running: vec![attempt],
         waiting: Vec::new(),
         finished: Vec::new(),
     };
     let message = FromWorker::Beat(beat);
-    let frame = wire::seal(Kind::FromWorker, RunId(0x1122_3344_5566_7788), &message).unwrap();
+    let frame = wire::encode_frame(
+        FrameKind::FromWorker,
+        RunId(0x1122_3344_5566_7788),
+        &message,
+    )
+    .unwrap();
     let body: String = [
         "01000000 0500000000000000 00 01 00000000",
         &"06".repeat(32),

@@ -19,7 +19,7 @@ fn markdown(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Lines of a Markdown text outside of fenced and indented code.
+/// Returns the lines of a Markdown text outside of fenced and indented code.
 fn prose(text: &str) -> impl Iterator<Item = &str> {
     let mut fenced = false;
     text.lines().filter(move |line| {
@@ -30,7 +30,7 @@ fn prose(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Targets of the links and pictures of a text.
+/// Returns the targets of the links and pictures in a Markdown text.
 fn targets(text: &str) -> Vec<String> {
     let ends = prose(text).flat_map(|line| line.split("](").skip(1));
     ends.filter_map(|rest| rest.split_once(')').map(|(target, _)| target.to_owned()))
@@ -49,7 +49,7 @@ fn anchor(heading: &str) -> String {
     kept.replace(' ', "-")
 }
 
-/// The reason why a link from `file` leads nowhere, if it does.
+/// Returns the reason why a link from `file` leads nowhere; `None` if its target exists.
 fn broken(file: &Path, text: &str, target: &str) -> Option<String> {
     if target.contains("://") || target.starts_with("mailto:") {
         return None;

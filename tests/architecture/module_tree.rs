@@ -12,13 +12,13 @@ use syn::{Item, UseTree, visit::Visit};
 pub(crate) enum Name {
     /// Item defined in the module's own file.
     Defined,
-    /// Child module, by index.
+    /// Child module, by its index in [`ModuleTree::modules`].
     Module(usize),
     /// Import of a path, as seen from the module.
     Imported(Path),
 }
 
-/// Module with its names and paths.
+/// Module of a crate with the names it defines or imports and the paths it uses.
 #[derive(Debug)]
 pub(crate) struct Module {
     /// Index of the file that contains the module.
@@ -29,7 +29,7 @@ pub(crate) struct Module {
     pub names: BTreeMap<String, Vec<Name>>,
     /// Paths of glob imports.
     pub globs: Vec<Path>,
-    /// Every path written in the module's code, imports included.
+    /// Every path written in the module's code, also in its imports.
     pub paths: Vec<Path>,
 }
 

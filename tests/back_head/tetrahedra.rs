@@ -111,9 +111,9 @@ fn modes_of_tetrahedra_are_those_of_calculix() {
     }
 }
 
-/// Checks that influence lines agree within 4 % of their largest value and within 3 % in a least-squares
-/// scale factor; halving the brick size moves gauge 3 by 3 %. Mass, centre of mass and inertia are exact,
-/// since both meshes fill the same body.
+/// Checks that influence lines of tetrahedra agree with those of bricks within 4 % of their largest value and
+/// within 3 % in a least-squares scale factor; halving the brick size moves gauge 3 by 3 %. Mass, centre of
+/// mass and inertia are exact, since both meshes fill the same body.
 #[test]
 fn statics_of_tetrahedra_are_those_of_bricks() {
     let lines = rows("back_head_influence.csv");
@@ -193,7 +193,7 @@ fn a_mesh_by_gmsh_gives_what_another_program_gives() {
         (Family::Symmetric, "symmetric"),
         (Family::Antisymmetric, "antisymmetric"),
     ] {
-        let reduced = reduce(&Request {
+        let reduced = reduce(&ReductionRequest {
             mesh: &mesh,
             steel: STEEL,
             gauges: &[gauge],

@@ -23,19 +23,19 @@ fn coarse() -> Case {
     unit.into_case().unwrap()
 }
 
-/// Returns simulations of a few individuals with derivatives by a coefficient, a size, a shape and a generic
-/// force.
+/// Returns eight simulations with derivatives by a rope coefficient, an effect's size, an effect's shape
+/// parameter and a generic force.
 fn jobs(case: &Case) -> Vec<Job> {
-    let mut shape = Column::of("pivot_friction.creep");
+    let mut shape = Column::new("pivot_friction.creep");
     shape.values = vec![("moment".to_owned(), 1500.0)];
     let effects = simulation::effect::catalogue();
     let generic = effects.iter().find(|one| one.generic).unwrap();
     let generic = format!("{}.{}", generic.id, generic.parameters[0].name);
     let columns = [
-        Column::of("kb1"),
-        Column::of("stuffing_box_friction.force"),
+        Column::new("kb1"),
+        Column::new("stuffing_box_friction.force"),
         shape,
-        Column::of(generic),
+        Column::new(generic),
     ];
     let job = |n: usize| {
         let mut genes = case.start();

@@ -12,7 +12,7 @@ use tests::process::{Process, coordinator_program, wait_until};
 
 /// Number of individuals of a calibration.
 const POINTS: u64 = 12;
-/// Length of a journal with a few results of some 28 kB, far from all of them (bytes).
+/// Length at which the journal holds a few of its results, of some 28 kB each (bytes).
 const SOME: u64 = 100_000;
 
 /// Copies the shipped case with fewer, longer cylinders and edits its file line by line.

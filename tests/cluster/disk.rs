@@ -42,7 +42,7 @@ fn may_mount(folder: &Path) -> bool {
 /// Coordinator whose run folder lies on a small disk, with its captured output.
 struct OnSmallDisk {
     process: Process,
-    /// Path of the disk as seen from outside of the namespace.
+    /// Path of the small file system as seen from outside its mount namespace.
     disk: PathBuf,
     results: Arc<AtomicUsize>,
     said: Arc<Mutex<String>>,
@@ -51,8 +51,8 @@ struct OnSmallDisk {
 }
 
 impl OnSmallDisk {
-    /// Starts a coordinator for a number of jobs; `None` if the machine does not allow such mounts.
-    /// Afterwards the run folder is copied to `copy` in `folder`.
+    /// Starts a coordinator with a number of jobs on a small disk; `None` if the machine does not allow such
+    /// mounts. When the coordinator has ended, its run folder is copied to `copy` in `folder`.
     fn start(folder: &Path, locator: &str, jobs: u64, delay_ms: u32) -> Option<Self> {
         Self::start_with(folder, locator, (jobs, delay_ms), &[])
     }

@@ -28,7 +28,7 @@ fn coordinator(run_dir: &Path, seed: u64, trace: &Path) -> Process {
     coordinator_at("none", 2, run_dir, seed, trace)
 }
 
-/// Starts a coordinator that searches, with a given locator and number of local workers.
+/// Starts a coordinator that runs a search, with a given locator and number of local workers.
 fn coordinator_at(locator: &str, local: usize, run_dir: &Path, seed: u64, trace: &Path) -> Process {
     let mut command = Command::new(env!("CARGO_BIN_EXE_test-coordinator"));
     command
@@ -38,7 +38,7 @@ fn coordinator_at(locator: &str, local: usize, run_dir: &Path, seed: u64, trace:
     Process::start(command)
 }
 
-/// Returns the results in the journal by job, as text; panics if a job appears twice.
+/// Returns the results recorded in a run's journal as text, by job; panics if a job appears twice.
 fn recorded(run_dir: &Path) -> BTreeMap<u64, String> {
     let mut results = BTreeMap::new();
     let read = journal::fold(&run_dir.join(journal::FILE), |_, event| {

@@ -1,14 +1,14 @@
 //! Checks that a coordinator that reads its messages late does not take a worker for silent whose messages
 //! have arrived but are unread.
 use dispatch::runtime::Dispatch;
-use link::{CoordinatorEnd, Heard};
+use link::{CoordinatorEnd, LinkEvent};
 use protocol::{
     announce::{Announcement, ModelDescriptor},
     id::{ContentHash, RunId, WorkerId},
     key::Lane,
-    message::{Beat, FromWorker},
-    proof::Proof,
-    wire::{self, Kind},
+    message::{FromWorker, Heartbeat},
+    proof::ReferenceResult,
+    wire::{self, FrameKind},
 };
 use std::{
     collections::VecDeque,
@@ -22,22 +22,22 @@ use std::{
 };
 use tests::{empty_case, options};
 
-/// Time that reading one message takes on the simulated busy machine.
+/// Time that the simulated busy machine takes to read one message.
 const READING: Duration = Duration::from_millis(20);
 /// Number of one worker's messages queued before the other worker's heartbeat: reading them takes longer than
 /// a worker may be silent.
 const WORDS: u64 = 240;
 
 /// Coordinator end of a link with a backlog of messages.
-struct Pile {
-    heard: VecDeque<Heard>,
+struct Backlog {
+    heard: VecDeque<LinkEvent>,
     read: Arc<AtomicBool>,
 }
 
-impl CoordinatorEnd for Pile {
+impl CoordinatorEnd for Backlog {
     fn send(&mut self, _to: WorkerId, _lane: Lane, _frame: Vec<u8>) {}
 
-    async fn receive(&mut self) -> Option<Heard> {
+    async fn receive(&mut self) -> Option<LinkEvent> {
         let Some(heard) = self.heard.pop_front() else {
             self.read.store(true, Ordering::Relaxed);
             return pending().await;
@@ -67,11 +67,11 @@ fn announcement() -> FromWorker {
 }
 
 fn beat(number: u64) -> FromWorker {
-    FromWorker::Beat(Beat {
+    FromWorker::Beat(Heartbeat {
         number,
         case: Some(ContentHash::of(&wire::encode(&empty_case()).unwrap())),
-        proof: Some(Proof::Bits(ContentHash::of(b"proof"))),
-        ..Beat::default()
+        proof: Some(ReferenceResult::Bits(ContentHash::of(b"proof"))),
+        ..Heartbeat::default()
     })
 }
 
@@ -85,16 +85,16 @@ async fn silence_is_judged_only_after_what_has_arrived_was_read() {
     let read = Arc::new(AtomicBool::new(false));
     let made = Dispatch::over(&options(folder.path(), None, 0), |run: RunId, _| {
         let word = |from, message: FromWorker| {
-            let frame = wire::seal(Kind::FromWorker, run, &message).unwrap();
-            Heard::Frame(from, frame)
+            let frame = wire::encode_frame(FrameKind::FromWorker, run, &message).unwrap();
+            LinkEvent::Frame(from, frame)
         };
-        let mut heard: VecDeque<Heard> = [talker, other]
+        let mut heard: VecDeque<LinkEvent> = [talker, other]
             .into_iter()
             .flat_map(|from| [word(from, announcement()), word(from, beat(0))])
             .collect();
         heard.extend((1..WORDS).map(|number| word(talker, beat(number))));
         heard.push_back(word(other, beat(1)));
-        Pile {
+        Backlog {
             heard,
             read: Arc::clone(&read),
         }

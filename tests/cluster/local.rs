@@ -17,7 +17,7 @@ struct Ended {
     errors: String,
 }
 
-/// Runs jobs of 5 ms on local workers, with an environment variable.
+/// Runs jobs of 5 ms on local workers that have an additional environment variable.
 fn run(folder: &Path, jobs: u64, workers: usize, environment: (&str, &str)) -> Ended {
     let mut command = Command::new(env!("CARGO_BIN_EXE_test-coordinator"));
     command

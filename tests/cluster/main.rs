@@ -28,7 +28,7 @@ const LIMIT: Duration = Duration::from_mins(1);
 /// Lock for tests whose slots are children of the test process itself, so that each test counts only its own.
 static OWN_SLOTS: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
 
-/// Collects the outcomes of `jobs` jobs; panics after the time limit or at a duplicate.
+/// Collects the outcomes of a number of jobs from a run; panics after the time limit or at a duplicate.
 async fn collect(
     dispatch: &mut Dispatch,
     jobs: usize,

@@ -1,7 +1,7 @@
 //! Tests with jobs that crash, allocate without bound, never return, leave processes behind or kill their
 //! worker: each is terminated and reported, and the other jobs are done.
 use super::{OWN_SLOTS, collect};
-use dispatch::runtime::{Completed, Dispatch, Summary};
+use dispatch::runtime::{Completed, Dispatch, RunSummary};
 use protocol::{
     id::{AttemptId, JobId},
     job::{Answer, Failure, Outcome},
@@ -30,7 +30,7 @@ async fn outcomes(
     jobs: u64,
     behaviour: &str,
     workers: usize,
-) -> (BTreeMap<JobId, Outcome>, Summary) {
+) -> (BTreeMap<JobId, Outcome>, RunSummary) {
     let folder = tempfile::tempdir().unwrap();
     let locator = free_locator();
     let mut dispatch = Dispatch::open(options(folder.path(), Some(&locator), 0))

@@ -17,7 +17,7 @@ use tests::{
 };
 
 const WORKERS: usize = 64;
-/// Number of jobs submitted ahead: two for each worker, and some to spare.
+/// Number of jobs submitted but not finished: two for each worker, and some to spare.
 const AHEAD: u64 = 3 * WORKERS as u64;
 
 struct Load {
@@ -30,7 +30,7 @@ struct Load {
 }
 
 impl Load {
-    /// Does jobs for the given time and returns the rate \[1/s\].
+    /// Keeps all workers supplied with jobs for the given time; returns the rate of completed jobs \[1/s\].
     async fn rate(&mut self, time: Duration) -> f64 {
         let (begun, before) = (Instant::now(), self.done);
         while begun.elapsed() < time {

@@ -2,7 +2,7 @@
 //! reorders messages.
 use super::{LIMIT, OWN_SLOTS};
 use dispatch::runtime::Dispatch;
-use link::memory::{Faults, Hub};
+use link::memory::{FaultInjection, Hub};
 use protocol::{
     id::{JobId, WorkerId},
     job::{Answer, Failure, Job},
@@ -118,8 +118,8 @@ fn a_job_that_never_returns_is_ended_and_a_crash_is_told() {
     });
 }
 
-/// Runs a search over an in-process link with injected faults; returns its log and the summary.
-async fn over_memory(faults: Faults) -> (String, dispatch::runtime::Summary) {
+/// Runs a search over an in-process link with injected faults; returns the search log and the run's summary.
+async fn over_memory(faults: FaultInjection) -> (String, dispatch::runtime::RunSummary) {
     let folder = tempfile::tempdir().unwrap();
     let mut hub = None;
     let made = Dispatch::over(&options(folder.path(), None, 0), |_, blob| {
@@ -164,12 +164,12 @@ async fn over_memory(faults: Faults) -> (String, dispatch::runtime::Summary) {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_link_that_loses_doubles_and_reorders_changes_nothing() {
     let _turn = OWN_SLOTS.lock().await;
-    let (clean, summary) = over_memory(Faults::NONE).await;
+    let (clean, summary) = over_memory(FaultInjection::NONE).await;
     assert!(clean.lines().count() > 80, "{clean}");
     assert_eq!((summary.last.repeated, summary.last.duplicates), (0, 0));
     for seed in [1, 2] {
         let delay = Duration::from_millis(30);
-        let faults = Faults {
+        let faults = FaultInjection {
             seed,
             loss: 0.2,
             duplication: 0.2,

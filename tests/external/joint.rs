@@ -2,8 +2,8 @@
 use crate::rig::Rig;
 use std::fs;
 
-/// Creates a case of a line `y = a + gain b` with one measured value per condition, so that neither condition
-/// alone determines `a` and `b`.
+/// Creates a case whose model is the line `y = a + gain b` with one measured value per condition, so that no
+/// single condition determines `a` and `b`.
 fn line(fitted: &str) -> Rig {
     let rig = Rig::new();
     let folder = rig.file("case");
@@ -47,8 +47,7 @@ fn line(fitted: &str) -> Rig {
 }
 
 /// Checks that a joint fit over two conditions determines two unknowns that a single condition leaves
-/// undetermined. Finite differences for the Jacobian are combined over conditions in the same way as the
-/// residual.
+/// undetermined; finite differences are combined over the conditions as the residuals are.
 #[test]
 fn what_one_condition_leaves_open_two_find() {
     let rig = line("[\"low\", \"high\"]");

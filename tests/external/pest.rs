@@ -3,13 +3,13 @@ use crate::rig::{Rig, source};
 use serde_json::Value;
 use std::fs;
 
-/// Returns the stored PEST++ results for a model.
+/// Returns the results that PEST++ gave for a model, from a stored file.
 fn found(model: &str) -> Value {
     let text = fs::read_to_string(source("pest").join("pestpp.json")).unwrap();
     serde_json::from_str::<Value>(&text).unwrap()[model].take()
 }
 
-/// Imports a model and allows its program.
+/// Imports a PEST model as a case and adds its program to the allowed ones.
 fn imported(model: &str) -> Rig {
     let rig = Rig::new();
     let control = source("pest").join(model).join("model.pst");
@@ -19,8 +19,8 @@ fn imported(model: &str) -> Rig {
     rig
 }
 
-/// Transforms a parameter value to the PEST++ estimation space: log10, except for the untransformed parameter
-/// `floor` of `decay`.
+/// Converts a parameter value to the space in which PEST++ estimates it: log10, except for the parameter
+/// `floor` of the model `decay`, which is not transformed.
 fn counted(model: &str, name: &str, value: f64) -> f64 {
     if (model, name) == ("decay", "floor") {
         value
@@ -29,8 +29,8 @@ fn counted(model: &str, name: &str, value: f64) -> f64 {
     }
 }
 
-/// Checks that parameters agree with those of PEST++ within a hundredth of its standard deviations, that the
-/// objective agrees to four digits, and that at most half as many model runs were needed.
+/// Calibrates an imported model and checks it against PEST++: parameters within a hundredth of its standard
+/// deviations, objective to four digits, and at most half as many model runs.
 fn calibrated(model: &str) {
     let (rig, expected) = (imported(model), found(model));
     let result = rig.object(&["calibrate", "case", "--preset", "descent", "--run", "run"]);

@@ -103,7 +103,7 @@ impl Rig {
         fs::write(path, text.replace(from, to)).unwrap();
     }
 
-    /// Returns the names of temporary run folders that were not removed.
+    /// Returns the names of evaluations' temporary folders that were not removed.
     pub(crate) fn left(&self) -> Vec<String> {
         let entries = fs::read_dir(self.0.path()).unwrap();
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -118,7 +118,7 @@ impl Rig {
     }
 }
 
-/// Returns the path of a folder of the test crate.
+/// Returns the path of a source folder of this test crate.
 pub(crate) fn source(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }

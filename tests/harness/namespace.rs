@@ -8,9 +8,9 @@ use std::{
     sync::atomic::{AtomicU32, Ordering},
 };
 
-/// IP address of the head.
+/// IP address of the namespace called head.
 pub const HEAD: &str = "10.77.0.1";
-/// IP address of the node.
+/// IP address of the namespace called node.
 pub const NODE: &str = "10.77.0.2";
 
 /// Two network namespaces, head and node, with a virtual cable between them; deleted when dropped.

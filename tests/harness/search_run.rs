@@ -8,19 +8,19 @@ use protocol::{
 use search::{
     space::Space,
     strategy::{
-        Evaluated, Settings, Strategy, Told, build,
+        EvaluatedIndividual, EvaluationResult, Settings, Strategy, build,
         memetic::{MemeticSettings, window::WindowSettings},
     },
     test_function::SPHERE,
 };
 use std::time::Duration;
 
-/// Longest time to wait for a result.
+/// Longest time that a search waits for a result.
 const PATIENCE: Duration = Duration::from_mins(1);
 
 /// Search in which each individual is one short job.
 pub struct SearchRun {
-    /// Search strategy.
+    /// Search strategy, which proposes individuals and is told their fitness.
     pub strategy: Box<dyn Strategy>,
     delay_ms: u32,
 }
@@ -95,14 +95,14 @@ impl SearchRun {
         jobs.collect()
     }
 
-    /// Passes the result of a job to the strategy.
+    /// Passes the reply to a job to the strategy as the individual's fitness.
     pub fn tell(&mut self, id: u64, outcome: &Outcome) {
         let told = match outcome {
-            Outcome::Done(Answer::Nothing(reply)) => Told {
+            Outcome::Done(Answer::Nothing(reply)) => EvaluationResult {
                 fitness: reply.len() as f64,
                 complete: true,
             },
-            Outcome::Done(_) | Outcome::Failed(_) => Told {
+            Outcome::Done(_) | Outcome::Failed(_) => EvaluationResult {
                 fitness: f64::INFINITY,
                 complete: false,
             },
@@ -112,8 +112,8 @@ impl SearchRun {
 
     /// Returns the bits of all individuals and their fitness, in id order, as text.
     pub fn log(&self) -> String {
-        let line = |entry: &Evaluated| {
-            let genes = entry.genes.iter().chain([&entry.told.fitness]);
+        let line = |entry: &EvaluatedIndividual| {
+            let genes = entry.genes.iter().chain([&entry.result.fitness]);
             let bits: Vec<String> = genes
                 .map(|value| format!("{:016x}", value.to_bits()))
                 .collect();
@@ -123,7 +123,7 @@ impl SearchRun {
     }
 }
 
-/// Computes the reply length that encodes a fitness: at most 2000 bytes.
+/// Returns the length of the reply that encodes a fitness, at most 2000 (bytes).
 fn reply_bytes(fitness: f64) -> u32 {
     #[expect(
         clippy::cast_possible_truncation,

@@ -3,8 +3,8 @@
 use super::{LIMIT, MEASURING, idle::first_datagrams};
 use protocol::{
     id::{RunId, draw},
-    message::{Beat, FromWorker},
-    wire::{self, Kind},
+    message::{FromWorker, Heartbeat},
+    wire::{self, FrameKind},
 };
 use std::{
     fs,
@@ -45,14 +45,15 @@ fn rubbish(n: u64) -> Vec<u8> {
             framed(u16::try_from(body.len()).unwrap(), &body)
         }
         4 => {
-            let beat = FromWorker::Beat(Beat::default());
-            wire::seal(Kind::FromWorker, RunId(n), &beat).unwrap()
+            let beat = FromWorker::Beat(Heartbeat::default());
+            wire::encode_frame(FrameKind::FromWorker, RunId(n), &beat).unwrap()
         }
         _ => framed(0, &[]),
     }
 }
 
-/// Opens connections and sends invalid bytes until `stop` is set; returns the number of connections.
+/// Opens connections to a socket and sends invalid bytes until `stop` is set; returns the number of
+/// connections.
 fn throw_at(address: SocketAddr, lane: u64, stop: &AtomicBool) -> u64 {
     let mut thrown = 0;
     while !stop.load(Ordering::Relaxed) {

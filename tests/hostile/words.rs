@@ -8,9 +8,9 @@ use protocol::{
     id::{AttemptId, ContentHash, JobId, RunId},
     job::{Answer, Outcome},
     key::{self, Lane},
-    message::{Attempt, Beat, Cost, Done, FromWorker, ToWorker},
+    message::{Attempt, Cost, Done, FromWorker, Heartbeat, ToWorker},
     name::WorkerName,
-    wire::{self, Kind},
+    wire::{self, FrameKind},
 };
 use serde::{Serialize, Serializer, ser::SerializeTuple};
 use std::{
@@ -48,7 +48,8 @@ impl Peer {
             session
                 .declare_subscriber(key::to_worker(&name, lane))
                 .callback(move |sample| {
-                    if let Ok(message) = wire::unseal(Kind::ToWorker, &sample.payload().to_bytes())
+                    if let Ok(message) =
+                        wire::decode_frame(FrameKind::ToWorker, &sample.payload().to_bytes())
                     {
                         to.lock().unwrap().push(message);
                     }
@@ -70,11 +71,12 @@ impl Peer {
     }
 
     fn say(&self, run: RunId, lane: Lane, message: &FromWorker) {
-        let frame = wire::seal(Kind::FromWorker, run, message).unwrap();
+        let frame = wire::encode_frame(FrameKind::FromWorker, run, message).unwrap();
         self.throw(run, lane, frame);
     }
 
-    /// Announces repeatedly until an answer that satisfies `fits` arrives, and returns its run.
+    /// Announces the peer repeatedly until an answer that satisfies `fits` arrives; returns the run stated in
+    /// the answer's frame.
     fn announce_until(
         &self,
         announcement: &Announcement,
@@ -156,10 +158,10 @@ async fn whoever_does_not_fit_is_refused_by_the_field_that_is_wrong() {
     eprintln!("four refusals within {:?}", begun.elapsed());
     // a frame of another version is answered in ours, so that the other end can say why
     peer.heard.lock().unwrap().clear();
-    let mut other = wire::seal(
-        Kind::FromWorker,
+    let mut other = wire::encode_frame(
+        FrameKind::FromWorker,
         RunId(0),
-        &FromWorker::Beat(Beat::default()),
+        &FromWorker::Beat(Heartbeat::default()),
     )
     .unwrap();
     other[2] = wire::VERSION + 1;
@@ -196,8 +198,13 @@ impl Serialize for Raw {
 
 /// Wraps a malformed body in a valid frame, so that it reaches the decoder.
 fn around(run: RunId, body: &[u8]) -> Vec<u8> {
-    let frame = wire::seal(Kind::FromWorker, run, &Raw(body.to_vec())).unwrap();
-    assert_eq!(wire::open(Kind::FromWorker, &frame).unwrap().body, body);
+    let frame = wire::encode_frame(FrameKind::FromWorker, run, &Raw(body.to_vec())).unwrap();
+    assert_eq!(
+        wire::parse_frame(FrameKind::FromWorker, &frame)
+            .unwrap()
+            .body,
+        body
+    );
     frame
 }
 
@@ -205,7 +212,7 @@ fn around(run: RunId, body: &[u8]) -> Vec<u8> {
 #[test]
 fn damaged_bodies_reach_the_decoder() {
     let promise = around(RunId(1), &endless());
-    let read = wire::unseal::<FromWorker>(Kind::FromWorker, &promise);
+    let read = wire::decode_frame::<FromWorker>(FrameKind::FromWorker, &promise);
     assert!(
         matches!(read, Err(wire::WireError::Malformed { .. })),
         "{read:?}"
@@ -214,7 +221,7 @@ fn damaged_bodies_reach_the_decoder() {
 
 /// Returns a heartbeat whose encoded list length exceeds the available memory.
 fn endless() -> Vec<u8> {
-    let mut body = wire::encode(&FromWorker::Beat(Beat::default())).unwrap();
+    let mut body = wire::encode(&FromWorker::Beat(Heartbeat::default())).unwrap();
     let end = body.len();
     body[end - 8..].fill(0xff);
     body
@@ -224,7 +231,7 @@ fn endless() -> Vec<u8> {
 fn throw_rubbish(peer: &Peer, run: RunId, digest: &str, stop: &AtomicBool) -> u64 {
     let good = FromWorker::Announce(Box::new(announcement(digest)));
     let body = wire::encode(&good).unwrap();
-    let good = wire::seal(Kind::FromWorker, run, &good).unwrap();
+    let good = wire::encode_frame(FrameKind::FromWorker, run, &good).unwrap();
     let mut thrown = 0_u64;
     while !stop.load(Ordering::Relaxed) {
         let at = usize::try_from(thrown).unwrap_or(0);
@@ -251,8 +258,8 @@ fn throw_rubbish(peer: &Peer, run: RunId, digest: &str, stop: &AtomicBool) -> u6
             6 => frame.extend_from_slice(&good),
             // sound, but of another run
             _ => {
-                let beat = FromWorker::Beat(Beat::default());
-                frame = wire::seal(Kind::FromWorker, RunId(thrown), &beat).unwrap();
+                let beat = FromWorker::Beat(Heartbeat::default());
+                frame = wire::encode_frame(FrameKind::FromWorker, RunId(thrown), &beat).unwrap();
             }
         }
         let lane = if thrown.is_multiple_of(2) {
@@ -347,9 +354,9 @@ async fn forged_and_repeated_results_are_not_believed() {
             };
             peer.say(run, Lane::Data, &FromWorker::Done(Box::new(done)));
         }
-        let beat = Beat {
+        let beat = Heartbeat {
             number: round,
-            ..Beat::default()
+            ..Heartbeat::default()
         };
         peer.say(run, Lane::Control, &FromWorker::Beat(beat));
     }
@@ -367,9 +374,9 @@ async fn forged_and_repeated_results_are_not_believed() {
             .any(|(_, message)| matches!(message, ToWorker::Run(_))),
         "a worker without the case was given a job"
     );
-    let beat = FromWorker::Beat(Beat {
+    let beat = FromWorker::Beat(Heartbeat {
         case: Some(ContentHash::of(b"another case")),
-        ..Beat::default()
+        ..Heartbeat::default()
     });
     wait_until("another case is refused", LIMIT, || {
         peer.say(run, Lane::Control, &beat);

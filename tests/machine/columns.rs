@@ -8,7 +8,7 @@ use super::unit;
 use protocol::{
     case::{Case, EffectSetting},
     job::{
-        Answer, Column, Derivative, Failure, Individual, Job, MOST_COLUMNS, Observation, Outcome,
+        Answer, Column, Derivative, Failure, Individual, Job, MAX_COLUMNS, Observation, Outcome,
         Per, Reply, SimulateSpec, Verdict,
     },
     pumping_unit::Discretisation,
@@ -41,7 +41,8 @@ fn asked(case: &Case, genes: Vec<f64>, columns: Vec<Column>) -> Result<Observati
     }
 }
 
-/// Returns the unit and the curves of a derivative, in double precision.
+/// Returns what a derivative is taken with respect to (with unit) and its curve for each channel, in double
+/// precision.
 fn curves(derivative: &Derivative) -> (&Per, Vec<Vec<f64>>) {
     match derivative {
         Derivative::Curves { per, curves } => {
@@ -68,7 +69,7 @@ fn columns_are_what_whole_runs_beside_say() {
         &[("creep", 0.004), ("moment", 1000.0)],
     )];
     let names = ["kb1", "pivot_friction.moment", "gauge_gain.gain_1"];
-    let columns = names.map(Column::of).to_vec();
+    let columns = names.map(Column::new).to_vec();
     let seen = asked(&case, case.start(), columns).unwrap();
     assert_eq!((seen.verdict, seen.columns.len()), (Verdict::Complete, 3));
     let run = |change: &dyn Fn(&mut Case)| {
@@ -133,7 +134,7 @@ fn columns_are_what_whole_runs_beside_say() {
 fn columns_change_nothing_else() {
     let case = coarse();
     let ask = |names: &[&str]| {
-        let columns = names.iter().map(|name| Column::of(*name)).collect();
+        let columns = names.iter().map(|name| Column::new(*name)).collect();
         asked(&case, case.start(), columns).unwrap()
     };
     let plain = ask(&[]);
@@ -159,11 +160,11 @@ fn a_run_that_fails_has_no_columns() {
     genes[0] *= 1e-6;
     let plain = asked(&case, genes.clone(), Vec::new()).unwrap();
     assert_ne!(plain.verdict, Verdict::Complete);
-    let seen = asked(&case, genes, vec![Column::of("kb1"), Column::of("kc")]).unwrap();
+    let seen = asked(&case, genes, vec![Column::new("kb1"), Column::new("kc")]).unwrap();
     assert_eq!(seen, plain);
 }
 
-/// Checks that a request for an unavailable column is refused with the name of the column and the known
+/// Checks that a request for a derivative by an unknown quantity is refused with its name and the known
 /// names.
 #[test]
 fn columns_that_do_not_exist_are_refused() {
@@ -186,19 +187,19 @@ fn columns_that_do_not_exist_are_refused() {
         ("quite_another", "known are kb1, "),
         ("", "there is no ``"),
     ] {
-        let (field, problem) = refused(vec![Column::of("kb1"), Column::of(name)]);
+        let (field, problem) = refused(vec![Column::new("kb1"), Column::new(name)]);
         assert_eq!(field, "columns[1]");
         assert!(problem.contains(says), "{problem}");
     }
     // the case has the effect: it has its values already
-    let mut present = Column::of("load_offset.force");
+    let mut present = Column::new("load_offset.force");
     present.values = vec![("force".to_owned(), 1.0)];
     assert_eq!(refused(vec![present]).0, "columns[0]");
     // outside its bounds
-    let mut outside = Column::of("head_profile_wear.depth");
+    let mut outside = Column::new("head_profile_wear.depth");
     outside.values = vec![("centre".to_owned(), 1e9)];
     assert_eq!(refused(vec![outside]).0, "columns[0]");
-    let (field, problem) = refused(vec![Column::of("kb1"); MOST_COLUMNS + 1]);
+    let (field, problem) = refused(vec![Column::new("kb1"); MAX_COLUMNS + 1]);
     assert_eq!(field, "columns");
     assert!(
         problem.contains("501") && problem.contains("500"),

@@ -41,7 +41,7 @@ fn energy_ledger_closes_with_every_effect() {
     }
 }
 
-/// Reply with all curves but no snapshots of the moving machine.
+/// Kind of reply with all curves but no snapshots of the moving machine.
 const CURVES: Reply = Reply::Curves { pictures: 0 };
 
 fn observe(case: &Case, effects: &[EffectSetting], discretisation: Discretisation) -> Observation {
@@ -72,8 +72,8 @@ fn bits(observation: &Observation) -> Vec<u64> {
         .collect()
 }
 
-/// Checks that effects of a job, the same effects in the case, and a different order of effects give the same
-/// bits, and that effects at their absent values give those of the plain machine and of a whole simulation.
+/// Checks that effects give the same bits whether a job or the case states them and in any order, and that
+/// effects at their absent values give the bits of the plain machine.
 #[test]
 fn effects_give_the_same_bits_wherever_they_are_stated() {
     let case = case();

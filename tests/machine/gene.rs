@@ -15,13 +15,14 @@ use protocol::{
 use search::space::Space;
 use search::strategy::{
     Settings, build,
-    levenberg::{Derivatives, Finish, LevenbergSettings},
+    levenberg::{Derivatives, DescentTolerance, LevenbergSettings},
     memetic::MemeticSettings,
-    quick::{Part, QuickSettings},
+    quick::{QuickSettings, SearchPart},
 };
 use std::collections::VecDeque;
 use study::{
-    Calibrated, Completed, Crew, Evaluator, EvaluatorError, ProgressView, Watch, calibrate,
+    Calibrated, Completed, Evaluator, EvaluatorError, ProgressView, Watch, WorkersSnapshot,
+    calibrate,
 };
 use worker::handler::Prepared;
 
@@ -30,7 +31,7 @@ fn gene((id, parameter): (&str, &str), unit: &str, bounds: [f64; 2], value: f64)
     Unknown::new(name, unit, Scale::Linear, value, bounds)
 }
 
-/// Returns the shipped case with long cylinders and the given effects, none of whose parameters is an
+/// Returns the shipped case with long rope cylinders and the given effects, none of whose parameters is an
 /// unknown.
 fn coarse(effects: &[EffectSetting]) -> Case {
     let long = Discretisation {
@@ -51,14 +52,14 @@ fn moment() -> Unknown {
     gene(("pivot_friction", "moment"), "N.m", [200.0, 4000.0], 1000.0)
 }
 
-/// Returns the case with the friction moment as an additional unknown.
+/// Returns the case with the saddle bearing's friction moment as an additional unknown.
 fn searched(case: &Case) -> Case {
     let mut case = case.clone();
     case.unknowns.push(moment());
     case
 }
 
-/// Returns the start values of the coefficients with the given friction moment.
+/// Returns an individual with the start values of all coefficients and the given friction moment.
 fn individual(case: &Case, moment: f64) -> Vec<f64> {
     let mut genes = case.start();
     genes[10] = moment;
@@ -124,8 +125,8 @@ fn a_gene_of_an_effect_is_that_value_in_the_case() {
     );
 }
 
-/// Checks that an invalid gene is refused by field: before any individual if its bounds or unit are wrong,
-/// with the individual if its value is.
+/// Checks that an invalid gene of an effect is refused with the name of its field: wrong bounds or units when
+/// the case is prepared, wrong values when the individual is evaluated.
 #[test]
 fn a_gene_that_the_model_cannot_take_is_refused_by_field() {
     let refused = |failure: Failure| match failure {
@@ -184,12 +185,12 @@ fn a_gene_that_the_model_cannot_take_is_refused_by_field() {
 }
 
 /// Evaluator that runs jobs sequentially in this process, as a slot does.
-struct Here {
+struct LocalEvaluator {
     prepared: Prepared,
     waiting: VecDeque<(JobId, Job)>,
 }
 
-impl Evaluator for Here {
+impl Evaluator for LocalEvaluator {
     fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError> {
         self.waiting.push_back((id, job));
         Ok(())
@@ -207,23 +208,23 @@ impl Evaluator for Here {
         })
     }
 
-    fn crew(&self) -> Crew {
-        Crew::default()
+    fn workers_status(&self) -> WorkersSnapshot {
+        WorkersSnapshot::default()
     }
 }
 
 struct Unseen;
 
 impl Watch<ProgressView> for Unseen {
-    fn progress(&mut self, _: &ProgressView, _: &dyn Fn() -> Crew) {}
+    fn progress(&mut self, _: &ProgressView, _: &dyn Fn() -> WorkersSnapshot) {}
 }
 
-fn calibrated(case: &Case, parts: Vec<Part>) -> Calibrated {
+fn calibrated(case: &Case, parts: Vec<SearchPart>) -> Calibrated {
     let space = Space::new(&case.unknowns).unwrap();
     let trust = space.axes().iter().map(|axis| axis.trust).collect();
     let settings = Settings::of(&QuickSettings { trust, parts });
     let mut strategy = build(&settings, &space, 1).unwrap();
-    let mut here = Here {
+    let mut here = LocalEvaluator {
         prepared: Prepared::new(worker::SIMULATORS, case).unwrap(),
         waiting: VecDeque::new(),
     };
@@ -259,14 +260,14 @@ fn a_calibration_finds_the_sizes_of_effects() {
     let found = calibrated(
         &case,
         vec![
-            Part::Memetic(MemeticSettings {
+            SearchPart::Memetic(MemeticSettings {
                 population: 4,
                 generations: 1,
                 crossover_trials: 1,
                 mutation_trials: 1,
                 ..MemeticSettings::paper()
             }),
-            Part::LeastSquares(LevenbergSettings {
+            SearchPart::LeastSquares(LevenbergSettings {
                 starts: 1,
                 iterations: 5,
                 apart: 0.03,
@@ -276,7 +277,7 @@ fn a_calibration_finds_the_sizes_of_effects() {
                 heat: 100,
                 keep: 1,
                 derivatives: Derivatives::Exact,
-                finish: Finish::Usual,
+                finish: DescentTolerance::Usual,
             }),
         ],
     );

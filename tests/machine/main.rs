@@ -88,8 +88,8 @@ fn energy_ledger_closes_over_one_revolution() {
     }
 }
 
-/// Returns run settings with the given method, tolerance and longest step, without a swing limit on the step
-/// and without a work budget.
+/// Returns run settings with exactly the given method, tolerance and longest step: no shortening of the step
+/// for fast-swinging beams, and no limit on the work.
 fn stated(unit: &PumpingUnit, method: Method, tolerance: f64, longest_step: f64) -> RunSettings {
     RunSettings {
         method,

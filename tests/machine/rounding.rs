@@ -3,7 +3,7 @@
 use super::folder;
 use case::{Overrides, load_with_notes};
 use discrepancy::laboratory::channels;
-use discrepancy::record::basis::Group;
+use discrepancy::record::basis::ChannelGroup;
 use discrepancy::record::metric::Metric;
 use discrepancy::record::noise::Noise;
 use protocol::case::EffectSetting;
@@ -20,7 +20,7 @@ fn done(prepared: &Prepared, individual: &Individual, reply: Reply) -> Answer {
     prepared.evaluate(&Job::Simulate(spec)).done().unwrap()
 }
 
-/// Returns the channels as transmitted (rounded) and as computed (exact).
+/// Returns the channels of an individual twice: as transmitted (rounded) and as computed (exact).
 fn both(prepared: &Prepared, individual: &Individual) -> [Observation; 2] {
     let rounded = done(prepared, individual, Reply::Channels);
     let bytes = protocol::wire::encode(&Outcome::Done(rounded.clone())).unwrap();
@@ -37,10 +37,9 @@ fn both(prepared: &Prepared, individual: &Individual) -> [Observation; 2] {
     [rounded.into_channels().unwrap(), exact]
 }
 
-/// Checks that rounding moves each whitened residual by less than 3e-3 standard deviations, and moves the
-/// residual change caused by a twentieth of a decade of a gene, or by a friction, by less than 0.05 in norm.
-/// No estimate or test statistic computed from the channels moves by more than that share of its own
-/// uncertainty.
+/// Checks that rounding the channels moves each whitened residual by less than 3e-3 standard deviations, and
+/// the change of the residuals with a gene (by 1/20 decade) or a friction by less than 0.05 in norm, so that
+/// no estimate or test statistic moves by more than 5 % of its uncertainty.
 #[test]
 fn rounded_channels_are_short_and_far_below_the_noise() {
     let loaded = load_with_notes(&folder(), &Overrides::default()).unwrap();
@@ -48,7 +47,7 @@ fn rounded_channels_are_short_and_far_below_the_noise() {
     let condition = case.objective.condition;
     let record = loaded.cycles.iter().find(|it| it.condition == condition);
     let record = record.unwrap();
-    let groups = Group::of(record, ORDERS, &[]);
+    let groups = ChannelGroup::of(record, ORDERS, &[]);
     let noise = Noise::estimate(record, &groups, &[]);
     let metric = Metric::new(&groups, &noise);
     let prepared = Prepared::new(worker::SIMULATORS, case).unwrap();

@@ -1,33 +1,33 @@
 //! Tests of the machine at rest at several crank angles: equilibrium, and gauge readings compared with
 //! statics.
 use super::{individuals, unit};
-use case::pumping_unit::{QuasiStatic, wrapped_turn};
+use case::pumping_unit::{QuasiStaticTurn, wrapped_turn};
 use protocol::pumping_unit;
 use simulation::{
     drive::Drive,
-    model::{BackHeadLoads, Individual, Machine, description::RopeLaw},
+    model::{BackHeadLoads, Machine, RopeMachine, description::RopeLaw},
     observe::gauge_stress,
     run::{RunSettings, settle},
     system::{State, StateRef, System},
 };
 use std::f64::consts::TAU;
 
-/// Angles of the crank before bottom dead centre \[rad\].
+/// Angles before bottom dead centre at which the crank is at rest \[rad\].
 const TURNS: [f64; 6] = [0.4, 1.4, 2.4, 3.4, 4.4, 5.4];
 
-/// Returns the machine settled at rest with its crank `turn` before bottom dead centre.
+/// Returns the machine in equilibrium with its crank at rest `turn` before bottom dead centre.
 fn at_rest<'a>(
     machine: &'a Machine,
     law: &RopeLaw,
     settings: &RunSettings,
     turn: f64,
-) -> (System<Individual<'a>>, State) {
+) -> (System<RopeMachine<'a>>, State) {
     let drive = Drive {
         start: -turn,
         ramp: settings.ramp,
         speed: machine.description.crank.speed,
     };
-    let mut system = System::new(Individual::new(machine, machine.ropes(law), drive));
+    let mut system = System::new(RopeMachine::new(machine, machine.ropes(law), drive));
     let q = settle(&mut system, settings, None).unwrap();
     (system, State::at_rest(0.0, q))
 }
@@ -75,7 +75,7 @@ fn gauges_at_rest_read_exact_statics() {
 fn exact_statics(
     own: &pumping_unit::Machine,
     machine: &Machine,
-    system: &System<Individual<'_>>,
+    system: &System<RopeMachine<'_>>,
     (state, turn): (&State, f64),
 ) -> [f64; 4] {
     let mechanism = machine.mechanism(machine.description.back_arc.radius, machine.back_length());
@@ -84,7 +84,7 @@ fn exact_statics(
         let pin = machine.bottom.pin + turn * f64::from(k) / 100.0;
         at = mechanism.position(pin, at.beam, at.tangent).unwrap();
     }
-    let quasi_static = QuasiStatic {
+    let quasi_static = QuasiStaticTurn {
         turn_deg: vec![(TAU - turn).to_degrees()],
         contact_deg: vec![at.tangent.to_degrees()],
         tension_n: vec![system.equations.base_tensions(0).sum()],

@@ -43,7 +43,7 @@ fn twisted(law: &RopeLaw, stiffer: f64, damped: f64) -> RopeLaw {
     other
 }
 
-/// Computes the largest difference between the gauges of two runs, relative to the range of the gauge in the
+/// Returns the largest difference between the gauge curves of two runs, divided by the gauge's range in the
 /// second run.
 fn apart(a: &Curves, b: &Curves) -> f64 {
     let each = a.gauge.iter().zip(&b.gauge).map(|(a, b)| {

@@ -15,7 +15,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Interval at which the state is sampled.
+/// Interval at which the coordinator's state is sampled.
 const LOOK: Duration = Duration::from_millis(50);
 
 #[tokio::main]

@@ -34,8 +34,8 @@ const SILENCE_MS: u64 = 4000;
 /// wait, hold it shared.
 static BUSY: RwLock<()> = RwLock::new(());
 
-/// Coordinator on the head, with its output, namespaces and key material.
-struct Stage {
+/// Running coordinator on the head, with its output, network namespaces and key material.
+struct Testbed {
     // the processes end before what they stand on
     coordinator: Process,
     lines: Lines<BufReader<ChildStdout>>,
@@ -72,7 +72,7 @@ impl State {
     }
 }
 
-impl Stage {
+impl Testbed {
     /// Starts a coordinator on the head with this number of jobs; returns `None` if the machine supports no
     /// namespaces.
     fn set(jobs: u64, delay_ms: u64) -> Option<Self> {
@@ -109,8 +109,8 @@ impl Stage {
         Process::logged(command, &self.folder.path().join(format!("{name}.log")))
     }
 
-    /// Reads lines of the coordinator until a state satisfies `is`; panics after a minute or at the end of
-    /// the run.
+    /// Reads the coordinator's lines until a state satisfies `is`, and returns that state; panics after a
+    /// minute or at the end of the run.
     fn until(&mut self, what: &str, is: impl Fn(&State) -> bool) -> State {
         let begun = Instant::now();
         loop {
@@ -149,7 +149,7 @@ impl Stage {
 
 /// Returns the time that the threads of a process spent runnable but waiting for a processor, divided by the
 /// time that they ran.
-fn kept_waiting(process: Pid) -> f64 {
+fn wait_ratio(process: Pid) -> f64 {
     let threads = fs::read_dir(format!("/proc/{}/task", process.as_raw_nonzero())).unwrap();
     let (mut ran, mut waited) = (0.0, 0.0);
     for thread in threads.flatten() {
@@ -175,7 +175,7 @@ fn calm() -> RwLockReadGuard<'static, ()> {
 fn a_network_that_loses_doubles_and_reorders_changes_nothing() {
     let _calm = calm();
     // so many that the second comes in before they are done: it may shake hands for ten seconds
-    let Some(mut stage) = Stage::set(1500, 5) else {
+    let Some(mut stage) = Testbed::set(1500, 5) else {
         return;
     };
     let mut command = stage
@@ -210,7 +210,7 @@ fn a_network_that_loses_doubles_and_reorders_changes_nothing() {
 fn a_worker_that_was_cut_off_is_replaced_and_comes_back() {
     let _calm = calm();
     // two workers of two slots, a quarter of a second each: 16 jobs a second, 8 while one is cut off
-    let Some(mut stage) = Stage::set(180, 250) else {
+    let Some(mut stage) = Testbed::set(180, 250) else {
         return;
     };
     let cut_off = stage.worker("worker-01", PORT, 2);
@@ -258,7 +258,7 @@ fn a_worker_that_was_cut_off_is_replaced_and_comes_back() {
 fn workers_that_are_killed_and_frozen_over_quic_are_replaced_within_six_seconds() {
     let _calm = calm();
     // three workers of two slots, a quarter of a second each: 24 jobs a second at first
-    let Some(mut stage) = Stage::set(300, 250) else {
+    let Some(mut stage) = Testbed::set(300, 250) else {
         return;
     };
     let victims = [Signal::KILL, Signal::STOP].map(|how| (how, stage.worker("worker-01", PORT, 2)));
@@ -294,7 +294,7 @@ fn workers_that_are_killed_and_frozen_over_quic_are_replaced_within_six_seconds(
 #[test]
 fn nobody_is_taken_for_lost_on_a_busy_machine() {
     let _alone = BUSY.write().unwrap_or_else(PoisonError::into_inner);
-    let Some(mut stage) = Stage::set(900, 20) else {
+    let Some(mut stage) = Testbed::set(900, 20) else {
         return;
     };
     let cores = thread::available_parallelism().map_or(1, usize::from);
@@ -309,9 +309,7 @@ fn nobody_is_taken_for_lost_on_a_busy_machine() {
     let both = stage.until("both work", |state| state.workers == 2);
     let last = stage.until("nearly all is done", |state| state.done > 880);
     let programs = workers.iter().chain([&stage.coordinator]);
-    let shares: Vec<f64> = programs
-        .map(|program| kept_waiting(program.pid()))
-        .collect();
+    let shares: Vec<f64> = programs.map(|program| wait_ratio(program.pid())).collect();
     let end = stage.end();
     eprintln!("{end:?}; time without a processor over time with one: {shares:.1?}");
     assert_eq!((end.done, end.lost), (900, 0));

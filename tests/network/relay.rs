@@ -20,14 +20,14 @@ use std::{
 };
 use tokio::net::UdpSocket;
 
-/// Number of datagrams between two lines of output.
-const TOLD: u64 = 100;
+/// Number of datagrams after which the relay prints a line.
+const REPORT_INTERVAL: u64 = 100;
 /// Longest possible datagram (bytes).
 const LONGEST: usize = 65_535;
 
 /// Probabilities of loss and duplication, largest delay, and counters of the relay.
 #[derive(Clone, Debug)]
-struct Weather {
+struct Impairment {
     seed: String,
     drawn: Arc<AtomicU64>,
     loss: f64,
@@ -37,15 +37,15 @@ struct Weather {
     doubled: Arc<AtomicU64>,
 }
 
-impl Weather {
+impl Impairment {
     /// Draws a uniform number in [0, 1).
     fn draw(&self) -> f64 {
         let count = self.drawn.fetch_add(1, Ordering::Relaxed);
         (draw(&self.seed, count.into()) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Draws the delays after which the copies of a datagram are forwarded; empty if the datagram is lost.
-    fn fate(&self) -> Vec<Duration> {
+    /// Draws the delay of each copy of a datagram; no copy if the datagram is lost, two if it is duplicated.
+    fn copy_delays(&self) -> Vec<Duration> {
         if self.draw() < self.loss {
             self.lost.fetch_add(1, Ordering::Relaxed);
             return Vec::new();
@@ -59,8 +59,8 @@ impl Weather {
 }
 
 /// Forwards the copies of one datagram after their random delays.
-fn pass(weather: &Weather, socket: &Arc<UdpSocket>, to: SocketAddr, datagram: &[u8]) {
-    for delay in weather.fate() {
+fn pass(weather: &Impairment, socket: &Arc<UdpSocket>, to: SocketAddr, datagram: &[u8]) {
+    for delay in weather.copy_delays() {
         let (socket, datagram) = (Arc::clone(socket), datagram.to_vec());
         drop(tokio::spawn(async move {
             tokio::time::sleep(delay).await;
@@ -72,7 +72,7 @@ fn pass(weather: &Weather, socket: &Arc<UdpSocket>, to: SocketAddr, datagram: &[
 
 /// Forwards the target's answers to one client until the socket fails.
 async fn answer(
-    weather: Weather,
+    weather: Impairment,
     inner: Arc<UdpSocket>,
     outer: Arc<UdpSocket>,
     client: SocketAddr,
@@ -89,7 +89,7 @@ async fn main() -> Result<(), Box<dyn Error>> {
     let [listen, target, seed, loss, duplication, delay_ms] = arguments.as_slice() else {
         return Err("expected LISTEN TARGET SEED LOSS DUPLICATION DELAY_MS".into());
     };
-    let weather = Weather {
+    let weather = Impairment {
         seed: seed.clone(),
         drawn: Arc::default(),
         loss: loss.parse()?,
@@ -104,7 +104,7 @@ async fn main() -> Result<(), Box<dyn Error>> {
     let mut buffer = vec![0; LONGEST];
     let mut out = io::stdout();
     for count in 1_u64.. {
-        if count.is_multiple_of(TOLD) {
+        if count.is_multiple_of(REPORT_INTERVAL) {
             let counts = [&weather.lost, &weather.doubled].map(|at| at.load(Ordering::Relaxed));
             writeln!(out, "lost {} doubled {}", counts[0], counts[1])?;
         }

@@ -69,7 +69,7 @@ impl Site {
         Self::with_host(workers, "127.0.0.1")
     }
 
-    /// Creates a site whose coordinator certificate is valid for the given host.
+    /// Creates a test folder with a coordinator certificate that is valid for the given host.
     fn with_host(workers: u32, host: &str) -> Self {
         let site = Self {
             folder: tempfile::tempdir().unwrap(),
@@ -120,7 +120,7 @@ impl Site {
         self.command(words).output().unwrap()
     }
 
-    /// Runs `workers up` with this site's coordinator and keys.
+    /// Runs `workers up` with the coordinator address and keys of this test folder.
     fn up(&self, words: &[&str]) -> Output {
         let common = ["workers", "up", "--connect", &self.locator, "--tls", "keys"];
         self.horsehead(&[&common, words].concat())
@@ -134,7 +134,7 @@ impl Site {
         object["workers"].as_array().unwrap().clone()
     }
 
-    /// Returns the folder of a worker on a host.
+    /// Returns the folder in which a worker on a host keeps its files.
     fn at(&self, host: &str, name: &str) -> PathBuf {
         let entries = fs::read_dir(self.path(&format!("homes/{host}/.cache/horsehead")));
         let mut folders = entries.unwrap().flatten().map(|entry| entry.path());

@@ -1,8 +1,8 @@
 //! Tests of access control for connected certificates: a raw client attempts everything that is not allowed.
 use super::LIMIT;
 use link::{
-    Blob, CoordinatorEnd, Heard,
-    keys::{Keys, Role},
+    Blob, CoordinatorEnd, LinkEvent,
+    keys::{KeyRole, Keys},
     locator::Locator,
     zenoh::{CoordinatorOptions, ZenohCoordinator},
 };
@@ -29,14 +29,14 @@ async fn coordinator(locator: &str, keys: &Path) -> ZenohCoordinator {
     let options = CoordinatorOptions {
         listen: vec![Locator::parse(locator).unwrap()],
         insecure: false,
-        keys: Some(Keys::read(keys, Role::Coordinator).unwrap()),
+        keys: Some(Keys::read(keys, KeyRole::Coordinator).unwrap()),
         run: RUN,
         blob: Blob::new(vec![7; 1000]),
     };
     ZenohCoordinator::open(options).await.unwrap()
 }
 
-/// Coordinator, and two raw sessions with their own certificates and worker names.
+/// Coordinator, and two raw sessions whose certificates and worker names differ.
 struct Pair {
     /// Folder of the key material, kept until the test ends.
     folder: TempDir,
@@ -82,8 +82,9 @@ async fn arrive(end: &mut ZenohCoordinator, session: &Session, name: &WorkerName
             tokio::time::sleep(Duration::from_millis(50)).await;
         }
     };
-    let hear =
-        async { while end.receive().await != Some(Heard::Frame(name.id(), b"here".to_vec())) {} };
+    let hear = async {
+        while end.receive().await != Some(LinkEvent::Frame(name.id(), b"here".to_vec())) {}
+    };
     let heard = tokio::time::timeout(LIMIT, async {
         tokio::select! {
             () = speak => {}
@@ -93,13 +94,14 @@ async fn arrive(end: &mut ZenohCoordinator, session: &Session, name: &WorkerName
     heard.await.unwrap();
 }
 
-/// Returns everything that the coordinator receives up to the frame `last`, except frames of [`arrive`].
-async fn heard_until(end: &mut ZenohCoordinator, last: &[u8]) -> Vec<Heard> {
+/// Returns everything that the coordinator receives up to the frame `last`, except the frames that [`arrive`]
+/// repeats.
+async fn heard_until(end: &mut ZenohCoordinator, last: &[u8]) -> Vec<LinkEvent> {
     let mut heard = Vec::new();
     loop {
         let next = tokio::time::timeout(LIMIT, end.receive()).await;
         let next = next.unwrap().unwrap();
-        let says = |words: &[u8]| matches!(&next, Heard::Frame(_, frame) if frame == words);
+        let says = |words: &[u8]| matches!(&next, LinkEvent::Frame(_, frame) if frame == words);
         if says(b"here") {
             continue;
         }
@@ -142,11 +144,11 @@ async fn a_certificate_speaks_for_nobody_else() {
     }
     put(&one, key::from_worker(RUN, &mine, Lane::Data), "mine").await;
     let heard = heard_until(&mut end, b"mine").await;
-    assert_eq!(heard, [Heard::Frame(mine.id(), b"mine".to_vec())]);
+    assert_eq!(heard, [LinkEvent::Frame(mine.id(), b"mine".to_vec())]);
     // the same words from whom they belong to are heard
     put(&two, key::from_worker(RUN, &theirs, Lane::Data), "theirs").await;
     let heard = heard_until(&mut end, b"theirs").await;
-    assert_eq!(heard, [Heard::Frame(theirs.id(), b"theirs".to_vec())]);
+    assert_eq!(heard, [LinkEvent::Frame(theirs.id(), b"theirs".to_vec())]);
     one.close().await.unwrap();
     two.close().await.unwrap();
     end.close().await;

@@ -40,7 +40,7 @@ fn worker(locator: &str, tls: Option<PathBuf>, arguments: &[&str]) -> Command {
     command
 }
 
-/// Submits jobs and waits for all their results.
+/// Submits jobs to a coordinator and waits for the results of all.
 async fn compute(dispatch: &mut Dispatch, jobs: u64, delay_ms: u32) -> BTreeMap<JobId, Outcome> {
     for n in 0..jobs {
         dispatch.submit(JobId(n), tests::job(n, delay_ms)).unwrap();

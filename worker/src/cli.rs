@@ -54,12 +54,12 @@ pub struct Cli {
     pub embedded: bool,
     /// Internal subcommands
     #[command(subcommand)]
-    pub role: Option<Role>,
+    pub role: Option<ProcessRole>,
 }
 
 /// Internal roles of the program, started only by the program itself.
 #[derive(Clone, Debug, Subcommand)]
-pub enum Role {
+pub enum ProcessRole {
     /// Compute the jobs read from standard input
     #[command(hide = true)]
     Slot {

@@ -36,7 +36,7 @@ impl Outbox {
     }
 
     /// Removes acknowledged results and remembers their attempts.
-    pub fn settle(&mut self, attempts: &[Attempt]) {
+    pub fn acknowledge(&mut self, attempts: &[Attempt]) {
         for attempt in attempts {
             if self.waiting.remove(attempt).is_some() {
                 self.remember(*attempt);
@@ -81,7 +81,7 @@ impl Outbox {
     }
 
     /// Makes all results due for retransmission, after a reconnection.
-    pub fn hurry(&mut self) {
+    pub fn make_all_due(&mut self) {
         for waiting in self.waiting.values_mut() {
             waiting.again_at = Duration::ZERO;
             waiting.pause = FIRST / 2;
@@ -126,9 +126,9 @@ mod tests {
             }
         }
         assert_eq!(times, [101, 103, 107, 115, 123, 131, 139]);
-        outbox.hurry();
+        outbox.make_all_due();
         assert_eq!(outbox.due(Duration::from_secs(140)), [result(3)]);
-        outbox.settle(&[result(4).attempt, result(3).attempt]);
+        outbox.acknowledge(&[result(4).attempt, result(3).attempt]);
         assert_eq!(outbox.due(Duration::from_secs(999)), []);
         assert!(outbox.is_settled(result(3).attempt));
         assert!(!outbox.is_settled(result(4).attempt));

@@ -22,7 +22,7 @@ use std::{
 };
 use tokio::sync::mpsc::UnboundedSender;
 
-/// Time without a pulse after which a keeper thread counts as stuck, and the worker with it.
+/// Time without a sign of life (pulse) after which a keeper thread, and hence the worker, counts as stuck.
 const STUCK: Duration = Duration::from_secs(3);
 
 /// All slots of a worker; their processes are ended on drop.
@@ -87,12 +87,12 @@ impl Pool {
 
     /// Starts a job in a free slot.
     pub fn run(&self, slot: usize, task: Task) {
-        self.tell(slot, ToKeeper::Run(task));
+        self.send(slot, ToKeeper::Run(task));
     }
 
     /// Cancels the job of a slot, if it still computes this attempt.
     pub fn cancel(&self, slot: usize, attempt: Attempt) {
-        self.tell(slot, ToKeeper::Cancel(attempt));
+        self.send(slot, ToKeeper::Cancel(attempt));
     }
 
     /// Returns whether all keeper threads are responsive; if not, the worker must not send heartbeats.
@@ -103,7 +103,7 @@ impl Pool {
         self.pulses.iter().all(alive) && self.threads.iter().all(|thread| !thread.is_finished())
     }
 
-    fn tell(&self, slot: usize, message: ToKeeper) {
+    fn send(&self, slot: usize, message: ToKeeper) {
         let sent = self
             .keepers
             .get(slot)
@@ -117,7 +117,7 @@ impl Pool {
 impl Drop for Pool {
     fn drop(&mut self) {
         for slot in 0..self.keepers.len() {
-            self.tell(slot, ToKeeper::End);
+            self.send(slot, ToKeeper::End);
         }
         for thread in self.threads.drain(..) {
             if thread.join().is_err() {

@@ -1,13 +1,14 @@
-//! Process tree below a process, found through parent process ids, so that neither a new session nor an
-//! emptied environment hides a process. Independent of slots and jobs.
+//! Process tree below a process, found through parent process ids, so that neither a new session nor a
+//! cleared environment hides a process. Independent of slots and jobs.
 use rustix::{
     io,
     process::{Pid, Signal, kill_process},
 };
 use std::{fs, thread, time::Duration};
 
-/// Largest number of passes over a tree that keeps growing; `PAUSE` is the time between passes.
-const LOOKS: u32 = 500;
+/// Largest number of passes made to end a process tree that keeps growing; `PAUSE` is the time between
+/// passes.
+const MAX_PASSES: u32 = 500;
 const PAUSE: Duration = Duration::from_millis(2);
 
 /// Process as listed by the system.
@@ -22,7 +23,7 @@ struct Listed {
 /// Ends all direct and indirect descendants of `root`, but not `root` itself. Orphaned descendants are found
 /// only where `root` inherits them (as a subreaper).
 pub(crate) fn end_below(root: Pid) {
-    for _ in 0..LOOKS {
+    for _ in 0..MAX_PASSES {
         let living: Vec<Pid> = below(root.as_raw_nonzero().get())
             .into_iter()
             .filter_map(Pid::from_raw)

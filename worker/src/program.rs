@@ -1,6 +1,6 @@
 //! Main program of a worker: a worker on the bus or one of its slots, depending on the command line.
 use crate::{
-    cli::{Cli, Role as CliRole},
+    cli::{Cli, ProcessRole as CliRole},
     external,
     session::{self, Ending, SessionOptions},
     simulator::{Simulators, described},
@@ -10,7 +10,7 @@ use anyhow::Context;
 use clap::Parser;
 use link::{
     LinkError,
-    keys::{Keys, Role},
+    keys::{KeyRole, Keys},
     locator::{Locator, Protocol},
     zenoh::ZenohWorker,
 };
@@ -100,7 +100,7 @@ fn serve(cli: &Cli, simulators: Simulators) -> anyhow::Result<ExitCode> {
         embedded: cli.embedded,
     };
     let keys = match (&cli.tls, locator.protocol) {
-        (Some(folder), Protocol::Quic) => match Keys::read(folder, Role::Worker) {
+        (Some(folder), Protocol::Quic) => match Keys::read(folder, KeyRole::Worker) {
             Ok(keys) => Some(keys),
             Err(error) => return Ok(refused(&error)),
         },
@@ -146,7 +146,7 @@ async fn work(
         tokio::select! {
             opened = opening => match opened.context("the connection's task ended")? {
                 Ok(link) => break link,
-                Err(error) if error.may_pass() => {
+                Err(error) if error.is_retryable() => {
                     if said.is_none_or(|said| said.elapsed() > COMPLAINT) {
                         tracing::warn!("{error}; trying again until it answers");
                         said = Some(Instant::now());
@@ -162,7 +162,7 @@ async fn work(
                 Err(error) => return Err(error.into()),
             },
             () = &mut asked => return Ok(Ending::Asked),
-            () = out_of_patience(began, patience) => return Ok(Ending::Idle),
+            () = idle_timeout(began, patience) => return Ok(Ending::Idle),
         }
     };
     tracing::info!(
@@ -172,8 +172,8 @@ async fn work(
     Ok(session::run(link, options, asked).await?)
 }
 
-/// Completes when the idle timeout, counted from `began`, has passed; never without a timeout.
-async fn out_of_patience(began: Instant, patience: Option<Duration>) {
+/// Waits until the idle timeout, counted from `began`, has passed; waits forever if there is no timeout.
+async fn idle_timeout(began: Instant, patience: Option<Duration>) {
     match patience {
         Some(patience) => tokio::time::sleep(patience.saturating_sub(began.elapsed())).await,
         None => std::future::pending().await,

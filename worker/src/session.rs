@@ -25,7 +25,7 @@ use tokio::sync::mpsc::unbounded_channel;
 const TICK: Duration = Duration::from_millis(250);
 
 /// Time for which a leaving worker waits for the coordinator's acknowledgement.
-const FAREWELL: Duration = Duration::from_millis(500);
+const LEAVE_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Serves until there is a reason to end; `asked` completes when the process is asked to end.
 ///
@@ -51,7 +51,7 @@ pub async fn run<L: WorkerEnd>(
     let ending = loop {
         let step = tokio::select! {
             frame = link.receive() => match frame {
-                Some(frame) => state.hear(&mut link, &frame, begun.elapsed()).await,
+                Some(frame) => state.handle_frame(&mut link, &frame, begun.elapsed()).await,
                 None => Step::End(Ending::Unlinked),
             },
             Some(freed) = freed.recv() => state.freed(&mut link, freed, begun.elapsed()),
@@ -64,7 +64,7 @@ pub async fn run<L: WorkerEnd>(
         }
     };
     if state.leave(&mut link, &ending) {
-        let heard = tokio::time::timeout(FAREWELL, state.dismissed(&mut link)).await;
+        let heard = tokio::time::timeout(LEAVE_TIMEOUT, state.await_leave_ack(&mut link)).await;
         tracing::debug!(answered = heard.is_ok(), "left");
     }
     // ends the slots, which takes a moment and would hold up the link

@@ -12,7 +12,7 @@ use std::{fmt, time::Instant};
 /// Kinds of model that a worker program simulates.
 pub type Simulators = &'static [&'static dyn Simulator];
 
-/// Kind of model.
+/// Kind of model, for example the pumping unit, as a worker simulates it.
 pub trait Simulator: fmt::Debug + Sync {
     /// Returns the name of the kind, as stated in cases.
     fn kind(&self) -> &'static str;
@@ -58,7 +58,7 @@ pub trait Simulator: fmt::Debug + Sync {
     /// # Errors
     /// [`Failure::Refused`] for a name that the kind does not know, [`Failure::Misconfigured`] for a request
     /// that cannot be done.
-    fn own(&self, name: &str, body: &[u8]) -> Result<Vec<u8>, Failure>;
+    fn run_custom(&self, name: &str, body: &[u8]) -> Result<Vec<u8>, Failure>;
 }
 
 /// Model of one case, ready for any number of jobs; no job leaves state behind for the next.
@@ -78,7 +78,7 @@ pub trait Model: fmt::Debug + Send + Sync {
     ///
     /// # Errors
     /// As [`Self::observe`].
-    fn draw(&self, spec: &SimulateSpec, _pictures: u32) -> Result<Curves, Failure> {
+    fn all_curves(&self, spec: &SimulateSpec, _pictures: u32) -> Result<Curves, Failure> {
         let began = Instant::now();
         let seen = self.observe(spec, false)?;
         Ok(Curves {

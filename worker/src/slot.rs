@@ -11,7 +11,7 @@ use protocol::{
     case::Case,
     job::{Failure, Job, Outcome},
     message::{FromSlot, ToSlot},
-    wire::{self, Kind},
+    wire::{self, FrameKind},
 };
 use rustix::{
     process::{Resource, Rlimit, Signal, getrlimit, set_parent_process_death_signal, setrlimit},
@@ -46,7 +46,7 @@ pub fn serve(simulators: Simulators, memory_mib: u64) -> io::Result<()> {
         .name(INPUT.to_owned())
         .spawn(move || listen(&to))?;
     let mut out = io::stdout().lock();
-    stream::write(&mut out, Kind::FromSlot, &FromSlot::Ready)?;
+    stream::write(&mut out, FrameKind::FromSlot, &FromSlot::Ready)?;
     let mut prepared = None;
     for message in messages {
         match message {
@@ -73,7 +73,11 @@ fn answer(out: &mut impl io::Write, outcome: Outcome, taken: Duration) -> io::Re
     let cpu_us = u64::try_from(taken.as_micros()).unwrap_or(u64::MAX);
     let say = |out: &mut _, outcome| {
         let outcome = Box::new(outcome);
-        stream::write(out, Kind::FromSlot, &FromSlot::Done { outcome, cpu_us })
+        stream::write(
+            out,
+            FrameKind::FromSlot,
+            &FromSlot::Done { outcome, cpu_us },
+        )
     };
     match say(out, outcome) {
         // nothing has been written of it
@@ -92,7 +96,7 @@ fn answer(out: &mut impl io::Write, outcome: Outcome, taken: Duration) -> io::Re
 fn listen(to: &mpsc::Sender<ToSlot>) {
     let mut input = BufReader::new(io::stdin().lock());
     loop {
-        match stream::read(&mut input, Kind::ToSlot) {
+        match stream::read(&mut input, FrameKind::ToSlot) {
             Ok(Some(message)) => drop(to.send(message)),
             Ok(None) => std::process::exit(0),
             Err(error) => {
@@ -111,7 +115,7 @@ fn prepare(simulators: Simulators, bytes: &[u8]) -> Result<Prepared, Failure> {
 
 fn evaluate(prepared: Option<&Result<Prepared, Failure>>, job: &Job) -> Outcome {
     match (job, prepared) {
-        (Job::Nothing { .. }, _) | (_, None) => handler::nothing(job),
+        (Job::Nothing { .. }, _) | (_, None) => handler::no_op(job),
         (_, Some(Ok(prepared))) => prepared.evaluate(job),
         (_, Some(Err(failure))) => Outcome::Failed(failure.clone()),
     }

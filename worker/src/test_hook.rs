@@ -13,14 +13,14 @@ use protocol::job::Job;
 use rustix::process::{Signal, getppid, kill_process};
 use std::{env, fs::OpenOptions, io::Write, process::Command, thread, time::Duration};
 
-/// Environment variable that assigns behaviours to job numbers.
+/// Environment variable that assigns misbehaviours (hang, abort ...) to numbers of jobs that do nothing.
 const MISBEHAVE: &str = "HORSEHEAD_TEST_MISBEHAVE";
 /// Environment variable with the file to which slots append a line for each job they begin.
 const TRACE: &str = "HORSEHEAD_TEST_TRACE";
 /// Duration longer than any deadline.
 const FOR_EVER: Duration = Duration::from_hours(24 * 365);
 
-/// Applies the configured behaviour; to be called before a job is evaluated.
+/// Applies the misbehaviour configured for a job, if any; to be called before the job is evaluated.
 pub(crate) fn before(job: &Job) {
     let Job::Nothing { payload, .. } = job else {
         return;

@@ -3,15 +3,15 @@ use crate::{
     error::CaseError,
     general,
     loaded::Loaded,
-    source::Source,
-    summary::{self, Summary},
+    source::RecordFolder,
+    summary::{self, CaseSummary},
 };
 use discrepancy::thresholds::Thresholds;
 use protocol::{case::Case, job::Numerics, wire::WireError};
 
 /// Kind of model, as seen by the code that reads cases; every method but `name` has a default for a generic
 /// model.
-pub trait CaseKind: Sync {
+pub trait ModelKind: Sync {
     /// Returns the name of the kind, as `[model] kind` of a case file states it.
     fn name(&self) -> &'static str;
 
@@ -19,7 +19,7 @@ pub trait CaseKind: Sync {
     ///
     /// # Errors
     /// Returns a [`CaseError`] that names the file or field at fault.
-    fn read(&self, source: &Source<'_>) -> Result<Loaded, CaseError> {
+    fn read(&self, source: &RecordFolder<'_>) -> Result<Loaded, CaseError> {
         general::read(source)
     }
 
@@ -27,17 +27,17 @@ pub trait CaseKind: Sync {
     ///
     /// # Errors
     /// As [`Self::read`].
-    fn check(&self, source: &Source<'_>) -> Result<Summary, CaseError> {
+    fn check(&self, source: &RecordFolder<'_>) -> Result<CaseSummary, CaseError> {
         let loaded = self.read(source)?;
-        Ok(Summary::new(
+        Ok(CaseSummary::new(
             &loaded,
-            self.unknowns(),
+            self.unknowns_key(),
             summary::text(&loaded),
         ))
     }
 
-    /// Returns the path of the case field that is missing where a condition has no measured record, and the
-    /// remedy.
+    /// Returns the path of the case field that a user must add where a condition has no measured record, and
+    /// the instruction to add it.
     fn missing_record(&self, condition: usize, name: &str) -> (String, String) {
         (
             format!("conditions[{condition}]"),
@@ -46,12 +46,12 @@ pub trait CaseKind: Sync {
     }
 
     /// Returns the key under which the names of the unknowns stand in JSON output.
-    fn unknowns(&self) -> &'static str {
+    fn unknowns_key(&self) -> &'static str {
         "unknowns"
     }
 
-    /// Returns the name and text of a file with the values of the unknowns in a format that other programs
-    /// for this kind of model read, if the kind has one.
+    /// Returns the name and text of a parameter file with the given values of the unknowns, in the format of
+    /// other programs for this kind of model; `None` if the kind has no such format.
     fn gene_file(&self, _: &Case, _genes: &[f64]) -> Option<(&'static str, String)> {
         None
     }
@@ -62,27 +62,31 @@ pub trait CaseKind: Sync {
         false
     }
 
-    /// Returns why workers on this machine cannot currently take part in a run on a case, and the remedy;
+    /// Returns the reason why workers on this machine cannot currently simulate a case, and the remedy;
     /// `None` if they can.
-    fn unready(&self, _: &Case) -> Option<(String, String)> {
+    fn readiness_problem(&self, _: &Case) -> Option<(String, String)> {
         None
     }
 
-    /// Returns the numerical settings for the experiments of a diagnosis, and the finer settings for its
-    /// numerical check: first the finest, then each of its refinements alone. The list is empty where nothing
-    /// can be refined.
+    /// Returns the numerical settings (step sizes, discretisation) for the simulations of a diagnosis, and
+    /// finer settings with which its discretisation error is checked: first everything refined, then each
+    /// refinement alone. The list of finer settings is empty where nothing can be refined.
     ///
     /// # Errors
     /// Returns an error if the case has no settings of this kind.
-    fn numerics(&self, _: &Case, _: &Thresholds) -> Result<(Numerics, Vec<Numerics>), WireError> {
-        Ok((Numerics::OF_THE_CASE, Vec::new()))
+    fn diagnosis_numerics(
+        &self,
+        _: &Case,
+        _: &Thresholds,
+    ) -> Result<(Numerics, Vec<Numerics>), WireError> {
+        Ok((Numerics::FROM_CASE, Vec::new()))
     }
 }
 
 /// Generic kind of model without any customisation.
-pub(crate) struct AnyKind;
+pub(crate) struct GenericKind;
 
-impl CaseKind for AnyKind {
+impl ModelKind for GenericKind {
     fn name(&self) -> &'static str {
         ""
     }

@@ -1,6 +1,6 @@
 //! Parsing of units in common notation, and conversion factors between units.
 
-/// Unit: its size in SI units, and its exponents of metre, kilogram, second and radian.
+/// Unit of measurement: its factor to SI units, and its exponents of metre, kilogram, second and radian.
 type Size = (f64, [f64; 4]);
 
 const LENGTH: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
@@ -11,7 +11,8 @@ const FORCE: [f64; 4] = [1.0, 1.0, -2.0, 0.0];
 const STRESS: [f64; 4] = [-1.0, 1.0, -2.0, 0.0];
 const FREQUENCY: [f64; 4] = [0.0, 0.0, -1.0, 0.0];
 
-/// Unit symbols in lower case, as the keys of case files contain them, with size in SI units and dimensions.
+/// Unit symbols in lower case, as they occur in keys of case files, with their factors to SI units and
+/// dimensions.
 const SYMBOLS: &[(&str, f64, [f64; 4])] = &[
     ("m", 1.0, LENGTH),
     ("mm", 1e-3, LENGTH),
@@ -42,7 +43,7 @@ const SYMBOLS: &[(&str, f64, [f64; 4])] = &[
 /// units.
 const MULTIPLES: [(&str, f64); 3] = [("k", 1e3), ("m", 1e6), ("g", 1e9)];
 
-/// Returns the size in SI units and the dimensions of a unit symbol.
+/// Returns the factor to SI units and the dimensions of a unit symbol.
 fn symbol(name: &str) -> Option<Size> {
     let find = |name: &str| SYMBOLS.iter().find(|(own, ..)| *own == name);
     if let Some((_, size, measure)) = find(name) {
@@ -105,7 +106,7 @@ fn digits(factor: f64) -> String {
     }
 }
 
-/// Returns the size in SI units and the dimensions of a composite unit.
+/// Returns the factor to SI units and the dimensions of a composite unit, such as `N/mm`.
 fn size(text: &str) -> Option<Size> {
     let text = text
         .to_lowercase()

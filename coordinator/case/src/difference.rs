@@ -1,7 +1,7 @@
 //! Description in words of the differences between two versions of a case.
 use protocol::case::{Case, Channel, Unknown};
 
-/// Maximum number of differences that are listed.
+/// Maximum number of differences between two versions of a case that are listed in a message.
 const MOST: usize = 4;
 
 /// Returns a description of the differences of a case from an earlier version; empty if there are none.

@@ -22,7 +22,7 @@ pub struct Document {
 
 /// Step of the path to a field.
 #[derive(Debug, Clone, Copy)]
-pub enum Step<'a> {
+pub enum DocumentStep<'a> {
     /// Key of a table.
     Key(&'a str),
     /// Index of an array entry.
@@ -30,7 +30,7 @@ pub enum Step<'a> {
 }
 
 impl Document {
-    /// Reads a TOML file; `role` says in the error message what the file is needed for.
+    /// Reads a TOML file; `role` states for the error message what the file is needed for.
     ///
     /// # Errors
     /// Returns an error for a file that is missing, unreadable, empty or not text.
@@ -67,7 +67,7 @@ impl Document {
     /// Builds the error for a value that is not allowed in a field, with the field's source line.
     pub fn field(
         &self,
-        way: &[Step<'_>],
+        way: &[DocumentStep<'_>],
         value: impl Display,
         allowed: impl Into<String>,
         help: &str,
@@ -100,7 +100,7 @@ impl Document {
         if range.contains(&value) {
             return Ok(());
         }
-        let way: Vec<Step<'_>> = dotted.split('.').map(Step::Key).collect();
+        let way: Vec<DocumentStep<'_>> = dotted.split('.').map(DocumentStep::Key).collect();
         Err(self.field(
             &way,
             value,
@@ -114,15 +114,17 @@ impl Document {
     }
 
     /// Returns the byte range of a field in the text.
-    fn span(&self, way: &[Step<'_>]) -> Option<Range<usize>> {
+    fn span(&self, way: &[DocumentStep<'_>]) -> Option<Range<usize>> {
         let root = DeTable::parse(&self.text).ok()?;
         let (first, rest) = way.split_first()?;
-        let Step::Key(key) = first else { return None };
+        let DocumentStep::Key(key) = first else {
+            return None;
+        };
         let mut at = root.get_ref().get(*key)?;
         for step in rest {
             at = match (step, at.get_ref()) {
-                (Step::Key(key), DeValue::Table(table)) => table.get(*key)?,
-                (Step::Index(index), DeValue::Array(array)) => array.get(*index)?,
+                (DocumentStep::Key(key), DeValue::Table(table)) => table.get(*key)?,
+                (DocumentStep::Index(index), DeValue::Array(array)) => array.get(*index)?,
                 _ => return Some(at.span()),
             };
         }
@@ -167,16 +169,16 @@ fn around(line: &str, column: usize) -> (String, usize) {
 }
 
 /// Formats the path to a field as in messages: `conditions[0].speed_rpm`.
-fn dotted(way: &[Step<'_>]) -> String {
+fn dotted(way: &[DocumentStep<'_>]) -> String {
     let mut text = String::new();
     for step in way {
         match step {
-            Step::Key(key) if text.is_empty() => text.push_str(key),
-            Step::Key(key) => {
+            DocumentStep::Key(key) if text.is_empty() => text.push_str(key),
+            DocumentStep::Key(key) => {
                 text.push('.');
                 text.push_str(key);
             }
-            Step::Index(index) => {
+            DocumentStep::Index(index) => {
                 text.push('[');
                 text.push_str(&index.to_string());
                 text.push(']');
@@ -195,17 +197,19 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// Separator in the `expecting` text of case-file types, between the expectation and an example.
-const WRITE: &str = "; write ";
+/// Text that separates the expectation from an example in the serde `expecting` messages of case-file types.
+const EXAMPLE_SEPARATOR: &str = "; write ";
 
 /// Text in messages for the type of a non-negative integer.
-const WHOLE: &str = "expected a whole number, 0 or greater";
+const EXPECTED_COUNT: &str = "expected a whole number, 0 or greater";
 
 /// Returns the first line of a TOML library message, without its list of alternatives and with Rust type
 /// names replaced by plain words.
 fn first_line(message: &str) -> String {
     let line = message.lines().next().unwrap_or_default();
-    let line = line.split_once(WRITE).map_or(line, |(line, _)| line);
+    let line = line
+        .split_once(EXAMPLE_SEPARATOR)
+        .map_or(line, |(line, _)| line);
     match line.split_once(", expected ") {
         Some((head, _)) if line.starts_with("unknown ") => head.to_owned(),
         // types of the source are nothing to people who write files
@@ -213,9 +217,9 @@ fn first_line(message: &str) -> String {
         _ => line
             .replace("expected f64", "expected a number")
             .replace("expected u8", "expected a whole number from 0 to 255")
-            .replace("expected usize", WHOLE)
-            .replace("expected u32", WHOLE)
-            .replace("expected u64", WHOLE)
+            .replace("expected usize", EXPECTED_COUNT)
+            .replace("expected u32", EXPECTED_COUNT)
+            .replace("expected u64", EXPECTED_COUNT)
             .replace("expected i64", "expected a whole number"),
     }
 }
@@ -247,7 +251,7 @@ fn advice(message: &str) -> String {
             _ => format!("add `{what}`; `horsehead case new` prints a commented template"),
         };
     }
-    if let Some((_, example)) = message.split_once(WRITE) {
+    if let Some((_, example)) = message.split_once(EXAMPLE_SEPARATOR) {
         let example = example.lines().next().unwrap_or_default();
         return format!("write {example}; units: {}", units());
     }
@@ -257,7 +261,7 @@ fn advice(message: &str) -> String {
     "correct the marked place; the file must be TOML 1.0".to_owned()
 }
 
-/// Returns the symbols of all units an unknown may have, for messages.
+/// Returns the symbols of all units that an unknown may have, as a list for messages.
 pub fn units() -> String {
     protocol::unit::Unit::ALL
         .map(protocol::unit::Unit::symbol)
@@ -310,8 +314,8 @@ pub fn json<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, CaseErr
 mod tests {
     use super::{advice, around, first_line, nearest};
 
-    /// Checks that only the part of a long line around the error is shown; a line of 100,000 brackets once
-    /// filled the terminal.
+    /// Checks that an error message shows only the part of a long source line around the error; a line of
+    /// 100,000 brackets once filled the terminal.
     #[test]
     fn of_a_long_line_only_what_is_around_the_place_is_shown() {
         assert_eq!(around("a = 1", 4), ("a = 1".to_owned(), 4));

@@ -4,7 +4,7 @@
 //! case is read, identifiers when workers announce the effects that they support.
 use super::{
     conversion::{convert, factor},
-    document::{Document, Step, nearest, short},
+    document::{Document, DocumentStep, nearest, short},
     error::{CaseError, Faults},
     prior::interval,
 };
@@ -48,7 +48,7 @@ pub struct Provenance {
     pub dataset: Option<String>,
     /// Name of the run that found the effect.
     pub run: Option<String>,
-    /// Verdict of that run, as `named`.
+    /// Verdict of the run that found the effect, such as `named`.
     pub verdict: Option<String>,
     /// Ambiguity set: identifiers of the effects that the records cannot distinguish, including this effect's
     /// own.
@@ -101,7 +101,13 @@ impl CaseEffect {
 pub fn check(document: &Document, effects: &[CaseEffect], units: &[&str]) -> Result<(), CaseError> {
     let mut faults = Faults::default();
     for (index, effect) in effects.iter().enumerate() {
-        let way = |key| [Step::Key("effects"), Step::Index(index), Step::Key(key)];
+        let way = |key| {
+            [
+                DocumentStep::Key("effects"),
+                DocumentStep::Index(index),
+                DocumentStep::Key(key),
+            ]
+        };
         let quoted = format!("\"{}\"", effect.id);
         if !is_name(&effect.id) {
             faults.add(document.field(
@@ -137,31 +143,36 @@ pub fn check_known(
 ) -> Result<(), CaseError> {
     let mut faults = Faults::default();
     for (index, effect) in effects.iter().enumerate() {
-        let table = [Step::Key("effects"), Step::Index(index)];
+        let table = [DocumentStep::Key("effects"), DocumentStep::Index(index)];
         let Some(own) = known.iter().find(|own| own.id == effect.id) else {
             let ids = known.iter().filter(|own| !own.generic);
             let ids: Vec<&str> = ids.map(|own| own.id.as_str()).collect();
             faults.add(document.field(
-                &[table[0], table[1], Step::Key("id")],
+                &[table[0], table[1], DocumentStep::Key("id")],
                 format!("\"{}\"", effect.id),
                 format!("an effect that the workers know: {}", ids.join(", ")),
-                &meant(&effect.id, &ids),
+                &suggestion(&effect.id, &ids),
             ));
             continue;
         };
         let names: Vec<&str> = own.parameters.iter().map(|p| p.name.as_str()).collect();
         for (name, parameter) in &effect.parameters {
-            let way = [table[0], table[1], Step::Key("parameters"), Step::Key(name)];
+            let way = [
+                table[0],
+                table[1],
+                DocumentStep::Key("parameters"),
+                DocumentStep::Key(name),
+            ];
             let Some(known) = own.parameters.iter().find(|known| known.name == *name) else {
                 faults.add(document.field(
                     &way,
                     parameter.value,
                     format!("a parameter of {}: {}", own.id, names.join(", ")),
-                    &meant(name, &names),
+                    &suggestion(name, &names),
                 ));
                 continue;
             };
-            let to = |key| [way[0], way[1], way[2], way[3], Step::Key(key)];
+            let to = |key| [way[0], way[1], way[2], way[3], DocumentStep::Key(key)];
             if parameter.unit != known.unit {
                 faults.add(document.field(
                     &to("unit"),
@@ -187,8 +198,8 @@ pub fn check_known(
     faults.end()
 }
 
-/// Returns the remedy for a misspelt word: the nearest candidate, if there is one.
-fn meant(word: &str, candidates: &[&str]) -> String {
+/// Returns the remedy text for a misspelt word, which suggests the most similar candidate, if there is one.
+fn suggestion(word: &str, candidates: &[&str]) -> String {
     let near = nearest(word, candidates.iter().copied());
     near.map_or("name one of them".to_owned(), |near| {
         format!("did you mean `{near}`?")
@@ -216,11 +227,11 @@ fn check_unit(
         .or_else(|| nearest(unit, units.iter().copied()));
     Err(document.field(
         &[
-            Step::Key("effects"),
-            Step::Index(index),
-            Step::Key("parameters"),
-            Step::Key(name),
-            Step::Key("unit"),
+            DocumentStep::Key("effects"),
+            DocumentStep::Index(index),
+            DocumentStep::Key("parameters"),
+            DocumentStep::Key(name),
+            DocumentStep::Key("unit"),
         ],
         format!("\"{unit}\""),
         format!("one of {}", units.join(", ")),
@@ -239,11 +250,11 @@ fn check_parameter(
 ) -> Result<(), CaseError> {
     let way = |key| {
         [
-            Step::Key("effects"),
-            Step::Index(index),
-            Step::Key("parameters"),
-            Step::Key(name),
-            Step::Key(key),
+            DocumentStep::Key("effects"),
+            DocumentStep::Index(index),
+            DocumentStep::Key("parameters"),
+            DocumentStep::Key(name),
+            DocumentStep::Key(key),
         ]
     };
     let unit = parameter.unit.as_str();

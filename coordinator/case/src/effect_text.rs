@@ -144,7 +144,7 @@ fn provenance(from: &Provenance) -> InlineTable {
     ])
 }
 
-/// Builds an inline table from the parts that are present.
+/// Builds a TOML inline table from the given key-value pairs, without those whose value is absent.
 fn present<const N: usize>(parts: [(&str, Option<Value>); N]) -> InlineTable {
     let parts = parts.into_iter();
     parts.filter_map(|(key, part)| Some((key, part?))).collect()

@@ -113,7 +113,7 @@ pub enum CaseError {
         field: Box<str>,
         /// Value of the first statement.
         value: Box<str>,
-        /// Second statement, with its location.
+        /// Text of the second, contradicting statement, with its location.
         other: Box<str>,
         /// Remedy.
         help: Box<str>,
@@ -153,7 +153,7 @@ impl Faults {
         }
     }
 
-    /// Finishes the collection.
+    /// Returns the collected errors as a result, once all checks are done.
     ///
     /// # Errors
     /// Returns the collected error, or all of them as [`CaseError::Several`] if there are several.

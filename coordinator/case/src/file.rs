@@ -10,7 +10,7 @@ const LIMIT: u64 = 1 << 30;
 ///
 /// # Errors
 /// Returns an error that states `role`, the purpose of the file, if it is missing.
-pub fn there(path: &Path, role: &str) -> Result<(), CaseError> {
+pub fn require_exists(path: &Path, role: &str) -> Result<(), CaseError> {
     if path.exists() {
         return Ok(());
     }
@@ -21,7 +21,7 @@ pub fn there(path: &Path, role: &str) -> Result<(), CaseError> {
     })
 }
 
-/// Remedy for a missing file.
+/// Remedy text for a missing file.
 const MISSING: &str = "put the file there, or correct the name where it is stated";
 
 /// Reads a whole file; `role` is its purpose, for the error message.

@@ -4,7 +4,7 @@
 //! parameter of an effect, is quoted: `"pin_clearance.force" = { value = 1500.0, unit = "N" }`.
 use super::{
     conversion::convert,
-    document::{Document, Step, nearest},
+    document::{Document, DocumentStep, nearest},
     error::CaseError,
 };
 use protocol::{
@@ -36,7 +36,7 @@ pub fn read_genes(path: &Path, case: &Case) -> Result<Vec<f64>, CaseError> {
     let file: BTreeMap<String, GeneValue> = document.parse()?;
     for (name, entry) in &file {
         if !case.unknowns.iter().any(|unknown| unknown.name == *name) {
-            return Err(strange(&document, case, (name, entry)));
+            return Err(unknown_name_error(&document, case, (name, entry)));
         }
     }
     let values = case.unknowns.iter().map(|unknown| {
@@ -50,7 +50,7 @@ pub fn read_genes(path: &Path, case: &Case) -> Result<Vec<f64>, CaseError> {
             name, start, unit, ..
         } = unknown;
         Err(document.field(
-            &[Step::Key(name)],
+            &[DocumentStep::Key(name)],
             "missing",
             format!("a value of {name}, as of every unknown of the case"),
             &format!("add `{name} = {{ value = {start:e}, unit = \"{unit}\" }}`"),
@@ -61,7 +61,12 @@ pub fn read_genes(path: &Path, case: &Case) -> Result<Vec<f64>, CaseError> {
 
 /// Returns the value of an entry in the case's unit.
 fn value(document: &Document, unknown: &Unknown, entry: &GeneValue) -> Result<f64, CaseError> {
-    let way = |key| [Step::Key(unknown.name.as_str()), Step::Key(key)];
+    let way = |key| {
+        [
+            DocumentStep::Key(unknown.name.as_str()),
+            DocumentStep::Key(key),
+        ]
+    };
     let GeneValue { value, unit } = entry;
     let units = Unit::named(&unknown.unit).zip(Unit::named(unit));
     let fitting = units.filter(|(own, stated)| own.si() == stated.si());
@@ -94,7 +99,11 @@ fn value(document: &Document, unknown: &Unknown, entry: &GeneValue) -> Result<f6
 }
 
 /// Builds the error for an entry that is not an unknown of the case.
-fn strange(document: &Document, case: &Case, (name, entry): (&str, &GeneValue)) -> CaseError {
+fn unknown_name_error(
+    document: &Document,
+    case: &Case,
+    (name, entry): (&str, &GeneValue),
+) -> CaseError {
     let known: Vec<&str> = case.unknowns.iter().map(|u| u.name.as_str()).collect();
     let help = match nearest(name, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
@@ -105,7 +114,7 @@ fn strange(document: &Document, case: &Case, (name, entry): (&str, &GeneValue)) 
         }
     };
     let allowed = format!("an unknown of the case: {}", known.join(", "));
-    document.field(&[Step::Key(name)], entry.value, allowed, &help)
+    document.field(&[DocumentStep::Key(name)], entry.value, allowed, &help)
 }
 
 /// Returns the text of a gene file; [`read_genes`] reads back bit-identical values.

@@ -1,32 +1,32 @@
 //! Registry of the kinds of models that have their own case format. Cases of any other kind are read in the
 //! general form.
 use crate::{
-    case_kind::{AnyKind, CaseKind},
-    command::kind::Commands,
-    document::{Document, Step},
+    case_kind::{GenericKind, ModelKind},
+    command::kind::CommandKind,
+    document::{Document, DocumentStep},
     error::CaseError,
-    pumping_unit::kind::PumpingUnits,
+    pumping_unit::kind::PumpingUnitKind,
 };
 use protocol::case::Case;
 use serde::Deserialize;
 
-const ALL: &[&dyn CaseKind] = &[&PumpingUnits, &Commands];
+const ALL: &[&dyn ModelKind] = &[&PumpingUnitKind, &CommandKind];
 
-/// Returns the part of a kind's name before its colon, which all allow-list entries share: `command` of
-/// `command:decay`.
+/// Returns the part of a kind's name before the colon, which is the same for all allow-list entries:
+/// `command` of `command:decay`.
 pub fn family(name: &str) -> &str {
     name.split_once(':').map_or(name, |(family, _)| family)
 }
 
 /// Returns the kind of model with a name; a generic kind if the name is not registered.
-pub fn named(name: &str) -> &'static dyn CaseKind {
+pub fn named(name: &str) -> &'static dyn ModelKind {
     let name = family(name);
     let mut all = ALL.iter().copied();
-    all.find(|kind| kind.name() == name).unwrap_or(&AnyKind)
+    all.find(|kind| kind.name() == name).unwrap_or(&GenericKind)
 }
 
 /// Returns the kind of model of a case.
-pub fn of(case: &Case) -> &'static dyn CaseKind {
+pub fn of(case: &Case) -> &'static dyn ModelKind {
     named(&case.model.kind)
 }
 
@@ -53,7 +53,7 @@ pub(crate) fn stated(document: &Document) -> Result<String, CaseError> {
         .and_then(|model| model.kind);
     kind.filter(|kind| !kind.is_empty()).ok_or_else(|| {
         document.field(
-            &[Step::Key("model"), Step::Key("kind")],
+            &[DocumentStep::Key("model"), DocumentStep::Key("kind")],
             "absent",
             "the name of a kind of model, which workers announce",
             "add a table [model] with kind; that of a pumping unit is kind = \"dhh\"",

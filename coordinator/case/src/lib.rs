@@ -29,7 +29,7 @@ pub mod spread;
 pub mod summary;
 pub mod table;
 
-pub use case_kind::CaseKind;
+pub use case_kind::ModelKind;
 pub use effect::{CaseEffect, CaseParameter, Provenance};
 pub use effect_text::{append_effects, write_effects, write_starts};
 pub use error::CaseError;
@@ -39,4 +39,4 @@ pub use loaded::Loaded;
 pub use measured::require_record;
 pub use note::Note;
 pub use source::Overrides;
-pub use summary::Summary;
+pub use summary::CaseSummary;

@@ -3,8 +3,8 @@ use super::{
     error::CaseError,
     kind,
     loaded::Loaded,
-    source::{Overrides, Source, document},
-    summary::Summary,
+    source::{Overrides, RecordFolder, document},
+    summary::CaseSummary,
 };
 use protocol::case::Case;
 use std::path::Path;
@@ -23,14 +23,14 @@ pub fn load(folder: &Path, overrides: &Overrides) -> Result<Case, CaseError> {
 /// As [`load`].
 pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, CaseError> {
     let document = document(folder, overrides)?;
-    kind::named(&kind::stated(&document)?).read(&Source::new(folder, overrides, &document))
+    kind::named(&kind::stated(&document)?).read(&RecordFolder::new(folder, overrides, &document))
 }
 
 /// Loads a case folder and summarises its contents, for `horsehead case check`.
 ///
 /// # Errors
 /// As [`load`].
-pub fn check(folder: &Path, overrides: &Overrides) -> Result<Summary, CaseError> {
+pub fn check(folder: &Path, overrides: &Overrides) -> Result<CaseSummary, CaseError> {
     let document = document(folder, overrides)?;
-    kind::named(&kind::stated(&document)?).check(&Source::new(folder, overrides, &document))
+    kind::named(&kind::stated(&document)?).check(&RecordFolder::new(folder, overrides, &document))
 }

@@ -8,7 +8,7 @@ use serde::Deserialize;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Records {
-    /// Records measured in a test.
+    /// Records measured on a real machine.
     #[default]
     Measured,
     /// Records computed by a simulation.
@@ -34,7 +34,7 @@ impl Loaded {
     /// Returns the case as it was before effects were found in it: without the effects whose provenance
     /// states `dataset`, the case's content hash, and without their unknowns.
     #[must_use]
-    pub fn without_found_in(mut self, dataset: &str) -> Self {
+    pub fn without_effects_from(mut self, dataset: &str) -> Self {
         let found = |effect: &CaseEffect| {
             let provenance = effect.provenance.as_ref();
             provenance.and_then(|p| p.dataset.as_deref()) == Some(dataset)

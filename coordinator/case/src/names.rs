@@ -1,6 +1,6 @@
 //! Checks on the names in a list of tables: allowed characters and uniqueness.
 use super::{
-    document::{Document, Step},
+    document::{Document, DocumentStep},
     error::CaseError,
 };
 
@@ -12,14 +12,18 @@ use super::{
 pub fn check(document: &Document, list: &str, what: &str, names: &[&str]) -> Result<(), CaseError> {
     if names.is_empty() {
         return Err(document.field(
-            &[Step::Key(list)],
+            &[DocumentStep::Key(list)],
             "[]",
             format!("at least one {what}"),
             &format!("add a [[{list}]] table"),
         ));
     }
     for (index, name) in names.iter().enumerate() {
-        let way = [Step::Key(list), Step::Index(index), Step::Key("name")];
+        let way = [
+            DocumentStep::Key(list),
+            DocumentStep::Index(index),
+            DocumentStep::Key("name"),
+        ];
         check_one(document, &way, what, name, names[..index].contains(name))?;
     }
     Ok(())
@@ -31,7 +35,7 @@ pub fn check(document: &Document, list: &str, what: &str, names: &[&str]) -> Res
 /// As [`check`].
 pub fn check_one(
     document: &Document,
-    way: &[Step<'_>],
+    way: &[DocumentStep<'_>],
     what: &str,
     name: &str,
     is_there: bool,

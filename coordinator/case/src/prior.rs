@@ -3,13 +3,13 @@
 //! Priors are used where there is a noise model: in a diagnosis and an identification, never in the mean
 //! squared errors of a calibration.
 use super::{
-    document::{Document, Step},
+    document::{Document, DocumentStep},
     error::CaseError,
 };
 use protocol::case::{Prior, Scale, Unknown};
 use serde::Deserialize;
 
-/// Half width of a 95 % interval in standard deviations.
+/// Half width of a 95 % interval of the normal distribution, in standard deviations.
 const NORMAL: f64 = 1.96;
 
 /// Prior in one of the forms of the case file.
@@ -23,7 +23,7 @@ pub enum PriorEntry {
     /// Interval `[low, high]` that contains the value with 95 % probability.
     Interval([f64; 2]),
     /// Value known to a factor: 95 % lies between `value / factor` and `value * factor`.
-    Factor(Factor),
+    Factor(PriorFactor),
     /// Value with one standard deviation, in the search coordinate.
     Deviation(Deviation),
 }
@@ -31,7 +31,7 @@ pub enum PriorEntry {
 /// Value with the factor of its 95 % interval.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Factor {
+pub struct PriorFactor {
     value: f64,
     factor: f64,
 }
@@ -53,7 +53,7 @@ impl PriorEntry {
         self,
         unknown: &Unknown,
         document: &Document,
-        way: &[Step<'_>],
+        way: &[DocumentStep<'_>],
     ) -> Result<Prior, CaseError> {
         let logarithmic = unknown.scale == Scale::Logarithmic;
         let refused = |found: String, allowed: &str| {
@@ -73,7 +73,7 @@ impl PriorEntry {
                 }
                 Ok(interval(unknown, [low, high]))
             }
-            Self::Factor(Factor { value, factor }) => {
+            Self::Factor(PriorFactor { value, factor }) => {
                 let good = value > 0.0 && value.is_finite() && factor > 1.0 && factor.is_finite();
                 if !(logarithmic && good) {
                     let found = format!("{{ value = {value}, factor = {factor} }}");

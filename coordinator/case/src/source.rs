@@ -14,7 +14,7 @@ pub struct Overrides {
 
 /// Case file, its folder, and the folder of replacement records.
 #[derive(Clone, Copy, Debug)]
-pub struct Source<'a> {
+pub struct RecordFolder<'a> {
     /// Folder of the case, to which the file names in the case are relative.
     pub folder: &'a Path,
     /// Folder whose files replace the records of the same names.
@@ -23,7 +23,7 @@ pub struct Source<'a> {
     pub document: &'a Document,
 }
 
-impl<'a> Source<'a> {
+impl<'a> RecordFolder<'a> {
     /// Creates a source from a case file, its folder and the command line's overrides.
     pub fn new(folder: &'a Path, overrides: &'a Overrides, document: &'a Document) -> Self {
         Self {

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 /// Summary of a case.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Summary {
+pub struct CaseSummary {
     /// Name of the case.
     pub name: String,
     /// Names of the conditions.
@@ -20,7 +20,7 @@ pub struct Summary {
     pub text: String,
 }
 
-impl Summary {
+impl CaseSummary {
     /// Creates the summary of a case with the given text.
     pub fn new(loaded: &Loaded, key: &'static str, text: String) -> Self {
         let case = &loaded.case;

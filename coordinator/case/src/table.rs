@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// Requested columns of a CSV table, in the order of the request.
 #[derive(Debug)]
-pub struct Table {
+pub struct CsvTable {
     /// Numbers of each requested column.
     pub columns: Vec<Vec<f64>>,
     /// Line of the file per row of numbers; the header is line 1.
@@ -18,10 +18,11 @@ pub struct Table {
     pub others: Vec<String>,
 }
 
-/// Normalised Damerau-Levenshtein similarity above which an unknown column name counts as a misspelling.
+/// Similarity (normalised Damerau-Levenshtein) to a known column name above which an unknown name counts as
+/// its misspelling.
 const MEANT: f64 = 0.85;
 
-impl Table {
+impl CsvTable {
     /// Reads the requested columns and ignores the others. A `#` before the header is allowed.
     ///
     /// # Errors
@@ -192,7 +193,7 @@ fn header(
     Ok(record.iter().map(name).collect())
 }
 
-/// Reads the next row; false at the end.
+/// Reads the next row of the CSV table; returns false at the end.
 fn advance(
     path: &Path,
     reader: &mut csv::Reader<&[u8]>,
@@ -208,7 +209,8 @@ fn advance(
     })
 }
 
-/// Returns the index of a column. A column in `needed` is never suggested as the misspelling of another.
+/// Returns the index of a column by name. A column in `needed` is never suggested as the misspelling of
+/// another.
 fn place(
     path: &Path,
     header: &[String],

@@ -18,7 +18,7 @@ fn shipped() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/cyjs10-5-37hb")
 }
 
-/// Compressed file among [`FILES`].
+/// Name of the compressed file among [`FILES`].
 const PACKED: &str = "measured/test_5rpm.csv.gz";
 const FILES: [&str; 7] = [
     "case.toml",
@@ -30,7 +30,7 @@ const FILES: [&str; 7] = [
     "back_head/back_head.msh",
 ];
 
-/// Mutation of a run of bytes.
+/// Mutation of a file's bytes.
 #[derive(Clone, Debug)]
 enum Mutation {
     Flip { at: usize, mask: u8 },

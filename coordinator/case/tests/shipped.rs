@@ -33,7 +33,7 @@ fn gauges(case: &Case, condition: usize) -> Vec<&ChannelRecord> {
         .collect()
 }
 
-/// Returns the facts of each record of the shipped case.
+/// Returns the facts (sample count, rate, speed) of each gauge record of the shipped case.
 fn facts() -> Vec<RecordFacts> {
     let conditions = unit::figures(&shipped())
         .expect("the shipped case")
@@ -43,7 +43,7 @@ fn facts() -> Vec<RecordFacts> {
     records.map(|record| record.facts).collect()
 }
 
-/// Returns the rows of the README's table of figures, computed from the records.
+/// Returns the rows of the table of figures in the README, computed from the records.
 fn figures(loaded: &Loaded) -> [String; 3] {
     let conditions = 0..loaded.case.conditions.len();
     let records = conditions.map(|condition| gauges(&loaded.case, condition));

@@ -1,5 +1,5 @@
 //! Inputs of a diagnosis, with its thresholds.
-use crate::model::off::Off;
+use crate::model::inactive_unknowns::InactiveUnknowns;
 use crate::record::measured::Record;
 use crate::thresholds::Thresholds;
 use protocol::announce::EffectDescriptor;
@@ -7,33 +7,33 @@ use protocol::case::Unknown;
 use protocol::job::Numerics;
 use search::space::Space;
 
-/// Case with its records and candidate effects.
+/// Inputs of a diagnosis: case, records, candidate effects and thresholds.
 #[derive(Clone, Debug)]
 pub struct Inputs {
     /// Unknowns of the case with their bounds.
     pub space: Space,
     /// Names of the case's conditions, in its order.
     pub conditions: Vec<String>,
-    /// All unknowns of the case; those that are switched off are candidate effects.
+    /// All unknowns of the case; those whose start is their absent value are candidate effects.
     pub unknowns: Vec<Unknown>,
     /// Records, the calibrated condition's first.
     pub records: Vec<Record>,
     /// Effects that the workers can simulate.
     pub library: Vec<EffectDescriptor>,
-    /// A calibrated point (coordinates of the space), if there is one.
+    /// Coordinates of a calibrated point in the search space, if there is one.
     pub start: Option<Vec<f64>>,
-    /// Numerics of all experiments except the numerical check.
+    /// Numerical settings of all simulations except those that check the discretisation error.
     pub usual: Numerics,
-    /// Finer numerics for the numerical check: first the finest, then its refinements one at a time, for use
-    /// where the finest does not complete.
+    /// Finer numerical settings to check the discretisation error: first everything refined, then one
+    /// refinement at a time, for use where the first does not complete.
     pub finer: Vec<Numerics>,
-    /// Preset of the global search for the narrow minimum if there is no start.
-    pub entrance: &'static str,
+    /// Name of the global search preset that finds the narrow minimum of the misfit if there is no start.
+    pub global_search: &'static str,
     /// Seed of the global search.
     pub seed: u64,
     /// Thresholds of all decisions.
     pub thresholds: Thresholds,
-    /// Whether derivatives are computed by finite differences even if the laboratory can differentiate.
+    /// Whether derivatives are computed by finite differences even if the simulator can differentiate.
     pub differences: bool,
 }
 
@@ -42,7 +42,9 @@ impl Inputs {
     /// the thresholds.
     pub(crate) fn considered(&self) -> impl Iterator<Item = EffectDescriptor> {
         let without = &self.thresholds.without;
-        let off = Off::of(&self.unknowns).into_iter().map(|off| off.suspect);
+        let off = InactiveUnknowns::of(&self.unknowns)
+            .into_iter()
+            .map(|off| off.candidate);
         let all = self.library.iter().cloned().chain(off);
         all.filter(|suspect| !without.contains(&suspect.id))
     }
@@ -56,7 +58,7 @@ impl Inputs {
         )
     }
 
-    /// Returns the records of the other conditions that are not held out.
+    /// Returns the records of conditions other than the fitted one that the case does not hold out.
     pub(crate) fn others(&self) -> impl Iterator<Item = &Record> {
         self.records
             .iter()

@@ -14,10 +14,10 @@ pub enum Stage {
     /// Localisation of the residual.
     Where,
     /// Signatures and tests of all effects.
-    What,
+    Test,
     /// Refits of the candidate effects.
     Refit,
-    /// Validation: gap before and after.
+    /// Validation: misfit before and after adding the effects.
     Show,
 }
 
@@ -28,7 +28,7 @@ impl Stage {
         Self::Recalibrate,
         Self::Preflight,
         Self::Where,
-        Self::What,
+        Self::Test,
         Self::Refit,
         Self::Show,
     ];
@@ -40,7 +40,7 @@ impl Stage {
             Self::Recalibrate => "recalibration",
             Self::Preflight => "numerical check",
             Self::Where => "where",
-            Self::What => "what",
+            Self::Test => "what",
             Self::Refit => "refits",
             Self::Show => "show",
         }
@@ -58,13 +58,14 @@ pub trait Laboratory {
         false
     }
 
-    /// Returns whether a stage may begin optional work.
-    fn may(&mut self, stage: Stage) -> bool {
+    /// Returns whether a stage may begin optional work within its budget.
+    fn has_budget(&mut self, stage: Stage) -> bool {
         let _ = stage;
         true
     }
 
-    /// Returns the remaining budget of a stage, in plain simulations; infinite without a budget.
+    /// Returns the remaining budget of a stage, in simulations without derivatives; infinite without a
+    /// budget.
     fn left(&self, stage: Stage) -> f64 {
         let _ = stage;
         f64::INFINITY
@@ -95,7 +96,7 @@ pub fn channels(observation: &Observation, record: &Record) -> Option<Curves> {
 /// that failed.
 ///
 /// # Errors
-/// Those of the laboratory.
+/// Returns an error if no worker is left to simulate, or the user stops the run.
 pub async fn curves<L: Laboratory>(
     lab: &mut L,
     stage: Stage,

@@ -13,7 +13,8 @@ pub struct Thresholds {
     /// Level of the test that only noise is left: below this p-value a record to which no effect is assigned
     /// is unresolved.
     pub adequacy: f64,
-    /// Misfit from which a fit is suspected to lie outside the valley that the case describes.
+    /// Misfit from which a fit is suspected to lie outside the narrow minimum (valley) that the case
+    /// describes.
     pub valley: f64,
     /// Number of candidate effects that are refitted at a time with all unknowns free, the most likely first:
     /// all whose own test is significant, as far as a round's share of the budget for refits allows.
@@ -24,10 +25,10 @@ pub struct Thresholds {
     /// part in the fit; no single record may score below its negative. An effect that is absent reaches `ln
     /// 20` in at most one of twenty diagnoses, however the effect was selected on the fitted record.
     pub prediction: f64,
-    /// Share of the initial gap that an effect must remove to be more than a trace, where the model without
-    /// it leaves no more than noise.
+    /// Minimum share of the initial misfit above the noise that an effect must remove not to be negligible,
+    /// where the model without the effect already fits to within the noise.
     pub practical: f64,
-    /// Largest number of added effects.
+    /// Maximum number of effects that a diagnosis adds, one per round.
     pub rounds: usize,
     /// Factor by which a probe force (a force without a physical cause) must beat the best listed effect.
     pub generic_factor: f64,
@@ -52,7 +53,7 @@ pub struct Thresholds {
 
 /// Margin within which effects are not told apart, in nats of log evidence over the dispersion plus
 /// predictive score: odds of 20 to 1, from which on evidence is called strong (Kass & Raftery 1995).
-pub const SET: f64 = 3.0;
+pub const AMBIGUITY_MARGIN: f64 = 3.0;
 
 /// Largest number of equally likely effects that still count as an answer: with more, only their common joint
 /// or order is reported.
@@ -85,7 +86,7 @@ pub(crate) const COLOURED: f64 = 0.01;
 
 /// Share of `chi^2` that one more step of a converged fit may still promise to remove. The tests remove a
 /// smaller remainder themselves, since they use the residual after that step.
-pub(crate) const PROMISED: f64 = 0.1;
+pub(crate) const MAX_PREDICTED_DECREASE: f64 = 0.1;
 
 /// Factor by which a variance stated in a data sheet may be off, either way: noise that is stated in one
 /// figure is rarely better known. A residual beyond that is no noise, or not the stated noise.

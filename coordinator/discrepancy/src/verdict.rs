@@ -19,46 +19,49 @@ pub enum Verdict {
 
 /// Validity of the assumptions on which the tests rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ground {
+pub enum TestValidity {
     /// Fit converged, discretisation fine enough and noise seen: the tests are valid.
-    Firm,
+    Valid,
     /// Noise stated, not seen: the tests are valid as far as the statement is right.
     NoiseStated,
     /// Noise neither seen nor stated.
     NoiseUnknown,
     /// No effect of the library considered: nothing can be named or called unlisted.
     NothingConsidered,
-    /// Unknown discretisation error of the curves.
-    Unsound,
+    /// Discretisation error of the simulated curves is unknown, so that the tests are not valid.
+    DiscretisationUnknown,
 }
 
 /// Results of the tests of a diagnosis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Findings {
     /// Validity of the tests' assumptions.
-    pub ground: Ground,
-    /// Whether some family of tests rejects.
+    pub ground: TestValidity,
+    /// Whether any family of tests rejects the hypothesis that the residual is noise alone.
     pub rejected: bool,
     /// Number of added effects, each supported by the evidence and of practical size.
     pub added: usize,
     /// Size of the largest ambiguity set among the added effects.
     pub rivals: usize,
     /// Whether a probe force beats every listed effect.
-    pub generic: bool,
+    pub probe_force_wins: bool,
 }
 
 /// Returns the verdict for the findings. Every combination has a verdict, and a rejection never yields
 /// "nothing detected".
 pub const fn verdict(findings: &Findings) -> Verdict {
-    let something = findings.rejected || findings.added > 0 || findings.generic;
-    let firm = matches!(findings.ground, Ground::Firm | Ground::NoiseStated);
-    if matches!(findings.ground, Ground::Unsound) || (something && !firm) {
+    let something = findings.rejected || findings.added > 0 || findings.probe_force_wins;
+    let firm = matches!(
+        findings.ground,
+        TestValidity::Valid | TestValidity::NoiseStated
+    );
+    if matches!(findings.ground, TestValidity::DiscretisationUnknown) || (something && !firm) {
         return Verdict::Unresolved;
     }
     if !something {
         return Verdict::NothingDetected;
     }
-    if findings.generic {
+    if findings.probe_force_wins {
         return Verdict::Unlisted;
     }
     match (findings.added, findings.rivals) {
@@ -76,11 +79,11 @@ mod tests {
     fn every_combination_has_a_verdict_and_a_rejection_is_never_nothing() {
         let flags = [false, true];
         let grounds = [
-            Ground::Firm,
-            Ground::NoiseStated,
-            Ground::NoiseUnknown,
-            Ground::NothingConsidered,
-            Ground::Unsound,
+            TestValidity::Valid,
+            TestValidity::NoiseStated,
+            TestValidity::NoiseUnknown,
+            TestValidity::NothingConsidered,
+            TestValidity::DiscretisationUnknown,
         ];
         for ground in grounds {
             for rejected in flags {
@@ -92,15 +95,15 @@ mod tests {
                                 rejected,
                                 added,
                                 rivals,
-                                generic,
+                                probe_force_wins: generic,
                             });
                             if rejected || added > 0 || generic {
                                 assert_ne!(said, Verdict::NothingDetected);
                             }
-                            if ground == Ground::Unsound {
+                            if ground == TestValidity::DiscretisationUnknown {
                                 assert_eq!(said, Verdict::Unresolved);
                             }
-                            if !matches!(ground, Ground::Firm | Ground::NoiseStated) {
+                            if !matches!(ground, TestValidity::Valid | TestValidity::NoiseStated) {
                                 let quiet = [Verdict::NothingDetected, Verdict::Unresolved];
                                 assert!(quiet.contains(&said), "{ground:?} {said:?}");
                             }

@@ -1,6 +1,6 @@
-//! Execution of a launch plan: many places at a time, each step with its input; an error names the place, the
-//! step, the last line of output and the remedy.
-use super::plan::{Input, Part, Plan, Step};
+//! Execution of a launch plan on many hosts concurrently; an error names the host, the step, the last line of
+//! output and the remedy.
+use super::plan::{LaunchPlan, PlanPart, PlanStep, StepInput};
 use std::{
     fs::{self, File},
     io::{self, Write as _},
@@ -13,34 +13,34 @@ use std::{
     thread,
 };
 
-/// Number of places handled concurrently; more would only compete for the outgoing network of this machine.
+/// Number of hosts handled concurrently; more would only compete for the outgoing network of this machine.
 const AT_A_TIME: usize = 32;
 
-/// Failure of a launch plan at a place.
+/// Failure of a step of a launch plan on one host.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: cannot {step}: {why}")]
 pub struct LaunchError {
-    /// Host name, or "this machine".
+    /// Host on which the step failed, or "this machine".
     pub place: String,
-    /// Step that failed.
+    /// Purpose of the failed step, completing "cannot STEP".
     pub step: String,
     /// Last line of the step's error output, or its exit status.
     pub why: String,
-    /// Remedy.
+    /// Advice to the user on how to remedy the failure.
     pub remedy: String,
 }
 
-/// Executes the plan and reports the result for each place as it ends. Once `cancelled` is set, no further
-/// step starts, and the remaining places are not reported.
+/// Executes the plan and reports the result of each host as it ends. Once `cancelled` is set, no further step
+/// starts, and the remaining hosts are not reported.
 ///
 /// # Errors
-/// If one of the initial steps fails; then nothing was done at any place.
-pub fn carry_out(
-    plan: &Plan,
+/// If one of the plan's initial steps fails; then nothing was done on any host.
+pub fn execute_plan(
+    plan: &LaunchPlan,
     cancelled: &AtomicBool,
-    tell: &(impl Fn(&Part, Result<(), LaunchError>) + Sync),
+    tell: &(impl Fn(&PlanPart, Result<(), LaunchError>) + Sync),
 ) -> Result<(), LaunchError> {
-    run("this machine", &plan.first, cancelled)?;
+    run("this machine", &plan.local_steps, cancelled)?;
     let waiting = Mutex::new(plan.parts.iter());
     let next = || {
         let mut waiting = waiting
@@ -63,10 +63,11 @@ pub fn carry_out(
     Ok(())
 }
 
-/// Runs the steps of one place in order; returns the output of the last step with [`Step::Run::asks`] set.
+/// Runs the steps of a plan for one host in order; returns the output of the last step with
+/// [`Step::Run::asks`] set.
 pub(super) fn run(
     place: &str,
-    steps: &[Step],
+    steps: &[PlanStep],
     cancelled: &AtomicBool,
 ) -> Result<String, LaunchError> {
     let mut answer = String::new();
@@ -75,7 +76,7 @@ pub(super) fn run(
             break;
         }
         match step {
-            Step::Write { path, content } => {
+            PlanStep::Write { path, content } => {
                 write(path, content).map_err(|error| LaunchError {
                     place: place.to_owned(),
                     step: format!("write {}", path.display()),
@@ -83,8 +84,8 @@ pub(super) fn run(
                     remedy: "choose a folder for which you have write permission".to_owned(),
                 })?;
             }
-            Step::Run { only_if, .. } if only_if.as_ref().is_some_and(|it| *it != answer) => {}
-            Step::Run {
+            PlanStep::Run { only_if, .. } if only_if.as_ref().is_some_and(|it| *it != answer) => {}
+            PlanStep::Run {
                 what,
                 command,
                 input,
@@ -135,13 +136,13 @@ fn write(path: &Path, content: &str) -> io::Result<()> {
 }
 
 /// Runs a command with its input, to its end.
-fn call(command: &[String], input: &Input) -> io::Result<Output> {
+fn call(command: &[String], input: &StepInput) -> io::Result<Output> {
     let mut from = None;
     let stdin = match input {
-        Input::Nothing => Stdio::null(),
-        Input::Text(_) => Stdio::piped(),
-        Input::File(path) => File::open(path)?.into(),
-        Input::Command(words) => {
+        StepInput::Nothing => Stdio::null(),
+        StepInput::Text(_) => Stdio::piped(),
+        StepInput::File(path) => File::open(path)?.into(),
+        StepInput::Command(words) => {
             let mut source = words_of(words)
                 .stdin(Stdio::null())
                 .stdout(Stdio::piped())
@@ -158,8 +159,8 @@ fn call(command: &[String], input: &Input) -> io::Result<Output> {
         .spawn()?;
     let writer = child.stdin.take().map(|mut to| {
         let text = match input {
-            Input::Text(text) => text.clone(),
-            Input::Nothing | Input::File(_) | Input::Command(_) => String::new(),
+            StepInput::Text(text) => text.clone(),
+            StepInput::Nothing | StepInput::File(_) | StepInput::Command(_) => String::new(),
         };
         // a command that ends before it has read all says why itself
         thread::spawn(move || drop(to.write_all(text.as_bytes())))

@@ -1,7 +1,7 @@
 //! Workers on Kubernetes: a Deployment whose pods connect to the coordinator, a `NetworkPolicy` that forbids
 //! all other traffic but DNS, and a Secret with the keys, which `kubectl` creates from the folder.
 use super::{
-    plan::{Input, Part, Plan, Step},
+    plan::{LaunchPlan, PlanPart, PlanStep, StepInput},
     shell::{line, settings},
     worker_options::WorkerOptions,
 };
@@ -20,7 +20,7 @@ const KEYS: &str = "/keys";
 ///
 /// # Errors
 /// If the options cannot be parsed.
-pub fn up(order: &WorkerOptions, options: &str, name: Option<&str>) -> Result<Plan, Problem> {
+pub fn up(order: &WorkerOptions, options: &str, name: Option<&str>) -> Result<LaunchPlan, Problem> {
     let known = ["replicas", "image", "namespace", "cpu", "memory"];
     let given = settings("--k8s", options, &known)?;
     let of = |key: &str, usual: &str| {
@@ -47,7 +47,7 @@ pub fn up(order: &WorkerOptions, options: &str, name: Option<&str>) -> Result<Pl
     let namespace = of("namespace", "default");
     let mut steps = Vec::new();
     if let (Some(folder), Some(name)) = (&order.tls, name) {
-        let make = Input::Command(secret(&folder.join(name)));
+        let make = StepInput::Command(secret(&folder.join(name)));
         steps.push(apply("make a secret of the keys", &namespace, make));
     }
     let has_keys = !steps.is_empty();
@@ -73,13 +73,13 @@ pub fn up(order: &WorkerOptions, options: &str, name: Option<&str>) -> Result<Pl
     steps.push(apply(
         "apply the manifests",
         &namespace,
-        Input::Text(manifests),
+        StepInput::Text(manifests),
     ));
-    Ok(Plan {
-        first: Vec::new(),
-        parts: vec![Part {
+    Ok(LaunchPlan {
+        local_steps: Vec::new(),
+        parts: vec![PlanPart {
             place: "Kubernetes".to_owned(),
-            then: format!(
+            success_message: format!(
                 "{replicas} pods were asked for; `{}` shows them, `kubectl delete \
                  deployment/{NAME}` ends them",
                 line(&["kubectl", "-n", &namespace, "get", "pods"].map(str::to_owned))
@@ -90,8 +90,8 @@ pub fn up(order: &WorkerOptions, options: &str, name: Option<&str>) -> Result<Pl
 }
 
 /// Builds a `kubectl apply` step that reads manifests from the given input.
-fn apply(what: &str, namespace: &str, input: Input) -> Step {
-    Step::Run {
+fn apply(what: &str, namespace: &str, input: StepInput) -> PlanStep {
+    PlanStep::Run {
         what: what.to_owned(),
         command: ["kubectl", "apply", "-n", namespace, "-f", "-"]
             .map(str::to_owned)

@@ -5,9 +5,9 @@
 //! already accepts.
 use super::{
     host::Host,
-    plan::{Input, Step},
+    plan::{PlanStep, StepInput},
 };
-use link::keys::{CA_KEY, Keys, Role, pool};
+use link::keys::{CA_KEY, KeyRole, Keys, pool};
 use std::{
     collections::BTreeSet,
     fs,
@@ -23,8 +23,8 @@ const HOST: &str = "host";
 /// # Errors
 /// If the folder cannot be used by a coordinator, or new names are needed and the folder cannot sign
 /// certificates.
-pub fn assign(folder: &Path, hosts: &[Host]) -> Result<(Vec<String>, Vec<Step>), Problem> {
-    let keys = Keys::read(folder, Role::Coordinator).map_err(|error| {
+pub fn assign(folder: &Path, hosts: &[Host]) -> Result<(Vec<String>, Vec<PlanStep>), Problem> {
+    let keys = Keys::read(folder, KeyRole::Coordinator).map_err(|error| {
         let help = "--tls takes the folder that `horsehead keys new DIR --host NAME` made";
         Problem::new(error.to_string(), help)
     })?;
@@ -62,7 +62,7 @@ pub fn assign(folder: &Path, hosts: &[Host]) -> Result<(Vec<String>, Vec<Step>),
             name
         };
         if is_new {
-            steps.push(Step::Write {
+            steps.push(PlanStep::Write {
                 path: folder.join(&name).join(HOST),
                 content: format!("{host}\n"),
             });
@@ -85,10 +85,10 @@ pub fn assign(folder: &Path, hosts: &[Host]) -> Result<(Vec<String>, Vec<Step>),
         let words = words.into_iter().chain([folder.display().to_string()]);
         steps.insert(
             0,
-            Step::Run {
+            PlanStep::Run {
                 what: "make keys for further workers".to_owned(),
                 command: words.chain(made).collect(),
-                input: Input::Nothing,
+                input: StepInput::Nothing,
                 only_if: None,
                 asks: false,
                 remedy: "see what `horsehead keys check DIR` says of the folder".to_owned(),

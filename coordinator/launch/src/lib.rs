@@ -1,6 +1,6 @@
 //! Launching of workers on other nodes: a plan of plain data, and its execution.
 //!
-//! A launcher ([`ssh`], [`slurm`], [`k8s`], [`systemd`]) builds a [`Plan`]: literal commands with their
+//! A launcher ([`ssh`], [`slurm`], [`k8s`], [`systemd`]) builds a [`LaunchPlan`]: literal commands with their
 //! input, and files. `--dry-run` prints exactly the plan that a launch executes ([`execute`]). Scheduling
 //! processes is left to the four systems named. A plan never contains a key: commands read key material from
 //! its folder. The crate knows neither runs nor jobs nor simulations.
@@ -18,6 +18,6 @@ pub mod systemd;
 mod worker_options;
 
 pub use host::{Host, read_hosts};
-pub use plan::{Input, Part, Plan, Step};
+pub use plan::{LaunchPlan, PlanPart, PlanStep, StepInput};
 pub use program::Program;
 pub use worker_options::WorkerOptions;

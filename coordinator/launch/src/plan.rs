@@ -7,20 +7,21 @@ const END: &str = "HORSEHEAD_END";
 
 /// Standard input of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Input {
+pub enum StepInput {
     /// Empty input.
     Nothing,
     /// Literal text.
     Text(String),
     /// Content of a file.
     File(PathBuf),
-    /// Output of another command; lets key material reach its destination without appearing in the plan.
+    /// Output of another command, by which key material reaches its destination without appearing in the
+    /// plan.
     Command(Vec<String>),
 }
 
 /// Step of a plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum PlanStep {
     /// Writes a file, creating its parent folders.
     Write {
         /// Path of the file.
@@ -30,46 +31,48 @@ pub enum Step {
     },
     /// Runs a command.
     Run {
-        /// Purpose of the command, completing "cannot WHAT".
+        /// Purpose of the command as a verb phrase that completes the error message "cannot WHAT".
         what: String,
         /// Command with its arguments.
         command: Vec<String>,
         /// Standard input of the command.
-        input: Input,
-        /// Answer that the last step with [`Step::Run::asks`] must have given for the command to run.
+        input: StepInput,
+        /// Output that the last command with [`PlanStep::Run::asks`] must have had for this command to run;
+        /// `None` to run always.
         only_if: Option<String>,
-        /// Whether the command's output is an answer for later steps.
+        /// Whether the command's output decides which later steps run (see [`PlanStep::Run::only_if`]).
         asks: bool,
         /// Remedy in case of failure.
         remedy: String,
     },
 }
 
-/// Steps at one place, in order; the first failure ends them.
+/// Steps of a launch plan for one host, in order; the first failure ends them.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Part {
-    /// Name of the place, such as a host.
+pub struct PlanPart {
+    /// Display name of the target, such as a host name.
     pub place: String,
-    /// Message on success, such as "joined as worker-01".
-    pub then: String,
-    /// Steps to run at the place.
-    pub steps: Vec<Step>,
+    /// Message shown when all steps have succeeded, such as "joined as worker-01".
+    pub success_message: String,
+    /// Steps to execute for this target, in order.
+    pub steps: Vec<PlanStep>,
 }
 
-/// Launch plan: initial steps, then parts that are independent of one another.
+/// Launch plan: initial steps on this machine, then one part per host; the parts are independent of one
+/// another.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Plan {
+pub struct LaunchPlan {
     /// Steps on this machine, run before all parts.
-    pub first: Vec<Step>,
-    /// Parts, one per place.
-    pub parts: Vec<Part>,
+    pub local_steps: Vec<PlanStep>,
+    /// Steps for each host, one part per host.
+    pub parts: Vec<PlanPart>,
 }
 
-/// Renders the plan as an equivalent POSIX shell script that handles the places one after the other.
-impl fmt::Display for Plan {
+/// Renders the plan as an equivalent POSIX shell script that handles the hosts one after the other.
+impl fmt::Display for LaunchPlan {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(to, "#!/bin/sh\nset -eu")?;
-        for step in &self.first {
+        for step in &self.local_steps {
             write!(to, "{step}")?;
         }
         for part in &self.parts {
@@ -82,7 +85,7 @@ impl fmt::Display for Plan {
     }
 }
 
-impl fmt::Display for Step {
+impl fmt::Display for PlanStep {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Write { path, content } => {
@@ -109,19 +112,19 @@ impl fmt::Display for Step {
                 if *asks {
                     write!(to, "answer=$(")?;
                 }
-                if let Input::Command(from) = input {
+                if let StepInput::Command(from) = input {
                     write!(to, "{} | ", line(from))?;
                 }
                 write!(to, "{}", line(command))?;
                 match input {
-                    Input::Nothing => write!(to, " < /dev/null")?,
-                    Input::Text(text) => {
+                    StepInput::Nothing => write!(to, " < /dev/null")?,
+                    StepInput::Text(text) => {
                         write!(to, " <<'{END}'\n{}{END}\n", whole_lines(text))?;
                     }
-                    Input::File(path) => {
+                    StepInput::File(path) => {
                         write!(to, " < {}", line(&[path.display().to_string()]))?;
                     }
-                    Input::Command(_) => {}
+                    StepInput::Command(_) => {}
                 }
                 writeln!(to, "{}", if *asks { ")" } else { "" })?;
                 if only_if.is_some() {

@@ -1,6 +1,6 @@
 //! Workers on Slurm: one per node of an allocation, started by one batch script passed to `sbatch`.
 use super::{
-    plan::{Input, Part, Plan, Step},
+    plan::{LaunchPlan, PlanPart, PlanStep, StepInput},
     program::Program,
     shell::{line, lines, settings},
     worker_options::WorkerOptions,
@@ -20,7 +20,7 @@ pub fn up(
     arguments: &[String],
     program: &Program,
     name: Option<&str>,
-) -> Result<Plan, Problem> {
+) -> Result<LaunchPlan, Problem> {
     let mut command = vec!["sbatch".to_owned()];
     for (key, value) in settings("--slurm", options, &[])? {
         let counts = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_digit());
@@ -36,18 +36,18 @@ pub fn up(
     let nodes = command
         .iter()
         .find_map(|word| word.strip_prefix("--nodes="));
-    Ok(Plan {
-        first: Vec::new(),
-        parts: vec![Part {
+    Ok(LaunchPlan {
+        local_steps: Vec::new(),
+        parts: vec![PlanPart {
             place: "Slurm".to_owned(),
-            then: format!(
+            success_message: format!(
                 "a job with workers on {} was handed in; `squeue --me` shows it, `scancel` ends it",
                 nodes.map_or("one node".to_owned(), |nodes| format!("{nodes} nodes"))
             ),
-            steps: vec![Step::Run {
+            steps: vec![PlanStep::Run {
                 what: "hand in a job".to_owned(),
                 command: command.clone(),
-                input: Input::Text(script(order, program, name)),
+                input: StepInput::Text(script(order, program, name)),
                 only_if: None,
                 asks: false,
                 remedy: format!(

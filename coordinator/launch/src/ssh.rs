@@ -9,7 +9,7 @@ use super::{
     execute::{self, LaunchError},
     host::Host,
     keys,
-    plan::{Input, Part, Plan, Step},
+    plan::{LaunchPlan, PlanPart, PlanStep, StepInput},
     program::Program,
     shell::line,
     worker_options::WorkerOptions,
@@ -36,7 +36,7 @@ pub fn up(
     hosts: &[Host],
     programs: &[Program],
     wait_s: u64,
-) -> Result<Plan, Problem> {
+) -> Result<LaunchPlan, Problem> {
     for (at, host) in hosts.iter().enumerate() {
         if hosts
             .iter()
@@ -62,28 +62,34 @@ pub fn up(
         };
         part(&order, host, &name, programs, wait_s)
     });
-    Ok(Plan {
-        first,
+    Ok(LaunchPlan {
+        local_steps: first,
         parts: parts.collect(),
     })
 }
 
-fn part(order: &WorkerOptions, host: &Host, name: &str, programs: &[Program], wait_s: u64) -> Part {
-    let folder = &format!("{name}{}", mark(order));
-    let mut steps = vec![Step::Run {
+fn part(
+    order: &WorkerOptions,
+    host: &Host,
+    name: &str,
+    programs: &[Program],
+    wait_s: u64,
+) -> PlanPart {
+    let folder = &format!("{name}{}", owner_suffix(order));
+    let mut steps = vec![PlanStep::Run {
         what: "see whether a worker can run there".to_owned(),
         command: shell(host, "sh -s"),
-        input: Input::Text(script::probe(programs)),
+        input: StepInput::Text(script::probe(programs)),
         only_if: None,
         asks: true,
         remedy: "name a program for it with --worker-program ARCH=PATH; deploy/portable.sh builds \
                  one for older systems"
             .to_owned(),
     }];
-    steps.extend(programs.iter().map(|program| Step::Run {
+    steps.extend(programs.iter().map(|program| PlanStep::Run {
         what: "copy the worker there".to_owned(),
-        command: shell(host, &given(&script::copy(program))),
-        input: Input::File(program.path.clone()),
+        command: shell(host, &as_sh_command(&script::copy(program))),
+        input: StepInput::File(program.path.clone()),
         only_if: Some(format!("need {}", program.machine)),
         asks: false,
         remedy: "make room in its ~/.cache/horsehead, or set XDG_CACHE_HOME there".to_owned(),
@@ -91,10 +97,10 @@ fn part(order: &WorkerOptions, host: &Host, name: &str, programs: &[Program], wa
     if let Some(keys) = &order.tls {
         let from = keys.join(name).display().to_string();
         let tar = ["tar", "-C", &from, "-cf", "-", CA, WORKER[0], WORKER[1]];
-        steps.push(Step::Run {
+        steps.push(PlanStep::Run {
             what: format!("give it the keys of {name}"),
-            command: shell(host, &given(&script::take_keys(folder))),
-            input: Input::Command(tar.map(str::to_owned).to_vec()),
+            command: shell(host, &as_sh_command(&script::take_keys(folder))),
+            input: StepInput::Command(tar.map(str::to_owned).to_vec()),
             only_if: None,
             asks: false,
             remedy: format!("see what `horsehead keys check {from}` says; the host needs tar"),
@@ -106,19 +112,19 @@ fn part(order: &WorkerOptions, host: &Host, name: &str, programs: &[Program], wa
     } else {
         "bash -l -s"
     };
-    steps.push(Step::Run {
+    steps.push(PlanStep::Run {
         what: "start the worker".to_owned(),
         command: shell(host, reader),
-        input: Input::Text(script::start(order, folder, programs)),
+        input: StepInput::Text(script::start(order, folder, programs)),
         only_if: None,
         asks: false,
         remedy: format!("see {}", log_command(host)),
     });
     if wait_s > 0 {
-        steps.push(Step::Run {
+        steps.push(PlanStep::Run {
             what: "see that it takes part in a run".to_owned(),
             command: shell(host, "sh -s"),
-            input: Input::Text(script::watch(folder, wait_s)),
+            input: StepInput::Text(script::watch(folder, wait_s)),
             only_if: None,
             asks: false,
             remedy: format!(
@@ -128,9 +134,9 @@ fn part(order: &WorkerOptions, host: &Host, name: &str, programs: &[Program], wa
             ),
         });
     }
-    Part {
+    PlanPart {
         place: host.to_string(),
-        then: if wait_s > 0 {
+        success_message: if wait_s > 0 {
             format!("takes part as {name}")
         } else {
             format!("started as {name}")
@@ -141,7 +147,7 @@ fn part(order: &WorkerOptions, host: &Host, name: &str, programs: &[Program], wa
 
 /// Returns a folder suffix, a hash of the certificate authority or of the coordinator's address, that
 /// separates workers of different coordinators on a host, since two runs may use the same worker names.
-fn mark(order: &WorkerOptions) -> String {
+fn owner_suffix(order: &WorkerOptions) -> String {
     let authority = order.tls.as_ref().map(|keys| std::fs::read(keys.join(CA)));
     let whose = match authority {
         Some(Ok(certificate)) => certificate,
@@ -151,25 +157,25 @@ fn mark(order: &WorkerOptions) -> String {
     format!("-{}", hash.chars().take(8).collect::<String>())
 }
 
-/// Plans the end of workers on hosts: those launched by the order's [`WorkerOptions::owner`] for its
-/// coordinator, or all.
-pub fn down(hosts: &[Host], order: Option<&WorkerOptions>) -> Plan {
+/// Plans the end of workers on hosts: those launched by the owner in the given options
+/// ([`WorkerOptions::owner`]) for the same coordinator; all workers if no options are given.
+pub fn down(hosts: &[Host], order: Option<&WorkerOptions>) -> LaunchPlan {
     let owner = order.map_or("", |order| order.owner.as_str());
-    let mark = order.map(mark).unwrap_or_default();
-    let parts = hosts.iter().map(|host| Part {
+    let mark = order.map(owner_suffix).unwrap_or_default();
+    let parts = hosts.iter().map(|host| PlanPart {
         place: host.to_string(),
-        then: "its workers have ended".to_owned(),
-        steps: vec![Step::Run {
+        success_message: "its workers have ended".to_owned(),
+        steps: vec![PlanStep::Run {
             what: "end its workers".to_owned(),
             command: shell(host, "sh -s"),
-            input: Input::Text(script::end(&mark, owner)),
+            input: StepInput::Text(script::end(&mark, owner)),
             only_if: None,
             asks: false,
             remedy: "its workers end by themselves only with --idle-timeout".to_owned(),
         }],
     });
-    Plan {
-        first: Vec::new(),
+    LaunchPlan {
+        local_steps: Vec::new(),
         parts: parts.collect(),
     }
 }
@@ -179,10 +185,10 @@ pub fn down(hosts: &[Host], order: Option<&WorkerOptions>) -> Plan {
 /// # Errors
 /// If the host cannot be reached, or its ssh does not report the address.
 pub fn our_address(host: &Host) -> Result<String, LaunchError> {
-    let step = Step::Run {
+    let step = PlanStep::Run {
         what: "ask from which address we come".to_owned(),
         command: shell(host, "sh -s"),
-        input: Input::Text("echo \"${SSH_CONNECTION%% *}\"\n".to_owned()),
+        input: StepInput::Text("echo \"${SSH_CONNECTION%% *}\"\n".to_owned()),
         only_if: None,
         asks: true,
         remedy: "name the address with --advertise".to_owned(),
@@ -207,7 +213,7 @@ pub fn our_address(host: &Host) -> Result<String, LaunchError> {
 
 /// Returns the command that shows the end of the worker logs on a host.
 pub fn logs(host: &Host) -> Vec<String> {
-    shell(host, &given(&script::tail()))
+    shell(host, &as_sh_command(&script::tail()))
 }
 
 /// Returns the command line with which a user shows the worker logs of a host.
@@ -228,7 +234,7 @@ fn shell(host: &Host, command: &str) -> Vec<String> {
     words
 }
 
-/// Quotes a script as an `sh -c` command, for calls whose standard input carries data.
-fn given(script: &str) -> String {
+/// Wraps a script as a quoted `sh -c` command, for ssh calls whose standard input carries data.
+fn as_sh_command(script: &str) -> String {
     line(&["sh".to_owned(), "-c".to_owned(), script.to_owned()])
 }

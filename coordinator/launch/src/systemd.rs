@@ -1,6 +1,6 @@
 //! Worker on this machine as a unit of the user's systemd, restarted with the machine.
 use super::{
-    plan::{Input, Part, Plan, Step},
+    plan::{LaunchPlan, PlanPart, PlanStep, StepInput},
     program::Program,
     shell::{line, settings},
     worker_options::WorkerOptions,
@@ -22,7 +22,7 @@ pub fn up(
     program: &Program,
     name: Option<&str>,
     configuration: &Path,
-) -> Result<Plan, Problem> {
+) -> Result<LaunchPlan, Problem> {
     let mut order = order.clone();
     for (key, value) in settings("--systemd", options, &["slots"])? {
         let slots = value.parse().ok().filter(|n| (1..=4096).contains(n));
@@ -33,30 +33,30 @@ pub fn up(
             )
         })?);
     }
-    let systemctl = |what: &str, words: &[&str]| Step::Run {
+    let systemctl = |what: &str, words: &[&str]| PlanStep::Run {
         what: what.to_owned(),
         command: ["systemctl", "--user"]
             .iter()
             .chain(words)
             .map(|word| (*word).to_owned())
             .collect(),
-        input: Input::Nothing,
+        input: StepInput::Nothing,
         only_if: None,
         asks: false,
         remedy: "see that `systemctl --user status` works here; deploy/systemd has a unit for the \
                  whole machine"
             .to_owned(),
     };
-    Ok(Plan {
-        first: Vec::new(),
-        parts: vec![Part {
+    Ok(LaunchPlan {
+        local_steps: Vec::new(),
+        parts: vec![PlanPart {
             place: "this machine".to_owned(),
-            then: format!(
+            success_message: format!(
                 "{UNIT} runs; `journalctl --user -u {UNIT}` shows its log, `loginctl \
                  enable-linger` keeps it when you log out"
             ),
             steps: vec![
-                Step::Write {
+                PlanStep::Write {
                     path: configuration.join("systemd/user").join(UNIT),
                     content: unit(&order, program, name),
                 },

@@ -1,53 +1,55 @@
 //! Report of models that are external commands: the general report, with PEST's residual file of the
 //! calibration for programs that read it.
 use crate::{
-    Drawing, Figure, General, ReportError, Section, Shown, SingleRun, Table, folder::stream,
+    Figure, GenericReport, ModelReport, ReportError, Section, SimulationView, SingleRun, Table,
+    folder::stream,
 };
 use exchange::pest::{self, ReiRow};
 use protocol::{
     case::{Case, Unknown},
-    external::{External, Source},
+    external::{ChannelSource, External},
 };
 use std::{
     io::Write as _,
     path::{Path, PathBuf},
 };
 
-/// Drawing of the general report with PEST's files added.
-pub(crate) struct Files;
+/// Report content of external-command models: the general content, with PEST's residual files added.
+pub(crate) struct ExternalModelReport;
 
-impl Drawing for Files {
-    fn channels(&self, of: &Shown<'_>) -> Vec<Figure> {
-        General.channels(of)
+impl ModelReport for ExternalModelReport {
+    fn channels(&self, of: &SimulationView<'_>) -> Vec<Figure> {
+        GenericReport.channels(of)
     }
 
-    fn figures(&self, of: &Shown<'_>) -> Vec<Figure> {
-        General.figures(of)
+    fn figures(&self, of: &SimulationView<'_>) -> Vec<Figure> {
+        GenericReport.figures(of)
     }
 
-    fn sections(&self, whose: &str, of: Option<&Shown<'_>>) -> Vec<Section> {
-        General.sections(whose, of)
+    fn sections(&self, whose: &str, of: Option<&SimulationView<'_>>) -> Vec<Section> {
+        GenericReport.sections(whose, of)
     }
 
     fn zero(&self) -> &'static str {
-        General.zero()
+        GenericReport.zero()
     }
 
     fn group(&self, unknown: &Unknown) -> &'static str {
-        General.group(unknown)
+        GenericReport.group(unknown)
     }
 
     fn tables(&self, run: &SingleRun) -> Vec<Table> {
-        General.tables(run)
+        GenericReport.tables(run)
     }
 
     fn files(
         &self,
         folder: &Path,
-        runs: &[(&str, Shown<'_>)],
+        runs: &[(&str, SimulationView<'_>)],
     ) -> Result<Vec<PathBuf>, ReportError> {
-        let mut written = General.files(folder, runs)?;
-        let objective = |shown: &Shown<'_>| shown.condition == shown.case.objective.condition;
+        let mut written = GenericReport.files(folder, runs)?;
+        let objective =
+            |shown: &SimulationView<'_>| shown.condition == shown.case.objective.condition;
         let best = runs.iter().rev().find(|(_, shown)| objective(shown));
         if let Some((_, shown)) = best {
             let text = pest::rei(&residuals(shown));
@@ -59,20 +61,20 @@ impl Drawing for Files {
     }
 
     fn frequency_hz(&self, case: &Case, condition: usize) -> Option<f64> {
-        General.frequency_hz(case, condition)
+        GenericReport.frequency_hz(case, condition)
     }
 }
 
-/// Returns every measured value of a condition with the simulated one.
-fn residuals(shown: &Shown<'_>) -> Vec<ReiRow> {
+/// Pairs every measured value of a condition with the simulated one, for PEST's residual file.
+fn residuals(shown: &SimulationView<'_>) -> Vec<ReiRow> {
     let external = External::of(&shown.case.model).ok();
     let measured = shown.case.measured(shown.condition);
     let rows = measured.flat_map(|(at, channel, record)| {
         let names = external
             .as_ref()
             .and_then(|external| match external.curves.get(at)? {
-                Source::Named(names) => Some(names.clone()),
-                Source::Column { .. } | Source::Pointer { .. } => None,
+                ChannelSource::Named(names) => Some(names.clone()),
+                ChannelSource::Column { .. } | ChannelSource::Pointer { .. } => None,
             });
         let modelled = shown.channel(channel);
         let pairs = record.mean.iter().zip(modelled).enumerate();

@@ -1,7 +1,7 @@
 //! Channels of simulations as CSV: one row per channel and point.
 //!
 //! An empty field is a missing value; numbers are written with all their digits.
-use super::data::{Shown, SingleRun};
+use super::data::{SimulationView, SingleRun};
 use super::number::field;
 use super::words::condition_name;
 use protocol::job::Derivative;
@@ -24,7 +24,10 @@ const COLUMNS: [&str; 10] = [
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.
-pub(super) fn curves(to: impl Write, runs: &[(&str, Shown<'_>)]) -> Result<(), csv::Error> {
+pub(super) fn curves(
+    to: impl Write,
+    runs: &[(&str, SimulationView<'_>)],
+) -> Result<(), csv::Error> {
     let mut writer = csv::Writer::from_writer(to);
     writer.write_record(COLUMNS)?;
     for (parameters, run) in runs {

@@ -2,7 +2,7 @@
 //!
 //! Every name of a quantity states its unit. Independent of files, clocks and workers.
 use discrepancy::identify::UnknownEstimate;
-use discrepancy::proof::gap::Gap;
+use discrepancy::validation::gap::Gap;
 use dispatch::account::JobCost;
 use protocol::case::{Case, Channel, ChannelRecord};
 use protocol::event::Spent;
@@ -22,24 +22,24 @@ pub struct Individual {
 pub struct HistoryPoint {
     /// Number of the individual, consecutive from 0 over the whole run.
     pub id: u64,
-    /// Generation (or batch) it was proposed in.
+    /// Generation (or batch) in which the individual was proposed.
     pub generation: u32,
     /// Purpose for which the search proposed the individual, in one word.
     pub purpose: String,
     /// Gene values in declared units, in the case's order.
     pub genes: Vec<f64>,
-    /// Objective, in its squared unit, if complete; otherwise a graded value above that of every complete
-    /// one.
+    /// Objective of the individual, in its squared unit, if the simulation is complete; otherwise a graded
+    /// value above that of every complete one.
     pub fitness: f64,
     /// Whether the simulation ran to its end.
     pub complete: bool,
-    /// Reason for an early end, in words.
+    /// Reason for an early end of the simulation, in words.
     pub failure: Option<String>,
     /// Cost of the simulation; `None` if unknown.
     pub cost: Option<JobCost>,
 }
 
-/// Contribution of one worker.
+/// Contribution of one worker to a run: results, failures, computing and connected time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorkerUse {
     /// Name of the worker, as shown in tables.
@@ -67,19 +67,19 @@ impl WorkerUse {
     }
 }
 
-/// Result of one parameter set under one condition: agreement with the record, and curves.
+/// Result of simulating one parameter set under one condition: agreement with the record, and curves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
     /// Agreement with the record; without channels if there is no record or no complete simulation.
     pub evaluation: Evaluation,
-    /// Curves, up to a failure.
+    /// Simulated curves of the channels; they end at a failure of the simulation.
     pub curves: Curves,
 }
 
 impl Run {
     /// Returns the simulation with its case and condition.
-    pub const fn shown<'a>(&'a self, case: &'a Case, condition: usize) -> Shown<'a> {
-        Shown {
+    pub const fn shown<'a>(&'a self, case: &'a Case, condition: usize) -> SimulationView<'a> {
+        SimulationView {
             case,
             condition,
             curves: &self.curves,
@@ -99,17 +99,17 @@ impl Run {
 
 /// Simulation to be shown, with its case and condition.
 #[derive(Clone, Copy, Debug)]
-pub struct Shown<'a> {
+pub struct SimulationView<'a> {
     /// Simulated case.
     pub case: &'a Case,
     /// Index of the condition in the case.
     pub condition: usize,
-    /// Curves of the simulation, up to a failure.
+    /// Simulated curves of the channels; they end at a failure of the simulation.
     pub curves: &'a Curves,
 }
 
-impl<'a> Shown<'a> {
-    /// Returns the curve of a channel under its condition, up to a failure.
+impl<'a> SimulationView<'a> {
+    /// Returns the simulated curve of a channel; it ends at a failure of the simulation.
     pub fn channel(&self, channel: &Channel) -> &'a [f64] {
         let mut all = self.case.channels_of(channel.condition);
         let place = all.position(|(_, other)| other.name == channel.name);
@@ -118,7 +118,7 @@ impl<'a> Shown<'a> {
     }
 }
 
-/// Results of both parameter sets under one condition.
+/// Results of the recommended and the optimised parameters under one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionResult {
     /// Index of the condition in the case.
@@ -175,21 +175,22 @@ pub struct Calibration {
     pub finish: String,
     /// Results per condition, conventionally the calibrated condition first.
     pub conditions: Vec<ConditionResult>,
-    /// First-order estimates of how well the record determines the searched unknowns; empty if not computed.
-    pub seen: Vec<UnknownEstimate>,
+    /// First-order estimate, for each searched unknown, of the interval that the record determines; empty if
+    /// not computed.
+    pub identifiability: Vec<UnknownEstimate>,
     /// Further notes and warnings, one sentence each.
     pub notes: Vec<String>,
 }
 
 impl Calibration {
     /// Returns the simulation with the optimised parameters under the calibrated condition.
-    pub fn optimum(&self) -> Option<Shown<'_>> {
+    pub fn optimum(&self) -> Option<SimulationView<'_>> {
         let result = self.calibrated()?;
         Some(result.optimised.shown(&self.case, result.condition))
     }
 
     /// Returns all simulations, condition by condition, with the name of the parameter set.
-    pub fn shown(&self) -> Vec<(&'static str, Shown<'_>)> {
+    pub fn shown(&self) -> Vec<(&'static str, SimulationView<'_>)> {
         let both = self.conditions.iter().flat_map(|result| {
             let runs = [
                 ("recommended", &result.recommended),
@@ -239,10 +240,10 @@ pub struct SingleRun {
     pub genes: Vec<f64>,
     /// Agreement with the record, if evaluated.
     pub evaluation: Option<Evaluation>,
-    /// Curves, up to a failure.
+    /// Simulated curves of the channels; they end at a failure of the simulation.
     pub curves: Curves,
     /// Names of the unknowns with respect to which the curves were differentiated, in the order of the
-    /// columns.
+    /// curves' derivative columns.
     pub derived: Vec<String>,
     /// Further notes and warnings, one sentence each.
     pub notes: Vec<String>,
@@ -250,8 +251,8 @@ pub struct SingleRun {
 
 impl SingleRun {
     /// Returns the simulation with its case and condition.
-    pub const fn shown(&self) -> Shown<'_> {
-        Shown {
+    pub const fn shown(&self) -> SimulationView<'_> {
+        SimulationView {
             case: &self.case,
             condition: self.condition,
             curves: &self.curves,

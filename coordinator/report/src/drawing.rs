@@ -1,26 +1,27 @@
 //! Report content specific to a kind of model, in addition to the general content.
-use super::data::{Shown, SingleRun};
+use super::data::{SimulationView, SingleRun};
 use super::document::{Figure, Section, Table};
 use super::folder::ReportError;
 use protocol::case::{Case, Unknown};
 use std::path::{Path, PathBuf};
 
 /// Figures, tables, sections and files of a report that depend on the kind of model.
-pub trait Drawing: Sync {
+pub trait ModelReport: Sync {
     /// Returns the figures of the channels, with all simulations that are shown.
-    fn channels(&self, of: &Shown<'_>) -> Vec<Figure>;
+    fn channels(&self, of: &SimulationView<'_>) -> Vec<Figure>;
 
-    /// Returns figures of curves that are not channels.
-    fn figures(&self, of: &Shown<'_>) -> Vec<Figure>;
+    /// Returns the figures of simulated curves that are not channels, such as internal forces.
+    fn figures(&self, of: &SimulationView<'_>) -> Vec<Figure>;
 
-    /// Returns additional sections, from a simulation if there is one; `whose` names the parameters that it
-    /// was run with.
-    fn sections(&self, whose: &str, of: Option<&Shown<'_>>) -> Vec<Section>;
+    /// Returns report sections specific to the kind of model, from a simulation if there is one; `whose`
+    /// names the parameter set it was run with.
+    fn sections(&self, whose: &str, of: Option<&SimulationView<'_>>) -> Vec<Section>;
 
     /// Returns the description of the abscissas' origin, appended to their name; empty where none is needed.
     fn zero(&self) -> &'static str;
 
-    /// Returns the table group of an unknown; parameters of effects have a group of their own.
+    /// Returns the title of the group of table rows to which an unknown belongs; parameters of effects have a
+    /// group of their own.
     fn group(&self, unknown: &Unknown) -> &'static str;
 
     /// Returns the tables of one simulation: first the ranges of its curves, then all other numbers.
@@ -30,8 +31,11 @@ pub trait Drawing: Sync {
     ///
     /// # Errors
     /// [`ReportError`] when a file cannot be written.
-    fn files(&self, folder: &Path, runs: &[(&str, Shown<'_>)])
-    -> Result<Vec<PathBuf>, ReportError>;
+    fn files(
+        &self,
+        folder: &Path,
+        runs: &[(&str, SimulationView<'_>)],
+    ) -> Result<Vec<PathBuf>, ReportError>;
 
     /// Returns the repetition frequency of a periodic process under a condition \[Hz\]; `None` where nothing
     /// is periodic.

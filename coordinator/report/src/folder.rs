@@ -9,7 +9,7 @@ use support::atomic_file::{Draft, replace};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {
-    /// Text, page or figure file that could not be written.
+    /// Error when writing a text, page or figure file.
     #[error("cannot write {path}: {source}", path = path.display())]
     Write {
         /// Path of the file or folder.
@@ -17,7 +17,7 @@ pub enum ReportError {
         /// Error of the operating system.
         source: io::Error,
     },
-    /// CSV file that could not be written.
+    /// Error when writing a CSV file.
     #[error("cannot write {path}: {source}", path = path.display())]
     Csv {
         /// Path of the file.

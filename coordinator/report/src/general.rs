@@ -1,26 +1,26 @@
 //! Report content for models of any kind: the channels.
-use super::data::{Shown, SingleRun};
+use super::data::{SimulationView, SingleRun};
 use super::document::{Figure, Section, Table};
-use super::drawing::Drawing;
+use super::drawing::ModelReport;
 use super::folder::{ReportError, stream};
-use super::table::{agreement, ranges, simulation, sums, work};
+use super::table::{agreement, ranges, simulation, value_table, work};
 use super::{chart, csv};
 use protocol::case::{Case, Unknown};
 use std::path::{Path, PathBuf};
 
-/// Model of a kind without specific report content.
-pub struct General;
+/// Report content for kinds of model without content of their own.
+pub struct GenericReport;
 
-impl Drawing for General {
-    fn channels(&self, of: &Shown<'_>) -> Vec<Figure> {
+impl ModelReport for GenericReport {
+    fn channels(&self, of: &SimulationView<'_>) -> Vec<Figure> {
         chart::channels(of, self.zero())
     }
 
-    fn figures(&self, _of: &Shown<'_>) -> Vec<Figure> {
+    fn figures(&self, _of: &SimulationView<'_>) -> Vec<Figure> {
         Vec::new()
     }
 
-    fn sections(&self, _whose: &str, _of: Option<&Shown<'_>>) -> Vec<Section> {
+    fn sections(&self, _whose: &str, _of: Option<&SimulationView<'_>>) -> Vec<Section> {
         Vec::new()
     }
 
@@ -38,14 +38,14 @@ impl Drawing for General {
         let shown = run.shown();
         vec![
             simulation(run, ranges(&shown)),
-            sums("Agreement and work", rows),
+            value_table("Agreement and work", rows),
         ]
     }
 
     fn files(
         &self,
         folder: &Path,
-        runs: &[(&str, Shown<'_>)],
+        runs: &[(&str, SimulationView<'_>)],
     ) -> Result<Vec<PathBuf>, ReportError> {
         Ok(vec![stream(folder, "curves.csv", |file| {
             csv::curves(file, runs)

@@ -1,6 +1,7 @@
 //! Registry of the kinds of model with specific report content: one line each.
 use crate::{
-    chart::Axis, command_files::Files, drawing::Drawing, general::General, pumping_unit::Dhh,
+    chart::ChartAxis, command_files::ExternalModelReport, drawing::ModelReport,
+    general::GenericReport, pumping_unit::PumpingUnitReport,
 };
 use protocol::{
     case::{Abscissa, Case},
@@ -8,17 +9,20 @@ use protocol::{
     pumping_unit::Machine,
 };
 
-const ALL: &[(&str, &dyn Drawing)] = &[(Machine::KIND, &Dhh), (external::KIND, &Files)];
+const ALL: &[(&str, &dyn ModelReport)] = &[
+    (Machine::KIND, &PumpingUnitReport),
+    (external::KIND, &ExternalModelReport),
+];
 
 /// Returns the report content of a case's kind of model; the general content if the kind has none.
-pub fn of(case: &Case) -> &'static dyn Drawing {
+pub fn of(case: &Case) -> &'static dyn ModelReport {
     let name = case::kind::family(&case.model.kind);
     let mut all = ALL.iter();
     all.find(|(kind, _)| *kind == name)
-        .map_or(&General, |(_, drawing)| *drawing)
+        .map_or(&GenericReport, |(_, drawing)| *drawing)
 }
 
 /// Returns the axis for an abscissa of a case.
-pub(super) fn axis(case: &Case, abscissa: &Abscissa) -> Axis {
-    Axis::of(abscissa, of(case).zero())
+pub(super) fn axis(case: &Case, abscissa: &Abscissa) -> ChartAxis {
+    ChartAxis::of(abscissa, of(case).zero())
 }

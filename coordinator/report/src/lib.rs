@@ -1,6 +1,6 @@
 //! Reports of finished runs: tables, figures, HTML pages and the data behind them.
 //!
-//! Takes plain data ([`Calibration`], [`SingleRun`], [`diagnosis::Subject`], [`identification::Subject`]) and
+//! Takes plain data ([`Calibration`], [`SingleRun`], [`diagnosis::DiagnosisInput`], [`identification::IdentificationInput`]) and
 //! returns text, or writes a folder of files. Output is deterministic: nothing here reads a clock, a journal
 //! or the network.
 //!
@@ -32,13 +32,13 @@ pub mod words;
 mod write;
 
 pub use data::{
-    Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, Shown, SingleRun,
+    Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, SimulationView, SingleRun,
     WorkerUse,
 };
 pub use document::{Block, Figure, Report, Section, Table, page, text};
-pub use drawing::Drawing;
+pub use drawing::ModelReport;
 pub use folder::ReportError;
-pub use general::General;
+pub use general::GenericReport;
 pub use section::{derivatives, genes, hosts, jobs, slot_time};
 pub use write::{
     agreement, calibration, parameters, ranges, simulation, structure, write_calibration,

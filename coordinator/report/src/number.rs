@@ -3,7 +3,7 @@
 //! Plain text only: powers of ten use Unicode superscripts, and the minus is U+2212.
 
 /// Placeholder for a missing value.
-pub const NONE: &str = "–";
+pub const MISSING: &str = "–";
 
 /// No-break space that keeps a number and its unit or power on one line.
 const NO_BREAK: char = '\u{a0}';
@@ -45,9 +45,9 @@ fn signed(text: &str) -> String {
 }
 
 /// Formats a value with three significant digits; as a power of ten outside 0.01 to 100 000.
-pub fn figure(value: f64) -> String {
+pub fn significant(value: f64) -> String {
     if !value.is_finite() {
-        return NONE.to_owned();
+        return MISSING.to_owned();
     }
     if value == 0.0 {
         return "0".to_owned();
@@ -66,18 +66,18 @@ pub fn figure(value: f64) -> String {
 }
 
 /// Formats a whole number without decimals, any other with three significant digits.
-pub fn plain(value: f64) -> String {
+pub fn integer_or_significant(value: f64) -> String {
     if (value - value.round()).abs() < 1e-9 {
         fixed(value, 0)
     } else {
-        figure(value)
+        significant(value)
     }
 }
 
 /// Formats a value with a fixed number of decimals.
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
-        return NONE.to_owned();
+        return MISSING.to_owned();
     }
     let text = format!("{value:.decimals$}");
     // "-0.00" says more than is known
@@ -92,7 +92,7 @@ pub fn fixed(value: f64, decimals: usize) -> String {
 /// Formats a share of 1 as a percentage.
 pub fn percent(share: f64) -> String {
     if !share.is_finite() {
-        return NONE.to_owned();
+        return MISSING.to_owned();
     }
     let decimals = usize::from(share.abs() < 0.9995);
     format!("{}{NO_BREAK}%", fixed(100.0 * share, decimals))
@@ -102,9 +102,9 @@ pub fn percent(share: f64) -> String {
 pub fn ratio(of: f64, to: f64) -> String {
     let ratio = of / to;
     if ratio.is_finite() {
-        format!("{}{NO_BREAK}×", figure(ratio))
+        format!("{}{NO_BREAK}×", significant(ratio))
     } else {
-        NONE.to_owned()
+        MISSING.to_owned()
     }
 }
 
@@ -139,9 +139,9 @@ pub fn squared(symbol: Option<&str>) -> String {
 /// Formats a value with its unit; the unit `1` is not written.
 pub fn quantity(value: f64, symbol: &str) -> String {
     match symbol {
-        _ if !value.is_finite() => NONE.to_owned(),
-        "" | "1" => figure(value),
-        _ => format!("{}{NO_BREAK}{}", figure(value), unit(symbol)),
+        _ if !value.is_finite() => MISSING.to_owned(),
+        "" | "1" => significant(value),
+        _ => format!("{}{NO_BREAK}{}", significant(value), unit(symbol)),
     }
 }
 
@@ -161,15 +161,15 @@ pub fn count(value: u64) -> String {
 /// Formats a duration given in seconds in a suitable unit (µs to h).
 pub fn duration(seconds: f64) -> String {
     if !seconds.is_finite() || seconds < 0.0 {
-        NONE.to_owned()
+        MISSING.to_owned()
     } else if seconds == 0.0 {
         "0 s".to_owned()
     } else if seconds < 1e-3 {
-        format!("{}{NO_BREAK}µs", figure(1e6 * seconds))
+        format!("{}{NO_BREAK}µs", significant(1e6 * seconds))
     } else if seconds < 1.0 {
-        format!("{}{NO_BREAK}ms", figure(1e3 * seconds))
+        format!("{}{NO_BREAK}ms", significant(1e3 * seconds))
     } else if seconds < 100.0 {
-        format!("{} s", figure(seconds))
+        format!("{} s", significant(seconds))
     } else if seconds < 6000.0 {
         format!("{} min", fixed(seconds / 60.0, 1))
     } else {
@@ -197,22 +197,22 @@ pub fn field(value: Option<f64>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{count, duration, figure, fixed, percent, ratio};
+    use super::{count, duration, fixed, percent, ratio, significant};
 
     #[test]
     fn three_digits_and_powers_of_ten() {
-        assert_eq!(figure(3.14e8), "3.14\u{a0}×\u{a0}10⁸");
-        assert_eq!(figure(-0.00123), "−1.23\u{a0}×\u{a0}10⁻³");
-        assert_eq!(figure(5201.3), "5201");
-        assert_eq!(figure(40.0), "40.0");
-        assert_eq!(figure(0.0456), "0.0456");
-        assert_eq!(figure(99_999.0), "1.00\u{a0}×\u{a0}10⁵");
-        assert_eq!(figure(9.999), "10.0");
-        assert_eq!(figure(f64::NAN), "–");
+        assert_eq!(significant(3.14e8), "3.14\u{a0}×\u{a0}10⁸");
+        assert_eq!(significant(-0.00123), "−1.23\u{a0}×\u{a0}10⁻³");
+        assert_eq!(significant(5201.3), "5201");
+        assert_eq!(significant(40.0), "40.0");
+        assert_eq!(significant(0.0456), "0.0456");
+        assert_eq!(significant(99_999.0), "1.00\u{a0}×\u{a0}10⁵");
+        assert_eq!(significant(9.999), "10.0");
+        assert_eq!(significant(f64::NAN), "–");
     }
 
-    /// Checks that durations are formatted in a suitable unit; a diagnosis on a fast model once printed `7.11
-    /// x 10^-7 s`.
+    /// Checks that durations are formatted in a suitable unit. Regression: a diagnosis with a fast model
+    /// printed `7.11 x 10^-7 s`.
     #[test]
     fn a_time_has_the_unit_that_suits_it() {
         for (seconds, said) in [

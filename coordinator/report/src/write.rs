@@ -20,7 +20,7 @@ pub fn parameters(calibration: &Calibration, styled: bool) -> String {
 
 /// Describes a calibration's residual above the noise; `None` where the residual is at noise level.
 pub fn structure(calibration: &Calibration) -> Option<String> {
-    words::structure(calibration)
+    words::model_error(calibration)
 }
 
 /// Builds the report of one simulation.
@@ -39,7 +39,7 @@ pub fn agreement(run: &SingleRun) -> Option<Table> {
     let mut rows = table::agreement(run);
     // its heading is the title here
     (!rows.is_empty()).then(|| rows.remove(0))?;
-    Some(table::sums("Against the record", rows))
+    Some(table::value_table("Against the record", rows))
 }
 
 /// Writes the report of a calibration into a folder, creating it if needed: `report.html`, `tables.txt`,

@@ -1,4 +1,5 @@
-//! Chain rule from the derivatives that workers compute to derivatives with respect to search coordinates.
+//! Chain rule that converts derivatives computed by workers to derivatives with respect to search
+//! coordinates.
 //!
 //! A worker differentiates with respect to an unknown of the case or a parameter of an effect, per decade or
 //! per unit; a search varies coordinates. Unknowns tied to another one vary with it.
@@ -6,18 +7,19 @@ use crate::space::Space;
 use protocol::job::{Column, Derivative, Per};
 use std::f64::consts::LN_10;
 
-/// Contribution of one derivative column to the derivative with respect to a coordinate.
+/// Term of the chain rule: contribution of one derivative computed by a worker to the derivative with respect
+/// to a search coordinate.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Term {
+pub struct DerivativeTerm {
     /// Unknown or effect parameter that the worker differentiates by.
     pub column: Column,
-    /// Current value of that unknown or parameter [declared unit].
+    /// Current value of the unknown or parameter that the worker differentiates by [declared unit].
     pub value: f64,
-    /// Derivative of the value with respect to the coordinate.
+    /// Derivative of the unknown's value with respect to the search coordinate.
     pub rate: f64,
 }
 
-impl Term {
+impl DerivativeTerm {
     /// Returns the factor that converts a worker's derivative, per decade or per unit, to the coordinate.
     pub fn factor(&self, per: &Per) -> f64 {
         match per {
@@ -54,12 +56,12 @@ impl Term {
     }
 }
 
-/// Returns the terms of the derivative with respect to an axis of a space at the point `x`, where the
-/// unknowns have the given `values`.
-pub fn terms(space: &Space, axis: usize, x: &[f64], values: &[f64]) -> Vec<Term> {
+/// Returns the chain-rule terms of the derivative with respect to one axis of a search space at the point
+/// `x`, where the unknowns have the given `values`.
+pub fn terms(space: &Space, axis: usize, x: &[f64], values: &[f64]) -> Vec<DerivativeTerm> {
     let moved = space.rates(axis, x[axis]);
-    let term = |(position, name, rate): (usize, &str, f64)| Term {
-        column: Column::of(name),
+    let term = |(position, name, rate): (usize, &str, f64)| DerivativeTerm {
+        column: Column::new(name),
         value: values[position],
         rate,
     };

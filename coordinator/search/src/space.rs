@@ -35,7 +35,7 @@ pub enum SpaceError {
 pub struct Axis {
     /// Searched unknown; its start value has coordinate 0.
     pub unknown: Unknown,
-    /// Position of the unknown among all unknowns of the case.
+    /// Index of the axis' unknown among all unknowns of the case.
     pub position: usize,
     /// Trust interval about the start, inside the bounds (coordinate): the part in which simulations usually
     /// succeed.
@@ -64,7 +64,7 @@ impl Interval {
 
     /// Returns the intersection with `other`; a single point if the intervals are disjoint.
     #[must_use]
-    pub fn within(self, other: Self) -> Self {
+    pub fn intersection(self, other: Self) -> Self {
         let from = other.clamp(self.from);
         Self {
             from,
@@ -81,11 +81,11 @@ impl Axis {
             position,
             trust: Interval { from, to },
         };
-        axis.trust = axis.trust.within(axis.interval());
+        axis.trust = axis.trust.intersection(axis.interval());
         axis
     }
 
-    /// Returns the whole interval between the bounds (coordinate).
+    /// Returns the interval of the axis between the bounds of its unknown (coordinate).
     pub fn interval(&self) -> Interval {
         Interval {
             from: self.coordinate(self.unknown.lower),
@@ -93,7 +93,7 @@ impl Axis {
         }
     }
 
-    /// Returns the value at a coordinate, clamped to the bounds.
+    /// Returns the unknown's value at a coordinate of the axis, clamped to the bounds.
     pub fn value(&self, x: f64) -> f64 {
         let value = match self.unknown.scale {
             Scale::Logarithmic => self.unknown.start * libm::exp10(x),
@@ -102,7 +102,8 @@ impl Axis {
         value.clamp(self.unknown.lower, self.unknown.upper)
     }
 
-    /// Returns the derivative of the value with respect to the coordinate, inside the bounds [declared unit].
+    /// Returns the derivative of the unknown's value with respect to the coordinate, inside the bounds
+    /// [declared unit].
     fn rate(&self, x: f64) -> f64 {
         match self.unknown.scale {
             Scale::Logarithmic => std::f64::consts::LN_10 * self.value(x),
@@ -110,7 +111,7 @@ impl Axis {
         }
     }
 
-    /// Returns the coordinate of a value.
+    /// Returns the coordinate on the axis for a value of its unknown.
     pub fn coordinate(&self, value: f64) -> f64 {
         match self.unknown.scale {
             Scale::Logarithmic => libm::log10(value / self.unknown.start),
@@ -129,7 +130,7 @@ impl Axis {
 pub struct Space {
     axes: Vec<Axis>,
     /// Source of each unknown's value, in the order of the case.
-    givers: Vec<Giver>,
+    value_sources: Vec<ValueSource>,
     /// Names of all unknowns, in the order of the case.
     names: Vec<String>,
     /// Starting points of the search (coordinate), best first.
@@ -138,10 +139,11 @@ pub struct Space {
 
 /// Source of an unknown's value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Giver {
+enum ValueSource {
     /// Constant value of an unknown without an axis.
-    Held(f64),
-    /// Index of an axis and the ratio to its value; the ratio is 1 for the axis' own unknown.
+    Constant(f64),
+    /// Index of the axis that determines the unknown, and the ratio of the unknown's value to that of the
+    /// axis; the ratio is 1 for the axis' own unknown.
     Axis(usize, f64),
 }
 
@@ -161,8 +163,8 @@ impl Space {
         let giver = |position: usize| {
             let (leader, ratio) = leader(unknowns, position);
             match axes.iter().position(|axis| axis.position == leader) {
-                Some(axis) => Giver::Axis(axis, ratio),
-                None => Giver::Held(unknowns[position].start),
+                Some(axis) => ValueSource::Axis(axis, ratio),
+                None => ValueSource::Constant(unknowns[position].start),
             }
         };
         let givers = (0..unknowns.len()).map(giver).collect();
@@ -172,7 +174,7 @@ impl Space {
         let names = unknowns.iter().map(|unknown| unknown.name.clone());
         Ok(Self {
             axes,
-            givers,
+            value_sources: givers,
             names: names.collect(),
             starts: Vec::new(),
         })
@@ -184,7 +186,7 @@ impl Space {
     /// # Errors
     /// As [`Space::new`]; if a value lies outside its unknown's bounds. The value of a tied unknown is
     /// ignored.
-    pub fn about(unknowns: &[Unknown], start: &[f64]) -> Result<Self, SpaceError> {
+    pub fn with_start(unknowns: &[Unknown], start: &[f64]) -> Result<Self, SpaceError> {
         if unknowns.len() != start.len() {
             return Err(SpaceError::Length {
                 found: start.len(),
@@ -205,7 +207,7 @@ impl Space {
     /// Returns the space with starting points at these individuals: values of all unknowns [declared units],
     /// best first.
     #[must_use]
-    pub fn beginning_at(self, individuals: &[Vec<f64>]) -> Self {
+    pub fn with_starting_points(self, individuals: &[Vec<f64>]) -> Self {
         let starts = individuals
             .iter()
             .map(|values| self.point(values))
@@ -249,21 +251,21 @@ impl Space {
 
     /// Returns the values of all unknowns, given those of the searched unknowns [declared units].
     pub fn expand(&self, own: &[f64]) -> Vec<f64> {
-        let value = |giver: &Giver| match *giver {
-            Giver::Held(value) => value,
-            Giver::Axis(axis, ratio) => ratio * own[axis],
+        let value = |giver: &ValueSource| match *giver {
+            ValueSource::Constant(value) => value,
+            ValueSource::Axis(axis, ratio) => ratio * own[axis],
         };
-        self.givers.iter().map(value).collect()
+        self.value_sources.iter().map(value).collect()
     }
 
     /// Returns the unknowns that an axis moves: their positions, their names, and the derivative of each
     /// value with respect to the axis' coordinate at `x` [declared unit].
     pub fn rates(&self, axis: usize, x: f64) -> impl Iterator<Item = (usize, &str, f64)> {
         let own = self.axes[axis].rate(x);
-        let givers = self.givers.iter().zip(&self.names).enumerate();
+        let givers = self.value_sources.iter().zip(&self.names).enumerate();
         givers.filter_map(move |(position, (giver, name))| match *giver {
-            Giver::Axis(by, ratio) if by == axis => Some((position, &**name, ratio * own)),
-            Giver::Axis(..) | Giver::Held(_) => None,
+            ValueSource::Axis(by, ratio) if by == axis => Some((position, &**name, ratio * own)),
+            ValueSource::Axis(..) | ValueSource::Constant(_) => None,
         })
     }
 
@@ -275,8 +277,8 @@ impl Space {
     }
 }
 
-/// Returns the unknown at the end of a chain of ties, the unknown itself without a tie, and the ratio to it.
-/// Requires checked ties: a cycle would not terminate.
+/// Follows an unknown's chain of ties; returns the index of the unknown at its end (the unknown itself
+/// without a tie) and the ratio to that unknown's value. Requires checked ties: a cycle would not terminate.
 fn leader(unknowns: &[Unknown], position: usize) -> (usize, f64) {
     let (mut at, mut ratio) = (position, 1.0);
     while let Some(tie) = &unknowns[at].tie
@@ -330,16 +332,18 @@ mod tests {
     #[test]
     fn a_space_about_other_values_has_them_at_its_origin_and_keeps_its_bounds() {
         let unknowns = [logarithmic(3e4, 3e8, 3e12), linear(-3.0, -1.0, 1.0)];
-        let space = Space::about(&unknowns, &[6e9, 0.5]).unwrap();
+        let space = Space::with_start(&unknowns, &[6e9, 0.5]).unwrap();
         assert_eq!(space.values(&[0.0, 0.0]), [6e9, 0.5]);
         assert_eq!(space.values(&[9.0, -9.0]), [3e12, -3.0]);
         for (outside, name) in [([2e4, 0.0], "mass"), ([3e8, f64::NAN], "offset")] {
-            let error = Space::about(&unknowns, &outside).unwrap_err().to_string();
+            let error = Space::with_start(&unknowns, &outside)
+                .unwrap_err()
+                .to_string();
             let begins = format!("unknown {name} of ");
             assert!(error.starts_with(&begins), "{error}");
             assert!(error.contains("start = "), "{error}");
         }
-        let short = Space::about(&unknowns, &[6e9]);
+        let short = Space::with_start(&unknowns, &[6e9]);
         let (found, expected) = (1, 2);
         assert_eq!(short, Err(SpaceError::Length { found, expected }));
     }
@@ -412,7 +416,7 @@ mod tests {
         near(space.values(&[9.0]), [-3.0, 2.0, 1.5, 9.0, 0.0]);
         assert_eq!(space.point(&[7.0, 7.0, 7.0, 3.0, 7.0]), [0.0]);
         // started elsewhere, the last is on, and the tied ones follow
-        let about = Space::about(&unknowns, &[7.0, 3.5, 7.0, 6.0, 0.25]).unwrap();
+        let about = Space::with_start(&unknowns, &[7.0, 3.5, 7.0, 6.0, 0.25]).unwrap();
         assert_eq!(about.dimension(), 2);
         near(about.values(&[0.0, 0.0]), [-2.0, 3.5, 1.0, 6.0, 0.25]);
     }

@@ -3,16 +3,16 @@
 //! Points are coordinates of the space: +-4 decades from the start. All minima are 0.
 use crate::{
     space::{Space, SpaceError},
-    strategy::Told,
+    strategy::EvaluationResult,
 };
-use protocol::case::{Scale, Shares, Shift, Unknown, Valley};
+use protocol::case::{HeldRatios, Scale, Shift, Unknown, Valley};
 
-/// Value of a test function: the residual vector whose squared norm is the fitness, or the grade of a point
-/// that fails.
+/// Value of a test function: the residual vector whose squared norm is the fitness, or, for a point at which
+/// the simulated run fails, its grade.
 type Value = Result<Vec<f64>, f64>;
 
-/// Trust interval of a stiffness (decades); [`LOSS`] is that of a loss, [`SERIES`] that of a stiffness in
-/// series with the first.
+/// Trust interval of a stiffness (decades); [`LOSS`] is that of a damping loss, [`SERIES`] that of a
+/// stiffness in series with the first.
 const STIFF: [f64; 2] = [-1.0, 1.5];
 const LOSS: [f64; 2] = [-1.0, 4.0];
 const SERIES: [f64; 2] = [-0.5, 3.5];
@@ -20,7 +20,7 @@ const SERIES: [f64; 2] = [-0.5, 3.5];
 /// Test function with a known minimum of 0.
 #[derive(Clone, Copy, Debug)]
 pub struct TestFunction {
-    /// Name of the function.
+    /// Name of the test function.
     pub name: &'static str,
     /// Position of the minimum (coordinate); at most 10 unknowns.
     pub optimum: &'static [f64],
@@ -44,7 +44,7 @@ pub const RASTRIGIN: TestFunction = TestFunction {
     value: rastrigin,
 };
 
-/// Sum of squares that fails, with a grade, at more than 2.5 decades from the minimum.
+/// Sum of squares that fails, returning a grade of the failure, at more than 2.5 decades from the minimum.
 pub const CLIFF: TestFunction = TestFunction {
     name: "cliff",
     optimum: &[0.7, -1.3, 0.2, 1.9],
@@ -60,7 +60,7 @@ pub const RESONANCE: TestFunction = TestFunction {
 };
 
 impl TestFunction {
-    /// Returns the same function with its minimum at another position.
+    /// Returns this test function with its minimum moved to `optimum` (coordinate).
     #[must_use]
     pub const fn moved(self, optimum: &'static [f64]) -> Self {
         Self { optimum, ..self }
@@ -101,7 +101,7 @@ impl TestFunction {
             to: 1.1,
             step: 0.02,
             uncovered_by: hiding.collect(),
-            shares: damped.then(|| Shares {
+            shares: damped.then(|| HeldRatios {
                 unknown: "x4".to_owned(),
                 of_scanned: vec![6e-4, 2e-3],
             }),
@@ -121,14 +121,14 @@ impl TestFunction {
         space.expect("ordered bounds about positive values")
     }
 
-    /// Returns the result at values of [`Self::space`].
-    pub fn tell(&self, space: &Space, genes: &[f64]) -> Told {
+    /// Returns the result of the test function at gene values in [`Self::space`].
+    pub fn tell(&self, space: &Space, genes: &[f64]) -> EvaluationResult {
         match (self.value)(&space.point(genes), self.optimum) {
-            Ok(residual) => Told {
+            Ok(residual) => EvaluationResult {
                 fitness: square(&residual),
                 complete: true,
             },
-            Err(grade) => Told {
+            Err(grade) => EvaluationResult {
                 fitness: grade,
                 complete: false,
             },

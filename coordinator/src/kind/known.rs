@@ -1,4 +1,4 @@
-//! Output objects of the commands that depend on the kind of model; the default methods hold for every kind.
+//! Parts of the commands' output that depend on the kind of model; the default methods suit every kind.
 use crate::digest::Digest;
 use discrepancy::identify::Band;
 use protocol::{
@@ -13,10 +13,10 @@ pub(crate) trait Kind: Sync {
     /// Returns the name of the kind, as in the case file.
     fn name(&self) -> &'static str;
 
-    /// Computes the hash of all result bits, without wall time, as 64 hexadecimal digits.
+    /// Computes the hash of all bits of a simulation result, without wall time, as 64 hexadecimal digits.
     ///
     /// # Errors
-    /// If the answer cannot be decoded as one of this kind.
+    /// If the result cannot be decoded as one of this kind of model.
     fn digest(&self, drawn: &Curves) -> Result<String, WireError> {
         let mut digest = Digest::of(drawn.verdict);
         for curve in &drawn.channels {
@@ -26,10 +26,10 @@ pub(crate) trait Kind: Sync {
         Ok(digest.end(drawn.verdict, &drawn.counters))
     }
 
-    /// Returns the curves as shown by `simulate --output json`.
+    /// Returns the curves of a simulation as shown by `simulate --output json`.
     ///
     /// # Errors
-    /// If the answer cannot be decoded as one of this kind.
+    /// If the result cannot be decoded as one of this kind of model.
     fn drawn(
         &self,
         case: &Case,
@@ -53,8 +53,8 @@ pub(crate) trait Kind: Sync {
         Ok(Map::from_iter([("curves".to_owned(), curves)]))
     }
 
-    /// Returns the derivatives with respect to `per`, channel by channel, as shown by `simulate --derivatives
-    /// --output json`.
+    /// Returns the derivatives of the curves with respect to the unknown or effect parameter `per`, channel
+    /// by channel, as shown by `simulate --derivatives --output json`.
     fn derivative(
         &self,
         case: &Case,
@@ -74,8 +74,8 @@ pub(crate) trait Kind: Sync {
         Map::from_iter([("curves".to_owned(), curves)])
     }
 
-    /// Returns the prediction bands of a condition as shown by `identify --output json`: unit and abscissa of
-    /// the first channel for all, and those of a channel where they differ.
+    /// Returns the prediction bands of a condition as shown by `identify --output json`. Unit and abscissa of
+    /// the first channel are given once for all channels, and again for each channel where they differ.
     fn predicted(&self, case: &Case, band: &Band) -> Map<String, Value> {
         let mut said = Map::new();
         let mut channels = case
@@ -108,7 +108,7 @@ pub(crate) trait Kind: Sync {
         said
     }
 
-    /// Returns the key of a channel's score in output objects, and further fields of that score.
+    /// Returns the JSON key under which a channel's score is shown, and further fields of that score.
     fn scored(&self, channel: &Channel, _: &ChannelScore) -> (String, Map<String, Value>) {
         (channel.name.clone(), Map::new())
     }

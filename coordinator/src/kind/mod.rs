@@ -10,7 +10,7 @@ use protocol::case::Case;
 
 const ALL: &[&dyn Kind] = &[&PumpingUnits];
 
-/// Returns the kind with the given name, or the default kind.
+/// Returns the kind of model with the given name, or the default kind.
 pub(crate) fn named(name: &str) -> &'static dyn Kind {
     let name = case::kind::family(name);
     let mut all = ALL.iter().copied();

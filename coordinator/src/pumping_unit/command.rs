@@ -9,11 +9,11 @@ use crate::cli::{
         problem::{EXIT_CODES, Problem},
         terminal,
     },
-    run::once::in_scratch,
+    run::temporary::with_temporary_run,
 };
 use anyhow::Context as _;
 use case::pumping_unit::{
-    HeadSource, QuasiStatic, compare_head, load_head, mesh, quasi_static, wrapped_turn,
+    HeadSource, QuasiStaticTurn, compare_head, load_head, mesh, quasi_static, wrapped_turn,
 };
 use clap::{Args, ValueEnum};
 use protocol::{
@@ -48,7 +48,7 @@ pub(crate) struct Arguments {
     /// over the whole width drives only symmetric ones.
     #[arg(long, value_enum, default_value = "coupled", env = "HORSEHEAD_FAMILY")]
     family: FamilyChoice,
-    /// Condition whose load stands for the quasi-static turn; that of the objective by default.
+    /// Condition whose load is used for the quasi-static turn of the crank; that of the objective by default.
     #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
     condition: Option<String>,
     /// Replace the case's modes file and influence file, and of a case with twin ropes the head's
@@ -70,9 +70,10 @@ pub(crate) struct Arguments {
 enum FamilyChoice {
     /// Modes of both families that couple most to the wrapped rope and to the beam's motion.
     Coupled,
-    /// Sideways displacement changes sign across the middle.
+    /// Symmetric modes: the sideways displacement changes sign across the head's middle plane.
     Symmetric,
-    /// Displacement in the plane of motion changes sign.
+    /// Antisymmetric modes: the displacement in the plane of motion changes sign across the head's middle
+    /// plane.
     Antisymmetric,
     /// Lowest modes of both families.
     Both,
@@ -180,8 +181,8 @@ fn surface<'a>(read: &'a mesh::Mesh, name: &str) -> &'a [usize] {
     read.surfaces.get(name).map_or(&[], Vec::as_slice)
 }
 
-/// Returns the rope wrap at the largest tension of the turn.
-fn hardest(machine: &Machine, turn: &QuasiStatic) -> RopeWrap {
+/// Returns the rope wrap on the back head at the largest rope tension of a crank revolution.
+fn hardest(machine: &Machine, turn: &QuasiStaticTurn) -> RopeWrap {
     let wraps = wraps(machine, turn);
     let most = wraps.max_by(|a, b| a.tension_n.total_cmp(&b.tension_n));
     most.unwrap_or(RopeWrap {
@@ -191,9 +192,9 @@ fn hardest(machine: &Machine, turn: &QuasiStatic) -> RopeWrap {
     })
 }
 
-/// Returns the rope wraps with the smallest, the median and the largest covered arc of the turn, used as load
-/// patterns.
-fn patterns(machine: &Machine, turn: &QuasiStatic) -> Vec<RopeWrap> {
+/// Returns the rope wraps with the smallest, the median and the largest covered arc of a crank revolution,
+/// used as load patterns.
+fn patterns(machine: &Machine, turn: &QuasiStaticTurn) -> Vec<RopeWrap> {
     let mut wraps: Vec<RopeWrap> = wraps(machine, turn).collect();
     wraps.sort_by(|a, b| a.leaves_deg.total_cmp(&b.leaves_deg));
     let last = wraps.len().saturating_sub(1);
@@ -205,8 +206,8 @@ fn patterns(machine: &Machine, turn: &QuasiStatic) -> Vec<RopeWrap> {
         .collect()
 }
 
-/// Returns the rope wrap at every crank angle of the turn.
-fn wraps(machine: &Machine, turn: &QuasiStatic) -> impl Iterator<Item = RopeWrap> {
+/// Returns the rope wrap on the back head at every crank angle of the quasi-static revolution.
+fn wraps(machine: &Machine, turn: &QuasiStaticTurn) -> impl Iterator<Item = RopeWrap> {
     let anchor_deg = machine.back_head.rope_anchor_deg;
     let places = turn.tension_n.iter().zip(&turn.contact_deg);
     places.map(move |(&tension_n, &leaves_deg)| RopeWrap {
@@ -216,7 +217,8 @@ fn wraps(machine: &Machine, turn: &QuasiStatic) -> impl Iterator<Item = RopeWrap
     })
 }
 
-/// Builds the job that reduces the head of a case, at the arc stations of its present tables.
+/// Builds the job that reduces the head of a case; the influence lines are sampled at the arc stations of the
+/// case's present tables.
 fn spec(
     machine: &Machine,
     source: &HeadSource,
@@ -264,7 +266,7 @@ fn mesh(read: &mesh::Mesh) -> HeadMesh {
     }
 }
 
-/// Checks that the job and its answer each fit into one message.
+/// Checks that the head reduction job and its answer each fit into one message.
 fn check_size(spec: &ReduceHeadSpec) -> Result<(), Problem> {
     const MEBIBYTE: usize = 1 << 20;
     // what is not the fields of the answer is small beside this
@@ -302,7 +304,7 @@ fn check_size(spec: &ReduceHeadSpec) -> Result<(), Problem> {
 fn reduce_once(mut unit: PumpingUnit, spec: &ReduceHeadSpec) -> anyhow::Result<ReducedHead> {
     // a worker builds the machine first: not with tables that are yet to come
     unit.machine.twin_ropes = None;
-    in_scratch(&unit.into_case()?, "head", 1, async |bus, stop| {
+    with_temporary_run(&unit.into_case()?, "head", 1, async |bus, stop| {
         reduce_head(bus, spec, stop).await
     })
 }

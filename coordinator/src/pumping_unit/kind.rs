@@ -1,4 +1,5 @@
-//! Implementation of the kind of model "pumping unit" for the general parts of the coordinator.
+//! Implementation of the model kind "pumping unit" for the coordinator, whose other parts know no particular
+//! machine.
 use super::{
     digest::simulation_digest,
     output::{
@@ -16,7 +17,7 @@ use protocol::{
 };
 use serde_json::{Map, Value};
 
-/// Kind of pumping units with double horse heads.
+/// Model kind of pumping units with two horse heads (front and back of the walking beam).
 pub(crate) struct PumpingUnits;
 
 impl Kind for PumpingUnits {

@@ -1,4 +1,4 @@
-//! Reduction of the back head by a worker.
+//! Reduction of the back head to its modes, done by a worker as a job.
 use protocol::{
     id::JobId,
     job::{Answer, Job},

@@ -1,9 +1,9 @@
-//! Columns of tables: each is defined once, with its name, its meaning and the function that reads its value
-//! from a row.
+//! Column definitions of the exported tables: each column is defined once, with its name, its meaning and the
+//! function that reads its value from a row.
 //!
 //! Independent of the type of the rows and of the file format.
 
-/// Name of every column of job numbers; databases are indexed by this column.
+/// Column name for job numbers in all exported tables; databases get an index on it.
 pub(super) const JOB: &str = "job";
 
 /// Value of a field of a table.
@@ -120,7 +120,7 @@ impl<R: 'static> Columns<R> {
         self.add(name, about, Kind::Text, Box::new(value))
     }
 
-    /// Adds the columns of a part of the row, which `of` returns.
+    /// Adds the columns of a part of the row; `of` returns this part.
     pub(super) fn with<S: 'static>(mut self, part: Columns<S>, of: fn(&R) -> &S) -> Self {
         self.columns.extend(part.columns);
         let read = part.read.into_iter();

@@ -1,8 +1,8 @@
 //! Tables as CSV: one file each, an empty field for a missing value, numbers with all digits.
 use super::{
-    book::{Shape, Sink},
     column::Value,
     error::StoreError,
+    writer::{Schema, Sink},
 };
 use std::{
     fs::File,
@@ -35,7 +35,7 @@ fn field(value: &Value) -> String {
 }
 
 impl Sink for CsvFiles {
-    fn begin(&mut self, shape: &Shape) -> Result<(), StoreError> {
+    fn begin(&mut self, shape: &Schema) -> Result<(), StoreError> {
         let path = self.folder.join(format!("{}.csv", shape.name));
         let failed = StoreError::writing(&path);
         let file = File::create(&path).map_err(failed)?;

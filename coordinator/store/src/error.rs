@@ -11,9 +11,9 @@ pub enum StoreError {
     /// A file cannot be read or written.
     #[error("cannot {doing} {}: {source}", path.display())]
     Io {
-        /// Operation that failed, for example `write`.
+        /// Failed file operation, for example `write`.
         doing: &'static str,
-        /// File or folder of the operation.
+        /// File or folder on which the operation failed.
         path: PathBuf,
         /// Error of the operating system.
         source: io::Error,

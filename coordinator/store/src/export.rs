@@ -1,13 +1,13 @@
 //! Export in progress: converts events of the journal and evaluations of the study into rows.
 use super::{
-    book::Book,
     error::StoreError,
-    row::{Added, Brief, Evaluated, Fact, Happened, Scored},
+    row::{Brief, EffectRow, Evaluated, Fact, Happened, Scored},
     table::Tables,
     target::{Draft, Target},
+    writer::TableWriter,
 };
-use dispatch::account::Folding;
-use dispatch::journal::{Damage, Entry, Recording};
+use dispatch::account::AccountBuilder;
+use dispatch::journal::{Damage, JournalEntry, JournalSnapshot};
 use protocol::{
     case::Case,
     event::{Event, Finished},
@@ -20,7 +20,7 @@ use std::{
 
 /// Reason for which a simulation was requested.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Label {
+pub struct ColumnLabel {
     /// Generation of the search in which the individual was proposed; none outside a search.
     pub generation: Option<u32>,
     /// Purpose of the simulation, as text.
@@ -40,7 +40,7 @@ pub struct Exported {
 pub struct Store<'a> {
     case: &'a Case,
     draft: Draft,
-    book: Book,
+    book: TableWriter,
     tables: Tables,
 }
 
@@ -52,10 +52,10 @@ impl<'a> Store<'a> {
     /// [`StoreError::Table`] if the target cannot be written.
     pub fn begin(target: Target, case: &'a Case) -> Result<Self, StoreError> {
         let draft = Draft::begin(target)?;
-        let mut book = Book::new(draft.sink()?);
+        let mut book = TableWriter::new(draft.sink()?);
         let tables = Tables::begin(&mut book, case)?;
         for gene in &case.unknowns {
-            book.put(&tables.genes, gene)?;
+            book.add_row(&tables.genes, gene)?;
         }
         Ok(Self {
             case,
@@ -74,18 +74,18 @@ impl<'a> Store<'a> {
             name: name.to_owned(),
             value: value.to_owned(),
         };
-        self.book.put(&self.tables.run, &fact)
+        self.book.add_row(&self.tables.run, &fact)
     }
 
     /// Reads the journal, adds all rows that follow from it alone, and returns its results as a recording.
     ///
     /// # Errors
     /// [`StoreError::Journal`] if the journal cannot be read, other errors if a table cannot be written.
-    pub fn journal(&mut self, path: &Path) -> Result<Recording, StoreError> {
-        let mut folding = Folding::default();
+    pub fn journal(&mut self, path: &Path) -> Result<JournalSnapshot, StoreError> {
+        let mut folding = AccountBuilder::default();
         let mut process = None;
         let mut failed = None;
-        let recording = Recording::read(path, |entry, event| {
+        let recording = JournalSnapshot::read(path, |entry, event| {
             folding.apply(&event);
             if let Event::Opened { epoch, .. } = event {
                 process = Some(epoch);
@@ -99,10 +99,10 @@ impl<'a> Store<'a> {
         }
         let account = folding.finish(recording.report().damage.clone());
         for worker in &account.workers {
-            self.book.put(&self.tables.workers, worker)?;
+            self.book.add_row(&self.tables.workers, worker)?;
         }
         for damage in &account.damage {
-            self.book.put::<Damage>(&self.tables.damage, damage)?;
+            self.book.add_row::<Damage>(&self.tables.damage, damage)?;
         }
         self.fact("processes", &account.processes.to_string())?;
         self.fact("results", &recording.len().to_string())?;
@@ -116,7 +116,7 @@ impl<'a> Store<'a> {
 
     fn event(
         &mut self,
-        entry: Entry,
+        entry: JournalEntry,
         process: Option<u32>,
         event: Event,
     ) -> Result<(), StoreError> {
@@ -163,7 +163,7 @@ impl<'a> Store<'a> {
                 ..happened
             },
         };
-        self.book.put(&self.tables.events, &happened)
+        self.book.add_row(&self.tables.events, &happened)
     }
 
     fn result(&mut self, finished: &Finished) -> Result<(), StoreError> {
@@ -173,9 +173,9 @@ impl<'a> Store<'a> {
                 job: brief.job,
                 score: *score,
             };
-            self.book.put(&self.tables.scores, &scored)?;
+            self.book.add_row(&self.tables.scores, &scored)?;
         }
-        self.book.put(&self.tables.results, &brief)
+        self.book.add_row(&self.tables.results, &brief)
     }
 
     /// Adds a job that the study requested, with its result; a job that simulates nothing is ignored.
@@ -184,7 +184,7 @@ impl<'a> Store<'a> {
     /// [`StoreError::Io`] or [`StoreError::Table`] if it cannot be written.
     pub fn evaluation(
         &mut self,
-        label: Label,
+        label: ColumnLabel,
         job: &Job,
         finished: &Finished,
     ) -> Result<(), StoreError> {
@@ -202,12 +202,12 @@ impl<'a> Store<'a> {
                 parameters = vec![None];
             }
             for parameter in parameters {
-                let added = Added {
+                let added = EffectRow {
                     job: finished.job(),
                     effect: effect.id.clone(),
                     parameter,
                 };
-                self.book.put(&self.tables.effects, &added)?;
+                self.book.add_row(&self.tables.effects, &added)?;
             }
         }
         let condition = self.case.conditions.get(*condition);
@@ -219,7 +219,7 @@ impl<'a> Store<'a> {
             effects: effects.len(),
             result: Brief::of(finished),
         };
-        self.book.put(&self.tables.evaluations, &evaluated)
+        self.book.add_row(&self.tables.evaluations, &evaluated)
     }
 
     /// Completes the export and moves it to its target.
@@ -227,10 +227,10 @@ impl<'a> Store<'a> {
     /// # Errors
     /// [`StoreError::Io`] or [`StoreError::Table`] if a file cannot be written.
     pub fn finish(mut self) -> Result<Exported, StoreError> {
-        for shape in self.book.shapes() {
+        for shape in self.book.schemas() {
             for column in shape.columns {
                 let row = (shape.name.to_owned(), column);
-                self.book.put(&self.tables.dictionary, &row)?;
+                self.book.add_row(&self.tables.dictionary, &row)?;
             }
         }
         let rows = self.book.finish()?;

@@ -1,11 +1,10 @@
 //! Export of a run as tables for queries, built from its journal: SQLite, CSV or Parquet.
 //!
 //! [`Store`] converts the journal into rows. A journal does not contain the purpose of the simulations that
-//! were *asked* for; the caller therefore repeats the run's study on the recording ([`study::Recorded`]) and
+//! were *asked* for; the caller therefore repeats the run's study on the recording ([`study::ReplayEvaluator`]) and
 //! passes in the simulations one by one. Rows are streamed: neither curves nor residuals nor tables are held
 //! in memory. The journal is authoritative and never changed; an export can be repeated at any time with
 //! identical content.
-mod book;
 mod column;
 mod csv;
 mod error;
@@ -19,9 +18,10 @@ mod table;
 mod target;
 #[cfg(test)]
 mod tests;
+mod writer;
 
 pub use error::StoreError;
-pub use export::{Exported, Label, Store};
+pub use export::{ColumnLabel, Exported, Store};
 pub use table::gene_column;
 pub use target::{Format, Target};
 

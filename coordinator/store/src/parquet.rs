@@ -1,8 +1,8 @@
 //! Tables as Parquet: one file each, every column optional, text as UTF-8.
 use super::{
-    book::{Shape, Sink},
     column::{Kind, Value},
     error::StoreError,
+    writer::{Schema, Sink},
 };
 use parquet::{
     basic::{LogicalType, Repetition, Type as Physical},
@@ -35,7 +35,7 @@ impl ParquetFiles {
     }
 }
 
-fn schema(shape: &Shape) -> Result<TypePtr, ParquetError> {
+fn schema(shape: &Schema) -> Result<TypePtr, ParquetError> {
     let fields = shape.columns.iter().map(|column| {
         let (physical, logical) = match column.kind {
             Kind::Integer => (Physical::INT64, None),
@@ -107,7 +107,7 @@ fn group(
 }
 
 impl Sink for ParquetFiles {
-    fn begin(&mut self, shape: &Shape) -> Result<(), StoreError> {
+    fn begin(&mut self, shape: &Schema) -> Result<(), StoreError> {
         let path = self.folder.join(format!("{}.parquet", shape.name));
         let failed = |error| StoreError::table(&path, error);
         let file = File::create(&path).map_err(StoreError::writing(&path))?;

@@ -12,8 +12,8 @@ use protocol::{
 pub(super) struct Brief {
     pub(super) job: JobId,
     pub(super) kind: &'static str,
-    /// Coordinator process of the run that dispatched the attempt, and the number of earlier attempts of the
-    /// job in that process; none for a failure that the coordinator itself recorded.
+    /// Number of the coordinator process that dispatched the attempt, and the number of earlier attempts at
+    /// the job in that process; `None` for a failure that the coordinator recorded itself.
     pub(super) offered: Option<(u32, u32)>,
     pub(super) worker: Option<WorkerId>,
     pub(super) cost: Cost,
@@ -33,7 +33,7 @@ impl Brief {
         Self {
             job: finished.job(),
             kind: finished.outcome.kind(),
-            offered: scheduler::offered(finished.attempt.attempt),
+            offered: scheduler::epoch_and_number(finished.attempt.attempt),
             worker: finished.worker,
             cost: finished.cost,
             simulated: finished.outcome.simulation(),
@@ -47,7 +47,7 @@ impl Brief {
         self.simulated.map(|(_, counters)| counters)
     }
 
-    /// Returns the mean squared error of the scored channel among the given ones.
+    /// Returns the mean squared error of the first scored channel whose index is among `channels`.
     pub(super) fn mse(&self, channels: &[usize]) -> Option<f64> {
         let mut scores = self.scores.iter();
         let score = scores.find(|score| channels.contains(&score.channel))?;
@@ -73,10 +73,11 @@ pub(super) struct Scored {
 }
 
 /// Parameter of an effect that a simulation added to those of the case.
-pub(super) struct Added {
+pub(super) struct EffectRow {
     pub(super) job: JobId,
     pub(super) effect: String,
-    /// Name and value of the parameter; none for an effect whose parameters are all set by the model.
+    /// Name and value of the effect's parameter; `None` for an effect whose parameters all have the model's
+    /// defaults.
     pub(super) parameter: Option<(String, f64)>,
 }
 

@@ -3,9 +3,9 @@
 //! The file becomes visible only when it is complete; the database is therefore written without a rollback
 //! journal and without synchronisation.
 use super::{
-    book::{Shape, Sink},
     column::{JOB, Kind, Value},
     error::StoreError,
+    writer::{Schema, Sink},
 };
 use rusqlite::{
     Connection, ToSql, params_from_iter,
@@ -68,7 +68,7 @@ const fn type_name(kind: Kind) -> &'static str {
 }
 
 impl Sink for Database {
-    fn begin(&mut self, shape: &Shape) -> Result<(), StoreError> {
+    fn begin(&mut self, shape: &Schema) -> Result<(), StoreError> {
         let name = shape.name;
         let columns = shape.columns.iter();
         let columns: Vec<String> = columns

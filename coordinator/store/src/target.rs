@@ -2,12 +2,12 @@
 //! that readers see either the old export or the new one. Files that are not exports are never replaced
 //! without `force`.
 use super::{
-    book::Sink,
     csv::CsvFiles,
     error::StoreError,
     parquet::ParquetFiles,
     sqlite::{APPLICATION, Database},
     table,
+    writer::Sink,
 };
 use std::{
     collections::BTreeSet,
@@ -38,7 +38,7 @@ impl Format {
         }
     }
 
-    /// Returns the default name of the file or folder within a run folder.
+    /// Returns the default name of an export in this format within a run folder.
     pub const fn usual_name(self) -> &'static str {
         match self {
             Self::Sqlite => "run.sqlite",
@@ -64,7 +64,7 @@ pub struct Target {
     pub force: bool,
 }
 
-/// Name of the export within its temporary folder.
+/// Name of the unfinished export within its temporary folder.
 const DRAFT: &str = "export";
 
 /// Export in a temporary folder, before it is moved to its target.
@@ -148,7 +148,7 @@ fn parent(path: &Path) -> PathBuf {
     }
 }
 
-/// Returns whether the target does not exist, or is an export in the same format.
+/// Returns whether an export may be written to a path: nothing exists there, or an export in the same format.
 fn is_replaceable(target: &Target) -> io::Result<bool> {
     let found = match fs::symlink_metadata(&target.path) {
         Ok(found) => found,

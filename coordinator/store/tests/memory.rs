@@ -15,9 +15,9 @@ use protocol::{
     message::{Attempt, Cost},
 };
 use std::{env, fs, path::Path, process::Command};
-use store::{Format, Label, Store, Target};
+use store::{ColumnLabel, Format, Store, Target};
 
-/// Number of residuals per result (a tenth of the usual number).
+/// Length of the residual vector in each generated test result (a tenth of the usual length).
 const RESIDUALS: usize = 144;
 /// Maximum additional memory (MiB) of an export of 50,000 evaluations compared with 5,000; these evaluations
 /// take 80 MiB in the journal, and more as rows.
@@ -91,7 +91,7 @@ fn fifty_thousand_evaluations_need_the_memory_of_five_thousand() {
                     with_residual: true,
                     whole: true,
                 };
-                let label = Label {
+                let label = ColumnLabel {
                     generation: Some(0),
                     purpose: "initial".to_owned(),
                 };

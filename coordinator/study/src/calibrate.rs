@@ -3,7 +3,7 @@
 use super::{
     error::StudyError,
     evaluator::Evaluator,
-    log::{Ending, Entry, EvaluationLog},
+    log::{EvaluationLog, EvaluationOutcome, LogEntry},
     progress::ProgressView,
     stop::{Stop, or_stop},
     watch::Watch,
@@ -17,7 +17,7 @@ use search::strategy::{Best, Finish, Proposal, Residual, Strategy};
 use std::collections::BTreeMap;
 
 /// Minimum number of evaluated individuals before a search in which all have failed is given up.
-pub(super) const LEAST_TRIED: usize = 8;
+pub(super) const MIN_FAILED_EVALUATIONS: usize = 8;
 
 /// Result of a finished search.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,7 +52,7 @@ pub async fn calibrate<E: Evaluator>(
             open.insert(proposal.id, proposal);
         }
         view.plan(&strategy.progress());
-        watch.progress(&view, &|| evaluator.crew());
+        watch.progress(&view, &|| evaluator.workers_status());
         if let (Some(finish), Some(best)) = (strategy.finished(), strategy.best()) {
             return if best.complete {
                 Ok(Calibrated { best, finish, log })
@@ -68,14 +68,14 @@ pub async fn calibrate<E: Evaluator>(
             strategy.tell_residual(proposal.id, residual);
         }
         let entry = entry(proposal, completed.outcome)?;
-        strategy.tell(entry.id, entry.told());
+        strategy.tell(entry.id, entry.strategy_result());
         view.apply(&entry, completed.replayed);
         log.insert(entry);
         check_beginning(&log, &open)?;
     }
 }
 
-/// Builds the job of a proposal.
+/// Builds the simulation job that scores a proposed individual.
 pub(super) fn score(case: &Case, proposal: &Proposal) -> Job {
     let individual = Individual::new(case.objective.condition, proposal.genes.clone());
     let reply = Reply::Score {
@@ -88,12 +88,12 @@ pub(super) fn score(case: &Case, proposal: &Proposal) -> Job {
     })
 }
 
-/// Returns the unknowns by which the job of a proposal differentiates: all that are neither fixed nor
-/// switched off, or none if no derivatives are wanted.
+/// Returns the unknowns with respect to which the job of a proposal computes derivatives: all that are
+/// neither fixed nor switched off, or none if the proposal needs no derivatives.
 fn derived(case: &Case, proposal: &Proposal) -> Vec<Column> {
     let wanted = proposal.purpose.wants_derivatives();
     let moving = case.unknowns.iter().filter(|it| !it.fixed && !it.is_off());
-    let columns = moving.map(|unknown| Column::of(unknown.name.clone()));
+    let columns = moving.map(|unknown| Column::new(unknown.name.clone()));
     columns.filter(|_| wanted).collect()
 }
 
@@ -104,23 +104,23 @@ pub(super) fn residual(case: &Case, proposal: &Proposal, outcome: &Outcome) -> O
     let by = by.map(|column| column.name).zip(evaluation.columns.clone());
     (!evaluation.residual.is_empty()).then(|| Residual {
         values: evaluation.residual.clone(),
-        by: by.collect(),
+        derivatives: by.collect(),
     })
 }
 
 /// Converts the outcome of a proposal into a log entry. A failure that would affect every other individual
 /// becomes an error, which ends the study; a failure of this individual alone gives it the worst fitness.
-pub(super) fn entry(proposal: Proposal, outcome: Outcome) -> Result<Entry, StudyError> {
+pub(super) fn entry(proposal: Proposal, outcome: Outcome) -> Result<LogEntry, StudyError> {
     match outcome {
         Outcome::Done(answer) => match answer.into_scored() {
-            Ok(evaluation) => Ok(Entry::scored(proposal, &evaluation)),
+            Ok(evaluation) => Ok(LogEntry::scored(proposal, &evaluation)),
             Err(_) => Err(StudyError::WrongKind {
                 id: JobId(proposal.id),
             }),
         },
-        Outcome::Failed(failure) => match StudyError::hopeless(&failure) {
+        Outcome::Failed(failure) => match StudyError::from_systematic_failure(&failure) {
             Some(error) => Err(error),
-            None => Ok(Entry::lost(proposal, failure)),
+            None => Ok(LogEntry::lost(proposal, failure)),
         },
     }
 }
@@ -128,13 +128,16 @@ pub(super) fn entry(proposal: Proposal, outcome: Outcome) -> Result<Entry, Study
 /// Fails if all evaluations so far have failed and the first generation is complete. The search could
 /// continue, but a wrongly configured case or machine is by far the more likely reason.
 fn check_beginning(log: &EvaluationLog, open: &BTreeMap<u64, Proposal>) -> Result<(), StudyError> {
-    if log.entries().any(|entry| entry.ending == Ending::Complete) {
+    if log
+        .entries()
+        .any(|entry| entry.ending == EvaluationOutcome::Complete)
+    {
         return Ok(());
     }
     let tried = log.entries().map(|entry| entry.generation);
     let untried = open.values().map(|proposal| proposal.generation);
     let first = tried.chain(untried.clone()).min();
-    if log.len() < LEAST_TRIED || untried.min().is_some_and(|open| Some(open) == first) {
+    if log.len() < MIN_FAILED_EVALUATIONS || untried.min().is_some_and(|open| Some(open) == first) {
         return Ok(());
     }
     Err(all_failed(log))

@@ -14,33 +14,33 @@ use std::collections::BTreeMap;
 
 /// Individuals to score and simulate under one condition.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Wanted {
+pub struct CompareRequest {
     /// Index of the condition in the case.
     pub condition: usize,
-    /// Index of the first individual among all individuals compared under this condition in the run;
-    /// determines the job numbers.
+    /// Index of the first of these individuals among all individuals compared under this condition in the
+    /// run; determines the job numbers.
     pub first: usize,
     /// Individuals by name; values of the unknowns in declared units.
     pub individuals: Vec<(String, Vec<f64>)>,
-    /// Number of frames of the motion to record; 0 for none.
-    pub pictures: u32,
+    /// Number of motion snapshots recorded per simulation; 0 for none.
+    pub frames: u32,
     /// Parameters by which the curves are differentiated.
     pub columns: Vec<Column>,
 }
 
-/// Number of frames for a smooth animation of the motion.
+/// Number of motion snapshots that give a smooth animation.
 pub const PICTURES: u32 = 120;
 
 /// Score and curves of one individual under one condition.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curves {
+pub struct ComparedCurves {
     /// Name of the individual.
     pub name: String,
     /// Values of the unknowns in declared units.
     pub genes: Vec<f64>,
     /// Score against the measured record; none where the condition has no record.
     pub evaluation: Option<Evaluation>,
-    /// Simulated curves, up to the end of the simulation.
+    /// Simulated curves of the individual; they end where the simulation ended early.
     pub drawn: job::Curves,
 }
 
@@ -50,7 +50,7 @@ pub struct Compared {
     /// Index of the condition in the case.
     pub condition: usize,
     /// Results in the order of the requested individuals.
-    pub individuals: Vec<Curves>,
+    pub individuals: Vec<ComparedCurves>,
 }
 
 /// Score and curves of one individual, filled in as results arrive.
@@ -69,7 +69,7 @@ struct Pair {
 pub async fn compare<E: Evaluator>(
     evaluator: &mut E,
     case: &Case,
-    wanted: &[Wanted],
+    wanted: &[CompareRequest],
     stop: &mut Stop,
 ) -> Result<Vec<Compared>, StudyError> {
     let mut open: BTreeMap<u64, (usize, usize)> = BTreeMap::new();
@@ -88,7 +88,7 @@ pub async fn compare<E: Evaluator>(
                 open.insert(first, (group, position));
             }
             let reply = Reply::Curves {
-                pictures: one.pictures,
+                pictures: one.frames,
             };
             let individual = Individual::new(one.condition, genes.clone());
             let spec = SimulateSpec {
@@ -123,7 +123,7 @@ pub async fn compare<E: Evaluator>(
         .collect()
 }
 
-fn name(case: &Case, wanted: &[Wanted], (group, position): (usize, usize)) -> String {
+fn name(case: &Case, wanted: &[CompareRequest], (group, position): (usize, usize)) -> String {
     let one = wanted.get(group);
     let condition = one.and_then(|one| case.conditions.get(one.condition));
     let individual = one.and_then(|one| one.individuals.get(position));
@@ -133,7 +133,7 @@ fn name(case: &Case, wanted: &[Wanted], (group, position): (usize, usize)) -> St
 }
 
 fn collect(
-    one: &Wanted,
+    one: &CompareRequest,
     group: usize,
     pairs: &mut BTreeMap<(usize, usize), Pair>,
 ) -> Result<Compared, StudyError> {
@@ -142,7 +142,7 @@ fn collect(
         let pair = pairs.remove(&(group, position)).unwrap_or_default();
         let id = JobId(of_comparison(one.condition, one.first + position) + 1);
         let drawn = pair.drawn.ok_or(StudyError::WrongKind { id })?;
-        individuals.push(Curves {
+        individuals.push(ComparedCurves {
             name: name.clone(),
             genes: genes.clone(),
             evaluation: pair.evaluation,

@@ -1,9 +1,10 @@
-//! Diagnosis whose experiments are jobs of an evaluator.
+//! Runner of the diagnosis of model deficiencies; its experiments are simulations submitted as jobs to an
+//! evaluator.
 use super::{
     error::StudyError,
     evaluator::Evaluator,
+    experiments::{Jobs, StageCost, StageView},
     job_number::EXPERIMENTS,
-    laboratory::{Jobs, StageCost, StageView},
     stop::Stop,
     watch::Watch,
 };
@@ -12,10 +13,10 @@ use discrepancy::laboratory::Stage;
 
 /// Result of a diagnosis, and its cost.
 #[derive(Clone, Debug)]
-pub struct Diagnosed {
+pub struct DiagnosisResult {
     /// Result of the diagnosis.
     pub diagnosis: Diagnosis,
-    /// Cost of each stage that did experiments.
+    /// Number of experiments, batches and wall time of each stage that ran experiments.
     pub accounts: Vec<(Stage, StageCost)>,
 }
 
@@ -28,10 +29,10 @@ pub async fn diagnose_on<E: Evaluator>(
     inputs: &Inputs,
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
-) -> Result<Diagnosed, StudyError> {
+) -> Result<DiagnosisResult, StudyError> {
     let mut jobs = Jobs::new((evaluator, EXPERIMENTS), inputs, &Stage::ALL, watch, stop);
     let diagnosis = diagnose(&mut jobs, inputs).await?;
-    Ok(Diagnosed {
+    Ok(DiagnosisResult {
         diagnosis,
         accounts: jobs.accounts(),
     })

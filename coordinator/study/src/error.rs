@@ -1,12 +1,12 @@
 //! Errors that end a study without a result.
 use protocol::{
     id::JobId,
-    job::{Failure, Word},
+    job::{Failure, Identifier},
 };
 use search::strategy::SettingsError;
 use std::fmt;
 
-/// Error of an evaluator that can no longer work.
+/// Error of an evaluator that can no longer compute jobs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EvaluatorError {
     /// Description of the error.
@@ -44,7 +44,7 @@ pub enum StudyError {
     /// A parameter by which to differentiate is unknown.
     #[error("the workers cannot differentiate by this: {problem}")]
     Column {
-        /// Description of the problem, with the name that was probably meant.
+        /// Description of the error, with the known parameter name most similar to the given one.
         problem: String,
     },
     /// The workers do not support this kind of job.
@@ -61,12 +61,12 @@ pub enum StudyError {
         /// Failures with their counts, the most frequent first.
         how: String,
         /// Most frequent failure of the simulated physics, if there was any.
-        physics: Option<Word>,
+        physics: Option<Identifier>,
     },
     /// An individual that is to be compared could not be evaluated.
     #[error("{what} could not be evaluated: {failure}")]
     Unavailable {
-        /// Name of the individual and of the condition.
+        /// Name of the individual and of the condition that could not be evaluated.
         what: String,
         /// Failure of the job.
         failure: Failure,
@@ -83,9 +83,9 @@ pub enum StudyError {
 }
 
 impl StudyError {
-    /// Converts a failure that would affect every other job into an error; returns none for a failure of one
-    /// job alone.
-    pub(super) fn hopeless(failure: &Failure) -> Option<Self> {
+    /// Converts a job failure that would affect every other job into an error; returns none for a failure of
+    /// one job alone.
+    pub(super) fn from_systematic_failure(failure: &Failure) -> Option<Self> {
         match failure.clone() {
             Failure::Misconfigured { field, problem } if field.starts_with("columns") => {
                 Some(Self::Column { problem })
@@ -98,9 +98,10 @@ impl StudyError {
         }
     }
 
-    /// Converts the failure of an indispensable job into an error.
+    /// Converts the failure of a job without which the study cannot continue into an error; `what` names its
+    /// subject.
     pub(super) fn of(failure: Failure, what: impl FnOnce() -> String) -> Self {
-        Self::hopeless(&failure).unwrap_or_else(|| Self::Unavailable {
+        Self::from_systematic_failure(&failure).unwrap_or_else(|| Self::Unavailable {
             what: what(),
             failure,
         })

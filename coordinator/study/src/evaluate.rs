@@ -18,7 +18,7 @@ use tokio::sync::mpsc;
 
 /// Request to score an individual.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Request<T> {
+pub struct EvaluationRequest<T> {
     /// Identification of the request, returned with its answer.
     pub tag: T,
     /// Values of the unknowns in the order of the case [declared units].
@@ -39,7 +39,7 @@ pub type Scored = Result<Evaluation, Failure>;
 pub async fn evaluate<E: Evaluator, T>(
     evaluator: &mut E,
     case: &Case,
-    requests: &mut mpsc::Receiver<Request<T>>,
+    requests: &mut mpsc::Receiver<EvaluationRequest<T>>,
     answer: &mut dyn FnMut(T, &Scored) -> anyhow::Result<()>,
     stop: &mut Stop,
 ) -> anyhow::Result<()> {
@@ -86,11 +86,11 @@ pub async fn evaluate<E: Evaluator, T>(
 }
 
 enum Event<T, C> {
-    Request(Option<Request<T>>),
+    Request(Option<EvaluationRequest<T>>),
     Completed(C),
 }
 
-pub(super) fn job<T>(case: &Case, request: &Request<T>) -> Job {
+pub(super) fn job<T>(case: &Case, request: &EvaluationRequest<T>) -> Job {
     let individual = Individual::new(case.objective.condition, request.genes.clone());
     let with_residual = request.with_residual;
     Job::Simulate(SimulateSpec::new(
@@ -108,7 +108,7 @@ pub(super) fn scored(id: JobId, outcome: Outcome) -> Result<Scored, StudyError> 
             Ok(evaluation) => Ok(Ok(evaluation)),
             Err(_) => Err(StudyError::WrongKind { id }),
         },
-        Outcome::Failed(failure) => match StudyError::hopeless(&failure) {
+        Outcome::Failed(failure) => match StudyError::from_systematic_failure(&failure) {
             Some(error) => Err(error),
             None => Ok(Err(failure)),
         },

@@ -5,7 +5,7 @@ use dispatch::scheduler::Completed;
 use protocol::{
     event::Spent,
     id::JobId,
-    job::{Answer, Job, WrongKind},
+    job::{Answer, Job, UnexpectedAnswer},
 };
 use std::time::Duration;
 
@@ -24,7 +24,8 @@ pub trait Evaluator {
     /// If no further result can come.
     fn next(&mut self) -> impl Future<Output = Result<Completed, EvaluatorError>>;
 
-    /// Returns the job numbers of earlier sessions, for studies that number jobs by content.
+    /// Returns the job numbers assigned in earlier sessions of the run, for studies that number jobs by
+    /// content.
     ///
     /// # Errors
     /// If the records of earlier sessions cannot be read.
@@ -33,7 +34,7 @@ pub trait Evaluator {
     }
 
     /// Returns the present status of the workers.
-    fn crew(&self) -> Crew;
+    fn workers_status(&self) -> WorkersSnapshot;
 }
 
 /// Extracts the answer of the expected kind with `take`; `what` names the subject of the job in an error.
@@ -42,7 +43,7 @@ pub trait Evaluator {
 /// If the job failed, or was answered as another kind of job.
 pub fn answer<T>(
     completed: Completed,
-    take: impl FnOnce(Answer) -> Result<T, WrongKind>,
+    take: impl FnOnce(Answer) -> Result<T, UnexpectedAnswer>,
     what: impl FnOnce() -> String,
 ) -> Result<T, StudyError> {
     let id = completed.id;
@@ -55,17 +56,17 @@ pub fn answer<T>(
 
 /// Status of all workers.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Crew {
+pub struct WorkersSnapshot {
     /// All workers that joined in this session, including those that left.
     pub workers: Vec<WorkerStatus>,
     /// Number of jobs waiting for a worker.
     pub queued: usize,
     /// Number of jobs being computed.
     pub running: usize,
-    /// Time of all slots in this session, by use.
+    /// Slot time of all workers in this session, divided by use (computing, waiting, lost and others).
     pub spent: Spent,
-    /// Time during which at least one worker was computing in this session; waiting for workers and for them
-    /// to build the model is excluded.
+    /// Time in this session during which at least one worker was computing; excludes waiting for workers and
+    /// for their model setup.
     pub computing: Duration,
 }
 

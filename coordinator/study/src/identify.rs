@@ -1,15 +1,15 @@
-//! Identification, which finds the unknowns that a measured record determines, with experiments as jobs of an
-//! evaluator.
+//! Runner of an identification, which finds the unknowns that a measured record determines; its experiments
+//! are simulations submitted as jobs to an evaluator.
 use super::{
     error::StudyError,
     evaluator::Evaluator,
-    job_number::{EXPERIMENTS, FIRST_LOOK},
-    laboratory::{Jobs, StageCost, StageView},
+    experiments::{Jobs, StageCost, StageView},
+    job_number::{EXPERIMENTS, IDENTIFIABILITY_JOBS},
     stop::Stop,
     watch::Watch,
 };
 use discrepancy::diagnose::Inputs;
-use discrepancy::identify::{Identified, UnknownEstimate, glance, identify};
+use discrepancy::identify::{IdentificationResult, UnknownEstimate, glance, identify};
 use discrepancy::laboratory::Stage;
 use protocol::case::{Case, Channel};
 
@@ -17,12 +17,12 @@ use protocol::case::{Case, Channel};
 #[derive(Clone, Debug)]
 pub struct IdentifiedOn {
     /// Result of the identification; none where no fit completes.
-    pub identified: Option<Identified>,
-    /// Cost of each stage that did experiments.
+    pub identified: Option<IdentificationResult>,
+    /// Number of experiments, batches and wall time of each stage that ran experiments.
     pub accounts: Vec<(Stage, StageCost)>,
 }
 
-/// Stages that an identification may have.
+/// Stages through which an identification may pass, in order.
 const STAGES: [Stage; 5] = [
     Stage::Basin,
     Stage::Recalibrate,
@@ -60,12 +60,18 @@ pub async fn identify_on<E: Evaluator>(
 ///
 /// # Errors
 /// If no evaluator is left, or the user stops.
-pub async fn glance_on<E: Evaluator>(
+pub async fn estimate_at_start_on<E: Evaluator>(
     evaluator: &mut E,
     inputs: &Inputs,
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
 ) -> Result<Option<Vec<UnknownEstimate>>, StudyError> {
-    let mut jobs = Jobs::new((evaluator, FIRST_LOOK), inputs, &[Stage::Show], watch, stop);
+    let mut jobs = Jobs::new(
+        (evaluator, IDENTIFIABILITY_JOBS),
+        inputs,
+        &[Stage::Show],
+        watch,
+        stop,
+    );
     glance(&mut jobs, inputs).await
 }

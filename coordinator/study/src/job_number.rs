@@ -21,12 +21,12 @@ pub(super) const LIBRARY: u64 = 0;
 pub(super) const EXPERIMENTS: u64 = LIBRARY + 1;
 /// Number of the first experiment of the identifiability estimate after a calibration; above the numbers of
 /// its individuals and comparisons.
-pub(super) const FIRST_LOOK: u64 = 1 << 50;
+pub(super) const IDENTIFIABILITY_JOBS: u64 = 1 << 50;
 /// Number of the first job of a comparison; above the number of any individual of a search.
 const COMPARISONS: u64 = 1 << 40;
 
-/// Returns the number of the first of the two jobs of a compared individual; each condition has room for 256
-/// positions.
+/// Returns the number of the first of the two jobs (score and curves) of a compared individual; each
+/// condition has numbers for 256 individuals.
 pub(super) fn of_comparison(condition: usize, position: usize) -> u64 {
     COMPARISONS + ((condition as u64) << 9) + 2 * position as u64
 }
@@ -35,7 +35,7 @@ pub(super) fn of_comparison(condition: usize, position: usize) -> u64 {
 /// exactly.
 const BITS: u32 = 48;
 
-/// Assignment of job numbers to the job contents of one run.
+/// Map between the contents of a run's jobs (by hash) and their numbers.
 #[derive(Clone, Debug)]
 pub struct JobNumbers {
     by_content: BTreeMap<ContentHash, JobId>,
@@ -50,7 +50,7 @@ impl Default for JobNumbers {
 }
 
 impl JobNumbers {
-    /// Creates an empty assignment of numbers with the given number of bits (1 to 63).
+    /// Creates an empty map whose job numbers have the given number of bits (1 to 63).
     pub const fn with_bits(bits: u32) -> Self {
         Self {
             by_content: BTreeMap::new(),
@@ -59,8 +59,8 @@ impl JobNumbers {
         }
     }
 
-    /// Registers the number of a job from the journal; the first entry of a number or a content takes
-    /// precedence.
+    /// Records the number and content of a job read from the journal; if a number or a content occurs twice,
+    /// the first entry counts.
     pub fn note(&mut self, number: JobId, content: ContentHash) {
         if !self.by_number.contains_key(&number) && !self.by_content.contains_key(&content) {
             self.by_number.insert(number, content);
@@ -68,8 +68,8 @@ impl JobNumbers {
         }
     }
 
-    /// Returns the number of a job: its registered number, or the first free one from the beginning of its
-    /// hash upwards.
+    /// Returns the number of a job: the recorded one, or the first free number counting upwards from the one
+    /// given by its hash.
     pub(super) fn number(&mut self, job: &Job) -> JobId {
         let content = job.work_hash();
         if let Some(number) = self.by_content.get(&content) {

@@ -1,25 +1,25 @@
 //! Evaluation log: all individuals of a search in index order, and a digest of these.
-use protocol::job::{Evaluation, Failure, Verdict, Word};
-use search::strategy::{Proposal, Purpose, Told};
+use protocol::job::{Evaluation, Failure, Identifier, Verdict};
+use search::strategy::{EvaluationResult, Proposal, Purpose};
 use std::collections::BTreeMap;
 
 /// Outcome of an evaluation.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Ending {
+pub enum EvaluationOutcome {
     /// The whole revolution was simulated.
     Complete,
     /// The simulated machine failed before the end of the revolution.
-    Physics(Word),
+    Physics(Identifier),
     /// The job could not be computed.
     Infrastructure(Failure),
 }
 
-impl Ending {
+impl EvaluationOutcome {
     /// Describes the failure in words; returns none for a complete simulation.
     pub fn failure(&self) -> Option<String> {
         match self {
             Self::Complete => None,
-            Self::Physics(kind) => Some(kind.spoken()),
+            Self::Physics(kind) => Some(kind.with_spaces()),
             Self::Infrastructure(failure) => Some(failure.to_string()),
         }
     }
@@ -27,7 +27,7 @@ impl Ending {
 
 /// Log entry of one evaluated individual.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
+pub struct LogEntry {
     /// Index of the individual, consecutive from 0.
     pub id: u64,
     /// Generation in which the individual was proposed.
@@ -39,25 +39,29 @@ pub struct Entry {
     /// Fitness reported to the search: the objective if complete, otherwise a graded penalty.
     pub fitness: f64,
     /// Outcome of the evaluation.
-    pub ending: Ending,
+    pub ending: EvaluationOutcome,
 }
 
-impl Entry {
+impl LogEntry {
     /// Creates the entry of an evaluated proposal.
     pub(super) fn scored(proposal: Proposal, evaluation: &Evaluation) -> Self {
         let ending = match evaluation.verdict {
-            Verdict::Complete => Ending::Complete,
-            Verdict::Failed { kind, .. } => Ending::Physics(kind),
+            Verdict::Complete => EvaluationOutcome::Complete,
+            Verdict::Failed { kind, .. } => EvaluationOutcome::Physics(kind),
         };
         Self::new(proposal, evaluation.fitness, ending)
     }
 
     /// Creates the entry of a proposal that could not be evaluated, with infinite fitness.
     pub(super) fn lost(proposal: Proposal, failure: Failure) -> Self {
-        Self::new(proposal, f64::INFINITY, Ending::Infrastructure(failure))
+        Self::new(
+            proposal,
+            f64::INFINITY,
+            EvaluationOutcome::Infrastructure(failure),
+        )
     }
 
-    fn new(proposal: Proposal, fitness: f64, ending: Ending) -> Self {
+    fn new(proposal: Proposal, fitness: f64, ending: EvaluationOutcome) -> Self {
         let Proposal {
             id,
             genes,
@@ -74,11 +78,11 @@ impl Entry {
         }
     }
 
-    /// Returns fitness and completeness as reported to the search.
-    pub(super) fn told(&self) -> Told {
-        Told {
+    /// Returns fitness and completeness of the entry, in the form passed to the search strategy.
+    pub(super) fn strategy_result(&self) -> EvaluationResult {
+        EvaluationResult {
             fitness: self.fitness,
-            complete: self.ending == Ending::Complete,
+            complete: self.ending == EvaluationOutcome::Complete,
         }
     }
 }
@@ -86,12 +90,12 @@ impl Entry {
 /// Log of all evaluated individuals of a search, by id.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EvaluationLog {
-    entries: BTreeMap<u64, Entry>,
+    entries: BTreeMap<u64, LogEntry>,
 }
 
 impl EvaluationLog {
     /// Returns the entries in id order.
-    pub fn entries(&self) -> impl ExactSizeIterator<Item = &Entry> {
+    pub fn entries(&self) -> impl ExactSizeIterator<Item = &LogEntry> {
         self.entries.values()
     }
 
@@ -108,7 +112,7 @@ impl EvaluationLog {
     /// Returns the number of entries that did not complete.
     pub fn failed(&self) -> usize {
         self.entries()
-            .filter(|entry| entry.ending != Ending::Complete)
+            .filter(|entry| entry.ending != EvaluationOutcome::Complete)
             .count()
     }
 
@@ -127,19 +131,19 @@ impl EvaluationLog {
         hasher.finalize().to_hex().to_string()
     }
 
-    pub(super) fn insert(&mut self, entry: Entry) {
+    pub(super) fn insert(&mut self, entry: LogEntry) {
         self.entries.insert(entry.id, entry);
     }
 
     /// Returns the failures by frequency, for example `12 x load not lifted, 3 x budget`, and the most
     /// frequent physical failure.
-    pub(super) fn failures(&self) -> (String, Option<Word>) {
-        let mut counts: BTreeMap<String, (usize, Option<Word>)> = BTreeMap::new();
+    pub(super) fn failures(&self) -> (String, Option<Identifier>) {
+        let mut counts: BTreeMap<String, (usize, Option<Identifier>)> = BTreeMap::new();
         for entry in self.entries() {
             let physics = match entry.ending {
-                Ending::Complete => continue,
-                Ending::Physics(kind) => Some(kind),
-                Ending::Infrastructure(_) => None,
+                EvaluationOutcome::Complete => continue,
+                EvaluationOutcome::Physics(kind) => Some(kind),
+                EvaluationOutcome::Infrastructure(_) => None,
             };
             let words = entry.ending.failure().unwrap_or_default();
             counts.entry(words).or_insert((0, physics)).0 += 1;

@@ -1,7 +1,7 @@
 //! Consistency of measured records with their channels: a sensor of reversed sign or exchanged columns cause
 //! a bad fit whose numbers do not reveal the reason.
 use super::{
-    compare::{Compared, Curves, Wanted, compare},
+    compare::{CompareRequest, Compared, ComparedCurves, compare},
     error::StudyError,
     evaluator::Evaluator,
     stop::Stop,
@@ -17,21 +17,22 @@ use protocol::{
 /// mirror each other.
 const MARGIN: f64 = 0.2;
 
-/// Minimum correlation with another curve from which that curve is taken for the recorded one.
+/// Minimum correlation between a record and another curve from which the record is reported as belonging to
+/// that curve.
 const ALIKE: f64 = 0.8;
 
-/// Returns requests for the recommended individual under every condition with a measured record; the
-/// calibrated condition comes first, with `pictures` frames of its motion.
-pub fn recommended(case: &Case, pictures: u32) -> Vec<Wanted> {
+/// Returns requests for the recommended individual under the calibrated condition, with `pictures` snapshots
+/// of its motion, followed by every other condition with a measured record.
+pub fn recommended(case: &Case, pictures: u32) -> Vec<CompareRequest> {
     let calibrated = case.objective.condition;
     let mut conditions: Vec<usize> = (0..case.conditions.len()).collect();
     conditions.retain(|index| *index == calibrated || case.is_measured(*index));
     conditions.sort_by_key(|index| *index != calibrated);
-    let wanted = |condition| Wanted {
+    let wanted = |condition| CompareRequest {
         condition,
         first: 0,
         individuals: vec![("recommended".to_owned(), case.start())],
-        pictures: if condition == calibrated { pictures } else { 0 },
+        frames: if condition == calibrated { pictures } else { 0 },
         columns: Vec::new(),
     };
     conditions.into_iter().map(wanted).collect()
@@ -63,7 +64,7 @@ pub fn mismatches(case: &Case, compared: &[Compared]) -> Vec<String> {
     said.collect()
 }
 
-fn of_condition(case: &Case, condition: usize, curves: &Curves) -> Vec<String> {
+fn of_condition(case: &Case, condition: usize, curves: &ComparedCurves) -> Vec<String> {
     if curves.drawn.verdict != Verdict::Complete {
         return Vec::new();
     }

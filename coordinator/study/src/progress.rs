@@ -2,7 +2,7 @@
 //!
 //! For display only: unlike the log it depends on the order of arrival, and it has no influence on results.
 use super::{
-    log::{Ending, Entry},
+    log::{EvaluationOutcome, LogEntry},
     watch::View,
 };
 use search::strategy::{Progress, Proposal};
@@ -33,12 +33,12 @@ impl View for ProgressView {
 
 impl ProgressView {
     /// Adds a completed evaluation.
-    pub fn apply(&mut self, entry: &Entry, replayed: bool) {
-        let complete = entry.ending == Ending::Complete;
+    pub fn apply(&mut self, entry: &LogEntry, replayed: bool) {
+        let complete = entry.ending == EvaluationOutcome::Complete;
         self.add(complete.then_some(entry.fitness), replayed);
     }
 
-    /// Adds a completed evaluation by its objective; none if the evaluation failed.
+    /// Adds a completed evaluation with the given objective, `None` if it failed.
     pub(super) fn add(&mut self, objective: Option<f64>, replayed: bool) {
         self.completed += 1;
         self.replayed += u64::from(replayed);
@@ -54,8 +54,8 @@ impl ProgressView {
         self.expected = progress.expected_evaluations.max(self.completed);
     }
 
-    /// Returns the evaluations per second of this session, in which workers have been computing for
-    /// `computing`; none before the first evaluation.
+    /// Returns the evaluations per second of this session; `computing` is the time for which workers were
+    /// computing. None before the first evaluation.
     pub fn rate(&self, computing: Duration) -> Option<f64> {
         let fresh = self.completed - self.replayed;
         let seconds = computing.as_secs_f64();

@@ -1,5 +1,5 @@
 //! Tests of the search loop with an evaluator that answers from a test function in random order.
-use super::oracle::{Oracle, case, evaluation, physics};
+use super::test_evaluator::{TestEvaluator, case, evaluation, physics};
 use super::*;
 use protocol::pumping_unit::failure;
 use protocol::{
@@ -10,8 +10,8 @@ use protocol::{
 use search::{
     space::Space,
     strategy::{
-        Archive, Best, Finish, Progress, Proposal, Purpose, Settings, Strategy, Told, build,
-        memetic::MemeticSettings,
+        Archive, Best, EvaluationResult, Finish, Progress, Proposal, Purpose, Settings, Strategy,
+        build, memetic::MemeticSettings,
     },
 };
 use tokio::sync::watch;
@@ -19,7 +19,7 @@ use tokio::sync::watch;
 struct Quiet(Vec<ProgressView>);
 
 impl Watch<ProgressView> for Quiet {
-    fn progress(&mut self, view: &ProgressView, _crew: &dyn Fn() -> Crew) {
+    fn progress(&mut self, view: &ProgressView, _crew: &dyn Fn() -> WorkersSnapshot) {
         self.0.push(view.clone());
     }
 }
@@ -32,7 +32,7 @@ fn settings() -> Settings {
     })
 }
 
-async fn run(oracle: &mut Oracle, case: &Case) -> Result<(Calibrated, Quiet), StudyError> {
+async fn run(oracle: &mut TestEvaluator, case: &Case) -> Result<(Calibrated, Quiet), StudyError> {
     let mut strategy = build(&settings(), &oracle.space, 3)?;
     let (_sender, mut stop) = watch::channel(false);
     let mut observer = Quiet(Vec::new());
@@ -43,11 +43,11 @@ async fn run(oracle: &mut Oracle, case: &Case) -> Result<(Calibrated, Quiet), St
 #[tokio::test]
 async fn the_result_and_its_digest_do_not_depend_on_arrival() {
     let case = case();
-    let (first, watched) = run(&mut Oracle::new(&case, 1, physics), &case)
+    let (first, watched) = run(&mut TestEvaluator::new(&case, 1, physics), &case)
         .await
         .unwrap();
     for order in 2..5 {
-        let (other, _) = run(&mut Oracle::new(&case, order, physics), &case)
+        let (other, _) = run(&mut TestEvaluator::new(&case, order, physics), &case)
             .await
             .unwrap();
         assert_eq!(first, other);
@@ -68,9 +68,9 @@ async fn the_result_and_its_digest_do_not_depend_on_arrival() {
 #[tokio::test]
 async fn a_run_that_is_opened_again_computes_nothing_twice() {
     let case = case();
-    let mut oracle = Oracle::new(&case, 1, physics);
+    let mut oracle = TestEvaluator::new(&case, 1, physics);
     let (first, _) = run(&mut oracle, &case).await.unwrap();
-    let mut again = Oracle::new(&case, 9, physics);
+    let mut again = TestEvaluator::new(&case, 9, physics);
     again.known = oracle
         .answered
         .iter()
@@ -93,7 +93,7 @@ fn the_digest_sees_every_part_of_an_entry() {
     };
     let digest = |id, gene, fitness| {
         let mut log = EvaluationLog::default();
-        log.insert(Entry::scored(
+        log.insert(LogEntry::scored(
             proposal(id, gene),
             &evaluation(fitness, Verdict::Complete),
         ));
@@ -113,7 +113,7 @@ async fn a_case_that_cannot_be_built_ends_the_study_with_its_field() {
         let (field, problem) = ("run.modes".to_owned(), "7 of 6 modes".to_owned());
         Outcome::Failed(Failure::Misconfigured { field, problem })
     };
-    let error = run(&mut Oracle::new(&case, 1, answer), &case)
+    let error = run(&mut TestEvaluator::new(&case, 1, answer), &case)
         .await
         .err()
         .unwrap();
@@ -139,7 +139,7 @@ async fn if_the_whole_initial_population_fails_the_study_says_how() {
         };
         Outcome::Done(Answer::Scored(evaluation(1e6, verdict)))
     };
-    let error = run(&mut Oracle::new(&case, 1, answer), &case)
+    let error = run(&mut TestEvaluator::new(&case, 1, answer), &case)
         .await
         .err()
         .unwrap();
@@ -159,7 +159,7 @@ async fn an_individual_that_is_lost_is_the_worst_and_the_search_goes_on() {
         }
         physics(space, id, individual)
     };
-    let (found, _) = run(&mut Oracle::new(&case, 1, answer), &case)
+    let (found, _) = run(&mut TestEvaluator::new(&case, 1, answer), &case)
         .await
         .unwrap();
     assert!(!found.best.id.is_multiple_of(7) && found.best.complete);
@@ -173,7 +173,7 @@ async fn an_individual_that_is_lost_is_the_worst_and_the_search_goes_on() {
 #[tokio::test]
 async fn the_user_can_stop_while_nothing_comes_back() {
     let case = case();
-    let mut oracle = Oracle::new(&case, 1, physics);
+    let mut oracle = TestEvaluator::new(&case, 1, physics);
     let (sender, mut stop) = watch::channel(false);
     let stopped = async { or_stop(oracle.next(), &mut stop).await.err() };
     let stopper = async { sender.send(true).unwrap() };
@@ -191,15 +191,15 @@ async fn a_comparison_keeps_its_order_whatever_arrives_first() {
         ("recommended".to_owned(), case.start()),
         ("optimised".to_owned(), best),
     ];
-    let wanted = |condition| Wanted {
+    let wanted = |condition| CompareRequest {
         condition,
         first: 0,
         individuals: individuals.clone(),
-        pictures: 0,
+        frames: 0,
         columns: Vec::new(),
     };
     for order in 1..6 {
-        let mut oracle = Oracle::new(&case, order, physics);
+        let mut oracle = TestEvaluator::new(&case, order, physics);
         let (_sender, mut stop) = watch::channel(false);
         let compared = compare(&mut oracle, &case, &[wanted(0), wanted(1)], &mut stop).await;
         let compared = compared.unwrap();
@@ -222,14 +222,14 @@ async fn a_comparison_keeps_its_order_whatever_arrives_first() {
 /// Returns the error of a comparison of one individual whose jobs all have the outcome `answer`.
 async fn comparison_fails(answer: fn(&Space, u64, &Individual) -> Outcome) -> StudyError {
     let case = case();
-    let mut oracle = Oracle::new(&case, 1, answer);
+    let mut oracle = TestEvaluator::new(&case, 1, answer);
     let (_sender, mut stop) = watch::channel(false);
     let individuals = vec![("recommended".to_owned(), case.start())];
-    let wanted = [Wanted {
+    let wanted = [CompareRequest {
         condition: 0,
         first: 0,
         individuals,
-        pictures: 0,
+        frames: 0,
         columns: Vec::new(),
     }];
     let compared = compare(&mut oracle, &case, &wanted, &mut stop).await;
@@ -264,7 +264,7 @@ async fn a_column_that_does_not_exist_is_said_to_be_wrong() {
 struct OneByOne {
     genes: Vec<f64>,
     asked: u64,
-    results: Vec<Told>,
+    results: Vec<EvaluationResult>,
     archive: Archive,
 }
 
@@ -283,7 +283,7 @@ impl Strategy for OneByOne {
         }]
     }
 
-    fn tell(&mut self, _id: u64, result: Told) {
+    fn tell(&mut self, _id: u64, result: EvaluationResult) {
         self.results.push(result);
     }
 
@@ -332,7 +332,7 @@ fn failing_below(from: u64, id: u64) -> Outcome {
 /// Runs a search with [`OneByOne`] and returns the id of the best individual.
 async fn one_by_one(answer: fn(&Space, u64, &Individual) -> Outcome) -> Result<u64, StudyError> {
     let case = case();
-    let mut oracle = Oracle::new(&case, 1, answer);
+    let mut oracle = TestEvaluator::new(&case, 1, answer);
     let mut strategy = OneByOne {
         genes: case.start(),
         asked: 0,
@@ -377,7 +377,7 @@ async fn jobs_whose_hashes_begin_alike_keep_their_own_results() {
         .collect();
     let (_sender, mut stop) = watch::channel(false);
     // 150 jobs in 256 numbers
-    let mut oracle = Oracle::new(&case, 1, first);
+    let mut oracle = TestEvaluator::new(&case, 1, first);
     oracle.numbers = JobNumbers::with_bits(8);
     let mut quiet = Quiet(Vec::new());
     let scored = score_all(&mut oracle, &case, &individuals, &mut quiet, &mut stop).await;
@@ -385,12 +385,12 @@ async fn jobs_whose_hashes_begin_alike_keep_their_own_results() {
     for (genes, scored) in individuals.iter().zip(scored.unwrap()) {
         assert_eq!(scored.unwrap().fitness.to_bits(), genes[0].to_bits());
     }
-    let mut oracle = Oracle::new(&case, 2, first);
+    let mut oracle = TestEvaluator::new(&case, 2, first);
     oracle.numbers = JobNumbers::with_bits(8);
     let (ask, mut asked) = tokio::sync::mpsc::channel(individuals.len());
     for genes in individuals {
         let (tag, with_residual) = (genes[0], false);
-        let request = Request {
+        let request = EvaluationRequest {
             tag,
             genes,
             with_residual,

@@ -1,7 +1,7 @@
 //! Observer of a study, for display only: no influence on results.
-use super::evaluator::Crew;
+use super::evaluator::WorkersSnapshot;
 
-/// Progress that a kind of study reports to its observer.
+/// Type of progress that one kind of study reports to its observer.
 pub trait View {
     /// Reason for which the study requests a job.
     type Reason: ?Sized;
@@ -9,12 +9,13 @@ pub trait View {
 
 /// Observer of a study that reports its progress as `V`.
 pub trait Watch<V: View> {
-    /// Called when a result has arrived or the study has changed its plan.
-    fn progress(&mut self, view: &V, crew: &dyn Fn() -> Crew);
+    /// Receives the progress when a result has arrived or the study has changed its plan; `crew` returns the
+    /// worker status.
+    fn progress(&mut self, view: &V, crew: &dyn Fn() -> WorkersSnapshot);
 
-    /// Called first, with the number of results of an earlier session.
+    /// Receives the number of results from an earlier session, before any other call.
     fn resumed(&mut self, _recorded: usize) {}
 
-    /// Called before a job is requested.
+    /// Receives the number of a job and the reason for it, before the job is submitted.
     fn asked(&mut self, _id: u64, _reason: &V::Reason) {}
 }

@@ -9,8 +9,8 @@ use std::{
 };
 use tempfile::NamedTempFile;
 
-/// Complete file, synchronised to disk, that has not yet replaced its target; deleted unless
-/// [`Self::publish`] is called.
+/// New content of a file, complete and synchronised to disk, that has not yet replaced the target; deleted
+/// unless [`Self::publish`] is called.
 #[derive(Debug)]
 pub struct Draft {
     file: NamedTempFile,
@@ -57,7 +57,7 @@ impl Draft {
         Ok(draft)
     }
 
-    /// Replaces the target.
+    /// Replaces the target file by the new content.
     ///
     /// # Errors
     /// The error of the operating system; the old file is kept.

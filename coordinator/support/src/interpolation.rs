@@ -13,7 +13,7 @@ pub fn interpolated(xs: &[f64], ys: &[f64], x: f64) -> Option<f64> {
 }
 
 /// Interpolates in a table, with the value of the nearest end outside the table; 0 for an empty table.
-pub fn held(xs: &[f64], ys: &[f64], x: f64) -> f64 {
+pub fn interpolate_clamped(xs: &[f64], ys: &[f64], x: f64) -> f64 {
     let end = match xs.first() {
         Some(first) if x < *first => ys.first(),
         Some(_) | None => ys.last(),
@@ -39,7 +39,7 @@ fn between((x0, y0): (f64, f64), (x1, y1): (f64, f64), x: f64) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{held, interpolated, periodic};
+    use super::{interpolate_clamped, interpolated, periodic};
 
     #[test]
     fn a_table_is_not_continued_unless_it_is_held_or_repeats() {
@@ -50,9 +50,9 @@ mod tests {
         assert_eq!(interpolated(&xs, &ys, -0.1), None);
         assert_eq!(interpolated(&[], &[], 0.0), None);
         for (x, y) in [(-1.0, 10.0), (2.0, 30.0), (9.0, 40.0)] {
-            assert!((held(&xs, &ys, x) - y).abs() < 1e-12, "{x}");
+            assert!((interpolate_clamped(&xs, &ys, x) - y).abs() < 1e-12, "{x}");
         }
-        assert!(held(&[], &[], 1.0).abs() < 1e-300);
+        assert!(interpolate_clamped(&[], &[], 1.0).abs() < 1e-300);
         assert_eq!(periodic(&xs, &ys, 3.5, 4.0), Some(25.0));
         assert_eq!(periodic(&xs, &ys, -2.0, 4.0), Some(30.0));
         assert_eq!(periodic(&[], &[], 1.0, 4.0), None);

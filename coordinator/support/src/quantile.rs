@@ -1,7 +1,7 @@
 //! Quantiles of sorted values.
 
-/// Returns the smallest value that is not exceeded by `percent` percent of the values (nearest-rank
-/// quantile); none if there are no values.
+/// Returns the nearest-rank quantile: the smallest of the sorted values such that at least `percent` percent
+/// of them do not exceed it; none if there are no values.
 pub fn of<T: Copy>(sorted: &[T], percent: usize) -> Option<T> {
     let rank = (sorted.len() * percent).div_ceil(100).max(1);
     sorted.get(rank - 1).copied()

@@ -27,8 +27,8 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
 }
 
-/// Checks the reduction of the shipped mesh: frequencies of the table, exact stress against the table, and a
-/// VTU file with stress and the displacement of every mode.
+/// Checks `horsehead head` on the shipped mesh: frequencies as in the table, exact stress close to the table,
+/// and a VTU file with stress and the displacement of every mode.
 #[test]
 fn head_reduces_the_shipped_mesh_and_draws_it() {
     let scratch = tempfile::tempdir().unwrap();
@@ -66,8 +66,8 @@ fn head_reduces_the_shipped_mesh_and_draws_it() {
     }
 }
 
-/// Checks that modes are selected by their coupling to the loads of a turn, most of which falls to the
-/// strongest mode; modes that are left out are reported and couple less.
+/// Checks that `horsehead head` selects modes by their coupling to the loads of a turn, most of which falls
+/// to the strongest mode, and that modes left out are reported and couple less.
 #[test]
 fn head_picks_the_modes_that_couple() {
     let object = json(&["head", "CASE", "--modes", "3"]);
@@ -87,8 +87,8 @@ fn head_picks_the_modes_that_couple() {
     }
 }
 
-/// Checks that silent connections are held, closed by the coordinator and reopened, and that the job rate
-/// beside these is measured.
+/// Checks that `bench dispatch` holds connections that send nothing, reopens those closed by the coordinator,
+/// and measures the job rate beside them.
 #[test]
 fn bench_dispatch_measures_beside_silent_connections() {
     let object = json(&[

@@ -36,13 +36,13 @@ pub const VARIABLE: &str = "HORSEHEAD_ALLOW";
 pub struct Allowed {
     /// Allowed programs by the entry name that cases use.
     #[serde(default)]
-    pub entry: BTreeMap<String, Entry>,
+    pub entry: BTreeMap<String, AllowEntry>,
 }
 
 /// One program with its arguments and limits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Entry {
+pub struct AllowEntry {
     /// Path of the program: absolute, or relative to the folder of a run.
     pub program: PathBuf,
     /// Arguments of the program.
@@ -99,7 +99,7 @@ const fn quarter_gib() -> u64 {
     256
 }
 
-impl Entry {
+impl AllowEntry {
     /// Creates an entry for a program and its arguments with default limits.
     pub fn new(program: PathBuf, arguments: Vec<String>) -> Self {
         Self {
@@ -121,7 +121,7 @@ impl Entry {
 
     /// Returns the maximum number of simultaneous runs on this machine; `None` where only the number of slots
     /// limits them.
-    pub fn places(&self) -> Option<u32> {
+    pub fn max_concurrent(&self) -> Option<u32> {
         let threads = thread::available_parallelism().map_or(1, std::num::NonZero::get);
         let threads = u32::try_from(threads).unwrap_or(u32::MAX);
         let fit = (self.cores > 1).then(|| (threads / self.cores).max(1));
@@ -132,7 +132,7 @@ impl Entry {
     }
 }
 
-/// Returns the path of the list for this machine and user.
+/// Returns the path of the list of allowed programs for this machine and user.
 pub fn path() -> PathBuf {
     let of = |name: &str| {
         env::var_os(name)
@@ -147,7 +147,7 @@ pub fn path() -> PathBuf {
     })
 }
 
-/// Reads a list; a file that does not exist allows nothing.
+/// Reads a list of allowed programs; a file that does not exist allows nothing.
 ///
 /// # Errors
 /// The file cannot be read, is not a valid list, or contains an entry with impossible limits.
@@ -188,7 +188,7 @@ pub fn read(path: &Path) -> Result<Allowed, Problem> {
     Ok(allowed)
 }
 
-/// Formats a list as TOML.
+/// Formats a list of allowed programs as TOML.
 pub fn text(allowed: &Allowed) -> String {
     // what is made of tables, texts and numbers can be written
     toml::to_string(allowed).unwrap_or_default()
@@ -203,7 +203,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("allow.toml");
         assert_eq!(read(&path), Ok(Allowed::default()));
-        let entry = Entry::new("/bin/true".into(), vec!["-x".to_owned()]);
+        let entry = AllowEntry::new("/bin/true".into(), vec!["-x".to_owned()]);
         let allowed = Allowed {
             entry: [("a".to_owned(), entry)].into(),
         };
@@ -224,11 +224,11 @@ mod tests {
 
     #[test]
     fn places_follow_from_cores_and_what_is_stated() {
-        let mut entry = Entry::new("/bin/true".into(), Vec::new());
-        assert_eq!(entry.places(), None);
+        let mut entry = AllowEntry::new("/bin/true".into(), Vec::new());
+        assert_eq!(entry.max_concurrent(), None);
         entry.at_once = Some(3);
-        assert_eq!(entry.places(), Some(3));
+        assert_eq!(entry.max_concurrent(), Some(3));
         entry.cores = u32::MAX;
-        assert_eq!(entry.places(), Some(1));
+        assert_eq!(entry.max_concurrent(), Some(1));
     }
 }

@@ -13,21 +13,21 @@
 //! presents to the router a certificate of the same name, made for this process and kept in memory. The
 //! router's access control therefore still works by certificate name, and the gate needs to know only the
 //! number of streams of the bus protocol.
+mod allow_list;
+mod forward;
 mod inner;
-mod listed;
-mod passing;
 mod refusal;
 pub(crate) mod terms;
 
-pub(crate) use inner::Inner;
+pub(crate) use inner::RouterConnector;
 
 use crate::{
     LinkError,
     keys::{Keys, certificate_name, provider},
     locator::Locator,
 };
-use listed::Listed;
-use passing::join;
+use allow_list::AllowList;
+use forward::forward_streams;
 use quinn::{
     Connection, ConnectionError, Endpoint, Incoming, TransportConfig, VarInt,
     crypto::rustls::{HandshakeData, QuicServerConfig},
@@ -39,7 +39,7 @@ use std::{
     sync::Arc,
     time::Duration,
 };
-use terms::{BUS, CROWDED, HANDSHAKE, KNOCK, UNLISTED, WELCOME};
+use terms::{ALPN_PROBE, ALPN_ZENOH, CLOSE_OK, CLOSE_TOO_MANY_CONNECTIONS, HANDSHAKE, UNLISTED};
 use tokio::{
     sync::{Semaphore, watch},
     task::JoinHandle,
@@ -51,9 +51,9 @@ const STREAMS: u32 = 7;
 /// Maximum number of concurrent handshakes.
 const PENDING: usize = 1024;
 /// Number of pending handshakes above which peers must validate their address (QUIC retry) first.
-const TRUSTING: usize = 64;
+const RETRY_THRESHOLD: usize = 64;
 /// Maximum time for the closing exchange with peers at shutdown.
-const FAREWELL: Duration = Duration::from_millis(200);
+const CLOSE_TIMEOUT: Duration = Duration::from_millis(200);
 
 /// Running gate; dropping it closes the gate and all connections through it.
 #[derive(Debug)]
@@ -64,17 +64,22 @@ pub(crate) struct Gate {
     reading: JoinHandle<()>,
 }
 
-/// State shared by all connections for admitting peers.
-struct House {
+/// State of a gate (authenticating proxy) shared by all its connections.
+struct AdmissionContext {
     /// Current list of workers that may join.
-    listed: watch::Receiver<Listed>,
-    inner: Arc<Inner>,
+    listed: watch::Receiver<AllowList>,
+    inner: Arc<RouterConnector>,
     refusals: Refusals,
 }
 
 impl Gate {
-    /// Opens a gate at an address, in front of the router described by `inner`.
-    pub(crate) fn open(at: &Locator, keys: &Keys, inner: Arc<Inner>) -> Result<Self, LinkError> {
+    /// Opens a gate (authenticating proxy) at an address; admitted connections are forwarded to the router
+    /// described by `inner`.
+    pub(crate) fn open(
+        at: &Locator,
+        keys: &Keys,
+        inner: Arc<RouterConnector>,
+    ) -> Result<Self, LinkError> {
         let failed = |reason: String| LinkError::Transport {
             doing: format!("listen on {at}"),
             reason,
@@ -90,9 +95,13 @@ impl Gate {
             .ok_or_else(|| failed("the host has no address".to_owned()))?;
         let endpoint =
             Endpoint::server(config, address).map_err(|error| failed(error.to_string()))?;
-        let (say, listed) = watch::channel(Listed::new(keys.workers()));
-        let reading = tokio::spawn(listed::read_again(keys.clone(), Arc::clone(&inner), say));
-        let house = House {
+        let (say, listed) = watch::channel(AllowList::new(keys.workers()));
+        let reading = tokio::spawn(allow_list::read_again(
+            keys.clone(),
+            Arc::clone(&inner),
+            say,
+        ));
+        let house = AdmissionContext {
             listed,
             inner,
             refusals: Refusals::default(),
@@ -108,7 +117,10 @@ impl Gate {
     /// Closes the gate and all connections through it; waits briefly for peers to be notified.
     pub(crate) async fn close(self) {
         self.shut();
-        if timeout(FAREWELL, self.endpoint.wait_idle()).await.is_err() {
+        if timeout(CLOSE_TIMEOUT, self.endpoint.wait_idle())
+            .await
+            .is_err()
+        {
             tracing::debug!("peers did not take leave in time");
         }
     }
@@ -116,7 +128,7 @@ impl Gate {
     fn shut(&self) {
         self.task.abort();
         self.reading.abort();
-        self.endpoint.close(VarInt::from_u32(WELCOME), b"closed");
+        self.endpoint.close(VarInt::from_u32(CLOSE_OK), b"closed");
     }
 }
 
@@ -143,7 +155,7 @@ fn server_config(keys: &Keys) -> Result<ServerConfig, LinkError> {
                 .with_single_cert(chain.certificates, chain.key)
         })
         .map_err(|error| unfit(&error))?;
-    config.alpn_protocols = vec![BUS.to_vec(), KNOCK.to_vec()];
+    config.alpn_protocols = vec![ALPN_ZENOH.to_vec(), ALPN_PROBE.to_vec()];
     Ok(config)
 }
 
@@ -158,11 +170,14 @@ fn streams() -> TransportConfig {
 }
 
 /// Accepts incoming connections and handles each in a task of its own.
-async fn admit(endpoint: Endpoint, house: Arc<House>) {
+async fn admit(endpoint: Endpoint, house: Arc<AdmissionContext>) {
     let pending = Arc::new(Semaphore::new(PENDING));
     while let Some(incoming) = endpoint.accept().await {
         let waiting = PENDING - pending.available_permits();
-        if waiting >= TRUSTING && !incoming.remote_address_validated() && incoming.may_retry() {
+        if waiting >= RETRY_THRESHOLD
+            && !incoming.remote_address_validated()
+            && incoming.may_retry()
+        {
             if let Err(error) = incoming.retry() {
                 tracing::debug!(%error, "a peer was not asked for its address");
             }
@@ -190,35 +205,38 @@ async fn shake(incoming: Incoming) -> Result<Connection, ConnectionError> {
     incoming.accept()?.await
 }
 
-/// Admits a peer with a valid certificate if its name is on the list of workers and has a free connection;
+/// Admits a peer whose certificate is valid, whose name is on the list of workers and has a free connection;
 /// then forwards its streams until the connection ends.
-async fn enter(house: &House, connection: Connection, from: SocketAddr) {
+async fn enter(house: &AdmissionContext, connection: Connection, from: SocketAddr) {
     let owner = owner(&connection).unwrap_or_default();
-    let Some(places) = listed::places(house.listed.clone(), &owner).await else {
+    let Some(places) = allow_list::places(house.listed.clone(), &owner).await else {
         house.refusals.unlisted(from, &owner);
         connection.close(VarInt::from_u32(UNLISTED), b"not on the list of workers");
         return;
     };
     if asks_only(&connection) {
-        connection.close(VarInt::from_u32(WELCOME), b"welcome");
+        connection.close(VarInt::from_u32(CLOSE_OK), b"welcome");
         return;
     }
     let Ok(_place) = places.try_acquire() else {
         house.refusals.crowded(from, &owner);
-        connection.close(VarInt::from_u32(CROWDED), b"too many connections");
+        connection.close(
+            VarInt::from_u32(CLOSE_TOO_MANY_CONNECTIONS),
+            b"too many connections",
+        );
         return;
     };
     match house.inner.connect(&owner, streams()).await {
         Ok(inner) => tokio::select! {
-            () = join(&connection, &inner) => {}
-            () = listed::struck(house.listed.clone(), &owner) => {
+            () = forward_streams(&connection, &inner) => {}
+            () = allow_list::removed(house.listed.clone(), &owner) => {
                 tracing::warn!(%from, "\"{owner}\" was taken off the list of workers: it is out");
                 connection.close(VarInt::from_u32(UNLISTED), b"taken off the list of workers");
             }
         },
         Err(error) => {
             tracing::warn!(%from, %error, "a worker cannot be connected to the bus");
-            connection.close(VarInt::from_u32(WELCOME), b"try again");
+            connection.close(VarInt::from_u32(CLOSE_OK), b"try again");
         }
     }
 }
@@ -233,5 +251,5 @@ fn owner(connection: &Connection) -> Option<String> {
 fn asks_only(connection: &Connection) -> bool {
     let data = connection.handshake_data();
     let data = data.and_then(|data| data.downcast::<HandshakeData>().ok());
-    data.is_some_and(|data| data.protocol.as_deref() == Some(KNOCK))
+    data.is_some_and(|data| data.protocol.as_deref() == Some(ALPN_PROBE))
 }

@@ -4,8 +4,8 @@
 //! certificates to the same address and distinguishes an unknown host, a closed port, and a certificate that
 //! one of the two ends rejects.
 use crate::{
-    LinkError, OUT_OF_DATE, Silence,
-    gate::terms::{KNOCK, UNLISTED, WELCOME},
+    ConnectFailure, LinkError, OUT_OF_DATE,
+    gate::terms::{ALPN_PROBE, CLOSE_OK, UNLISTED},
     keys::{Keys, provider},
     locator::Locator,
 };
@@ -19,35 +19,35 @@ use std::{
 use tokio::{net::TcpStream, time::timeout};
 
 /// Maximum wait for an answer to the probe.
-const PATIENCE: Duration = Duration::from_secs(3);
+const PROBE_TIMEOUT: Duration = Duration::from_secs(3);
 /// Maximum wait for the ICMP message that reports a closed port.
-const ECHO: Duration = Duration::from_millis(200);
+const ICMP_TIMEOUT: Duration = Duration::from_millis(200);
 /// Offset of TLS alerts among QUIC's error codes.
 const ALERTS: u64 = 0x100;
 /// TLS alert `no_application_protocol`, sent by a listener that does not know the probe's protocol.
 const NO_SUCH_PROTOCOL: u64 = 120;
 
 /// Checks by a TCP connection whether a coordinator listens at an address.
-pub(crate) async fn knock(to: &Locator) -> Result<(), LinkError> {
+pub(crate) async fn probe_tcp(to: &Locator) -> Result<(), LinkError> {
     let address = resolve(to).await?;
-    let silent = |how: Silence| LinkError::Silent {
+    let silent = |how: ConnectFailure| LinkError::NoAnswer {
         locator: to.to_string(),
         how,
     };
-    match timeout(PATIENCE, TcpStream::connect(address)).await {
+    match timeout(PROBE_TIMEOUT, TcpStream::connect(address)).await {
         Ok(Ok(_)) => Ok(()),
         Ok(Err(error)) if error.kind() == ErrorKind::ConnectionRefused => {
-            Err(silent(Silence::Closed { protocol: "TCP" }))
+            Err(silent(ConnectFailure::Closed { protocol: "TCP" }))
         }
-        Ok(Err(error)) => Err(silent(Silence::Unreachable {
+        Ok(Err(error)) => Err(silent(ConnectFailure::Unreachable {
             reason: error.to_string(),
         })),
-        Err(_) => Err(silent(Silence::Dropped { protocol: "TCP" })),
+        Err(_) => Err(silent(ConnectFailure::Dropped { protocol: "TCP" })),
     }
 }
 
 /// Performs a QUIC handshake with a coordinator and returns the cause if it fails.
-pub(crate) async fn shake(to: &Locator, keys: &Keys) -> Result<(), LinkError> {
+pub(crate) async fn probe_quic(to: &Locator, keys: &Keys) -> Result<(), LinkError> {
     let address = resolve(to).await?;
     let transport = |reason: String| LinkError::Transport {
         doing: format!("connect to {to}"),
@@ -62,7 +62,7 @@ pub(crate) async fn shake(to: &Locator, keys: &Keys) -> Result<(), LinkError> {
                 .with_client_auth_cert(chain.certificates, chain.key)
         })
         .map_err(|error| transport(error.to_string()))?;
-    config.alpn_protocols = vec![KNOCK.to_vec()];
+    config.alpn_protocols = vec![ALPN_PROBE.to_vec()];
     let config =
         QuicClientConfig::try_from(config).map_err(|error| transport(error.to_string()))?;
     let any: SocketAddr = match address {
@@ -76,17 +76,17 @@ pub(crate) async fn shake(to: &Locator, keys: &Keys) -> Result<(), LinkError> {
         .map_err(|error| transport(error.to_string()))?;
     // with TLS 1.3 a client is connected before its certificate is looked at: the answer comes after
     let shaken = async { Ok(connecting.await?.closed().await) };
-    let silent = |how: Silence| LinkError::Silent {
+    let silent = |how: ConnectFailure| LinkError::NoAnswer {
         locator: to.to_string(),
         how,
     };
     let ended = tokio::select! {
-        ended = timeout(PATIENCE, shaken) => ended.unwrap_or(Err(ConnectionError::TimedOut)),
-        how = closed(address) => return Err(silent(how)),
+        ended = timeout(PROBE_TIMEOUT, shaken) => ended.unwrap_or(Err(ConnectionError::TimedOut)),
+        how = detect_closed_port(address) => return Err(silent(how)),
     };
     let ended = ended.unwrap_or_else(|error| error);
     if ended == ConnectionError::TimedOut {
-        return Err(silent(Silence::Dropped { protocol: "UDP" }));
+        return Err(silent(ConnectFailure::Dropped { protocol: "UDP" }));
     }
     explain(&ended, to, keys)
 }
@@ -109,7 +109,7 @@ async fn resolve(to: &Locator) -> Result<SocketAddr, LinkError> {
 
 /// Completes only if the other machine or the network reports that the UDP port cannot be reached; pends
 /// forever otherwise.
-async fn closed(address: SocketAddr) -> Silence {
+async fn detect_closed_port(address: SocketAddr) -> ConnectFailure {
     let asked = tokio::task::spawn_blocking(move || {
         let any: SocketAddr = match address {
             SocketAddr::V4(_) => (Ipv4Addr::UNSPECIFIED, 0).into(),
@@ -117,7 +117,7 @@ async fn closed(address: SocketAddr) -> Silence {
         };
         let socket = UdpSocket::bind(any)?;
         socket.connect(address)?;
-        socket.set_read_timeout(Some(ECHO))?;
+        socket.set_read_timeout(Some(ICMP_TIMEOUT))?;
         // no datagram of QUIC is so short: whoever listens drops it
         socket.send(&[0])?;
         socket.recv(&mut [0])
@@ -126,9 +126,9 @@ async fn closed(address: SocketAddr) -> Silence {
         .await
         .map(|received| received.map_err(|error| (error.kind(), error)))
     {
-        Ok(Err((ErrorKind::ConnectionRefused, _))) => Silence::Closed { protocol: "UDP" },
+        Ok(Err((ErrorKind::ConnectionRefused, _))) => ConnectFailure::Closed { protocol: "UDP" },
         Ok(Err((ErrorKind::NetworkUnreachable | ErrorKind::HostUnreachable, error))) => {
-            Silence::Unreachable {
+            ConnectFailure::Unreachable {
                 reason: error.to_string(),
             }
         }
@@ -159,7 +159,7 @@ fn explain(error: &ConnectionError, to: &Locator, keys: &Keys) -> Result<(), Lin
         }
     }
     if let ConnectionError::ApplicationClosed(answer) = error {
-        if answer.error_code == VarInt::from_u32(WELCOME) {
+        if answer.error_code == VarInt::from_u32(CLOSE_OK) {
             return Ok(());
         }
         if answer.error_code == VarInt::from_u32(UNLISTED) {

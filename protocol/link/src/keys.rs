@@ -16,7 +16,7 @@ mod error;
 mod material;
 
 pub use error::KeyError;
-pub use material::{CA, CA_KEY, COORDINATOR, Role, WORKER, WORKERS, pool};
+pub use material::{CA, CA_KEY, COORDINATOR, KeyRole, WORKER, WORKERS, pool};
 
 pub(crate) use certificate::{certificate_name, provider};
 
@@ -32,24 +32,24 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Environment variable with the folder of this end's key material.
+/// Environment variable with the path of the key folder of this coordinator or worker.
 pub const FOLDER_VARIABLE: &str = "HORSEHEAD_TLS";
 
-/// Key material that has been read and checked.
+/// Key material (certificates, private key, names) of a coordinator or worker, read and checked.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Keys {
-    role: Role,
+    role: KeyRole,
     folder: PathBuf,
     owner: String,
     workers: BTreeSet<String>,
 }
 
 impl Keys {
-    /// Reads and checks the key folder of one end.
+    /// Reads and checks the key folder of a coordinator or a worker.
     ///
     /// # Errors
     /// [`KeyError`], which names the file and the fault.
-    pub fn read(folder: &Path, role: Role) -> Result<Self, KeyError> {
+    pub fn read(folder: &Path, role: KeyRole) -> Result<Self, KeyError> {
         let [certificate_file, _] = role.files();
         let mut keys = Self {
             role,
@@ -62,11 +62,11 @@ impl Keys {
         let certificate = Certificate::parse(&path, &chain.certificates)?;
         certificate.check(role, &chain, &folder.join(CA))?;
         match role {
-            Role::Worker => {
+            KeyRole::Worker => {
                 certificate.name.clone_into(&mut keys.owner);
                 check_owner(&keys.owner).map_err(|source| KeyError::Name { path, source })?;
             }
-            Role::Coordinator => keys.workers = read_workers(&folder.join(WORKERS))?,
+            KeyRole::Coordinator => keys.workers = read_workers(&folder.join(WORKERS))?,
         }
         Ok(keys)
     }
@@ -81,7 +81,7 @@ impl Keys {
         &self.workers
     }
 
-    /// Reads the names of the workers that may join from the file again, which users edit during a run.
+    /// Reads the list of workers that may join again, because users edit its file during a run.
     pub(crate) fn workers_now(&self) -> Result<BTreeSet<String>, KeyError> {
         read_workers(&self.folder.join(WORKERS))
     }

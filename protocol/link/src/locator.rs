@@ -92,7 +92,7 @@ impl Locator {
     /// Returns the address with port 0 replaced by a free port.
     ///
     /// # Errors
-    /// [`LinkError::Transport`] if the machine has none.
+    /// [`LinkError::Transport`] if the machine has no free port.
     pub fn with_free_port(mut self) -> Result<Self, LinkError> {
         if self.port == 0 {
             let any = (self.bare_host(), 0);

@@ -1,7 +1,7 @@
 //! Link within one process with simulated faults: seeded loss, duplication and delay.
 //!
 //! Reordering needs no rule of its own, because each copy of a frame has its own delay.
-use crate::{Blob, CoordinatorEnd, Heard, LinkError, WorkerEnd};
+use crate::{Blob, CoordinatorEnd, LinkError, LinkEvent, WorkerEnd};
 use protocol::{
     id::{ContentHash, RunId, WorkerId, draw},
     key::Lane,
@@ -17,9 +17,9 @@ use std::{
 };
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
-/// Fault model of a memory link.
+/// Simulated faults of an in-process link.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Faults {
+pub struct FaultInjection {
     /// Seed of the pseudo-random draws.
     pub seed: u64,
     /// Share of frames that are lost \[1\].
@@ -30,8 +30,8 @@ pub struct Faults {
     pub delay: Duration,
 }
 
-impl Faults {
-    /// Link without faults.
+impl FaultInjection {
+    /// Fault settings of a link that loses, duplicates and delays nothing.
     pub const NONE: Self = Self {
         seed: 0,
         loss: 0.0,
@@ -40,13 +40,13 @@ impl Faults {
     };
 }
 
-/// State shared by the ends of a memory link.
+/// State shared by the coordinator's and the workers' ends of an in-process link.
 #[derive(Debug)]
 struct Shared {
-    faults: Faults,
+    faults: FaultInjection,
     drawn: AtomicU64,
     blob: Blob,
-    to_coordinator: UnboundedSender<Heard>,
+    to_coordinator: UnboundedSender<LinkEvent>,
     workers: Mutex<BTreeMap<WorkerId, UnboundedSender<Vec<u8>>>>,
 }
 
@@ -82,13 +82,13 @@ impl Shared {
     }
 }
 
-/// Connection point through which workers join a memory link.
+/// Connection point through which workers join an in-process link.
 #[derive(Clone, Debug)]
 pub struct Hub(Arc<Shared>);
 
 impl Hub {
-    /// Creates a coordinator's end and the hub through which workers join it.
-    pub fn new(faults: Faults, blob: Blob) -> (MemoryCoordinator, Self) {
+    /// Creates the coordinator's end of an in-process link and the hub through which workers join it.
+    pub fn new(faults: FaultInjection, blob: Blob) -> (MemoryCoordinator, Self) {
         let (to_coordinator, heard) = unbounded_channel();
         let shared = Arc::new(Shared {
             faults,
@@ -104,7 +104,7 @@ impl Hub {
         (coordinator, Self(shared))
     }
 
-    /// Creates a worker's end.
+    /// Creates the end of a worker with the given id.
     pub fn worker(&self, id: WorkerId) -> MemoryWorker {
         let (sender, frames) = unbounded_channel();
         self.0
@@ -120,11 +120,11 @@ impl Hub {
     }
 }
 
-/// Coordinator's end of a memory link.
+/// Coordinator's end of an in-process link.
 #[derive(Debug)]
 pub struct MemoryCoordinator {
     shared: Arc<Shared>,
-    heard: UnboundedReceiver<Heard>,
+    heard: UnboundedReceiver<LinkEvent>,
 }
 
 impl CoordinatorEnd for MemoryCoordinator {
@@ -145,7 +145,7 @@ impl CoordinatorEnd for MemoryCoordinator {
         }
     }
 
-    async fn receive(&mut self) -> Option<Heard> {
+    async fn receive(&mut self) -> Option<LinkEvent> {
         self.heard.recv().await
     }
 
@@ -158,7 +158,7 @@ impl CoordinatorEnd for MemoryCoordinator {
     }
 }
 
-/// Worker's end of a memory link; the coordinator sees its drop as a loss of the worker.
+/// Worker's end of an in-process link; when it is dropped, the coordinator is told that the worker is lost.
 #[derive(Debug)]
 pub struct MemoryWorker {
     id: WorkerId,
@@ -171,7 +171,7 @@ impl WorkerEnd for MemoryWorker {
         let (to, id) = (self.shared.to_coordinator.clone(), self.id);
         self.shared.pass(move || {
             // a coordinator that is gone hears nothing
-            drop(to.send(Heard::Frame(id, frame.clone())));
+            drop(to.send(LinkEvent::Frame(id, frame.clone())));
         });
     }
 
@@ -179,7 +179,7 @@ impl WorkerEnd for MemoryWorker {
         self.frames.recv().await
     }
 
-    async fn appear(&mut self, _run: RunId) -> Result<(), LinkError> {
+    async fn announce_presence(&mut self, _run: RunId) -> Result<(), LinkError> {
         Ok(())
     }
 
@@ -217,7 +217,11 @@ impl Drop for MemoryWorker {
             .unwrap_or_else(PoisonError::into_inner)
             .remove(&self.id);
         // a coordinator that is gone hears nothing
-        drop(self.shared.to_coordinator.send(Heard::Gone(self.id)));
+        drop(
+            self.shared
+                .to_coordinator
+                .send(LinkEvent::Disconnected(self.id)),
+        );
     }
 }
 
@@ -225,7 +229,7 @@ impl Drop for MemoryWorker {
 mod tests {
     use super::*;
 
-    async fn count(faults: Faults) -> usize {
+    async fn count(faults: FaultInjection) -> usize {
         let (mut coordinator, hub) = Hub::new(faults, Blob::new(vec![1]));
         let mut worker = hub.worker(WorkerId(1));
         for n in 0..1000_u16 {
@@ -234,7 +238,7 @@ mod tests {
         tokio::time::sleep(faults.delay * 2).await;
         drop(worker);
         let mut frames = 0;
-        while coordinator.receive().await != Some(Heard::Gone(WorkerId(1))) {
+        while coordinator.receive().await != Some(LinkEvent::Disconnected(WorkerId(1))) {
             frames += 1;
         }
         frames
@@ -242,8 +246,8 @@ mod tests {
 
     #[tokio::test]
     async fn faults_are_what_was_asked_for_and_repeat_with_the_seed() {
-        assert_eq!(count(Faults::NONE).await, 1000);
-        let faults = Faults {
+        assert_eq!(count(FaultInjection::NONE).await, 1000);
+        let faults = FaultInjection {
             seed: 4,
             loss: 0.2,
             duplication: 0.2,
@@ -254,7 +258,7 @@ mod tests {
         assert!((900..1020).contains(&frames), "{frames} of 960 expected");
         assert!(
             (700..900).contains(
-                &count(Faults {
+                &count(FaultInjection {
                     duplication: 0.0,
                     ..faults
                 })

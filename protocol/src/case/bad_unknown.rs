@@ -11,11 +11,11 @@ pub struct BadUnknown {
     pub name: String,
     /// Field with the fault, named as in case files.
     pub field: &'static str,
-    /// Value found.
+    /// Value found in the field.
     pub found: String,
-    /// Description of the allowed values.
+    /// Description of the values allowed for the field.
     pub allowed: String,
-    /// Remedy.
+    /// Action that corrects the fault.
     pub remedy: &'static str,
 }
 
@@ -130,8 +130,8 @@ impl List<'_> {
         Ok(())
     }
 
-    /// Checks the optional information: trusted interval, prior, absent value, difference step, suspect and
-    /// valley.
+    /// Checks the optional information of an unknown: trusted interval, prior, absent value, difference step,
+    /// suspected cause, and scan of a narrow minimum.
     fn knowledge(&self, position: usize) -> Result<(), BadUnknown> {
         let unknown = &self.unknowns[position];
         if let Some([from, to]) = unknown.trust
@@ -280,7 +280,7 @@ mod tests {
         }
     }
 
-    /// Returns the field and the message of the first fault.
+    /// Returns the field and the error message of the first fault in a list of unknowns.
     fn refused(unknowns: &[Unknown]) -> (&'static str, String) {
         let bad = check_unknowns(unknowns).unwrap_err();
         (bad.field, bad.to_string())

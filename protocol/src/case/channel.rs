@@ -50,11 +50,11 @@ impl Channel {
 /// Abscissa along which a curve is given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Abscissa {
-    /// Name of its quantity, e.g. `time`.
+    /// Name of the abscissa quantity, e.g. `time`.
     pub name: String,
-    /// Unit, as text.
+    /// Unit of the abscissa, as text.
     pub unit: String,
-    /// Positions of the values, ascending.
+    /// Positions of the channel's values along the abscissa, ascending.
     #[serde(with = "crate::curve")]
     pub points: Vec<f64>,
     /// Period after which the curve repeats; `None` for a curve that is not periodic.
@@ -66,7 +66,7 @@ pub struct Abscissa {
 pub struct ChannelRecord {
     /// Number of cycles averaged.
     pub cycles: usize,
-    /// Mean over the cycles, in the channel's unit.
+    /// Mean curve over the measured cycles, in the channel's unit.
     #[serde(with = "crate::curve")]
     pub mean: Vec<f64>,
     /// Standard deviation between the cycles, in the channel's unit; zeros if there is only one cycle.

@@ -15,9 +15,9 @@ pub use bad_unknown::{BadUnknown, check_unknowns};
 pub use channel::{Abscissa, Channel, ChannelRecord};
 pub use condition::Condition;
 pub use effect::{EffectSetting, merged};
-pub use model::{ModelSettings, Repeats};
+pub use model::{ModelSettings, Reproducibility};
 pub use objective::{Objective, Offset, Term};
-pub use unknown::{Prior, Scale, Shares, Shift, Tie, Unknown, Valley};
+pub use unknown::{HeldRatios, Prior, Scale, Shift, Tie, Unknown, Valley};
 
 use serde::{Deserialize, Serialize};
 

@@ -10,7 +10,7 @@ pub struct ModelSettings {
     #[serde(serialize_with = "write", deserialize_with = "read")]
     pub settings: Vec<u8>,
     /// Reproducibility of the results.
-    pub repeats: Repeats,
+    pub repeats: Reproducibility,
     /// Time limit of one simulation (s), where the model enforces one itself; `None` if the limit follows
     /// from the duration of other simulations.
     pub deadline_s: Option<f64>,
@@ -20,11 +20,11 @@ pub struct ModelSettings {
 /// first result counts and no job is computed twice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Repeats {
-    /// Bitwise equal.
+pub enum Reproducibility {
+    /// Results are bitwise equal.
     #[default]
     Bits,
-    /// Equal within this fraction of the root mean square of each channel.
+    /// Results differ by at most this fraction of the root mean square of each channel.
     Within(f64),
     /// Unknown reproducibility.
     Unknown,
@@ -36,7 +36,7 @@ impl ModelSettings {
         Self {
             kind,
             settings,
-            repeats: Repeats::Bits,
+            repeats: Reproducibility::Bits,
             deadline_s: None,
         }
     }

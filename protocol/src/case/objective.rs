@@ -4,12 +4,12 @@ use serde::{Deserialize, Serialize};
 /// Weighted sum of mean squared errors.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Objective {
-    /// Index of the calibrated condition; the first if there are several.
+    /// Index of the calibrated condition; the first one if several are calibrated.
     pub condition: usize,
     /// Indices of further calibrated conditions: an individual is simulated under each, and the weighted sums
     /// are added.
     pub others: Vec<usize>,
-    /// Terms of the sum, the same under every scored condition.
+    /// Weighted channels of the objective, the same under every calibrated condition.
     pub terms: Vec<Term>,
 }
 
@@ -22,7 +22,7 @@ pub struct Term {
     pub weight: f64,
 }
 
-/// Treatment of a channel's zero.
+/// Treatment of a constant difference between a measured and a simulated channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Offset {

@@ -35,7 +35,8 @@ pub struct Unknown {
     pub upper: f64,
     /// Interval in which simulations usually succeed (coordinates); `None` for the whole search interval.
     pub trust: Option<[f64; 2]>,
-    /// Valley of the objective along this unknown, if it is too narrow to be found by random sampling.
+    /// Scan for a minimum of the objective along this unknown that is too narrow to be found by random
+    /// sampling; `None` if there is none.
     pub valley: Option<Valley>,
     /// Prior knowledge of the value in addition to the bounds.
     pub prior: Option<Prior>,
@@ -44,7 +45,7 @@ pub struct Unknown {
     pub absent: Option<f64>,
     /// Whether the unknown is held at its start.
     pub fixed: bool,
-    /// Tie to another unknown, if this one follows another.
+    /// Fixed ratio to another unknown that this one follows; `None` for an independent unknown.
     pub tie: Option<Tie>,
     /// Finite-difference step (coordinate), if the model states a suitable one.
     pub step: Option<f64>,
@@ -53,23 +54,24 @@ pub struct Unknown {
     pub suspect: Option<String>,
 }
 
-/// Scan for the valley of an unknown: a grid of values along several lines.
+/// Scan for a narrow minimum ("valley") of the objective along an unknown: a grid of values along several
+/// lines.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Valley {
-    /// First grid value (coordinate).
+    /// First grid value of the scan (search coordinate).
     pub from: f64,
-    /// Last grid value (coordinate).
+    /// Last grid value of the scan (search coordinate).
     pub to: f64,
-    /// Grid spacing, about the width of the valley (coordinate).
+    /// Grid spacing of the scan, about the width of the narrow minimum (search coordinates).
     pub step: f64,
-    /// Other unknowns that can hide the valley, each with the shift that reveals it. A search scans with
+    /// Shifts of other unknowns that reveal the narrow minimum where they would hide it. A search scans with
     /// every subset of these shifts.
     pub uncovered_by: Vec<Shift>,
-    /// Unknown that must lie near a fraction of the scanned one for the valley to show. A diagnosis scans
-    /// with every fraction.
-    pub shares: Option<Shares>,
+    /// Other unknown that must be near a fraction of the scanned one for the narrow minimum to appear. A
+    /// diagnosis scans with every listed fraction.
+    pub shares: Option<HeldRatios>,
     /// Shifts of other unknowns that can compensate for a wrong value of the scanned one; a diagnosis scans
-    /// an additional set of lines for each.
+    /// additional lines for each.
     pub stand_ins: Vec<Shift>,
 }
 
@@ -78,13 +80,13 @@ pub struct Valley {
 pub struct Shift {
     /// Name of the displaced unknown.
     pub unknown: String,
-    /// Displacement (coordinate).
+    /// Displacement of the unknown (search coordinates).
     pub by: f64,
 }
 
-/// Unknown held at fractions of the scanned unknown.
+/// Other unknown that a scan holds at fractions of the scanned unknown.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Shares {
+pub struct HeldRatios {
     /// Name of the held unknown.
     pub unknown: String,
     /// Ratios of the held unknown's value to the scanned one's, one per set of lines [held unit / scanned
@@ -97,16 +99,16 @@ pub struct Shares {
 pub struct Prior {
     /// Most likely value [the unknown's unit].
     pub value: f64,
-    /// Standard deviation (coordinate).
+    /// Standard deviation of the prior (search coordinates).
     pub deviation: f64,
 }
 
 /// Fixed ratio of an unknown to another unknown.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tie {
-    /// Name of the other unknown.
+    /// Name of the unknown that the tied one follows.
     pub to: String,
-    /// Value of the tied unknown divided by that of the other [tied unit / other unit].
+    /// Ratio of the tied unknown's value to that of the unknown it follows [tied unit / other unit].
     pub ratio: f64,
 }
 

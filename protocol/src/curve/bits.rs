@@ -2,7 +2,8 @@
 
 /// Maximum number of low bits of a difference, i.e. of the Rice parameter.
 pub(super) const WIDEST: u8 = 32;
-/// Number of ones that marks an escape: the whole difference follows instead of its upper part.
+/// Number of ones that marks an escape in the Rice code: the whole difference follows instead of its upper
+/// part.
 const LONGEST_RUN: u64 = 24;
 
 /// Error for bytes that are not an encoded curve.

@@ -1,22 +1,25 @@
-//! Encoding of a curve as bytes: differences of multiples of a step, or doubles.
+//! Encoding of a curve as bytes: either the short form, differences of its values as multiples of a step, or
+//! doubles.
 use super::bits::{BitReader, BitWriter, Malformed, WIDEST, coded_bits};
 
-/// First byte of a curve encoded as doubles; in the short form the first byte is the order of the
-/// differences.
+/// First byte of a curve encoded as doubles; in the short form, the first byte is the order of the
+/// differences instead.
 const DOUBLES: u8 = 255;
-/// Highest order of the differences; at higher orders the rounding error grows faster than the differences of
-/// a smooth curve shrink.
+/// Highest order of the differences of a curve's values; at higher orders the rounding error grows faster
+/// than the differences of a smooth curve shrink.
 const HIGHEST_ORDER: u8 = 4;
-/// Maximum magnitude of a multiple, such that a double represents all smaller whole numbers exactly.
+/// Maximum magnitude of a curve value as a multiple of the step, such that a double represents all smaller
+/// whole numbers exactly.
 pub(super) const MOST_MULTIPLE: i64 = 1 << 53;
 /// Maximum number of samples in the short form, which bounds the memory needed to decode a message; longer
 /// curves are encoded as doubles.
 pub(super) const MOST_SAMPLES: usize = 1 << 16;
-/// Exponents of steps for which all multiples and the reciprocal are normal numbers.
+/// Allowed exponents of the step (a power of two), such that all multiples and the reciprocal are normal
+/// numbers.
 const EXPONENTS: std::ops::RangeInclusive<i32> = -512..=400;
 const OUT_OF_RANGE: Malformed = Malformed("a value is out of range");
 
-/// Encodes a curve in the shorter of the two forms.
+/// Encodes a curve in the shorter of the two forms: differences of multiples of a step, or doubles.
 pub(super) fn encode(curve: &[f64]) -> Vec<u8> {
     if curve.is_empty() {
         return Vec::new();
@@ -77,7 +80,8 @@ pub(super) fn power(exponent: i32) -> f64 {
     2.0_f64.powi(exponent)
 }
 
-/// Encodes multiples in the short form with the order and width that give the fewest bits.
+/// Encodes the multiples of two to the power of `exponent` in the short form, with the difference order and
+/// Rice parameter that give the fewest bits.
 fn short(exponent: i32, multiples: &[i64]) -> Vec<u8> {
     let forms = (0..=HIGHEST_ORDER).map(|order| {
         let differences = differences(order, multiples);
@@ -170,7 +174,7 @@ fn read(bytes: &[u8]) -> Result<Vec<f64>, Malformed> {
     }
 }
 
-/// Inverse of the differences: running sums of the given order.
+/// Inverse of taking differences: running sums of the given order restore a curve's multiples.
 struct Sums {
     before: [i64; HIGHEST_ORDER as usize],
     order: usize,

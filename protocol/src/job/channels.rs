@@ -7,7 +7,7 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Channels of one run.
+/// Channel curves of one simulation.
 ///
 /// The worker rounds them to the channels' own steps before any further use, so that computations, the
 /// journal and reports all use the same numbers (`crate::curve`).
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 pub struct Observation {
     /// Verdict on how the run ended.
     pub verdict: Verdict,
-    /// Counters of the run's cost.
+    /// Work counters of the simulation (steps, iterations).
     pub counters: Counters,
     /// Curves of the condition's channels, in the case's order and the channel's unit; truncated where the
     /// run ended early.

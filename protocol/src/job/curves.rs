@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Curves {
     /// Verdict on how the run ended.
     pub verdict: Verdict,
-    /// Counters of the run's cost.
+    /// Work counters of the simulation (steps, iterations).
     pub counters: Counters,
     /// Wall time on the worker \[s\]; not part of any digest.
     pub wall_s: f64,

@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Largest number of derivative columns in one job, so that the answer fits into one message.
-pub const MOST_COLUMNS: usize = 500;
+pub const MAX_COLUMNS: usize = 500;
 
 /// Quantity with respect to which a simulation is differentiated: one column of the Jacobian.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,7 +18,7 @@ pub struct Column {
 
 impl Column {
     /// Creates a column for an unknown or an effect parameter that the case contains.
-    pub fn of(name: impl Into<String>) -> Self {
+    pub fn new(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
             values: Vec::new(),
@@ -26,12 +26,12 @@ impl Column {
     }
 }
 
-/// Increment of the quantity to which a derivative refers.
+/// Unit of change of a parameter to which a derivative refers.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Per {
     /// Derivative per decade of the value.
     Decade,
-    /// Derivative per one of the named unit.
+    /// Derivative per one of the named unit of the value.
     Unit(String),
 }
 
@@ -49,7 +49,7 @@ impl fmt::Display for Per {
 pub enum Derivative {
     /// The model computed the derivative.
     Curves {
-        /// Increment to which the derivative refers.
+        /// Unit of change of the parameter to which the derivative refers.
         per: Per,
         /// Derivative curves, one per channel of the condition in the case's order, in the channel's unit per
         /// `per`; empty for a channel that the model does not differentiate. Single precision suffices: about
@@ -58,7 +58,7 @@ pub enum Derivative {
     },
     /// The derivative is zero everywhere: in this model the column has no influence on any channel.
     Nothing {
-        /// Increment to which the derivative refers.
+        /// Unit of change of the parameter to which the derivative refers.
         per: Per,
     },
     /// The model cannot compute the derivative; finite differences of whole runs are needed.
@@ -83,6 +83,6 @@ impl Derivative {
     clippy::cast_possible_truncation,
     reason = "derivatives travel in single precision"
 )]
-pub fn single(curve: impl IntoIterator<Item = f64>) -> Vec<f32> {
+pub fn to_single_precision(curve: impl IntoIterator<Item = f64>) -> Vec<f32> {
     curve.into_iter().map(|x| x as f32).collect()
 }

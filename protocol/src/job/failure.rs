@@ -1,24 +1,24 @@
 //! Reasons why a job ends without an answer.
-use super::left::Left;
+use super::failure_files::FailureFiles;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Why a job could not be done.
+/// Reason why a job could not be done.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Failure {
     /// The run exceeded its deadline and was terminated.
     Deadline {
-        /// The deadline \[ms\].
+        /// Deadline of the run \[ms\].
         limit_ms: u64,
-        /// Files left in the run's folder up to that moment.
-        left: Left,
+        /// Files left in the run's folder when it was terminated.
+        left: FailureFiles,
     },
     /// The slot process that computed the job exited or was killed.
     Crashed {
         /// Exit status or signal, in words.
         how: String,
         /// Files left in the run's folder.
-        left: Left,
+        left: FailureFiles,
     },
     /// The worker was lost on every attempt at the job, as often as the retry limit allows.
     Lost {
@@ -49,21 +49,21 @@ impl Failure {
         }
     }
 
-    /// Creates a [`Failure::Crashed`] without files.
+    /// Creates a [`Failure::Crashed`] without files left by the run.
     pub const fn crashed(how: String) -> Self {
-        let left = Left::NONE;
+        let left = FailureFiles::NONE;
         Self::Crashed { how, left }
     }
 
-    /// Creates a [`Failure::Deadline`] with its limit \[ms\] and without files.
+    /// Creates a [`Failure::Deadline`] with its limit \[ms\] and without files left by the run.
     pub const fn deadline(limit_ms: u64) -> Self {
-        let left = Left::NONE;
+        let left = FailureFiles::NONE;
         Self::Deadline { limit_ms, left }
     }
 
     /// Returns the files left in the run's folder, as far as they were transmitted; `None` for failures that
     /// start no run.
-    pub const fn left(&self) -> Option<&Left> {
+    pub const fn files(&self) -> Option<&FailureFiles> {
         match self {
             Self::Deadline { left, .. } | Self::Crashed { left, .. } => Some(left),
             Self::Lost { .. } | Self::Refused { .. } | Self::Misconfigured { .. } => None,
@@ -101,7 +101,7 @@ impl fmt::Display for Failure {
 /// Error: the answer belongs to another kind of job than the one that was dispatched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the worker returned the result of a {answered} job instead of the requested kind")]
-pub struct WrongKind {
+pub struct UnexpectedAnswer {
     /// Name of the kind of job that the answer belongs to.
     pub answered: &'static str,
 }

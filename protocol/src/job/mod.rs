@@ -14,21 +14,21 @@ mod channels;
 mod curves;
 mod derivative;
 mod failure;
-mod left;
+mod failure_files;
+mod identifier;
 mod score;
 mod simulate;
 mod verdict;
-mod word;
 
 pub use channels::Observation;
 pub use curves::Curves;
-pub use derivative::{Column, Derivative, MOST_COLUMNS, Per, single};
-pub use failure::{Failure, WrongKind};
-pub use left::{Left, Shortened};
+pub use derivative::{Column, Derivative, MAX_COLUMNS, Per, to_single_precision};
+pub use failure::{Failure, UnexpectedAnswer};
+pub use failure_files::{FailureFiles, TruncatedFile};
+pub use identifier::Identifier;
 pub use score::{ChannelScore, Evaluation};
 pub use simulate::{Individual, Numerics, Reply, SimulateSpec};
 pub use verdict::{Counters, Reached, Verdict};
-pub use word::Word;
 
 use crate::{announce::EffectDescriptor, id::ContentHash, wire};
 use serde::{Deserialize, Serialize};
@@ -36,20 +36,20 @@ use serde::{Deserialize, Serialize};
 /// Names of the kinds of jobs, with one name per reply of a simulation. Workers announce these names, tables
 /// show them, and time limits are kept by them, since some kinds take minutes and others seconds.
 pub mod kind {
-    /// Simulate and compare with the recordings.
+    /// Kind of job that simulates and compares with the measured records.
     pub const SCORE: &str = "score";
-    /// Simulate and return the measured channels.
+    /// Kind of job that simulates and returns the curves of the measured channels.
     pub const CHANNELS: &str = "channels";
-    /// Simulate and return everything that can be drawn.
+    /// Kind of job that simulates and returns everything that can be drawn.
     pub const CURVES: &str = "curves";
-    /// Job that only one kind of model understands (`Job::Own`).
+    /// Kind of job that only one model kind understands (`Job::Own`).
     pub const OWN: &str = "own";
-    /// List the effects that the model can add.
+    /// Kind of job that lists the effects that the model can add.
     pub const DESCRIBE: &str = "describe";
-    /// Do nothing (`Job::Nothing`).
+    /// Kind of job that does nothing (`Job::Nothing`), for measurements of the bus.
     pub const NOTHING: &str = "nothing";
 
-    /// All kinds that a worker of this build does, in the order of its announcement.
+    /// All kinds of jobs that a worker of this build can do, in the order of its announcement.
     pub const ALL: [&str; 6] = [SCORE, CHANNELS, CURVES, OWN, DESCRIBE, NOTHING];
 }
 
@@ -58,7 +58,7 @@ pub mod kind {
 pub enum Job {
     /// Simulate an individual.
     Simulate(SimulateSpec),
-    /// Do a job that only the case's kind of model understands; the model's data play no part.
+    /// Do a job that only the case's model kind understands.
     Own {
         /// Name of the job among those of the kind of model.
         name: String,
@@ -132,11 +132,11 @@ macro_rules! taken {
     ($($name:ident: $variant:ident -> $content:ty, $what:literal;)*) => {$(
         #[doc = $what]
         /// # Errors
-        /// [`WrongKind`] if the answer belongs to another kind of job.
-        pub fn $name(self) -> Result<$content, WrongKind> {
+        /// [`UnexpectedAnswer`] if the answer belongs to another kind of job.
+        pub fn $name(self) -> Result<$content, UnexpectedAnswer> {
             match self {
                 Self::$variant(content) => Ok(content),
-                other => Err(WrongKind { answered: other.kind() }),
+                other => Err(UnexpectedAnswer { answered: other.kind() }),
             }
         }
     )*};

@@ -34,11 +34,10 @@ pub struct ChannelScore {
     pub mse_fixed_offset: f64,
     /// Measured mean minus simulated mean \[unit\].
     pub offset: f64,
-    /// Root mean squared error over half the measured range \[1\].
+    /// Root mean squared error divided by half the measured range \[1\].
     pub rmse_over_half_range: f64,
-    /// Mean absolute error over the mean absolute deviation of the measured curve from its mean
-    /// \[1\].
+    /// Mean absolute error divided by the mean absolute deviation of the measured curve from its mean \[1\].
     pub relative_error: f64,
-    /// Simulated minus measured peak-to-peak range, over the measured range \[1\].
+    /// Peak-to-peak range of the simulated curve minus that of the measured one, divided by the latter \[1\].
     pub peak_to_peak_error: f64,
 }

@@ -12,7 +12,7 @@ pub struct SimulateSpec {
     pub numerics: Numerics,
     /// Kind of answer requested.
     pub reply: Reply,
-    /// Columns of the requested derivatives, at most [`super::MOST_COLUMNS`]; derivatives are returned with
+    /// Columns of the requested derivatives, at most [`super::MAX_COLUMNS`]; derivatives are returned with
     /// curves and with residuals.
     pub columns: Vec<Column>,
 }
@@ -22,7 +22,7 @@ impl SimulateSpec {
     pub const fn new(individual: Individual, reply: Reply) -> Self {
         Self {
             individual,
-            numerics: Numerics::OF_THE_CASE,
+            numerics: Numerics::FROM_CASE,
             reply,
             columns: Vec::new(),
         }
@@ -36,7 +36,7 @@ pub struct Numerics(#[serde(with = "serde_bytes")] pub Vec<u8>);
 
 impl Numerics {
     /// No override: the numerical settings of the case apply.
-    pub const OF_THE_CASE: Self = Self(Vec::new());
+    pub const FROM_CASE: Self = Self(Vec::new());
 }
 
 /// Individual under one condition: values of the unknowns, and effects in addition to those of the case.
@@ -44,7 +44,7 @@ impl Numerics {
 pub struct Individual {
     /// Index of the condition in the case.
     pub condition: usize,
-    /// Gene values in declared units, in the case's order.
+    /// Values of the unknowns in declared units, in the case's order.
     pub genes: Vec<f64>,
     /// Effects in addition to those of the case; an effect with the identifier of one of the case's replaces
     /// it.

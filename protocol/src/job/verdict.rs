@@ -1,5 +1,5 @@
 //! Verdict on a simulation and its work counters.
-use super::word::Word;
+use super::identifier::Identifier;
 use serde::{Deserialize, Serialize};
 
 /// Verdict on a simulation: complete, or failed with the cause and the progress.
@@ -10,7 +10,7 @@ pub enum Verdict {
     /// The simulation failed for a physical or numerical reason; data for the search, never retried.
     Failed {
         /// Cause of the failure, as named by the model.
-        kind: Word,
+        kind: Identifier,
         /// Progress at the failure.
         reached: Reached,
     },
@@ -75,7 +75,7 @@ pub struct Counters {
 }
 
 impl Counters {
-    /// Adds the counters of another simulation, saturating.
+    /// Adds the counters of another simulation; sums saturate instead of overflowing.
     pub const fn add(&mut self, other: &Self) {
         self.steps = self.steps.saturating_add(other.steps);
         self.rejected_steps = self.rejected_steps.saturating_add(other.rejected_steps);
@@ -88,7 +88,7 @@ impl Counters {
 
     /// Returns each counter with its name in tables and files and with a description; the order is the same
     /// wherever counters are listed.
-    pub const fn named(&self) -> [(&'static str, &'static str, u64); 5] {
+    pub const fn labelled(&self) -> [(&'static str, &'static str, u64); 5] {
         [
             ("steps", "accepted steps", self.steps),
             ("rejected_steps", "rejected steps", self.rejected_steps),

@@ -16,10 +16,10 @@ pub struct LoadCard {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Smoothing {
-    /// None: the card as delivered.
+    /// No smoothing: the card is used as delivered.
     None,
     /// Only this many harmonics of the crank are kept.
     Harmonics(u32),
-    /// Centred moving average over this many degrees.
+    /// Centred moving average over this many degrees of crank angle.
     MovingAverageDeg(f64),
 }

@@ -81,7 +81,7 @@ impl Coefficient {
         }
     }
 
-    /// Returns the SI unit of the value inside the dynamics.
+    /// Returns the SI unit in which the dynamics uses the coefficient.
     pub const fn si_unit(self) -> Unit {
         match self {
             Self::Kb1 | Self::Kb23 => Unit::NewtonPerMetre,

@@ -30,7 +30,7 @@ pub struct Discretisation {
 }
 
 impl Discretisation {
-    /// No override: the discretisation of the case applies.
+    /// Discretisation without any override: all settings of the case apply.
     pub const OF_THE_CASE: Self = Self {
         cylinder_length_m: None,
         lead_in_deg: None,
@@ -59,7 +59,7 @@ impl Discretisation {
     /// [`WireError::TooLong`] beyond the size limit of a message.
     pub fn numerics(&self) -> Result<Numerics, WireError> {
         if *self == Self::OF_THE_CASE {
-            return Ok(Numerics::OF_THE_CASE);
+            return Ok(Numerics::FROM_CASE);
         }
         wire::encode(self).map(Numerics)
     }

@@ -43,7 +43,7 @@ pub struct Simulation {
     /// Energy balance of the recorded revolution.
     pub energy: Energy,
     /// Snapshots of the moving machine; empty unless requested.
-    pub motion: Vec<Motion>,
+    pub motion: Vec<MachineSnapshot>,
 }
 
 impl Simulation {
@@ -99,7 +99,7 @@ pub struct Energy {
 
 /// Snapshot of the machine in the ground frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Motion {
+pub struct MachineSnapshot {
     /// Crank angle from bottom dead centre \[deg\].
     pub turn_deg: f64,
     /// Crank pin x, y \[m\].

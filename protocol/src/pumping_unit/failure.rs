@@ -1,23 +1,23 @@
 //! Causes that end a simulation of a pumping unit early.
-use crate::job::Word;
+use crate::job::Identifier;
 
 /// Cause: a rope joint stretched beyond its limit.
-pub const OVERSTRETCHED_ROPE: Word = Word::new("overstretched_rope");
+pub const OVERSTRETCHED_ROPE: Identifier = Identifier::new("overstretched_rope");
 /// Cause: the rope penetrated the surface of a head.
-pub const ROPE_THROUGH_HEAD: Word = Word::new("rope_through_head");
+pub const ROPE_THROUGH_HEAD: Identifier = Identifier::new("rope_through_head");
 /// Cause: the beam left its working range.
-pub const BEAM_OVERTRAVEL: Word = Word::new("beam_overtravel");
+pub const BEAM_OVERTRAVEL: Identifier = Identifier::new("beam_overtravel");
 /// Cause: the load stayed below its lowest design position.
-pub const LOAD_NOT_LIFTED: Word = Word::new("load_not_lifted");
+pub const LOAD_NOT_LIFTED: Identifier = Identifier::new("load_not_lifted");
 /// Cause: a rope cylinder turned over.
-pub const TUMBLED_CYLINDER: Word = Word::new("tumbled_cylinder");
+pub const TUMBLED_CYLINDER: Identifier = Identifier::new("tumbled_cylinder");
 /// Cause: the step size fell below its limit.
-pub const STEP_UNDERFLOW: Word = Word::new("step_underflow");
+pub const STEP_UNDERFLOW: Identifier = Identifier::new("step_underflow");
 /// Cause: the iteration budget was used up.
-pub const BUDGET: Word = Word::new("budget");
+pub const BUDGET: Identifier = Identifier::new("budget");
 
 /// All causes, each with a description that can be part of a sentence.
-pub const ALL: [(Word, &str); 7] = [
+pub const ALL: [(Identifier, &str); 7] = [
     (
         OVERSTRETCHED_ROPE,
         "a rope joint was stretched beyond its limit",

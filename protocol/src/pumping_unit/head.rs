@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 /// Mass-normalised fixed-interface modes of the back head, as stored in a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModalHead {
-    /// Natural frequencies, ascending \[Hz\]; length n.
+    /// Natural frequencies of the n modes, ascending \[Hz\].
     pub frequencies_hz: Vec<f64>,
     /// Modal damping ratio, the same for every mode \[1\].
     pub damping_ratio: f64,
-    /// Stations on the rope arc, ascending \[deg\]; length s.
+    /// Angles of the s stations along the rope arc at which shapes are tabulated, ascending \[deg\].
     pub arc_deg: Vec<f64>,
     /// Outward radial shape per mode and station [m per unit modal coordinate]; n x s.
     pub radial: Vec<Vec<f64>>,
@@ -18,9 +18,10 @@ pub struct ModalHead {
     pub tangential: Vec<Vec<f64>>,
     /// Gauge stress per mode and gauge [MPa per unit modal coordinate]; n x 4.
     pub gauge_stress_mpa: Vec<[f64; 4]>,
-    /// Integrals of density times `(phi_x, phi_y, x phi_y - y phi_x)` per mode; n x 3.
+    /// Integrals over the head of density times `(phi_x, phi_y, x phi_y - y phi_x)`, with the shape `phi` of
+    /// each mode; n x 3.
     pub participation: Vec<[f64; 3]>,
-    /// Static gauge stress per unit base acceleration in x, y [MPa per m/s2] and about the pivot
+    /// Static gauge stress per unit acceleration of the beam along x and y [MPa per m/s2] and about the pivot
     /// [MPa per rad/s2]; 3 x 4.
     pub inertia_stress_mpa: [[f64; 4]; 3],
     /// Method that recovers gauge stress from modes and forces.
@@ -46,10 +47,11 @@ pub enum StressRecovery {
 /// Static influence lines of the gauges.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Influence {
-    /// Stations on the rope arc, ascending \[deg\]; length s.
+    /// Angles of the s stations along the rope arc at which the influence lines are tabulated, ascending
+    /// \[deg\].
     pub psi_deg: Vec<f64>,
-    /// Stress per newton of inward normal force [MPa/N]; s x 4.
+    /// Gauge stress per newton of inward normal force at each station [MPa/N]; s x 4.
     pub normal_mpa_per_n: Vec<[f64; 4]>,
-    /// Stress per newton of tangential force towards increasing psi [MPa/N]; s x 4.
+    /// Gauge stress per newton of tangential force towards increasing psi at each station [MPa/N]; s x 4.
     pub tangential_mpa_per_n: Vec<[f64; 4]>,
 }

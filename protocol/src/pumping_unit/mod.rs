@@ -20,7 +20,7 @@ mod twin;
 pub use card::{LoadCard, Smoothing};
 pub use coefficient::Coefficient;
 pub use discretisation::Discretisation;
-pub use drawing::{Energy, Motion, Simulation};
+pub use drawing::{Energy, MachineSnapshot, Simulation};
 pub use effect_unit::EFFECT_UNITS;
 pub use head::{Influence, ModalHead, StressRecovery};
 pub use machine::{Machine, PumpingUnit, WorkingCondition};
@@ -28,7 +28,7 @@ pub use parts::{
     BackHead, Beam, Contact, Crank, FrontHead, Rod, RopeEnds, Ropes, Suspension, TurnSense,
 };
 pub use reduce_head::{
-    ElementKind, HeadFields, HeadGauge, HeadMesh, HeadMode, LeftOutMode, ModeFamily, REDUCE_HEAD,
+    ElementKind, HeadFields, HeadGauge, HeadMesh, HeadMode, ModeFamily, OmittedMode, REDUCE_HEAD,
     ReduceHeadSpec, ReducedHead, RopePair, RopeWrap,
 };
 pub use run::{Integrator, RunSettings};

@@ -29,7 +29,7 @@ pub enum TurnSense {
 }
 
 impl std::fmt::Display for TurnSense {
-    /// Writes the name used in case files.
+    /// Writes the name that the sense of rotation has in case files.
     fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         to.write_str(match self {
             Self::Clockwise => "clockwise",
@@ -48,7 +48,7 @@ pub struct Crank {
     pub center_y_m: f64,
     /// Distance from the shaft to the crank pin \[m\].
     pub radius_m: f64,
-    /// Sense of rotation.
+    /// Sense in which the crank turns.
     pub sense: TurnSense,
     /// Angle by which the counterweight leads the crank pin \[deg\].
     pub counterweight_phase_deg: f64,
@@ -60,11 +60,11 @@ pub struct Crank {
 pub struct Rod {
     /// Distance from the crank pin to the revolute joint of the rope \[m\].
     pub length_m: f64,
-    /// Mass \[kg\].
+    /// Mass of connecting rods and crossbeam together \[kg\].
     pub mass_kg: f64,
-    /// Distance from the crank pin to the centre of mass \[m\].
+    /// Distance from the crank pin to the centre of mass of rods and crossbeam \[m\].
     pub center_of_mass_m: f64,
-    /// Moment of inertia about its own centre of mass [kg m2].
+    /// Moment of inertia of rods and crossbeam about their own centre of mass [kg m2].
     pub inertia_kg_m2: f64,
 }
 
@@ -72,7 +72,7 @@ pub struct Rod {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Suspension {
-    /// Mass \[kg\].
+    /// Mass of carrier bar, clamp and load cell together \[kg\].
     pub mass_kg: f64,
 }
 
@@ -80,18 +80,18 @@ pub struct Suspension {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ropes {
-    /// Diameter of a cylinder \[m\].
+    /// Diameter of a rope cylinder \[m\].
     pub diameter_m: f64,
     /// Length of a cylinder \[m\].
     pub cylinder_length_m: f64,
-    /// Density [kg/m3].
+    /// Density of the rope cylinders [kg/m3].
     pub density_kg_m3: f64,
-    /// Cylinder length for which the genes' stiffness and damping hold \[m\]; for chains of another pitch the
-    /// coefficients are scaled so that the rope stays the same.
+    /// Cylinder length for which the stiffness and damping of an individual hold \[m\]; for cylinders of
+    /// another length the coefficients are scaled so that the rope stays the same.
     pub reference_length_m: f64,
-    /// Stiffness of the two end joints of a rope.
+    /// Stiffness of the joints at the two ends of each rope.
     pub ends: RopeEnds,
-    /// Preload of every joint: its tension at zero elongation \[N\]; default 0.
+    /// Tension of every rope joint at zero elongation (preload) \[N\]; default 0.
     #[serde(default)]
     pub preload_n: f64,
     /// Number of cylinders between crossbeam and back head.
@@ -104,10 +104,10 @@ pub struct Ropes {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RopeEnds {
-    /// Half a pitch at each end joint (twice the coefficients): the rope's compliance is exactly that of its
-    /// length for every pitch.
+    /// Each end joint stands for half a cylinder (twice the coefficients), so that the rope's compliance is
+    /// exactly that of its length for every cylinder length.
     HalfPitch,
-    /// Whole pitch at each end joint, as in every other joint.
+    /// Each end joint stands for a whole cylinder, as every other joint does.
     WholePitch,
 }
 
@@ -115,7 +115,7 @@ pub enum RopeEnds {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// Exponent n of the penetration.
+    /// Exponent n of the penetration in the contact force.
     pub exponent: f64,
     /// Penetration at which the damping reaches its full value, `d_max` \[m\].
     pub full_damping_penetration_m: f64,
@@ -127,7 +127,7 @@ pub struct Contact {
 pub struct FrontHead {
     /// Radius of the rope's centre line on the arc: the front arm \[m\].
     pub radius_m: f64,
-    /// Angle of the rope's fixing point, in the beam frame \[deg\].
+    /// Angle at which the rope is fixed to the front head, in the beam frame \[deg\].
     pub rope_anchor_deg: f64,
 }
 
@@ -141,6 +141,6 @@ pub struct BackHead {
     pub center_x_m: f64,
     /// Centre of the arc in the beam frame, y \[m\].
     pub center_y_m: f64,
-    /// Angle of the rope's fixing point about the arc's centre, in the beam frame \[deg\].
+    /// Angle at which the rope is fixed to the back head, about the arc's centre, in the beam frame \[deg\].
     pub rope_anchor_deg: f64,
 }

@@ -21,20 +21,21 @@ pub struct ReduceHeadSpec {
     pub poisson: f64,
     /// Density [kg/m3].
     pub density_kg_m3: f64,
-    /// The four gauges.
+    /// Strain gauges of the head whose stress is returned.
     pub gauges: [HeadGauge; 4],
     /// Centre of the rope arc \[m\].
     pub center_m: [f64; 2],
-    /// Stations of shapes and influence lines, ascending \[deg\]; s.
+    /// Angles of the s stations along the rope arc at which shapes and influence lines are returned,
+    /// ascending \[deg\].
     pub arc_deg: Vec<f64>,
-    /// Stations of the static compliance \[deg\]; p.
+    /// Angles of the p points on the rope arc between which the static compliance is returned \[deg\].
     pub probes_deg: Vec<f64>,
     /// Number of modes n.
     pub modes: usize,
     /// Symmetry families from which the modes are taken.
     pub families: Vec<ModeFamily>,
-    /// Rope positions over a turn as static load patterns: the modes that couple most to them and to the
-    /// beam's motion are returned. If empty, the lowest modes are returned.
+    /// Rope positions over a turn, used as static load patterns: the modes that couple most to them and to
+    /// the beam's motion are returned. If empty, the lowest modes are returned.
     pub patterns: Vec<RopeWrap>,
     /// Pair of ropes on the head of a twin-rope machine, for which the antisymmetric tables are returned as
     /// well.
@@ -47,9 +48,9 @@ pub struct ReduceHeadSpec {
 /// Finite-element mesh of a head that is symmetric about z = 0, whole or half.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HeadMesh {
-    /// Node positions \[m\].
+    /// Positions of the mesh nodes \[m\].
     pub nodes_m: Vec<[f64; 3]>,
-    /// Type of all elements.
+    /// Type of all elements of the mesh.
     pub kind: ElementKind,
     /// Node indices, element after element, in Gmsh's node order.
     pub elements: Vec<u32>,
@@ -112,9 +113,9 @@ pub enum ModeFamily {
 /// Rope wrapped around the head, at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RopeWrap {
-    /// Tension \[N\].
+    /// Tension of the wrapped rope \[N\].
     pub tension_n: f64,
-    /// Angle of the fixing point \[deg\].
+    /// Angle at which the rope is fixed to the head \[deg\].
     pub anchor_deg: f64,
     /// Angle at which the rope leaves the arc \[deg\].
     pub leaves_deg: f64,
@@ -125,23 +126,24 @@ pub struct RopeWrap {
 pub struct RopePair {
     /// Distance of each rope from the plane z = 0 \[m\].
     pub offset_m: f64,
-    /// Number of antisymmetric modes.
+    /// Number of antisymmetric modes to return.
     pub modes: usize,
 }
 
 /// Result of the reduction of a head.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReducedHead {
-    /// Modes, lowest first; n.
+    /// The n returned modes, lowest first.
     pub modes: Vec<HeadMode>,
-    /// Modes that were computed but couple less than the returned ones, lowest first; empty without patterns.
-    pub left_out: Vec<LeftOutMode>,
-    /// Static gauge stress per newton at the stations.
+    /// Modes that were computed but couple less than the returned ones, lowest first; empty unless the
+    /// request has load patterns.
+    pub left_out: Vec<OmittedMode>,
+    /// Static gauge stress per newton of rope force at the stations.
     pub influence: Influence,
-    /// Static gauge stress per unit base acceleration in x, y [MPa per m/s2] and about the pivot
+    /// Static gauge stress per unit acceleration of the beam along x and y [MPa per m/s2] and about the pivot
     /// [MPa per rad/s2]; 3 x 4.
     pub inertia_stress_mpa: [[f64; 4]; 3],
-    /// Outward radial displacement at probe j per inward newton at probe i [m/N]; p x p.
+    /// Outward radial displacement of the arc at point j per newton of inward force at point i [m/N]; p x p.
     pub compliance_m_per_n: Vec<Vec<f64>>,
     /// Antisymmetric tables for twin ropes; `None` unless requested.
     pub twin: Option<TwinHead>,
@@ -155,7 +157,7 @@ pub struct ReducedHead {
     pub unknowns: usize,
     /// Number of linear solves (Lanczos steps) for the modes.
     pub lanczos_steps: usize,
-    /// Wall time on the worker \[s\].
+    /// Wall time of the reduction on the worker \[s\].
     pub wall_s: f64,
     /// Fields over the whole mesh; `None` unless requested.
     pub fields: Option<HeadFields>,
@@ -179,23 +181,24 @@ pub struct HeadMode {
     pub radial: Vec<f64>,
     /// Tangential displacement towards increasing psi at the stations [m per unit modal coordinate]; s.
     pub tangential: Vec<f64>,
-    /// Gauge stress [MPa per unit modal coordinate].
+    /// Stress of the mode at each gauge [MPa per unit modal coordinate].
     pub gauge_stress_mpa: [f64; 4],
-    /// Integrals of density times `(phi_x, phi_y, x phi_y - y phi_x)`.
+    /// Integrals over the head of density times `(phi_x, phi_y, x phi_y - y phi_x)`, with the mode shape
+    /// `phi`.
     pub participation: [f64; 3],
-    /// Largest share of the static energy of any load pattern that the mode represents \[1\]; 0 without
+    /// Largest share of a load pattern's static energy that this mode represents \[1\]; 0 without load
     /// patterns.
     pub coupling: f64,
 }
 
 /// Mode that was computed but not returned.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LeftOutMode {
+pub struct OmittedMode {
     /// Symmetry family of the mode.
     pub family: ModeFamily,
     /// Natural frequency \[Hz\].
     pub frequency_hz: f64,
-    /// Largest share of the static energy of any load pattern that the mode would represent \[1\].
+    /// Largest share of a load pattern's static energy that this mode would represent \[1\].
     pub coupling: f64,
 }
 

@@ -13,11 +13,11 @@ pub struct RunSettings {
     pub ramp_s: f64,
     /// Time integration method.
     pub integrator: Integrator,
-    /// Spectral radius at infinite frequency of [`Integrator::GeneralizedAlpha`], 0 to 1 \[1\].
+    /// Spectral radius at infinite frequency for [`Integrator::GeneralizedAlpha`], 0 to 1 \[1\].
     #[serde(default = "half")]
     pub spectral_radius: f64,
-    /// Largest time step \[s\]; limits how coarsely the rope's own modes are resolved. The value applies
-    /// where the beam oscillates slowly on its ropes; stiffer ropes get proportionally shorter steps.
+    /// Largest time step where the beam oscillates slowly on its ropes \[s\]; stiffer ropes get
+    /// proportionally shorter steps. It limits how coarsely the ropes' own modes are resolved.
     pub longest_step_s: f64,
     /// Tolerance of the integrator, relative to its built-in error scales.
     pub tolerance: f64,
@@ -40,9 +40,9 @@ const fn half() -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Integrator {
-    /// Second order, two implicit stages a step.
+    /// TR-BDF2: second order, two implicit stages per step.
     TrBdf2,
-    /// Fourth order, five implicit stages a step.
+    /// ESDIRK: fourth order, five implicit stages per step.
     Esdirk4,
     /// Rosenbrock method of fourth order: six linear solutions a step, a new factorisation each.
     Rodas4,

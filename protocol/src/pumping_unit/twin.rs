@@ -23,7 +23,7 @@ pub struct TwinRopes {
 /// at the stations of [`super::ModalHead`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TwinHead {
-    /// Natural frequencies, ascending \[Hz\]; length a.
+    /// Natural frequencies of the a antisymmetric modes, ascending \[Hz\].
     pub frequencies_hz: Vec<f64>,
     /// Outward radial shape per mode and station [m per unit modal coordinate]; a x s.
     pub radial: Vec<Vec<f64>>,
@@ -33,9 +33,9 @@ pub struct TwinHead {
     pub lateral: Vec<Vec<f64>>,
     /// Gauge stress per mode and gauge [MPa per unit modal coordinate]; a x 4.
     pub gauge_stress_mpa: Vec<[f64; 4]>,
-    /// Static stress per pair of opposite unit forces [MPa/N]. Normal: inwards at +z and outwards at -z.
-    /// Tangential: towards increasing psi at +z, opposite at -z.
+    /// Static gauge stress per pair of opposite unit forces on the two ropes [MPa/N]. Normal: inwards at +z
+    /// and outwards at -z. Tangential: towards increasing psi at +z, opposite at -z.
     pub influence: Influence,
-    /// Static stress per newton along +z on either rope [MPa/N]; s x 4.
+    /// Static gauge stress per newton along +z on either rope [MPa/N]; s x 4.
     pub lateral_mpa_per_n: Vec<[f64; 4]>,
 }

@@ -16,7 +16,7 @@ const WANTED: f64 = 1.0;
 
 /// Logarithmic axis, horizontal or vertical: maps a range of values to a range of pixels.
 struct Axis {
-    /// Exponents of the powers of ten that enclose all values.
+    /// Exponents of the powers of ten at the two ends of the axis.
     powers: (i32, i32),
     from: f64,
     to: f64,

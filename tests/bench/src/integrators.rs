@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     /// Gene file with the parameters, such as a run's `calibrated.toml`; the recommended values by default.
     #[arg(long, value_name = "FILE")]
     genes: Option<PathBuf>,
-    /// Methods, as written in case files; all by default.
+    /// Time integration methods to compare, by their names in case files; all by default.
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = method)]
     methods: Vec<Integrator>,
     /// Number of accuracy levels, from the coarsest; 0 for all.
@@ -70,11 +70,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let done = |point: &Point| {
         let [name, limits] = [integrator_name(point.integrator), &limits(point)];
         let time = point.wall_s;
-        output.tell(&format!("{name:<18} {limits}: {time:.3} s, {}", end(point)))
+        output.print_progress(&format!("{name:<18} {limits}: {time:.3} s, {}", end(point)))
     };
     let all = compare(&machine, &plan, done)?;
     let apart = all.resolution;
-    output.tell(&format!(
+    output.print_progress(&format!(
         "the two reference runs differ by {apart:.1e} of the range"
     ))?;
     output.write("integrators.svg", || Ok(error_against_work(&all).into()))?;

@@ -52,11 +52,11 @@ impl Output {
         fs::create_dir_all(folder)
             .and_then(|()| fs::write(&path, content))
             .with_context(|| format!("cannot write {}", path.display()))?;
-        self.tell(&format!("wrote {}", path.display()))
+        self.print_progress(&format!("wrote {}", path.display()))
     }
 
     /// Prints a progress line to standard error, except with JSON output.
-    pub(crate) fn tell(&self, line: &str) -> anyhow::Result<()> {
+    pub(crate) fn print_progress(&self, line: &str) -> anyhow::Result<()> {
         match self.output {
             Form::Table => Ok(writeln!(io::stderr().lock(), "{line}")?),
             Form::Json => Ok(()),

@@ -4,12 +4,12 @@ use serde::Serialize;
 
 /// Verdict and cost of one individual.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Ended {
-    /// Verdict of its simulation.
+pub(crate) struct RunRecord {
+    /// Verdict of the individual's simulation.
     pub(crate) verdict: Verdict,
-    /// Work counters of its simulation.
+    /// Work counters of the individual's simulation.
     pub(crate) counters: Counters,
-    /// Wall time of its simulation \[s\].
+    /// Wall time of the individual's simulation \[s\].
     pub(crate) wall_s: f64,
 }
 
@@ -21,17 +21,17 @@ pub(crate) struct Class {
     /// Stage of the failure, `under_load` or `in_motion`; `None` for complete runs and for all failures
     /// together.
     pub(crate) stage: Option<&'static str>,
-    /// Number of individuals.
+    /// Number of individuals in the group.
     pub(crate) runs: usize,
-    /// Newton iterations: median, 90th percentile, maximum.
+    /// Newton iterations of the group's individuals: median, 90th percentile, maximum.
     pub(crate) newton_iterations: [u64; 3],
-    /// Wall time: median, 90th percentile, maximum \[s\].
+    /// Wall time of the group's individuals: median, 90th percentile, maximum \[s\].
     pub(crate) wall_s: [f64; 3],
 }
 
 /// Groups the individuals by verdict, the most frequent first, followed by the group of all failures if there
 /// are any.
-pub(crate) fn classes(individuals: &[Ended]) -> Vec<Class> {
+pub(crate) fn classes(individuals: &[RunRecord]) -> Vec<Class> {
     let mut kinds: Vec<(&str, Option<&'static str>)> = Vec::new();
     for kind in individuals.iter().map(|one| kind(&one.verdict)) {
         if !kinds.contains(&kind) {
@@ -55,7 +55,7 @@ pub(crate) fn classes(individuals: &[Ended]) -> Vec<Class> {
     classes
 }
 
-/// Returns the name and the stage of a verdict, without the progress.
+/// Returns the name of a verdict and the stage of its failure, without the progress reached.
 fn kind(verdict: &Verdict) -> (&str, Option<&'static str>) {
     match verdict {
         Verdict::Complete => ("complete", None),
@@ -69,7 +69,7 @@ fn kind(verdict: &Verdict) -> (&str, Option<&'static str>) {
     }
 }
 
-fn class((verdict, stage): (&str, Option<&'static str>), individuals: &[&Ended]) -> Class {
+fn class((verdict, stage): (&str, Option<&'static str>), individuals: &[&RunRecord]) -> Class {
     let mut newton_iterations: Vec<u64> = individuals
         .iter()
         .map(|one| one.counters.newton_iterations)
@@ -104,7 +104,7 @@ mod tests {
             (through(Reached::TimeFraction(0.7)), 900),
             (through(Reached::LoadFraction(0.1)), 10),
         ]
-        .map(|(verdict, iterations)| Ended {
+        .map(|(verdict, iterations)| RunRecord {
             verdict,
             counters: Counters {
                 newton_iterations: iterations,

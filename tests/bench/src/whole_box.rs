@@ -4,7 +4,7 @@
 //! number of points give the same individuals. Everything but the wall times is deterministic.
 use crate::machine::{Machine, MachineChoice};
 use crate::output::{Output, table};
-use crate::verdicts::{Class, Ended, classes};
+use crate::verdicts::{Class, RunRecord, classes};
 use clap::Args;
 use comfy_table::Table;
 use protocol::case::Case;
@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     /// of its interval); by default the bounds of the case.
     #[arg(long, value_name = "X", value_parser = decades)]
     decades: Option<f64>,
-    /// Seed of the points.
+    /// Seed of the Latin hypercube of individuals.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Number of simultaneous simulations [default: one per core].
@@ -55,7 +55,7 @@ fn decades(typed: &str) -> Result<f64, String> {
     Err("must be above 0, at most 100".to_owned())
 }
 
-/// Result printed by `--output json`.
+/// Result of `bench box` as printed with `--output json`.
 #[derive(Debug, Serialize)]
 struct Object<'a> {
     points: u32,
@@ -70,7 +70,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let threads = arguments.threads.unwrap_or(cores).max(1);
     let output = &arguments.output;
-    let done = |so_far: usize| output.tell(&format!("{so_far} of {}", individuals.len()));
+    let done = |so_far: usize| output.print_progress(&format!("{so_far} of {}", individuals.len()));
     let ended = simulate(&machine, &individuals, threads, done)?;
     output.write("box.csv", || rows(&machine.case, &individuals, &ended))?;
     let classes = classes(&ended);
@@ -89,7 +89,9 @@ fn individuals(space: &Space, arguments: &Arguments) -> Vec<Vec<f64>> {
         to: reach,
     };
     let axes = space.axes().iter();
-    let intervals: Vec<Interval> = axes.map(|axis| near.within(axis.interval())).collect();
+    let intervals: Vec<Interval> = axes
+        .map(|axis| near.intersection(axis.interval()))
+        .collect();
     let points = latin_hypercube(&intervals, arguments.points as usize, arguments.seed);
     points.iter().map(|point| space.values(point)).collect()
 }
@@ -101,7 +103,7 @@ fn simulate(
     individuals: &[Vec<f64>],
     threads: usize,
     done: impl Fn(usize) -> anyhow::Result<()>,
-) -> anyhow::Result<Vec<Ended>> {
+) -> anyhow::Result<Vec<RunRecord>> {
     let next = AtomicUsize::new(0);
     // a thread ends when nothing is left, or when nobody listens any more because of an error
     let work = |to: &mpsc::Sender<_>| {
@@ -109,7 +111,7 @@ fn simulate(
         let genes = individuals.get(at)?;
         let simulated = machine
             .simulate(genes, Discretisation::OF_THE_CASE)
-            .map(|done| Ended {
+            .map(|done| RunRecord {
                 verdict: done.verdict,
                 counters: done.counters,
                 wall_s: done.wall_s,
@@ -134,7 +136,7 @@ fn simulate(
 }
 
 /// Formats the individuals as CSV: genes in declared units, verdict and cost.
-fn rows(case: &Case, genes: &[Vec<f64>], ended: &[Ended]) -> anyhow::Result<Vec<u8>> {
+fn rows(case: &Case, genes: &[Vec<f64>], ended: &[RunRecord]) -> anyhow::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let rest = [
         "verdict",

@@ -27,12 +27,12 @@ const LADDER: [(f64, f64); 9] = [
 ];
 
 /// Tolerance and largest step \[s\] of the reference solution.
-const TRUTH: (f64, f64) = (1e-3, 2e-3);
+const REFERENCE: (f64, f64) = (1e-3, 2e-3);
 
 /// Limit on Newton iterations of one point: ten times the most expensive ordinary run.
 const BUDGET: u64 = 120_000;
 
-/// Fixed step used throughout in the reference paper; with this tolerance no step is rejected.
+/// Fixed step of the reference paper over the whole run; the tolerance is so large that no step is rejected.
 const FIXED: Integration = Integration {
     integrator: Integrator::Bdf,
     longest_step_s: 1e-5,
@@ -40,13 +40,13 @@ const FIXED: Integration = Integration {
     budget: u64::MAX,
 };
 
-/// Integration settings of one run; the steps are not shortened on fast-oscillating machines.
+/// Integration settings of one run; the largest step is not shortened on machines whose beam oscillates fast.
 #[derive(Clone, Copy, Debug)]
 struct Integration {
     integrator: Integrator,
     longest_step_s: f64,
     tolerance: f64,
-    /// Newton iterations after which the run ends.
+    /// Number of Newton iterations after which the run is ended.
     budget: u64,
 }
 
@@ -63,7 +63,7 @@ impl Integration {
     }
 }
 
-/// Settings of a comparison.
+/// Settings of a comparison of time integration methods.
 pub(crate) struct Plan {
     /// Gene values in declared units.
     pub(crate) genes: Vec<f64>,
@@ -76,14 +76,14 @@ pub(crate) struct Plan {
     pub(crate) fixed: bool,
 }
 
-/// Result of one run; a row of `integrators.csv`.
+/// Accuracy and work of one run; a row of `integrators.csv`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Point {
     /// Time integration method.
     pub(crate) integrator: Integrator,
     /// Tolerance of the integrator.
     pub(crate) tolerance: f64,
-    /// Largest step \[s\].
+    /// Largest time step of the run \[s\].
     pub(crate) longest_step_s: f64,
     /// Verdict of the simulation.
     #[serde(skip)]
@@ -96,17 +96,17 @@ pub(crate) struct Point {
     pub(crate) rejected_steps: u64,
     /// Number of Newton iterations; for a Rosenbrock method, of linear solves.
     pub(crate) newton_iterations: u64,
-    /// Number of tangent evaluations.
+    /// Number of evaluations of the tangent matrix (Jacobian).
     pub(crate) jacobians: u64,
-    /// Number of factorisations.
+    /// Number of factorisations of the tangent matrix.
     pub(crate) factorizations: u64,
     /// Wall time \[s\].
     pub(crate) wall_s: f64,
-    /// Root mean square difference from the reference solution over the range, for the worst gauge \[1\];
-    /// `None` unless complete.
+    /// Largest root mean square difference of a gauge curve from the reference solution, divided by the
+    /// gauge's range \[1\]; `None` unless complete.
     #[serde(rename = "error_over_range")]
     pub(crate) error: Option<f64>,
-    /// Error of the energy balance over the work \[1\].
+    /// Error of the energy balance divided by the work done \[1\].
     pub(crate) energy_error: f64,
 }
 
@@ -131,19 +131,19 @@ impl Point {
     }
 }
 
-/// Results of all methods; printed by `--output json`.
+/// Results of all time integration methods; printed by `--output json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Comparison {
-    /// Difference between the two reference solutions, as an error \[1\].
+    /// Difference between the two reference solutions: smallest error that can be resolved \[1\].
     pub(crate) resolution: f64,
-    /// Results method by method, from the coarse end of the ladder.
+    /// Results of the runs, method by method, each from coarse to fine settings.
     pub(crate) points: Vec<Point>,
     /// Result with the reference paper's fixed step; `None` unless requested.
     pub(crate) fixed_step: Option<Point>,
 }
 
 impl Comparison {
-    /// Returns the Pareto front (work, error) of a method's complete points, sorted by work.
+    /// Returns the Pareto-optimal pairs (work, error) of a method's complete runs, sorted by work.
     pub(crate) fn front(
         &self,
         integrator: Integrator,
@@ -205,7 +205,7 @@ pub(crate) fn compare(
 /// # Errors
 /// A run that is not complete.
 fn converged(machine: &Machine, plan: &Plan, integrator: Integrator) -> anyhow::Result<Simulation> {
-    let (tolerance, longest_step_s) = TRUTH;
+    let (tolerance, longest_step_s) = REFERENCE;
     let integration = Integration {
         integrator,
         longest_step_s,
@@ -221,8 +221,8 @@ fn converged(machine: &Machine, plan: &Plan, integrator: Integrator) -> anyhow::
     Ok(simulation)
 }
 
-/// Returns the largest root mean square difference of a gauge over its range \[1\]; `None` unless the
-/// simulation is complete.
+/// Returns the root mean square difference of a simulation's gauge curves from the reference, divided by the
+/// range, for the worst gauge \[1\]; `None` unless the simulation is complete.
 fn worst_gauge(simulation: &Simulation, truth: &Simulation) -> Option<f64> {
     if simulation.verdict != Verdict::Complete {
         return None;

@@ -8,7 +8,7 @@ use protocol::case::EffectSetting;
 /// Parameters of all effects, zero where an effect is absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effects {
-    /// Dry friction of the guide \[N\].
+    /// Dry friction force of the guide \[N\].
     pub friction_n: f64,
     /// Cosine and sine coefficient of the second harmonic of the driving force \[N\].
     pub second_order_n: [f64; 2],
@@ -18,10 +18,10 @@ pub struct Effects {
     pub lag_ms: f64,
 }
 
-/// Parameter of an effect in the table below: name, unit, sign, greatest value, typical value.
+/// Parameter of an effect in `TABLE`: name, unit, sign, greatest value, typical value.
 type Number = (&'static str, &'static str, Sign, f64, f64);
 
-/// Effect in the table below: identifier, title, joint, place and parameters.
+/// Effect in `TABLE`: identifier, title, part of the rig (joint), place in the simulation, and parameters.
 type Row = (
     &'static str,
     &'static str,
@@ -95,7 +95,7 @@ pub fn descriptors() -> Vec<EffectDescriptor> {
     TABLE.iter().map(row).collect()
 }
 
-/// Returns the unit of a parameter of an effect; `None` if there is no such parameter.
+/// Returns the unit of a parameter, by the identifier of its effect; `None` if there is no such parameter.
 pub fn unit(id: &str, parameter: &str) -> Option<&'static str> {
     let row = TABLE.iter().find(|row| row.0 == id)?;
     let number = row.4.iter().find(|number| number.0 == parameter)?;
@@ -103,7 +103,7 @@ pub fn unit(id: &str, parameter: &str) -> Option<&'static str> {
 }
 
 impl Effects {
-    /// Reads the effects from settings.
+    /// Reads the parameters of all effects from the settings of a case or a job.
     ///
     /// # Errors
     /// The first field that the model does not have, or that is beyond its bounds, and the reason.

@@ -16,13 +16,13 @@ pub struct Oscillator {
     pub stiffness: f64,
     /// Viscous damping [N s/m].
     pub damping: f64,
-    /// Dry friction \[N\]; not negative.
+    /// Dry friction force on the mass \[N\]; not negative.
     pub friction: f64,
     /// Time constant of the force sensor \[s\]; not negative.
     pub lag: f64,
 }
 
-/// Excitation of the oscillator.
+/// Excitation of the oscillator: shaker force and foundation motion, as functions of time.
 #[derive(Clone, Debug, Default)]
 pub struct Drive {
     /// Force on the mass \[N\].
@@ -42,7 +42,7 @@ pub struct State {
     pub reading: f64,
 }
 
-/// Piece of a motion: sliding in one direction, or one standstill.
+/// Part of a motion between two standstills: sliding in one direction, or one standstill.
 #[derive(Clone, Debug)]
 struct Piece {
     begins: f64,
@@ -62,18 +62,18 @@ impl Piece {
     }
 }
 
-/// Motion over an interval of time, as consecutive pieces.
+/// Motion over an interval of time, as consecutive pieces that each slide in one direction or stand still.
 #[derive(Clone, Debug)]
 pub struct Motion(Vec<Piece>);
 
 impl Motion {
-    /// Returns the state at a time \[s\]; `None` if the motion has no piece.
+    /// Returns the state at a time \[s\]; `None` for an empty motion.
     pub fn state(&self, t: f64) -> Option<State> {
         let piece = self.0.iter().rev().find(|piece| piece.begins <= t);
         Some(piece.or(self.0.first())?.state(t))
     }
 
-    /// Returns the number of pieces.
+    /// Returns the number of intervals of sliding or standstill that the motion consists of.
     pub const fn pieces(&self) -> usize {
         self.0.len()
     }
@@ -81,33 +81,33 @@ impl Motion {
 
 /// Error for a motion that neither comes to rest nor becomes periodic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Restless;
+pub struct NotPeriodic;
 
-/// Maximum number of pieces of one motion.
+/// Maximum number of intervals of sliding or standstill in one motion.
 const MOST_PIECES: usize = 2000;
 /// Maximum number of periods in which a driven motion must become periodic, to the relative tolerance
 /// `REPEATS`.
 const MOST_PERIODS: usize = 600;
 const REPEATS: f64 = 1e-11;
-/// Samples of the velocity per radian of the fastest component of the motion, in the search for a change of
-/// sign.
-const LOOKS: f64 = 8.0;
+/// Number of velocity samples per radian of the fastest component of the motion, among which a change of sign
+/// is searched for.
+const SAMPLES_PER_RADIAN: f64 = 8.0;
 
 impl Oscillator {
-    /// Computes the periodic motion of period `period` \[s\].
+    /// Computes the periodic motion under a periodic excitation of period `period` \[s\].
     ///
     /// # Errors
-    /// [`Restless`] if the motion with dry friction does not become periodic.
-    pub fn steady(&self, drive: &Drive, period: f64) -> Result<Motion, Restless> {
-        let x = self.answer(drive);
+    /// [`NotPeriodic`] if the motion with dry friction does not become periodic.
+    pub fn steady(&self, drive: &Drive, period: f64) -> Result<Motion, NotPeriodic> {
+        let x = self.steady_response(drive);
         let free = self.piece(drive, 0.0, x, None);
         if self.friction <= 0.0 {
             return Ok(Motion(vec![free]));
         }
         let mut state = free.state(0.0);
         for _ in 0..MOST_PERIODS {
-            let motion = self.go(drive, state, period)?;
-            let end = motion.state(period).ok_or(Restless)?;
+            let motion = self.integrate(drive, state, period)?;
+            let end = motion.state(period).ok_or(NotPeriodic)?;
             let size = state.x.abs() + state.reading.abs() / self.stiffness;
             let change =
                 (end.x - state.x).abs() + (end.reading - state.reading).abs() / self.stiffness;
@@ -116,19 +116,19 @@ impl Oscillator {
             }
             state = end;
         }
-        Err(Restless)
+        Err(NotPeriodic)
     }
 
     /// Computes the motion from an initial state over `span` \[s\].
     ///
     /// # Errors
-    /// [`Restless`] if the motion has more than the maximum number of pieces.
-    pub fn go(&self, drive: &Drive, start: State, span: f64) -> Result<Motion, Restless> {
+    /// [`NotPeriodic`] if the motion alternates between sliding and standstill too often.
+    pub fn integrate(&self, drive: &Drive, start: State, span: f64) -> Result<Motion, NotPeriodic> {
         let mut pieces = Vec::new();
         let (mut state, mut now) = (start, 0.0);
         let mut stood = false;
         while pieces.len() < MOST_PIECES {
-            let way = self.way(drive, &state, now, stood);
+            let way = self.sliding_direction(drive, &state, now, stood);
             let x = match way {
                 Some(way) => self.sliding(drive, &state, now, way),
                 None => Sum::constant(state.x),
@@ -143,54 +143,64 @@ impl Oscillator {
             // the velocity is zero there, but for rounding
             (state.v, now, stood) = (0.0, end, way.is_none());
         }
-        Err(Restless)
+        Err(NotPeriodic)
     }
 
     /// Returns the sign of the velocity just after a state: `None` if the mass stands, 0 without dry
     /// friction, where the sign is not needed. A mass that `stood` until now slides, because its friction has
     /// been overcome, regardless of rounding.
-    fn way(&self, drive: &Drive, state: &State, now: f64, stood: bool) -> Option<f64> {
+    fn sliding_direction(
+        &self,
+        drive: &Drive,
+        state: &State,
+        now: f64,
+        stood: bool,
+    ) -> Option<f64> {
         if self.friction <= 0.0 {
             return Some(0.0);
         }
         if state.v != 0.0 {
             return Some(state.v.signum());
         }
-        let pull = self.pull(drive, &Sum::constant(state.x), now).at(0.0);
+        let pull = self
+            .applied_force(drive, &Sum::constant(state.x), now)
+            .at(0.0);
         (stood || pull.abs() > self.friction).then(|| pull.signum())
     }
 
-    /// Computes the force on the mass without dry friction, from `now` on.
-    fn pull(&self, drive: &Drive, x: &Sum, now: f64) -> Sum {
+    /// Computes the force on the mass without dry friction, as a function of the time since `now`.
+    fn applied_force(&self, drive: &Drive, x: &Sum, now: f64) -> Sum {
         let through = self.through_springs(drive, x, now);
         drive
             .force
             .since(now)
-            .plus(&through.through(|_| (-1.0).into()))
+            .plus(&through.filtered(|_| (-1.0).into()))
     }
 
-    /// Computes the force on the foundation through springs and damper, from `now` on.
+    /// Computes the force on the foundation through springs and damper, as a function of the time since
+    /// `now`.
     fn through_springs(&self, drive: &Drive, x: &Sum, now: f64) -> Sum {
-        let base = drive.base.since(now).through(|_| (-1.0).into());
+        let base = drive.base.since(now).filtered(|_| (-1.0).into());
         x.clone()
             .plus(&base)
-            .through(|s| s * self.damping + self.stiffness)
+            .filtered(|s| s * self.damping + self.stiffness)
     }
 
-    /// Computes the steady-state response to the excitation, without dry friction.
-    fn answer(&self, drive: &Drive) -> Sum {
-        let by_base = drive.base.through(|s| s * self.damping + self.stiffness);
+    /// Computes the displacement of the mass in the steady-state response to the excitation, without dry
+    /// friction.
+    fn steady_response(&self, drive: &Drive) -> Sum {
+        let by_base = drive.base.filtered(|s| s * self.damping + self.stiffness);
         drive
             .force
             .clone()
             .plus(&by_base)
-            .through(|s| (s * s * self.mass + s * self.damping + self.stiffness).inv())
+            .filtered(|s| (s * s * self.mass + s * self.damping + self.stiffness).inv())
     }
 
-    /// Computes the displacement while sliding from a state in the direction `way` (1 or -1).
+    /// Computes the displacement of the mass while it slides from a state in the direction `way` (1 or -1).
     fn sliding(&self, drive: &Drive, state: &State, now: f64, way: f64) -> Sum {
         let held = Sum::constant(-way * self.friction / self.stiffness);
-        let rest = self.answer(drive).since(now).plus(&held);
+        let rest = self.steady_response(drive).since(now).plus(&held);
         let [r, q] = self.own_rates();
         let (dx, dv) = (state.x - rest.at(0.0), state.v - rest.rate().at(0.0));
         let a = (-q * dx + dv) / (r - q);
@@ -211,12 +221,12 @@ impl Oscillator {
         [root.sqrt() - half, -root.sqrt() - half]
     }
 
-    /// Builds a piece with the given displacement and the reading of the force sensor. `last` is the sensor's
-    /// initial reading; without it, the sensor is in its steady state.
+    /// Builds the part of a motion with displacement `x`, adding velocity and reading of the force sensor.
+    /// `last` is the initial reading; without it, the sensor is in its steady state.
     fn piece(&self, drive: &Drive, begins: f64, x: Sum, last: Option<f64>) -> Piece {
         let force = self.through_springs(drive, &x, begins);
         let reading = if self.lag > 0.0 {
-            let late = force.through(|s| (s * self.lag + 1.0).inv());
+            let late = force.filtered(|s| (s * self.lag + 1.0).inv());
             let missing = last.map_or(0.0, |last| last - late.at(0.0));
             late.plus(&Sum::term(missing.into(), (-1.0 / self.lag).into()))
         } else {
@@ -230,20 +240,20 @@ impl Oscillator {
         }
     }
 
-    /// Finds the end of a piece: the time at which the velocity changes sign or the force overcomes the
-    /// friction, at most `span`.
+    /// Finds the end of a sliding interval (change of sign of the velocity) or of a standstill (force above
+    /// the friction), at most `span` \[s\].
     fn end(&self, drive: &Drive, piece: &Piece, way: Option<f64>, span: f64) -> f64 {
         let over: Box<dyn Fn(f64) -> bool> = match way {
             Some(0.0) => return span,
             Some(way) => Box::new(move |t| piece.v.at(t) * way < 0.0),
             None => {
-                let pull = self.pull(drive, &piece.x, piece.begins);
+                let pull = self.applied_force(drive, &piece.x, piece.begins);
                 Box::new(move |t| pull.at(t).abs() > self.friction)
             }
         };
         let own = (self.stiffness / self.mass).sqrt();
         let fastest = own.max(drive.force.fastest()).max(drive.base.fastest());
-        let step = 1.0 / (LOOKS * fastest);
+        let step = 1.0 / (SAMPLES_PER_RADIAN * fastest);
         let length = span - piece.begins;
         let mut before = 0.0;
         while before < length {

@@ -2,14 +2,14 @@
 use search::random::{Phase, Stream, Streams};
 use std::fmt::Write as _;
 
-/// Measurement of one condition.
+/// True curves and noise from which the synthetic record of one condition is generated.
 #[derive(Clone, Debug)]
 pub struct Measurement<'a> {
-    /// Heading and values of the abscissa.
+    /// Heading and values of the record's abscissa.
     pub places: (&'a str, &'a [f64]),
     /// Heading, true values and standard deviation of the noise of each channel.
     pub channels: &'a [(&'a str, Vec<f64>, f64)],
-    /// Number of periods, or of releases of the mass.
+    /// Number of recorded periods, or of recorded releases of the mass.
     pub repeats: usize,
 }
 

@@ -6,7 +6,7 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields)]
 pub struct Settings {
     /// Settings in `[model]` apart from its kind.
-    pub model: Rig,
+    pub model: RigSettings,
     /// Settings in `[[conditions]]` apart from their names, in the case's order.
     pub conditions: Vec<Excitation>,
 }
@@ -14,7 +14,7 @@ pub struct Settings {
 /// Settings of the test rig.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Rig {
+pub struct RigSettings {
     /// Displacement at which the mass would strike the stop \[mm\].
     pub stop_mm: f64,
 }
@@ -39,7 +39,7 @@ pub struct Excitation {
 pub struct Order {
     /// Order of the harmonic: number of periods per turn of the shaker.
     pub order: u32,
-    /// Amplitude \[N\].
+    /// Amplitude of the harmonic of the shaker's force \[N\].
     pub amplitude_n: f64,
     /// Phase lead of the harmonic, in degrees of its own period \[deg\].
     pub phase_deg: f64,

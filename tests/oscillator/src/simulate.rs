@@ -4,12 +4,12 @@
 use crate::{
     effect::Effects,
     motion::{Drive, Oscillator, State},
-    settings::{Excitation, Rig},
+    settings::{Excitation, RigSettings},
     sum::Sum,
 };
 use std::f64::consts::TAU;
 
-/// Values of the unknowns.
+/// Values of the oscillator's unknowns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Values {
     /// Mass of the carriage \[kg\].
@@ -20,7 +20,7 @@ pub struct Values {
     pub left_n_per_mm: f64,
     /// Stiffness of the spring on the right [N/mm].
     pub right_n_per_mm: f64,
-    /// Damping [N s/m].
+    /// Viscous damping of the mass [N s/m].
     pub damping_n_s_per_m: f64,
     /// Phase lead of the shaker's force \[deg\].
     pub lead_deg: f64,
@@ -53,21 +53,21 @@ impl Sensor {
 pub struct Run {
     /// Curve of each requested channel, up to the time at which the simulation ended.
     pub curves: Vec<Vec<f64>>,
-    /// Reason for an early end, if any.
+    /// Reason why the simulation ended early; `None` if it did not.
     pub failed: Option<&'static str>,
-    /// Number of pieces of the motion.
+    /// Number of intervals of sliding or standstill that the motion consists of.
     pub pieces: usize,
 }
 
 /// Failure kind: the mass strikes the stop.
 pub const STRIKES: &str = "strikes_the_stop";
 /// Failure kind: the motion does not become periodic.
-pub const RESTLESS: &str = "no_common_rhythm";
+pub const NOT_PERIODIC: &str = "no_common_rhythm";
 
 /// Simulates the rig. Each channel is a sensor with its abscissa values: degrees of the shaker's turn, or
 /// seconds after the release.
 pub fn run(
-    rig: &Rig,
+    rig: &RigSettings,
     excitation: &Excitation,
     values: &Values,
     effects: &Effects,
@@ -91,7 +91,7 @@ pub fn run(
         let curves = vec![Vec::new(); channels.len()];
         return Run {
             curves,
-            failed: Some(RESTLESS),
+            failed: Some(NOT_PERIODIC),
             pieces: 0,
         };
     };
@@ -156,7 +156,7 @@ fn released(
     oscillator: &Oscillator,
     excitation: &Excitation,
     channels: &[(Sensor, &[f64])],
-) -> Result<crate::motion::Motion, crate::motion::Restless> {
+) -> Result<crate::motion::Motion, crate::motion::NotPeriodic> {
     let x = 1e-3 * excitation.release_mm;
     let start = State {
         x,
@@ -166,5 +166,5 @@ fn released(
     let places = channels
         .iter()
         .flat_map(|(_, places)| places.iter().copied());
-    oscillator.go(&Drive::default(), start, places.fold(0.0, f64::max))
+    oscillator.integrate(&Drive::default(), start, places.fold(0.0, f64::max))
 }

@@ -9,8 +9,8 @@ use protocol::{
     case::{Case, EffectSetting, merged},
     id::ContentHash,
     job::{
-        Counters, Derivative, Failure, Individual, Observation, Reached, SimulateSpec, Verdict,
-        Word,
+        Counters, Derivative, Failure, Identifier, Individual, Observation, Reached, SimulateSpec,
+        Verdict,
     },
 };
 use worker::simulator::{Model, Simulator};
@@ -24,7 +24,7 @@ pub struct Oscillators;
 struct Prepared {
     case: Case,
     settings: Settings,
-    /// Sensors of the channels of each condition.
+    /// Sensors of the channels, condition by condition.
     sensors: Vec<Vec<Sensor>>,
 }
 
@@ -56,14 +56,14 @@ impl Simulator for Oscillators {
         Ok(Box::new(Prepared::new(case)?))
     }
 
-    fn own(&self, name: &str, _: &[u8]) -> Result<Vec<u8>, Failure> {
+    fn run_custom(&self, name: &str, _: &[u8]) -> Result<Vec<u8>, Failure> {
         Err(Failure::Refused {
             reason: format!("the oscillator model does not support the job `{name}`"),
         })
     }
 }
 
-/// Simulates a reference with all effects; its bits identify the numerics of this build.
+/// Simulates a fixed oscillator with all effects; the bits of the result identify the numerics of this build.
 fn reference() -> Run {
     let excitation = crate::settings::Excitation {
         drive_hz: Some(6.5),
@@ -95,7 +95,7 @@ fn reference() -> Run {
         (Sensor::Force, &places),
     ];
     run(
-        &crate::settings::Rig { stop_mm: 50.0 },
+        &crate::settings::RigSettings { stop_mm: 50.0 },
         &excitation,
         &values,
         &effects,
@@ -250,7 +250,7 @@ fn verdict(run: &Run, channels: &[(Sensor, &[f64])]) -> Verdict {
         .map(|(curve, (_, places))| curve.len() as f64 / places.len() as f64);
     let share = shares.fold(1.0, f64::min);
     Verdict::Failed {
-        kind: Word::new(kind),
+        kind: Identifier::new(kind),
         reached: if kind == STRIKES {
             Reached::TimeFraction(share)
         } else {

@@ -40,23 +40,23 @@ impl Sum {
     /// Computes the steady-state response of a linear system: each exponential times the system's transfer
     /// function at its rate.
     #[must_use]
-    pub fn through(&self, transfer: impl Fn(Complex<f64>) -> Complex<f64>) -> Self {
+    pub fn filtered(&self, transfer: impl Fn(Complex<f64>) -> Complex<f64>) -> Self {
         Self(self.0.iter().map(|(a, s)| (a * transfer(*s), *s)).collect())
     }
 
     /// Computes the time derivative.
     #[must_use]
     pub fn rate(&self) -> Self {
-        self.through(|s| s)
+        self.filtered(|s| s)
     }
 
     /// Shifts the origin of time to `t`.
     #[must_use]
     pub fn since(&self, t: f64) -> Self {
-        self.through(|s| exp(s * t))
+        self.filtered(|s| exp(s * t))
     }
 
-    /// Returns the greatest angular frequency of the exponentials [rad/s].
+    /// Returns the greatest angular frequency in the sum [rad/s].
     pub fn fastest(&self) -> f64 {
         self.0.iter().map(|(_, s)| s.im.abs()).fold(0.0, f64::max)
     }

@@ -8,10 +8,10 @@ use std::f64::consts::TAU;
 
 /// Random number stream for one purpose.
 #[derive(Clone, Debug)]
-pub struct Draw(ChaCha8Rng);
+pub struct RandomStream(ChaCha8Rng);
 
-impl Draw {
-    /// Creates the stream of a seed and a purpose.
+impl RandomStream {
+    /// Creates the random number stream for a seed and a purpose.
     pub fn new(seed: u64, purpose: &str) -> Self {
         let mut hasher = blake3::Hasher::new_derive_key("horsehead blind suite draws");
         hasher.update(&seed.to_le_bytes());
@@ -41,7 +41,7 @@ impl Draw {
     }
 
     /// Draws a standard normal number, clamped to two standard deviations.
-    pub fn cut_normal(&mut self) -> f64 {
+    pub fn clamped_normal(&mut self) -> f64 {
         self.normal().clamp(-2.0, 2.0)
     }
 
@@ -69,7 +69,7 @@ mod tests {
     #[test]
     fn purposes_do_not_share_numbers_and_moments_are_those_of_the_laws() {
         let draws = |purpose: &str| -> Vec<f64> {
-            let mut draw = Draw::new(7, purpose);
+            let mut draw = RandomStream::new(7, purpose);
             (0..20_000).map(|_| draw.normal()).collect()
         };
         let (a, b) = (draws("noise"), draws("genes"));
@@ -79,7 +79,7 @@ mod tests {
         assert!(mean(&a).abs() < 0.03 && mean(&product).abs() < 0.03);
         assert!((mean(&square) - 1.0).abs() < 0.04);
         assert_eq!(a, draws("noise"));
-        let mut draw = Draw::new(7, "size");
+        let mut draw = RandomStream::new(7, "size");
         let sizes: Vec<f64> = (0..2_000).map(|_| draw.log_between(0.5, 8.0)).collect();
         let below = sizes.iter().filter(|size| **size < 2.0).count();
         assert!(sizes.iter().all(|size| (0.5..8.0).contains(size)));

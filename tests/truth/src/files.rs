@@ -1,6 +1,6 @@
 //! Test record as delivered files: load cards, samples and data sheets by condition.
-use crate::chain::{Sample, Sensors};
 use crate::law::Tolerance;
+use crate::measuring_chain::{Sample, Sensors};
 use anyhow::{Context as _, ensure};
 use flate2::{Compression, write::GzEncoder};
 use serde::{Deserialize, Serialize};
@@ -72,15 +72,15 @@ pub struct Delivered<'a> {
     pub condition: &'a str,
     /// Crank speed [1/min].
     pub rpm: f64,
-    /// Approximate number of cycles.
+    /// Approximate number of recorded cycles.
     pub cycles: usize,
-    /// Load over one turn, at equally spaced crank angles \[N\].
+    /// Delivered load over one crank turn, at equally spaced angles \[N\].
     pub card: &'a [f64],
     /// Samples that were received.
     pub samples: &'a [Sample],
-    /// Number of lost samples.
+    /// Number of samples that the wireless link lost.
     pub lost: usize,
-    /// Recorded channels.
+    /// Channels recorded in addition to angle and load.
     pub channels: Channels,
 }
 
@@ -107,7 +107,7 @@ pub fn write(
         format!("card_{condition}.csv"),
         card(delivered.card)?.as_bytes(),
     )?;
-    let sheet = sheet(name, sensors, delivered) + &stated(tolerance)?;
+    let sheet = sheet(name, sensors, delivered) + &tolerance_table(tolerance)?;
     put(format!("test_{condition}.toml"), sheet.as_bytes())
 }
 
@@ -162,8 +162,8 @@ fn sheet(name: &str, sensors: &Sensors, delivered: &Delivered<'_>) -> String {
         gauge_noise,
         correlation,
         resolution,
-        others: [position, torque],
-        cycles: [load, _],
+        position_torque_noise: [position, torque],
+        cycle_spread: [load, _],
         ..
     } = sensors;
     let others = if delivered.channels.others {
@@ -215,7 +215,7 @@ cycle_to_cycle_variation = {load}
 }
 
 /// Formats the stated instrument tolerances as the `[tolerance]` table of the data sheet.
-fn stated(tolerance: &Tolerance) -> anyhow::Result<String> {
+fn tolerance_table(tolerance: &Tolerance) -> anyhow::Result<String> {
     let keys = toml::to_string(tolerance)?;
     Ok(format!(
         "[tolerance]  # one standard deviation, constant over the test\n{keys}"
@@ -249,7 +249,7 @@ mod tests {
 
     #[test]
     fn a_sheet_states_how_good_the_instruments_are() {
-        let text = stated(&Tolerance::USUAL).unwrap();
+        let text = tolerance_table(&Tolerance::USUAL).unwrap();
         let read: toml::Table = toml::from_str(&text).unwrap();
         assert_eq!(read["tolerance"]["balance_nm"].as_float(), Some(200.0));
         assert_eq!(read["tolerance"].as_table().map(toml::Table::len), Some(8));

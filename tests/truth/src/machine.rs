@@ -1,7 +1,7 @@
 //! Simulation of the true machine: the case's drawing with hidden effects, discretised and integrated
 //! differently from the program under test.
-use crate::draw::Draw;
-use crate::law::Law;
+use crate::draw::RandomStream;
+use crate::law::HiddenEffect;
 use crate::turn::{Turn, Watch};
 use anyhow::{Context as _, anyhow, bail};
 use protocol::{
@@ -20,18 +20,18 @@ use std::sync::Arc;
 
 /// Resolution of the truth simulation in space and time.
 #[derive(Clone, Copy, Debug)]
-pub struct Fineness {
+pub struct Resolution {
     /// Length of a rope cylinder \[m\].
     pub cylinder: f64,
     /// Longest step of TR-BDF2 \[s\].
     pub step: f64,
-    /// Number of head modes added to those of the case, limited to those available.
+    /// Number of head modes simulated in addition to those of the case, limited to those available.
     pub more_modes: usize,
     /// Number of samples per crank revolution.
     pub samples: usize,
 }
 
-impl Fineness {
+impl Resolution {
     /// Resolution for a case with cylinders of 50 mm.
     pub const FULL: Self = Self {
         cylinder: 0.025,
@@ -52,7 +52,7 @@ impl Fineness {
 /// Median of each drawn coefficient: the optimised column of Table 3 of the paper, except for the axial
 /// damping. The paper's 5201 N.s/m leaves axial vibrations of the rope undamped for minutes; a steel rope
 /// loses some per cent of its energy per cycle, which the value here gives approximately.
-const MIDDLE: [(Coefficient, f64); 10] = [
+const MEDIAN_COEFFICIENTS: [(Coefficient, f64); 10] = [
     (Coefficient::Kb1, 7.81e8),
     (Coefficient::Kb23, 2.26e8),
     (Coefficient::Kb4, 204.0),
@@ -74,22 +74,22 @@ const SPREAD: f64 = 0.35;
 ///
 /// # Errors
 /// An unknown of the case that is not among the ten rope coefficients.
-pub fn genes(case: &Case, draw: &mut Draw) -> anyhow::Result<Vec<f64>> {
+pub fn draw_coefficients(case: &Case, draw: &mut RandomStream) -> anyhow::Result<Vec<f64>> {
     let genes = case.unknowns.iter().map(|gene| {
         if gene.of_effect().is_some() {
             return Ok(gene.start);
         }
-        let (_, middle) = MIDDLE
+        let (_, middle) = MEDIAN_COEFFICIENTS
             .iter()
             .find(|(name, _)| gene.name == name.as_str())
             .with_context(|| format!("no median value is known for the unknown {}", gene.name))?;
-        let value = middle * libm::exp(SPREAD * draw.cut_normal());
+        let value = middle * libm::exp(SPREAD * draw.clamped_normal());
         Ok(value.clamp(gene.lower, gene.upper))
     });
     genes.collect()
 }
 
-/// Changes of load and speed between cycles.
+/// Relative changes of load and speed for one simulated turn.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Variation {
     /// Relative increase of the load's deviation from its mean.
@@ -115,9 +115,9 @@ impl Effect for Variation {
 pub fn turn(
     unit: &PumpingUnit,
     condition: usize,
-    (genes, laws): (&[f64], &[Arc<dyn Law>]),
+    (genes, laws): (&[f64], &[Arc<dyn HiddenEffect>]),
     variation: Variation,
-    fineness: &Fineness,
+    fineness: &Resolution,
 ) -> anyhow::Result<Turn> {
     let available = unit.machine.modal_head.frequencies_hz.len();
     let finer = Discretisation {
@@ -157,7 +157,7 @@ pub fn turn(
     }
     let mut turn = watch.turn(&machine, &law);
     for law in laws {
-        law.read(&mut turn);
+        law.distort_readings(&mut turn);
     }
     Ok(turn)
 }

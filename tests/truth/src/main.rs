@@ -8,17 +8,17 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use truth::files::Channels;
-use truth::judge::Trial;
-use truth::law::{Kind, Tolerance};
-use truth::machine::Fineness;
-use truth::plan::{Order, Stratum, asked_kind, make};
+use truth::law::{EffectKind, Tolerance};
+use truth::machine::Resolution;
+use truth::plan::{SetSpec, Stratum, asked_kind, make};
+use truth::scoring::Trial;
 use truth::seal::Sealed;
 use truth::searches::Searches;
 use truth::suite::Suite;
 use truth::table::table;
 use truth::verdict::Verdict;
 
-/// Makes test records with a hidden effect, and judges verdicts about them.
+/// Makes test records with a hidden effect, and scores verdicts about them.
 #[derive(Debug, Parser)]
 struct Cli {
     #[command(subcommand)]
@@ -202,7 +202,7 @@ fn make_sets(arguments: &Make) -> anyhow::Result<()> {
         "--nuisances must be a factor of at least 0"
     );
     let asked = arguments.effect.iter().map(|id| asked_kind(id));
-    let asked: Vec<Kind> = asked.collect::<anyhow::Result<_>>()?;
+    let asked: Vec<EffectKind> = asked.collect::<anyhow::Result<_>>()?;
     let most = if arguments.stratum == StratumChoice::Double {
         2
     } else {
@@ -215,17 +215,17 @@ fn make_sets(arguments: &Make) -> anyhow::Result<()> {
     let mut sealed = Sealed::load_or_new(&arguments.answers)?;
     let mut commitment = String::new();
     for k in 0..arguments.count {
-        let order = Order {
+        let order = SetSpec {
             seed: arguments.seed + u64::from(k),
             stratum: arguments.stratum.into(),
-            asked: asked.clone(),
-            times: arguments.times,
+            requested_effects: asked.clone(),
+            size_factor: arguments.times,
             noise: arguments.noise,
             cycles: usize::from(arguments.cycles),
             fineness: if arguments.coarse {
-                Fineness::COARSE
+                Resolution::COARSE
             } else {
-                Fineness::FULL
+                Resolution::FULL
             },
             tolerance: Tolerance::USUAL.times(arguments.nuisances),
             channels: Channels {
@@ -240,9 +240,9 @@ fn make_sets(arguments: &Make) -> anyhow::Result<()> {
         let answer = make(&unit, &order, &folder, &name)?;
         sealed.sets.insert(name, answer);
         commitment = sealed.save(&arguments.answers)?;
-        say(&format!("{}\n", folder.display()))?;
+        print(&format!("{}\n", folder.display()))?;
     }
-    say(&format!(
+    print(&format!(
         "{} sets sealed; commitment {commitment}\n",
         sealed.sets.len()
     ))
@@ -255,8 +255,8 @@ fn open(arguments: &Open) -> anyhow::Result<()> {
     {
         bail!("the answers do not match --commitment; the commitment of the file is {commitment}");
     }
-    let judged = judged(sealed, &arguments.verdicts)?;
-    say(&format!("commitment {commitment}\n\n{judged}"))
+    let judged = score_table(sealed, &arguments.verdicts)?;
+    print(&format!("commitment {commitment}\n\n{judged}"))
 }
 
 fn run_all(arguments: &Run) -> anyhow::Result<()> {
@@ -267,7 +267,7 @@ fn run_all(arguments: &Run) -> anyhow::Result<()> {
         out: &arguments.out,
         horsehead: &arguments.horsehead,
         seed: arguments.seed,
-        until: arguments
+        time_limit: arguments
             .hours
             .map(|hours| Duration::from_secs_f64(3600.0 * hours)),
     };
@@ -278,11 +278,11 @@ fn run_all(arguments: &Run) -> anyhow::Result<()> {
         (Stratum::Outside, arguments.outside),
         (Stratum::Card, arguments.cards),
     ];
-    suite.run(&counts, &mut |line| say(&format!("{line}\n")))?;
+    suite.run(&counts, &mut |line| print(&format!("{line}\n")))?;
     let (sealed, _) = Sealed::load(&suite.answers())?;
-    let judged = judged(sealed, &suite.verdicts())?;
+    let judged = score_table(sealed, &suite.verdicts())?;
     fs::write(arguments.out.join("table.md"), &judged)?;
-    say(&judged)
+    print(&judged)
 }
 
 fn compare(arguments: &SearchesOf) -> anyhow::Result<()> {
@@ -296,12 +296,12 @@ fn compare(arguments: &SearchesOf) -> anyhow::Result<()> {
         unknown: "kb1",
         out: &arguments.out,
     };
-    let table = searches.run(&mut |line| say(&format!("{line}\n")))?;
-    say(&table)
+    let table = searches.run(&mut |line| print(&format!("{line}\n")))?;
+    print(&table)
 }
 
 /// Returns the score table of all sets that have a verdict.
-fn judged(sealed: Sealed, verdicts: &Path) -> anyhow::Result<String> {
+fn score_table(sealed: Sealed, verdicts: &Path) -> anyhow::Result<String> {
     let mut trials = Vec::new();
     let mut without = 0;
     for (name, answer) in sealed.sets {
@@ -320,7 +320,7 @@ fn judged(sealed: Sealed, verdicts: &Path) -> anyhow::Result<String> {
 }
 
 /// Writes text to standard output; ignores a closed pipe.
-fn say(text: &str) -> anyhow::Result<()> {
+fn print(text: &str) -> anyhow::Result<()> {
     match io::stdout().lock().write_all(text.as_bytes()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
         Ok(()) | Err(_) => Ok(()),

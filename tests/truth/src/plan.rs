@@ -1,10 +1,13 @@
 //! Random plan of a set of records: hidden effects, their sizes and the rope coefficients, all drawn from a
 //! seed.
-use crate::chain::{MORE_LOAD, MORE_SPEED, Sample, Sensors, Turns, record};
-use crate::draw::Draw;
+use crate::draw::RandomStream;
 use crate::files::{Channels, Delivered, write};
-use crate::law::{CATALOGUE, CUT_CARD, Hidden, Kind, Law, Nuisances, OUTSIDE, Tolerance, by_id};
-use crate::machine::{Fineness, Variation, genes, turn};
+use crate::law::{
+    CATALOGUE, CUT_CARD, EffectKind, HiddenEffect, Nuisances, PlantedEffect, Tolerance, UNLISTED,
+    by_id,
+};
+use crate::machine::{Resolution, Variation, draw_coefficients, turn};
+use crate::measuring_chain::{MORE_LOAD, MORE_SPEED, Sample, Sensors, Turns, record};
 use anyhow::Context as _;
 use protocol::pumping_unit::PumpingUnit;
 use serde::{Deserialize, Serialize};
@@ -63,22 +66,22 @@ impl Stratum {
 
 /// Specification of a set of records to generate for a given case.
 #[derive(Clone, Debug)]
-pub struct Order {
+pub struct SetSpec {
     /// Seed of all random draws.
     pub seed: u64,
     /// Stratum of the set.
     pub stratum: Stratum,
     /// Effects to hide instead of drawn ones.
-    pub asked: Vec<Kind>,
+    pub requested_effects: Vec<EffectKind>,
     /// Size of each effect as a multiple of its typical size; drawn if `None`. In the `card` stratum the
     /// number of harmonics kept.
-    pub times: Option<f64>,
+    pub size_factor: Option<f64>,
     /// Factor on the noise of all sensors.
     pub noise: f64,
     /// Number of cycles of each record.
     pub cycles: usize,
     /// Resolution of the truth simulation.
-    pub fineness: Fineness,
+    pub fineness: Resolution,
     /// Standard deviations of instrument, bearing and balance errors.
     pub tolerance: Tolerance,
     /// Recorded channels.
@@ -97,24 +100,24 @@ const ALIKE: [[&str; 2]; 8] = [
     ["stuffing_box_friction", "rope_bending_loss"],
 ];
 
-impl Order {
+impl SetSpec {
     /// Draws the hidden effects.
     ///
     /// # Errors
     /// None at present; unknown identifiers are refused by [`asked_kind`].
-    pub fn effects(&self) -> anyhow::Result<Vec<Hidden>> {
-        let mut draw = Draw::new(self.seed, "effects");
+    pub fn effects(&self) -> anyhow::Result<Vec<PlantedEffect>> {
+        let mut draw = RandomStream::new(self.seed, "effects");
         if self.stratum == Stratum::Card {
-            let harmonics = self.times.unwrap_or(6.0 + draw.index(5) as f64);
-            return Ok(vec![CUT_CARD.hide(harmonics, &mut draw)]);
+            let harmonics = self.size_factor.unwrap_or(6.0 + draw.index(5) as f64);
+            return Ok(vec![CUT_CARD.instantiate(harmonics, &mut draw)]);
         }
-        let any = |draw: &mut Draw, from: &[Kind]| from[draw.index(from.len())];
-        let from: &[Kind] = if self.stratum == Stratum::Outside {
-            &OUTSIDE
+        let any = |draw: &mut RandomStream, from: &[EffectKind]| from[draw.index(from.len())];
+        let from: &[EffectKind] = if self.stratum == Stratum::Outside {
+            &UNLISTED
         } else {
             &CATALOGUE
         };
-        let mut kinds = self.asked.clone();
+        let mut kinds = self.requested_effects.clone();
         if self.stratum != Stratum::Zero && kinds.is_empty() {
             kinds.push(any(&mut draw, from));
         }
@@ -128,10 +131,10 @@ impl Order {
         }
         let [lower, upper] = self.stratum.sizes();
         let hidden = kinds.into_iter().enumerate().map(|(k, kind)| {
-            let mut draw = Draw::new(self.seed, &format!("effect {k}"));
-            let drawn = draw.log_between(lower, upper.min(kind.most));
+            let mut draw = RandomStream::new(self.seed, &format!("effect {k}"));
+            let drawn = draw.log_between(lower, upper.min(kind.largest_multiple));
             let sign = if kind.signed { draw.sign() } else { 1.0 };
-            kind.hide(self.times.unwrap_or(drawn * sign), &mut draw)
+            kind.instantiate(self.size_factor.unwrap_or(drawn * sign), &mut draw)
         });
         Ok(hidden.collect())
     }
@@ -182,7 +185,7 @@ pub struct AnswerEffect {
 }
 
 impl AnswerEffect {
-    fn of(hidden: &Hidden) -> Self {
+    fn of(hidden: &PlantedEffect) -> Self {
         Self {
             id: hidden.kind.id.to_owned(),
             listed: CATALOGUE.iter().any(|kind| kind.id == hidden.kind.id),
@@ -202,21 +205,21 @@ impl AnswerEffect {
 /// Five machines whose simulations do not complete; file system errors.
 pub fn make(
     unit: &PumpingUnit,
-    order: &Order,
+    order: &SetSpec,
     folder: &Path,
     name: &str,
 ) -> anyhow::Result<Answer> {
     let hidden = order.effects()?;
     let ids: Vec<&str> = hidden.iter().map(|one| one.kind.id).collect();
-    let mut draw = Draw::new(order.seed, "nuisances");
+    let mut draw = RandomStream::new(order.seed, "nuisances");
     let nuisances = Nuisances::draw(&order.tolerance, &mut draw, &ids);
     let own = hidden.iter().map(|one| Arc::clone(&one.law));
-    let laws: Vec<Arc<dyn Law>> = own.chain(nuisances.laws()).collect();
+    let laws: Vec<Arc<dyn HiddenEffect>> = own.chain(nuisances.laws()).collect();
     let sensors = Sensors::with_noise(order.noise);
     let mut attempt = 0;
     let (values, all) = loop {
-        let mut draw = Draw::new(order.seed, &format!("genes {attempt}"));
-        let values = genes(&unit.case, &mut draw)?;
+        let mut draw = RandomStream::new(order.seed, &format!("genes {attempt}"));
+        let values = draw_coefficients(&unit.case, &mut draw)?;
         let all: anyhow::Result<Vec<Turns>> = (0..unit.case.conditions.len())
             .map(|condition| turns(unit, condition, (&values, &laws), &order.fineness))
             .collect();
@@ -230,10 +233,10 @@ pub fn make(
     };
     let conditions = unit.case.conditions.iter().zip(&unit.machine.conditions);
     for ((condition, working), turns) in conditions.zip(all) {
-        let mut draw = Draw::new(order.seed, &format!("sensors {}", condition.name));
+        let mut draw = RandomStream::new(order.seed, &format!("sensors {}", condition.name));
         let mut card = working.card.load_n.clone();
         for law in &laws {
-            law.deliver(&mut card, crate::chain::speed(working.speed_rpm));
+            law.distort_card(&mut card, crate::measuring_chain::speed(working.speed_rpm));
         }
         let (samples, lost): (Vec<Sample>, usize) =
             record(&turns, &card, &laws, (&sensors, order.cycles), &mut draw);
@@ -264,12 +267,13 @@ pub fn make(
     })
 }
 
-/// Simulates a crank revolution in one condition, as given, with more load and with more speed.
+/// Simulates a crank revolution under one condition three times: as given, with more load swing, and with
+/// more speed.
 fn turns(
     unit: &PumpingUnit,
     condition: usize,
-    machine: (&[f64], &[Arc<dyn Law>]),
-    fineness: &Fineness,
+    machine: (&[f64], &[Arc<dyn HiddenEffect>]),
+    fineness: &Resolution,
 ) -> anyhow::Result<Turns> {
     let with = |load: f64, speed: f64| {
         turn(
@@ -291,9 +295,9 @@ fn turns(
 ///
 /// # Errors
 /// An identifier of no effect; the message lists all known identifiers.
-pub fn asked_kind(id: &str) -> anyhow::Result<Kind> {
+pub fn asked_kind(id: &str) -> anyhow::Result<EffectKind> {
     let known = || {
-        let all = CATALOGUE.iter().chain(&OUTSIDE).map(|kind| kind.id);
+        let all = CATALOGUE.iter().chain(&UNLISTED).map(|kind| kind.id);
         all.collect::<Vec<_>>().join(", ")
     };
     by_id(id).with_context(|| {
@@ -308,15 +312,15 @@ pub fn asked_kind(id: &str) -> anyhow::Result<Kind> {
 mod tests {
     use super::*;
 
-    fn order(stratum: Stratum, seed: u64) -> Order {
-        Order {
+    fn order(stratum: Stratum, seed: u64) -> SetSpec {
+        SetSpec {
             seed,
             stratum,
-            asked: Vec::new(),
-            times: None,
+            requested_effects: Vec::new(),
+            size_factor: None,
             noise: 1.0,
             cycles: 5,
-            fineness: Fineness::COARSE,
+            fineness: Resolution::COARSE,
             tolerance: Tolerance::USUAL,
             channels: Channels::default(),
         }
@@ -338,14 +342,14 @@ mod tests {
             let double = order(Stratum::Double, seed).effects().unwrap();
             assert!(double.len() == 2 && double[0].kind.id != double[1].kind.id);
             let outside = order(Stratum::Outside, seed).effects().unwrap();
-            assert!(OUTSIDE.iter().any(|kind| kind.id == outside[0].kind.id));
+            assert!(UNLISTED.iter().any(|kind| kind.id == outside[0].kind.id));
             let below = order(Stratum::Below, seed).effects().unwrap();
             assert!((below[0].size / below[0].kind.scale).abs() <= 0.1);
             let card = order(Stratum::Card, seed).effects().unwrap();
             assert!((6.0..=10.0).contains(&card[0].size));
             let asked = ["pin_clearance", "crank_speed_ripple"];
-            let pair = Order {
-                asked: asked.map(|id| by_id(id).unwrap()).to_vec(),
+            let pair = SetSpec {
+                requested_effects: asked.map(|id| by_id(id).unwrap()).to_vec(),
                 ..order(Stratum::Double, seed)
             };
             let hidden = pair.effects().unwrap();

@@ -79,7 +79,7 @@ impl Sealed {
         hex.chars().take(10).collect()
     }
 
-    /// Writes the file and returns its commitment.
+    /// Writes the answer file and returns its commitment.
     ///
     /// # Errors
     /// File system errors.

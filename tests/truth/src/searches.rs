@@ -40,7 +40,7 @@ pub struct Outcome {
     /// Number of simulations.
     pub jobs: f64,
     /// Cost in equivalent plain simulations: a simulation with derivatives counts as 5 + 0.1 per unknown.
-    pub plain: f64,
+    pub equivalent_simulations: f64,
     /// Wall time (s).
     pub seconds: f64,
 }
@@ -63,7 +63,7 @@ struct Objective {
     optimised: Option<f64>,
 }
 
-/// Outcomes by record number and preset index, one for each seed.
+/// Outcomes by record number and preset index, one outcome for each seed.
 type Outcomes = BTreeMap<(usize, usize), Vec<Outcome>>;
 
 impl Searches<'_> {
@@ -151,7 +151,8 @@ impl Searches<'_> {
         Ok(None)
     }
 
-    /// Formats one line for each record and preset, with the values of several seeds separated by slashes.
+    /// Formats the outcomes as a table: one line per record and preset, values of several seeds separated by
+    /// slashes.
     fn table(&self, outcomes: &Outcomes) -> anyhow::Result<String> {
         let mut text = format!(
             "| record | search | objective | over the least | log10({0}) less hidden | jobs | plain | s |\n\
@@ -178,7 +179,7 @@ impl Searches<'_> {
                     |hidden| format!("{:+.3}", one.unknown - hidden)
                 )),
                 joined(&|one| format!("{}", one.jobs)),
-                joined(&|one| format!("{:.0}", one.plain)),
+                joined(&|one| format!("{:.0}", one.equivalent_simulations)),
                 joined(&|one| format!("{:.0}", one.seconds)),
             )?;
         }
@@ -186,7 +187,7 @@ impl Searches<'_> {
     }
 }
 
-/// Computes the outcome of a calibration from its JSON result and its table of evaluations.
+/// Computes the outcome of a calibration from its JSON result and its CSV table of evaluations.
 fn outcome(result: &[u8], log: &str, unknown: &str) -> anyhow::Result<Outcome> {
     let result: Result = serde_json::from_slice(result)?;
     let value = result.genes.get(unknown);
@@ -211,7 +212,7 @@ fn outcome(result: &[u8], log: &str, unknown: &str) -> anyhow::Result<Outcome> {
         unknown: libm::log10(value),
         objective: result.objective.optimised.unwrap_or(f64::INFINITY),
         jobs,
-        plain,
+        equivalent_simulations: plain,
         seconds: result.wall_s,
     })
 }
@@ -226,7 +227,10 @@ mod tests {
                           "objective": {"recommended": 6.0, "optimised": 0.5}}"#;
         let log = "job,purpose\n0,initial\n1,derivatives\n2,least_squares\n";
         let found = outcome(result, log, "kb1").expect("a result");
-        assert!((found.plain - 7.2).abs() < 1e-12, "{found:?}");
+        assert!(
+            (found.equivalent_simulations - 7.2).abs() < 1e-12,
+            "{found:?}"
+        );
         let missing = outcome(result, log, "kb2").unwrap_err().to_string();
         assert!(missing.contains("kb2"), "{missing}");
 

@@ -1,12 +1,12 @@
-//! Complete run of the suite: makes sets, diagnoses them with the program under test and keeps the verdicts;
-//! a stopped run continues.
+//! Complete run of the blind suite: makes sets of synthetic records with hidden effects, diagnoses them with
+//! the program under test and keeps the verdicts; a stopped run continues.
 //!
-//! A set's name follows from the salt of the answers and its number, so an incomplete set is made again under
-//! the same name; records and verdicts get their final names only when complete.
+//! A set's name follows from the salt of the answer file and the set's number, so an incomplete set is made
+//! again under the same name; records and verdicts get their final names only when complete.
 use crate::files::Channels;
 use crate::law::Tolerance;
-use crate::machine::Fineness;
-use crate::plan::{Order, Stratum, make};
+use crate::machine::Resolution;
+use crate::plan::{SetSpec, Stratum, make};
 use crate::seal::Sealed;
 use anyhow::{Context as _, bail};
 use protocol::pumping_unit::PumpingUnit;
@@ -15,27 +15,27 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-/// Settings of a suite run.
+/// Settings of a run of the blind test suite.
 #[derive(Debug)]
 pub struct Suite<'a> {
-    /// The machine under test.
+    /// Parameters of the pumping unit whose records are simulated.
     pub unit: PumpingUnit,
     /// Case folder of the machine.
     pub case: &'a Path,
-    /// Folder for sets, runs, answers and verdicts.
+    /// Folder for record sets, run folders, the answer file and verdicts.
     pub out: &'a Path,
     /// Path of the program under test.
     pub horsehead: &'a Path,
     /// Seed of all random draws.
     pub seed: u64,
-    /// Time after which no further set is started.
-    pub until: Option<Duration>,
+    /// Time since the start of the run after which no further set is started.
+    pub time_limit: Option<Duration>,
 }
 
-/// Distance between the first seeds of consecutive strata.
-const APART: u64 = 1000;
-/// Period of sets with two gauges only: one in this many.
-const TWO_GAUGES: u64 = 4;
+/// Difference between the random seeds of the first sets of consecutive strata.
+const STRATUM_SEED_STRIDE: u64 = 1000;
+/// Number of consecutive sets of a stratum of which one has records of only two gauges.
+const TWO_GAUGE_PERIOD: u64 = 4;
 
 impl Suite<'_> {
     /// Returns the path of the answer file.
@@ -48,8 +48,8 @@ impl Suite<'_> {
         self.out.join("verdicts")
     }
 
-    /// Makes and diagnoses the given number of sets of each stratum, with the strata interleaved; reports
-    /// each set through `say`. A failed diagnosis leaves its set without a verdict and is reported.
+    /// Makes and diagnoses the given number of record sets of each stratum, with the strata interleaved;
+    /// reports each set through `say`. A failed diagnosis leaves its set without a verdict and is reported.
     ///
     /// # Errors
     /// File system errors; a machine whose simulation never completes; a program that cannot be started.
@@ -69,12 +69,12 @@ impl Suite<'_> {
         let begun = Instant::now();
         let (mut done, total) = (0_usize, orders.len());
         for (number, order) in orders.iter().enumerate() {
-            if self.until.is_some_and(|until| begun.elapsed() > until) {
+            if self.time_limit.is_some_and(|until| begun.elapsed() > until) {
                 return say(&format!(
                     "{number} of {total} sets done; the time limit (--hours) is reached"
                 ));
             }
-            let name = self.set(order)?;
+            let name = self.make_set(order)?;
             let verdict = self.verdicts().join(format!("{name}.json"));
             if verdict.is_file() {
                 continue;
@@ -94,7 +94,7 @@ impl Suite<'_> {
 
     /// Returns the specifications of all sets with the strata interleaved, so that a run stopped early has
     /// some sets of each.
-    fn orders(&self, counts: &[(Stratum, u16)]) -> Vec<Order> {
+    fn orders(&self, counts: &[(Stratum, u16)]) -> Vec<SetSpec> {
         let place = |stratum: Stratum| {
             let all = Stratum::ALL.iter().position(|other| *other == stratum);
             all.map_or(0, |place| place as u64)
@@ -104,16 +104,16 @@ impl Suite<'_> {
         });
         let mut all: Vec<(f64, Stratum, u64)> = all.collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let order = |(_, stratum, k): (f64, Stratum, u64)| Order {
-            seed: self.seed + APART * place(stratum) + k,
+        let order = |(_, stratum, k): (f64, Stratum, u64)| SetSpec {
+            seed: self.seed + STRATUM_SEED_STRIDE * place(stratum) + k,
             stratum,
-            asked: Vec::new(),
-            times: None,
+            requested_effects: Vec::new(),
+            size_factor: None,
             noise: 1.0,
             cycles: 5,
-            fineness: Fineness::FULL,
+            fineness: Resolution::FULL,
             tolerance: Tolerance::USUAL,
-            channels: if k % TWO_GAUGES == TWO_GAUGES - 1 {
+            channels: if k % TWO_GAUGE_PERIOD == TWO_GAUGE_PERIOD - 1 {
                 Channels::TWO
             } else {
                 Channels::default()
@@ -122,8 +122,8 @@ impl Suite<'_> {
         all.into_iter().map(order).collect()
     }
 
-    /// Makes the set of a specification unless it exists, and returns its name.
-    fn set(&self, order: &Order) -> anyhow::Result<String> {
+    /// Makes the record set of a specification unless it exists; returns the set's name.
+    fn make_set(&self, order: &SetSpec) -> anyhow::Result<String> {
         let mut sealed = Sealed::load_or_new(&self.answers())?;
         let same = |answer: &crate::plan::Answer| {
             answer.seed == order.seed && answer.stratum == order.stratum
@@ -197,7 +197,7 @@ mod tests {
             out,
             horsehead,
             seed: 5,
-            until: None,
+            time_limit: None,
         }
     }
 
@@ -211,7 +211,7 @@ mod tests {
         let none = Path::new("none");
         let orders = suite(none, none).orders(&[(Stratum::Single, 30), (Stratum::Zero, 10)]);
         assert_eq!(orders.len(), 40);
-        let zeros = |orders: &[Order]| {
+        let zeros = |orders: &[SetSpec]| {
             let zero = orders.iter().filter(|order| order.stratum == Stratum::Zero);
             zero.count()
         };
@@ -224,8 +224,8 @@ mod tests {
         assert_eq!(two.count(), 9);
     }
 
-    /// Checks, with a shell script as the program under test, that a verdict gets its final name only after
-    /// success.
+    /// Checks, with a shell script as the program under test, that a verdict file gets its final name only
+    /// after a successful diagnosis.
     #[test]
     fn a_verdict_gets_its_name_when_it_is_whole() {
         let scratch = tempfile::tempdir().expect("a folder");

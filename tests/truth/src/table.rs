@@ -1,7 +1,7 @@
 //! Markdown tables of the score metrics and of the individual trials.
 use crate::interval::clopper_pearson;
-use crate::judge::{Outcome, Trial};
 use crate::plan::Stratum;
+use crate::scoring::{Outcome, Trial};
 use std::fmt::{Result, Write as _};
 
 /// Formats a proportion with its Clopper-Pearson 95 % interval.
@@ -19,7 +19,7 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     values.get(values.len() / 2).copied()
 }
 
-/// Formats the metrics by stratum, followed by the list of all trials.
+/// Formats the diagnosis metrics by stratum, followed by the list of all trials (diagnosed sets).
 ///
 /// # Errors
 /// Never in practice, since the text is written to memory.
@@ -81,7 +81,11 @@ impl<'a> Table<'a> {
             })?;
         }
         let all = self.trials;
-        let large = |trial: &&Trial| trial.over_limit(all).is_some_and(|times| times >= 3.0);
+        let large = |trial: &&Trial| {
+            trial
+                .size_over_detection_limit(all)
+                .is_some_and(|times| times >= 3.0)
+        };
         let large: Vec<&Trial> = single.iter().copied().filter(large).collect();
         self.share(
             "single, at least 3 x the limit of an empty set: first name right",
@@ -93,7 +97,7 @@ impl<'a> Table<'a> {
             "at least 3 x the limit: ambiguity set contains the hidden effect",
             ">= 95 %",
             &large,
-            Trial::covered,
+            Trial::first_set_contains_truth,
         )?;
         let small = (single.len() - large.len()).to_string();
         self.line("single, below that or without such a limit", "", &small)?;
@@ -103,11 +107,11 @@ impl<'a> Table<'a> {
             "single, named: ambiguity set contains the hidden effect",
             ">= 95 %",
             &named,
-            Trial::covered,
+            Trial::first_set_contains_truth,
         )?;
         let size = |trial: &&Trial| {
             let first = trial.verdict.added().next()?;
-            Some(trial.verdict.set_of(first).len() as f64)
+            Some(trial.verdict.ambiguity_set(first).len() as f64)
         };
         let sets: Vec<f64> = named.iter().filter_map(size).collect();
         self.line("mean size of the ambiguity set", "<= 2", &mean(&sets))
@@ -127,7 +131,7 @@ impl<'a> Table<'a> {
             "zero: no effect named",
             ">= 95 %",
             &zero,
-            Trial::names_nobody,
+            Trial::names_no_effect,
         )?;
         let double = self.of(Stratum::Double);
         let exact = |trial: &Trial| trial.right() == 2 && trial.verdict.added().count() == 2;
@@ -146,7 +150,7 @@ impl<'a> Table<'a> {
             "outside: no effect named",
             ">= 90 %",
             &outside,
-            Trial::names_nobody,
+            Trial::names_no_effect,
         )?;
         let cards = self.of(Stratum::Card);
         self.share(
@@ -181,7 +185,7 @@ impl<'a> Table<'a> {
         let right = self.trials.iter().filter(|trial| trial.first_is_right());
         let closed = median(
             right
-                .filter_map(|trial| trial.verdict.closed_elsewhere())
+                .filter_map(|trial| trial.verdict.gap_closed_in_other_condition())
                 .collect(),
         );
         let closed = closed.map_or("-".to_owned(), |share| format!("{:.0} %", 100.0 * share));
@@ -192,7 +196,7 @@ impl<'a> Table<'a> {
         )
     }
 
-    /// Writes a table with the hidden effects and the verdict of each trial.
+    /// Writes a table of all trials, each with its hidden effects and its verdict.
     fn list(&mut self) -> Result {
         self.text.push_str(
             "| set | stratum | channels | noise | hidden | times limit | verdict | named (set) | mark |\n\
@@ -206,7 +210,7 @@ impl<'a> Table<'a> {
             let hidden: Vec<String> = effects
                 .map(|e| format!("{} {:.3e} {}", e.id, e.value, e.unit))
                 .collect();
-            let over = trial.over_limit(self.trials);
+            let over = trial.size_over_detection_limit(self.trials);
             writeln!(
                 self.text,
                 "| {} | {} | {} | {} | {} | {} | {} | {} | {} |",
@@ -218,17 +222,17 @@ impl<'a> Table<'a> {
                 over.map_or("-".to_owned(), |times| format!("{times:.1}")),
                 trial.verdict.verdict,
                 names(trial),
-                trial.mark(),
+                trial.label(),
             )?;
         }
         Ok(())
     }
 }
 
-/// Formats the named effects of a trial, each with its ambiguity set.
+/// Formats the effects that a trial's verdict names, each with its ambiguity set.
 fn names(trial: &Trial) -> String {
     let one = |id: &str| {
-        let set = trial.verdict.set_of(id);
+        let set = trial.verdict.ambiguity_set(id);
         let others: Vec<&str> = set.into_iter().filter(|other| *other != id).collect();
         if others.is_empty() {
             id.to_owned()

@@ -1,7 +1,7 @@
 //! Curves of one crank revolution as ideal sensors would record them, sampled at equal time intervals.
 use simulation::math::spline::Splines;
 use simulation::model::description::RopeLaw;
-use simulation::model::{Individual, Machine};
+use simulation::model::{Machine, RopeMachine};
 use simulation::observe::Recorder;
 use simulation::run::Observe;
 use simulation::system::State;
@@ -19,7 +19,7 @@ pub struct Turn {
     pub position: Vec<f64>,
     /// Net torque at the crank [N m].
     pub torque: Vec<f64>,
-    /// Components of the back rope's force on its head, along and across the beam \[N\].
+    /// Components of the back rope's force on the back head, along and across the beam \[N\].
     pub push: [Vec<f64>; 2],
     /// Tension of the back rope at the crossbeam \[N\].
     pub tension: Vec<f64>,
@@ -46,7 +46,7 @@ impl Turn {
         channels
     }
 
-    /// Replaces every curve by its values at a time later by the share `ahead` of the revolution.
+    /// Replaces every curve by its values at later times, shifted by the share `ahead` of the revolution.
     pub fn shift(&mut self, ahead: f64) {
         let all = self.stress.iter_mut().chain(&mut self.push);
         let others = [&mut self.position, &mut self.torque, &mut self.tension];
@@ -56,8 +56,8 @@ impl Turn {
     }
 }
 
-/// Returns the values of a periodic curve at times later by the share `ahead` of its period, by spline
-/// interpolation.
+/// Returns the values of a periodic curve at later times, shifted by the share `ahead` of its period, by
+/// spline interpolation.
 pub fn shifted(curve: &[f64], ahead: f64) -> Vec<f64> {
     let n = curve.len() as f64;
     let spline = Splines::periodic(0.0, 1.0, &[curve.to_vec()]);
@@ -96,7 +96,7 @@ impl Watch {
 }
 
 impl Observe for Watch {
-    fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State) {
+    fn sample(&mut self, index: usize, system: &mut System<RopeMachine<'_>>, state: &State) {
         self.recorder.sample(index, system, state);
         let individual = &system.equations;
         let beam = state.q[individual.machine.layout.beam()];

@@ -9,21 +9,21 @@ use std::path::Path;
 /// that output's contract.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub struct Verdict {
-    /// Verdict: `nothing_detected`, `named`, `ambiguous`, `unlisted` or `unresolved`.
+    /// Overall result of the diagnosis: `nothing_detected`, `named`, `ambiguous`, `unlisted` or `unresolved`.
     pub verdict: String,
     /// Effects added to the model, followed by members of their ambiguity sets.
     #[serde(default)]
-    pub effects: Vec<Named>,
+    pub effects: Vec<EffectEstimate>,
     /// Rounds of the diagnosis, each with its added effect and ambiguity set.
     #[serde(default)]
     pub rounds: Vec<Round>,
-    /// Smallest detectable sizes of effects.
+    /// Smallest sizes of effects that the diagnosis can detect.
     #[serde(default)]
     pub detection_limits: Vec<Limit>,
-    /// Share of the gap closed by the added effects.
+    /// Shares of the unexplained measured variance (gap) that the added effects explain.
     #[serde(default)]
     pub gap: Gap,
-    /// Effects that changes of the unknowns imitate, so that the record cannot reveal them.
+    /// Effects that changes of the unknown coefficients imitate, so that the record cannot reveal them.
     #[serde(default)]
     pub absorbed: Vec<Absorbed>,
     /// Estimated nuisance parameters of the instruments.
@@ -31,7 +31,7 @@ pub struct Verdict {
     pub nuisances: Vec<Nuisance>,
 }
 
-/// Effect that the record cannot reveal because the unknowns absorb it.
+/// Effect that the record cannot reveal because changes of the unknown coefficients imitate it.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Absorbed {
     /// Identifier of the effect.
@@ -41,17 +41,17 @@ pub struct Absorbed {
 /// Estimated nuisance parameter of an instrument.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Nuisance {
-    /// Identifier of the effect, or of a channel's gain.
+    /// Identifier of the instrument effect or of the channel gain to which the parameter belongs.
     pub id: String,
     /// Name of the parameter.
     pub parameter: String,
-    /// Its 95 % confidence interval.
+    /// 95 % confidence interval of the parameter.
     pub ci95: [f64; 2],
 }
 
 /// Effect listed in a verdict.
 #[derive(Clone, Debug, Default, Deserialize)]
-pub struct Named {
+pub struct EffectEstimate {
     /// Identifier of the effect.
     pub id: String,
     /// Whether the effect was added to the model.
@@ -67,7 +67,7 @@ pub struct Named {
 pub struct Size {
     /// Estimated value.
     pub value: f64,
-    /// Its 95 % confidence interval; `None` where there is none.
+    /// 95 % confidence interval of the parameter; `None` where there is none.
     pub ci95: Option<[Option<f64>; 2]>,
 }
 
@@ -81,18 +81,18 @@ pub struct Round {
     pub set: Vec<String>,
 }
 
-/// Detection limit of an effect.
+/// Smallest detectable size of an effect.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Limit {
     /// Identifier of the effect.
     pub id: String,
-    /// Name of the parameter.
+    /// Name of the parameter that measures the size of the effect.
     pub parameter: String,
-    /// Smallest detectable size; `None` where recalibration absorbs the effect.
+    /// Smallest detectable size; `None` where recalibrated coefficients imitate the effect.
     pub size: Option<f64>,
 }
 
-/// Shares of the gap that closed.
+/// Shares of the unexplained measured variance (gap) that the added effects explain.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub struct Gap {
     other_condition: Option<Closed>,
@@ -104,7 +104,7 @@ struct Closed {
 }
 
 impl Verdict {
-    /// Reads a verdict from a JSON file.
+    /// Reads a verdict from the JSON output of a diagnosis.
     ///
     /// # Errors
     /// A file that cannot be read or is no verdict.
@@ -128,8 +128,9 @@ impl Verdict {
         matches!(self.verdict.as_str(), "named" | "ambiguous")
     }
 
-    /// Returns the share of the gap that closed under the other condition.
-    pub fn closed_elsewhere(&self) -> Option<f64> {
+    /// Returns the share of the gap (unexplained variance) that the added effects close under the other
+    /// working condition.
+    pub fn gap_closed_in_other_condition(&self) -> Option<f64> {
         self.gap.other_condition.as_ref()?.closed
     }
 
@@ -141,7 +142,7 @@ impl Verdict {
     }
 
     /// Returns the ambiguity set of the round that added the effect `id`, including `id` itself.
-    pub fn set_of<'a>(&'a self, id: &'a str) -> BTreeSet<&'a str> {
+    pub fn ambiguity_set<'a>(&'a self, id: &'a str) -> BTreeSet<&'a str> {
         let round = self.rounds.iter().find(|r| r.added.as_deref() == Some(id));
         let set = round.map(|r| r.set.iter().map(String::as_str));
         set.into_iter().flatten().chain([id]).collect()

@@ -1,18 +1,18 @@
-//! Benchmarks of the kernels and of whole runs. The times are informative only; the regression gate is the
-//! work snapshots of tests/numerics.
+//! Benchmarks of the kernels and of whole runs. The times are informative only; regressions are detected by
+//! the counts of work that tests/numerics compares with its snapshots.
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Vector3;
 use simulation::drive::Drive;
 use simulation::effect::{Role, catalogue};
 use simulation::integrator::method::CATALOGUE;
-use simulation::model::{Individual, Machine};
+use simulation::model::{Machine, RopeMachine};
 use simulation::observe::Recorder;
 use simulation::reference;
 use simulation::rig::{End, Rig, Setup};
 use simulation::run::{RunSettings, simulate};
-use simulation::sensitivity::{self, Coefficient, Column, Origin, Plan};
+use simulation::sensitivity::{self, Coefficient, Column, ColumnOrigin, DerivativePlan};
 use simulation::settle::{guess, minimize};
-use simulation::system::{Equations, Shift, StateRef, System};
+use simulation::system::{Equations, StateRef, StateShift, System};
 
 /// Returns the reference machine with the real unit's 72 + 114 cylinders of 50 mm.
 fn machine() -> Machine {
@@ -23,7 +23,7 @@ fn machine() -> Machine {
     Machine::new(description, 2).expect("the description is complete")
 }
 
-/// Returns the recommended and the optimised coefficients of Table 3.
+/// Returns the recommended and the optimised coefficients of the paper's Table 3.
 fn laws() -> [(&'static str, simulation::model::description::RopeLaw); 2] {
     let optimised = reference::law();
     let mut recommended = optimised;
@@ -37,7 +37,8 @@ fn laws() -> [(&'static str, simulation::model::description::RopeLaw); 2] {
     [("recommended", recommended), ("optimised", optimised)]
 }
 
-/// Measures force evaluation, tangent with factorisation, and solution at the start of a run under load.
+/// Measures force evaluation, tangent with factorisation, and linear solution, each at the start of a run
+/// under load.
 fn kernels(criterion: &mut Criterion) {
     let machine = machine();
     let drive = Drive {
@@ -46,7 +47,7 @@ fn kernels(criterion: &mut Criterion) {
         speed: 0.5,
     };
     let ropes = machine.ropes(&reference::law());
-    let mut system = System::new(Individual::new(&machine, ropes, drive));
+    let mut system = System::new(RopeMachine::new(&machine, ropes, drive));
     let state = system.equations.drive_state(0.0);
     let q = guess(&machine, &ropes, &state).expect("the mechanism closes");
     let v = vec![0.0; q.len()];
@@ -59,7 +60,7 @@ fn kernels(criterion: &mut Criterion) {
         });
     });
     let mut matrix = system.equations.matrix();
-    let shift = Shift {
+    let shift = StateShift {
         mass: 1600.0,
         damping: 40.0,
     };
@@ -100,7 +101,7 @@ fn runs(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Measures the static equilibrium of a strongly bent cantilever.
+/// Measures the time to find the static equilibrium of a strongly bent cantilever.
 fn settles(criterion: &mut Criterion) {
     let law = reference::law().bushing;
     let setup = Setup {
@@ -130,15 +131,15 @@ fn settles(criterion: &mut Criterion) {
     });
 }
 
-/// Measures runs with sensitivity columns against the plain run: the ten coefficients and a friction, and all
-/// sizes of the catalogue.
+/// Measures runs that also integrate sensitivities, against the plain run: with respect to the ten
+/// coefficients and a friction, and to all sizes of the catalogue.
 fn columns(criterion: &mut Criterion) {
     let mut description = reference::description();
     description.rope.pitch = 0.05;
     description.rope.back = 72;
     description.rope.front = 114;
     let machine = machine();
-    let origin = Origin {
+    let origin = ColumnOrigin {
         description: &description,
         modes: 2,
         effects: &[],
@@ -170,7 +171,7 @@ fn columns(criterion: &mut Criterion) {
     group.sample_size(10);
     let (_, law) = laws()[0];
     for (name, columns) in sets {
-        let plan = Plan::new(&origin, &machine, &columns).expect("the catalogue's own");
+        let plan = DerivativePlan::new(&origin, &machine, &columns).expect("the catalogue's own");
         group.bench_function(format!("{name} ({})", columns.len()), |b| {
             b.iter(|| {
                 let mut recorder = Recorder::gauges_only();

@@ -25,7 +25,7 @@ pub struct DriveState {
     pub turn: f64,
     /// Position \[m\], velocity and acceleration of the crank pin in the frame W.
     pub pin: [V2; 3],
-    /// Angle of the crank pin \[rad\].
+    /// Angle of the crank pin about the shaft \[rad\].
     pub pin_angle: f64,
     /// Signed rate of the pin angle [rad/s].
     pub pin_rate: f64,

@@ -3,8 +3,8 @@
 //! Coordinates that determine measured quantities (beam, rod, suspension, modes) have tight tolerances, the
 //! cylinders of a rope loose ones.
 
-/// Tolerances of Newton's method: cylinder position \[m\] here; then cylinder angle \[rad\], beam and rod
-/// angle \[rad\], and modal coordinate [kg^1/2 m].
+/// Tolerance of Newton's method for a cylinder position \[m\]; the constants that follow are those of a
+/// cylinder angle \[rad\], of beam and rod angle \[rad\], and of a modal coordinate [kg^1/2 m].
 pub(crate) const LENGTH: f64 = 2e-6;
 const TURN: f64 = 2e-5;
 pub(crate) const ANGLE: f64 = 1e-6;

@@ -3,15 +3,15 @@
 //!
 //! Two programs that agree on every bit of [`bits`] integrate the same equations with the same arithmetic; a
 //! change of a law, a tolerance or an elementary function changes the bits.
-use crate::effect::{Asked, Effect, Parameter, Selection, catalogue};
+use crate::effect::{Effect, EffectRequest, Parameter, Selection, catalogue};
 use crate::element::{bushing::Bushing, impact::Impact};
 use crate::model::Machine;
 use crate::model::description::{
-    self, Crank, Description, Head, Rod, Rope, RopeLaw, StressRecovery, Sway, Twins,
+    self, AntisymmetricHead, Crank, Description, Head, Rod, Rope, RopeLaw, StressRecovery, Twins,
 };
 use crate::observe::Recorder;
 use crate::run::{RunSettings, simulate};
-use crate::sensitivity::{self, Coefficient, Column, Derivative, Origin, Plan};
+use crate::sensitivity::{self, Coefficient, Column, ColumnOrigin, Derivative, DerivativePlan};
 use crate::statistics::Statistics;
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ pub fn twins(longer: [f64; 2]) -> Description {
         twins: Some(Twins {
             offset: 0.12,
             longer,
-            sway: Sway {
+            sway: AntisymmetricHead {
                 frequencies: vec![290.0, 600.0],
                 radial: vec![wave(0, 0.01), wave(1, 0.02)],
                 tangential: vec![wave(2, 0.01), wave(3, 0.01)],
@@ -44,7 +44,8 @@ pub fn twins(longer: [f64; 2]) -> Description {
     }
 }
 
-/// Returns a machine of the real unit's shape with fewer, longer cylinders: 24 and 38.
+/// Returns the description of a machine of the real unit's shape with fewer, longer cylinders: 24 in the back
+/// rope and 38 in the front rope.
 pub fn description() -> Description {
     Description {
         gravity: 9.81,
@@ -138,22 +139,22 @@ pub fn bits() -> (Vec<u64>, Statistics) {
     run(description(), &[], &RunSettings::default())
 }
 
-/// Returns bits and statistics of three inexpensive runs that together fingerprint the numerics of a build.
-/// The machine has fewer cylinders and a faster crank. Two runs are complete: the plain machine, and one with
-/// every named effect at its typical size and every generic force at a tenth of it. The run with twin ropes
-/// is limited to 2000 Newton iterations.
-pub fn name() -> [(Vec<u64>, Statistics); 3] {
+/// Returns gauge-stress bits and work counters of three inexpensive runs that together fingerprint the
+/// numerics of a build. The machine has fewer cylinders and a faster crank. Two runs are complete: the plain
+/// machine, and one with every named effect at its typical size and every generic force at a tenth of it. The
+/// run with twin ropes is limited to 2000 Newton iterations.
+pub fn fingerprint() -> [(Vec<u64>, Statistics); 3] {
     let settings = quick();
     let short = RunSettings {
         budget: 2000,
         ..settings
     };
-    let asked: Vec<Asked<'_>> = catalogue()
+    let asked: Vec<EffectRequest<'_>> = catalogue()
         .iter()
         .map(|d| {
             let share = if d.generic { 0.1 } else { 1.0 };
             let value = |p: &Parameter| p.absent + share * (p.typical - p.absent);
-            Asked {
+            EffectRequest {
                 id: &d.id,
                 parameters: d.parameters.iter().map(|p| (p.name, value(p))).collect(),
             }
@@ -167,14 +168,15 @@ pub fn name() -> [(Vec<u64>, Statistics); 3] {
     ]
 }
 
-/// Returns the derivatives of the first of the runs of [`name`], with bearing friction added, as bits: with
-/// respect to the most influential coefficients (`Kb1`, `Kc`), a size and a shape parameter of an effect that
-/// the machine has, a size of an effect that it lacks, and a generic force.
+/// Returns derivatives of a run as bits, to fingerprint the numerics of a build. The run is the plain one of
+/// [`fingerprint`] with bearing friction added; the derivatives are with respect to the most influential
+/// coefficients (`Kb1`, `Kc`), a size and a shape parameter of an effect that the machine has, a size of an
+/// effect that it lacks, and a generic force.
 ///
-/// The result is empty if one of them does not exist, which a test rules out.
+/// The result is empty if a derivative does not exist, which a test rules out.
 pub fn columns() -> Vec<u64> {
     let description = small(description());
-    let friction = Asked {
+    let friction = EffectRequest {
         id: "pivot_friction",
         parameters: vec![("moment", 1500.0), ("creep", 4e-3)],
     };
@@ -200,12 +202,12 @@ pub fn columns() -> Vec<u64> {
         ])
         .chain(generic)
         .collect();
-    let origin = Origin {
+    let origin = ColumnOrigin {
         description: &description,
         modes: 2,
         effects: &effects,
     };
-    let Ok(plan) = Plan::new(&origin, &machine, &columns) else {
+    let Ok(plan) = DerivativePlan::new(&origin, &machine, &columns) else {
         return Vec::new();
     };
     let settings = RunSettings {
@@ -287,13 +289,13 @@ mod tests {
 
     #[test]
     fn the_runs_that_name_a_build_differ_and_repeat_bit_for_bit() {
-        let first = name();
+        let first = fingerprint();
         let [plain, effects, twins] = first.each_ref().map(|(bits, _)| bits);
         assert_eq!((plain.len(), effects.len()), (4 * 72, 4 * 72));
         assert!(twins.len() > 4 * 4, "{}", twins.len());
         let all = [plain, effects, twins].into_iter().flatten();
         assert!(all.copied().all(|bits| f64::from_bits(bits).is_finite()));
         assert!(plain != effects && plain[..twins.len()] != twins[..]);
-        assert_eq!(name(), first);
+        assert_eq!(fingerprint(), first);
     }
 }

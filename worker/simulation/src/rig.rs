@@ -7,13 +7,13 @@ use crate::element::{
     bushing::{Bushing, Marker},
     impact::Impact,
 };
-use crate::linear::{BLOCK, Bordered, Entry};
+use crate::linear::{BLOCK, Bordered, MatrixEntry};
 use crate::math::rotation::about_z;
-use crate::model::chain::{Chain, ChainState, Held, Joints};
+use crate::model::chain::{Chain, ChainState, EndJoint, Joints};
 use crate::model::contact::Surface;
 use crate::model::description::Arc;
 use crate::norm::{cylinders_error, cylinders_newton};
-use crate::system::{Equations, Loaded, Powers, Shift, StateRef, Static};
+use crate::system::{Equations, LoadedState, Powers, StateRef, StateShift, Static};
 use nalgebra::Vector3;
 
 type V3 = Vector3<f64>;
@@ -27,12 +27,12 @@ pub enum End {
         force: V3,
         /// Torque about the cylinder's own axis [N m].
         twist: f64,
-        /// Torque about the z axis of W [N m].
+        /// Torque on the end cylinder about the z axis of W [N m].
         turn: f64,
     },
     /// End joined to the ground.
     Held {
-        /// Position of the joint in W \[m\].
+        /// Position in W of the joint to the ground \[m\].
         place: V3,
         /// Direction of the chain's axis at the joint, in the plane, from +x \[rad\].
         angle: f64,
@@ -44,7 +44,7 @@ pub enum End {
 /// Drum about the z axis, fixed in W, and the law of a cylinder's contact with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drum {
-    /// Centre \[m\].
+    /// Centre of the drum \[m\].
     pub center: [f64; 2],
     /// Radius of the centre line of the rope lying on the drum \[m\].
     pub radius: f64,
@@ -86,12 +86,12 @@ impl End {
         }
     }
 
-    fn held(&self) -> Option<Held<'_>> {
+    fn held(&self) -> Option<EndJoint<'_>> {
         let Self::Held { place, angle, law } = self else {
             return None;
         };
         let (s, c) = crate::math::elementary::sin_cos(*angle);
-        Some(Held {
+        Some(EndJoint {
             marker: Marker {
                 p: *place,
                 rho: V3::zeros(),
@@ -156,7 +156,9 @@ impl Rig {
     pub fn energy(&mut self, q: &[f64], v: &[f64]) -> f64 {
         self.setup.chain.pose(q, v, &mut self.state);
         if let Some((surface, law)) = self.surface() {
-            self.setup.chain.touch(&surface, &law, &mut self.state);
+            self.setup
+                .chain
+                .evaluate_contact(&surface, &law, &mut self.state);
         }
         let mut momentum = vec![0.0; v.len()];
         self.subtract_inertia(q, v, &mut momentum);
@@ -237,12 +239,12 @@ impl Equations for Rig {
         }
     }
 
-    fn subtract_inertia<T: Entry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
+    fn subtract_inertia<T: MatrixEntry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
         self.setup.chain.subtract_inertia(q, a, out);
     }
 
-    fn tangent(&self, at: Loaded<'_>, shift: Shift, matrix: &mut Bordered) {
-        let Shift { mass, damping } = shift;
+    fn tangent(&self, at: LoadedState<'_>, shift: StateShift, matrix: &mut Bordered) {
+        let StateShift { mass, damping } = shift;
         let chain = self.setup.chain;
         matrix.clear();
         chain.add_inertia_blocks(at.state().q, mass, matrix);
@@ -263,7 +265,13 @@ impl Equations for Rig {
         }
     }
 
-    fn add_spin_tangent(&self, at: StateRef<'_>, a: &[f64], damping: f64, matrix: &mut Bordered) {
+    fn add_velocity_inertia_tangent(
+        &self,
+        at: StateRef<'_>,
+        a: &[f64],
+        damping: f64,
+        matrix: &mut Bordered,
+    ) {
         let chain = self.setup.chain;
         chain.add_spin_tangent(at, a, damping, matrix);
     }
@@ -276,7 +284,7 @@ impl Equations for Rig {
         cylinders_error(0.0, error, BLOCK)
     }
 
-    fn powers(&self, _: Loaded<'_>, _: &[f64]) -> Powers {
+    fn powers(&self, _: LoadedState<'_>, _: &[f64]) -> Powers {
         Powers {
             dissipated: self.state.losses(),
             ..Powers::default()
@@ -285,7 +293,7 @@ impl Equations for Rig {
 }
 
 impl Static for Rig {
-    fn potential(&self, at: Loaded<'_>) -> f64 {
+    fn potential(&self, at: LoadedState<'_>) -> f64 {
         self.potential_energy(at.state().q)
     }
 

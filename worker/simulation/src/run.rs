@@ -6,7 +6,7 @@ use crate::integrator::method::Method;
 use crate::integrator::stepper::Stages;
 use crate::integrator::tableau::ESDIRK4;
 use crate::model::description::RopeLaw;
-use crate::model::{Individual, Machine};
+use crate::model::{Machine, RopeMachine};
 use crate::settle::{Damping, equilibrium, overload, swing_rate};
 use crate::statistics::Statistics;
 use crate::system::{Powers, State, System};
@@ -24,13 +24,13 @@ pub struct RunSettings {
     pub ramp: f64,
     /// Number of samples over the recorded revolution.
     pub samples: usize,
-    /// Tolerated local error per step, in units of the built-in scales.
+    /// Tolerated local error per time step, as a multiple of the built-in tolerances of the coordinates.
     pub tolerance: f64,
     /// Longest step \[s\] while the swing of the beam on its ropes is slow; it limits how coarsely the ropes'
     /// own modes are resolved.
     pub longest_step: f64,
-    /// Rate of that swing ([`swing_rate`]) above which the longest step shrinks in inverse proportion
-    /// [rad/s]; infinite for a constant longest step.
+    /// Natural frequency of the beam's swing on its ropes ([`swing_rate`]) above which the longest step
+    /// shrinks in inverse proportion [rad/s]; infinite for a constant longest step.
     pub slow_swing: f64,
     /// Maximum number of Newton iterations of a run.
     pub budget: u64,
@@ -43,9 +43,9 @@ pub struct RunSettings {
     pub damping: Damping,
 }
 
-/// Default of `slow_swing` [rad/s]: 2.65 Hz, which steps of 0.06 s resolve by 6.3 steps per period. The worst
-/// gauge of the fourth-order method then has an error of 0.12 % of its range in the median and 0.67 % at most
-/// (README).
+/// Default of `slow_swing` [rad/s]: 2.65 Hz, at which a step of 0.06 s is 1/6.3 of a period. The error of the
+/// fourth-order method, at the gauge with the largest error, is then 0.12 % of the gauge's range in the
+/// median and 0.67 % at most (README).
 const SLOW_SWING: f64 = 16.65;
 
 impl Default for RunSettings {
@@ -67,10 +67,11 @@ impl Default for RunSettings {
 }
 
 impl RunSettings {
-    /// Returns the drive that brings a machine's crank to full speed.
+    /// Returns the motion of crank and load over time, including the run-up of a machine's crank to full
+    /// speed.
     pub(crate) fn drive(&self, machine: &Machine) -> Drive {
         Drive {
-            start: -self.lead_in + machine.hooks.index_offset().min(0.0),
+            start: -self.lead_in + machine.extensions.index_offset().min(0.0),
             ramp: self.ramp,
             speed: machine.description.crank.speed,
         }
@@ -79,7 +80,7 @@ impl RunSettings {
     /// Returns the time of a sample of the recorded revolution \[s\].
     pub(crate) fn sampled(&self, machine: &Machine, drive: &Drive, sample: usize) -> f64 {
         let turn = TAU * sample as f64 / self.samples as f64;
-        drive.time_at(machine.hooks.index_offset() + turn)
+        drive.time_at(machine.extensions.index_offset() + turn)
     }
 
     /// Returns the number of Newton iterations allowed until the given `fraction` of the run's time has been
@@ -93,21 +94,21 @@ impl RunSettings {
 /// Observer of a run: receives every step, and every sample of the recorded revolution.
 pub trait Observe {
     /// Called once in static equilibrium, before any motion.
-    fn begin(&mut self, _system: &mut System<Individual<'_>>, _state: &State) {}
+    fn begin(&mut self, _system: &mut System<RopeMachine<'_>>, _state: &State) {}
 
-    /// Called after an accepted step, before axial laws store their memory. The loads held by `system` may
-    /// belong to any state.
+    /// Called after an accepted step, before axial laws store their memory. The loads held by `system` are
+    /// not necessarily those of the step's end.
     fn step(
         &mut self,
-        _system: &mut System<Individual<'_>>,
+        _system: &mut System<RopeMachine<'_>>,
         _ends: [&State; 2],
         _stages: Option<Stages<'_>>,
     ) {
     }
 
-    /// Called at sample `index` with the interpolated `state`; the loads held by `system` may belong to any
-    /// other state.
-    fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State);
+    /// Called at sample `index` with the interpolated `state`; the loads held by `system` are not necessarily
+    /// those of this state.
+    fn sample(&mut self, index: usize, system: &mut System<RopeMachine<'_>>, state: &State);
 
     /// Called when the revolution is complete; its samples are `spacing` \[s\] apart.
     fn complete(&mut self, _machine: &Machine, _spacing: f64) {}
@@ -136,9 +137,9 @@ pub fn simulate(
     run((machine, law), settings, None, observer)
 }
 
-/// Simulates one individual on the step grid of another run, given by the ends of its steps \[s\].
-/// Differences of such runs contain neither step control nor early termination of iterations, because stages
-/// are solved to rounding.
+/// Simulates one individual on the step grid of another run, given by the end times of its steps \[s\].
+/// Stages are solved to rounding, so differences between such runs are free of errors from step-size control
+/// and from early termination of Newton's method.
 pub fn simulate_on(
     machine: &Machine,
     law: &RopeLaw,
@@ -162,7 +163,7 @@ fn run(
     observer: &mut dyn Observe,
 ) -> RunResult {
     let drive = settings.drive(machine);
-    let mut system = System::new(Individual::new(machine, machine.ropes(law), drive));
+    let mut system = System::new(RopeMachine::new(machine, machine.ropes(law), drive));
     let swing = machine.swing();
     let start = match settle(&mut system, settings, None) {
         Ok(q) => q,
@@ -186,18 +187,18 @@ fn run(
 /// # Errors
 /// The failure at full load, and the share of the load that the machine can carry.
 pub fn settle(
-    system: &mut System<Individual<'_>>,
+    system: &mut System<RopeMachine<'_>>,
     settings: &RunSettings,
     start: Option<&[f64]>,
 ) -> Result<Vec<f64>, (Failure, f64)> {
     let swing = system.equations.machine.swing();
     let full = system.equations.drive_state(0.0);
-    let Individual { machine, ropes, .. } = system.equations;
+    let RopeMachine { machine, ropes, .. } = system.equations;
     if let Some(overload) = overload(machine, &ropes, &full, &settings.limits) {
         return Err(overload);
     }
     let mut attempt = |share: f64| {
-        system.equations.share_load(share);
+        system.equations.scale_load(share);
         equilibrium(system, &settings.limits, swing, &settings.damping, start)
     };
     let kind = match attempt(1.0) {
@@ -219,7 +220,7 @@ pub fn settle(
 }
 
 fn revolve(
-    system: &mut System<Individual<'_>>,
+    system: &mut System<RopeMachine<'_>>,
     settings: &RunSettings,
     (swing, steps): ([f64; 2], Option<&[f64]>),
     start: Vec<f64>,
@@ -233,10 +234,10 @@ fn revolve(
     let mut to = from.clone();
     let mut between = from.clone();
     let drive = system.equations.drive;
-    let zero = system.equations.machine.hooks.index_offset();
+    let zero = system.equations.machine.extensions.index_offset();
     let (begin, end) = (drive.time_at(zero), drive.time_at(TAU + zero));
     observer.begin(system, &from);
-    system.equations.remember(&from);
+    system.equations.update_memory(&from);
     let mut given = steps.map(<[f64]>::iter);
     let mut sample = 0;
     let mut ledger = Ledger::default();
@@ -254,7 +255,9 @@ fn revolve(
         // stop exactly where the recorded revolution begins and ends
         let stop = if from.t < begin - 1e-9 { begin } else { end };
         let tried = match next.flatten() {
-            Some(&given) => method.forced(system, &from, given, &mut to).map(Some),
+            Some(&given) => method
+                .step_without_error_control(system, &from, given, &mut to)
+                .map(Some),
             None => method.attempt(system, &from, stop, &mut to),
         };
         let done = match tried {
@@ -262,7 +265,10 @@ fn revolve(
             Ok(None) => continue,
             Ok(Some(done)) => done,
         };
-        if let Some(kind) = settings.limits.broken(&system.equations, &to.q, swing) {
+        if let Some(kind) = settings
+            .limits
+            .first_exceeded(&system.equations, &to.q, swing)
+        {
             break failed(kind);
         }
         ledger.add(
@@ -281,7 +287,7 @@ fn revolve(
             observer.sample(sample, system, &between);
             sample += 1;
         }
-        system.equations.remember(&to);
+        system.equations.update_memory(&to);
         std::mem::swap(&mut from, &mut to);
     };
     if verdict == Verdict::Complete {
@@ -307,7 +313,7 @@ struct Ledger {
 impl Ledger {
     fn add(
         &mut self,
-        individual: &mut Individual<'_>,
+        individual: &mut RopeMachine<'_>,
         [from, to]: [&State; 2],
         work: &Powers,
         [begin, end]: [f64; 2],

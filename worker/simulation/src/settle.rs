@@ -4,21 +4,21 @@
 //! A verdict must depend neither on the start nor on the damping. Loads that no equilibrium can carry are
 //! detected before the search ([`overload`]); limits are checked at equilibria only; and an equilibrium that
 //! the minimisation misses is found by the continuation, whose path depends on the individual alone.
+mod beam_frequency;
 mod continuation;
+mod feasibility;
 mod guess;
 mod minimize;
-mod overload;
-mod swing;
 
-use crate::model::Individual;
+use crate::model::RopeMachine;
 use crate::system::{StateRef, System};
 use crate::verdict::{Failure, Limits};
 
+pub use beam_frequency::swing_rate;
 pub use continuation::follow;
+pub use feasibility::overload;
 pub use guess::guess;
 pub use minimize::{Damping, minimize, minimize_within};
-pub use overload::overload;
-pub use swing::swing_rate;
 
 /// Maximum number of iterations of a minimisation before the continuation is used.
 const DIRECT: u32 = 50;
@@ -35,7 +35,7 @@ pub const BUDGET: u64 = 2 * DIRECT as u64 + continuation::BUDGET + 100;
 /// # Errors
 /// The limit that the equilibrium violates, or [`Failure::Budget`] if none was found.
 pub fn equilibrium(
-    system: &mut System<Individual<'_>>,
+    system: &mut System<RopeMachine<'_>>,
     limits: &Limits,
     swing: [f64; 2],
     damping: &Damping,
@@ -48,12 +48,12 @@ pub fn equilibrium(
     let mut force = vec![0.0; q.len()];
     let at = StateRef::new(0.0, &q, &still);
     let loads = system.forces(at, &mut force);
-    let broken = limits.broken(loads.equations(), &q, swing);
+    let broken = limits.first_exceeded(loads.equations(), &q, swing);
     broken.map_or(Ok(q), Err)
 }
 
 fn search(
-    system: &mut System<Individual<'_>>,
+    system: &mut System<RopeMachine<'_>>,
     damping: &Damping,
     start: Option<&[f64]>,
 ) -> Option<Vec<f64>> {
@@ -64,7 +64,7 @@ fn search(
         }
     }
     let drive = system.equations.drive_state(0.0);
-    let Individual { machine, ropes, .. } = system.equations;
+    let RopeMachine { machine, ropes, .. } = system.equations;
     if let Ok(mut q) = guess(machine, &ropes, &drive)
         && minimize_within(system, 0.0, &mut q, damping, DIRECT)
     {

@@ -72,14 +72,14 @@ impl<'a> StateRef<'a> {
 /// Factors of inertia and damping in an iteration matrix `mass M - damping D - K`, where `K = dQ/dq` and `D =
 /// dQ/dv`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shift {
-    /// Factor of the inertia [1/s2].
+pub struct StateShift {
+    /// Factor of the mass matrix `M` in the iteration matrix [1/s2].
     pub mass: f64,
-    /// Factor of the damping [1/s].
+    /// Factor of the damping matrix `D` in the iteration matrix [1/s].
     pub damping: f64,
 }
 
-impl Shift {
+impl StateShift {
     /// Shift with zero factors: the matrix is the stiffness alone.
     pub const NONE: Self = Self {
         mass: 0.0,
@@ -99,7 +99,7 @@ pub struct Powers {
 }
 
 impl Powers {
-    /// Adds `weight` times other powers; a time step as weight gives work.
+    /// Adds other powers multiplied by `weight`; with a time step as weight the result is work.
     pub const fn add(&mut self, weight: f64, powers: &Self) {
         self.input += weight * powers.input;
         self.output += weight * powers.output;

@@ -4,8 +4,8 @@
 //! and the potential are computed. [`System::forces`] returns [`Loads`], the only access to these quantities:
 //! it borrows both the state and the equations, so neither can change while it exists, and every answer
 //! belongs to the state for which the loads were computed.
-use crate::linear::{Bordered, Entry, SingularPivot};
-pub use crate::state::{Powers, Shift, State, StateRef};
+use crate::linear::{Bordered, MatrixEntry, SingularPivot};
+pub use crate::state::{Powers, State, StateRef, StateShift};
 use crate::statistics::Statistics;
 
 /// Equations of motion `M(q) a = Q(q, v, t)` whose iteration matrix is a bordered matrix: one diagonal block
@@ -14,24 +14,36 @@ pub trait Equations {
     /// Allocates a zero matrix of the shape of the iteration matrix.
     fn matrix(&self) -> Bordered;
 
-    /// Computes the generalised forces `Q(q, v, t)` and stores the loads from which they are made.
+    /// Computes the generalised forces `Q(q, v, t)` and stores the poses, joint loads and contact from which
+    /// they result.
     fn forces(&mut self, at: StateRef<'_>, force: &mut [f64]);
 
     /// Computes `out -= M(q) a`, for one column or for several columns side by side.
-    fn subtract_inertia<T: Entry>(&self, q: &[f64], a: &[T], out: &mut [T]);
+    fn subtract_inertia<T: MatrixEntry>(&self, q: &[f64], a: &[T], out: &mut [T]);
 
     /// Fills `matrix` with `mass M - damping D - K`.
-    fn tangent(&self, at: Loaded<'_>, shift: Shift, matrix: &mut Bordered);
+    fn tangent(&self, at: LoadedState<'_>, shift: StateShift, matrix: &mut Bordered);
 
     /// Fills the first matrix with `-K`, the second as [`Equations::tangent`] does.
-    fn tangents(&self, at: Loaded<'_>, shift: Shift, [stiffness, matrix]: [&mut Bordered; 2]) {
-        self.tangent(at, Shift::NONE, stiffness);
+    fn tangents(
+        &self,
+        at: LoadedState<'_>,
+        shift: StateShift,
+        [stiffness, matrix]: [&mut Bordered; 2],
+    ) {
+        self.tangent(at, StateShift::NONE, stiffness);
         self.tangent(at, shift, matrix);
     }
 
     /// Adds what [`Equations::tangent`] leaves out of `-damping D - K`: the derivatives of velocity
     /// terms and of `M(q) a` under accelerations `a`.
-    fn add_spin_tangent(&self, at: StateRef<'_>, a: &[f64], damping: f64, matrix: &mut Bordered);
+    fn add_velocity_inertia_tangent(
+        &self,
+        at: StateRef<'_>,
+        a: &[f64],
+        damping: f64,
+        matrix: &mut Bordered,
+    );
 
     /// Returns the largest absolute change of any coordinate, in units of the accuracy of Newton's method.
     fn newton_norm(&self, change: &[f64]) -> f64;
@@ -39,14 +51,14 @@ pub trait Equations {
     /// Returns the norm of the local error, in units of the error tolerance.
     fn error_norm(&self, error: &[f64]) -> f64;
 
-    /// Computes the powers of the forces for the accelerations `a`.
-    fn powers(&self, at: Loaded<'_>, a: &[f64]) -> Powers;
+    /// Computes input, output and dissipated power for the accelerations `a`.
+    fn powers(&self, at: LoadedState<'_>, a: &[f64]) -> Powers;
 }
 
 /// Equations whose forces derive from a potential at rest, as the search for static equilibrium requires.
 pub trait Static: Equations {
     /// Returns the potential of all forces, including the loads, at a state of rest \[J\].
-    fn potential(&self, at: Loaded<'_>) -> f64;
+    fn potential(&self, at: LoadedState<'_>) -> f64;
 
     /// Adds `lambda W` to the matrix, where the weight `W` counts a displacement of one metre equally for
     /// every body.
@@ -55,21 +67,21 @@ pub trait Static: Equations {
 
 /// State whose loads are stored in the equations. Created only by [`System::forces`] and [`KeptLoads`].
 #[derive(Clone, Copy, Debug)]
-pub struct Loaded<'a>(StateRef<'a>);
+pub struct LoadedState<'a>(StateRef<'a>);
 
-impl<'a> Loaded<'a> {
+impl<'a> LoadedState<'a> {
     /// Returns the state.
     pub const fn state(self) -> StateRef<'a> {
         self.0
     }
 }
 
-/// Equations with their iteration matrix and their work counters.
+/// Equations of motion with their iteration matrix and their work counters.
 #[derive(Debug)]
 pub struct System<E> {
     /// The equations.
     pub equations: E,
-    /// Work done so far.
+    /// Work counters since the system was created.
     pub statistics: Statistics,
     matrix: Bordered,
 }
@@ -78,7 +90,7 @@ pub struct System<E> {
 #[derive(Debug)]
 pub struct Loads<'s, 'q, E> {
     system: &'s mut System<E>,
-    at: Loaded<'q>,
+    at: LoadedState<'q>,
 }
 
 /// Loads kept after their state is released, while Newton's method corrects that state.
@@ -88,11 +100,11 @@ pub struct KeptLoads<'s, E> {
 }
 
 impl<E: Equations> KeptLoads<'_, E> {
-    /// Computes the powers at the corrected state for the accelerations `a`. The loads lag by the last
-    /// correction, rates and accelerations do not; this halves the error that lagging all of them would
-    /// cause.
+    /// Computes the powers at the corrected state for the accelerations `a`. The loads used are those before
+    /// the last correction, rates and accelerations those after it; this halves the error compared with using
+    /// old values of all.
     pub fn powers(&self, corrected: StateRef<'_>, a: &[f64]) -> Powers {
-        self.equations.powers(Loaded(corrected), a)
+        self.equations.powers(LoadedState(corrected), a)
     }
 }
 
@@ -122,7 +134,7 @@ impl<E: Equations> System<E> {
         self.equations.forces(at, force);
         Loads {
             system: self,
-            at: Loaded(at),
+            at: LoadedState(at),
         }
     }
 
@@ -145,7 +157,7 @@ impl<E: Equations> System<E> {
     /// # Errors
     /// [`SingularPivot`] naming the unknown that has no inertia.
     pub fn accelerations(&mut self, at: StateRef<'_>, a: &mut [f64]) -> Result<(), SingularPivot> {
-        const SHIFT: Shift = Shift {
+        const SHIFT: StateShift = StateShift {
             mass: 1e30,
             damping: 0.0,
         };
@@ -180,24 +192,24 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
     }
 
     /// Fills `matrix` with `mass M - damping D - K`.
-    pub fn tangent(&mut self, shift: Shift, matrix: &mut Bordered) {
+    pub fn tangent(&mut self, shift: StateShift, matrix: &mut Bordered) {
         self.system.statistics.jacobians += 1;
         self.system.equations.tangent(self.at, shift, matrix);
     }
 
     /// Fills `matrix` with the complete `mass M - damping D - K`, where `K` is the derivative of `Q - M a`
     /// with respect to the coordinates.
-    pub fn exact_tangent(&mut self, a: &[f64], shift: Shift, matrix: &mut Bordered) {
+    pub fn exact_tangent(&mut self, a: &[f64], shift: StateShift, matrix: &mut Bordered) {
         self.tangent(shift, matrix);
         let equations = &self.system.equations;
-        equations.add_spin_tangent(self.state(), a, shift.damping, matrix);
+        equations.add_velocity_inertia_tangent(self.state(), a, shift.damping, matrix);
     }
 
     /// Fills the first matrix with the complete `-K`, the second as [`Self::exact_tangent`] does.
     pub fn exact_tangents(
         &mut self,
         a: &[f64],
-        shift: Shift,
+        shift: StateShift,
         [stiffness, matrix]: [&mut Bordered; 2],
     ) {
         let System {
@@ -208,15 +220,15 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
         statistics.jacobians += 1;
         equations.tangents(self.at, shift, [&mut *stiffness, &mut *matrix]);
         let at = self.at.state();
-        equations.add_spin_tangent(at, a, 0.0, stiffness);
-        equations.add_spin_tangent(at, a, shift.damping, matrix);
+        equations.add_velocity_inertia_tangent(at, a, 0.0, stiffness);
+        equations.add_velocity_inertia_tangent(at, a, shift.damping, matrix);
     }
 
     /// Factorises `mass M - damping D - K`.
     ///
     /// # Errors
     /// [`SingularPivot`] naming the unknown whose pivot vanished.
-    pub fn factorize(&mut self, shift: Shift) -> Result<(), SingularPivot> {
+    pub fn factorize(&mut self, shift: StateShift) -> Result<(), SingularPivot> {
         let System {
             equations,
             statistics,
@@ -230,14 +242,14 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
     ///
     /// # Errors
     /// [`SingularPivot`] naming the unknown whose pivot vanished.
-    pub fn factorize_exact(&mut self, a: &[f64], shift: Shift) -> Result<(), SingularPivot> {
+    pub fn factorize_exact(&mut self, a: &[f64], shift: StateShift) -> Result<(), SingularPivot> {
         let System {
             equations,
             statistics,
             matrix,
         } = &mut *self.system;
         equations.tangent(self.at, shift, matrix);
-        equations.add_spin_tangent(self.at.state(), a, shift.damping, matrix);
+        equations.add_velocity_inertia_tangent(self.at.state(), a, shift.damping, matrix);
         factorize(statistics, matrix)
     }
 
@@ -247,7 +259,7 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
     }
 
     /// Releases the state, so that Newton's method can correct it, and keeps the loads.
-    pub const fn keep(self) -> KeptLoads<'s, E> {
+    pub const fn release_state(self) -> KeptLoads<'s, E> {
         KeptLoads {
             equations: &self.system.equations,
         }
@@ -265,7 +277,8 @@ impl<E: Static> Loads<'_, '_, E> {
         self.system.equations.potential(self.at)
     }
 
-    /// Factorises `-K + lambda W`.
+    /// Factorises the stiffness matrix damped for statics, `-K + lambda W`, with the weight `W` of
+    /// [`Static::add_static_weight`].
     ///
     /// # Errors
     /// [`SingularPivot`] naming the unknown whose pivot vanished.
@@ -275,7 +288,7 @@ impl<E: Static> Loads<'_, '_, E> {
             statistics,
             matrix,
         } = &mut *self.system;
-        equations.tangent(self.at, Shift::NONE, matrix);
+        equations.tangent(self.at, StateShift::NONE, matrix);
         if lambda > 0.0 {
             equations.add_static_weight(lambda, matrix);
         }

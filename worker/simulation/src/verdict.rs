@@ -1,5 +1,5 @@
 //! Outcome of a simulation. Every run ends with one of these verdicts; none hangs or panics.
-use crate::model::Individual;
+use crate::model::RopeMachine;
 use crate::model::layout::Motion;
 
 /// Reason why a simulation ended early.
@@ -70,15 +70,16 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// Returns the first limit that an individual exceeds at coordinates `q`, which must equal those of its
-    /// last loads up to Newton's accuracy; `swing` is the beam's range on the inextensible mechanism \[rad\].
-    pub fn broken(
+    /// Returns the first limit that an individual exceeds at coordinates `q`, if any. The individual's last
+    /// loads must belong to `q` up to Newton's accuracy; `swing` is the range of the beam angle of the
+    /// inextensible mechanism \[rad\].
+    pub fn first_exceeded(
         &self,
-        individual: &Individual<'_>,
+        individual: &RopeMachine<'_>,
         q: &[f64],
         swing: [f64; 2],
     ) -> Option<Failure> {
-        let Individual {
+        let RopeMachine {
             machine,
             ropes,
             scratch,
@@ -86,13 +87,13 @@ impl Limits {
         } = individual;
         let most = ropes
             .joint
-            .pull_at(self.extension * machine.description.rope.pitch);
+            .tension_at(self.extension * machine.description.rope.pitch);
         for state in &scratch.chains {
             if (0..state.joints.len()).any(|joint| state.tension(joint) > most) {
                 return Some(Failure::OverstretchedRope);
             }
         }
-        if scratch.deepest() > self.penetration {
+        if scratch.max_penetration() > self.penetration {
             return Some(Failure::RopeThroughHead);
         }
         let beam = q[machine.layout.beam()];

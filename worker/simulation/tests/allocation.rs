@@ -7,17 +7,19 @@
 use simulation::effect::{Role, catalogue};
 use simulation::integrator::method::CATALOGUE;
 use simulation::model::description::Description;
-use simulation::model::{Individual, Machine};
+use simulation::model::{Machine, RopeMachine};
 use simulation::reference;
 use simulation::run::{Observe, RunSettings, simulate};
-use simulation::sensitivity::{self, Coefficient, Column, Derivative, Origin, Plan};
+use simulation::sensitivity::{
+    self, Coefficient, Column, ColumnOrigin, Derivative, DerivativePlan,
+};
 use simulation::system::State;
 use simulation::system::System;
 
 #[global_allocator]
 static ALLOCATOR: dhat::Alloc = dhat::Alloc;
 
-/// Numbers of heap blocks allocated up to the second and up to the last sample.
+/// Observer that counts the heap blocks allocated up to the second and up to the last sample.
 #[derive(Default)]
 struct Blocks {
     first: Option<u64>,
@@ -25,7 +27,7 @@ struct Blocks {
 }
 
 impl Observe for Blocks {
-    fn sample(&mut self, index: usize, _system: &mut System<Individual<'_>>, _state: &State) {
+    fn sample(&mut self, index: usize, _system: &mut System<RopeMachine<'_>>, _state: &State) {
         let now = dhat::HeapStats::get().total_blocks;
         // what reads a sample takes its room at the first one
         if index > 0 {
@@ -50,12 +52,12 @@ fn columns_take_little(description: &Description) {
     });
     let coefficients = Coefficient::ALL.map(Column::Coefficient);
     let all: Vec<Column> = coefficients.into_iter().chain(sizes).collect();
-    let origin = Origin {
+    let origin = ColumnOrigin {
         description,
         modes: 2,
         effects: &[],
     };
-    let plan = Plan::new(&origin, &machine, &all).unwrap();
+    let plan = DerivativePlan::new(&origin, &machine, &all).unwrap();
     let settings = RunSettings {
         samples: 12,
         ..RunSettings::default()

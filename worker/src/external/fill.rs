@@ -1,6 +1,6 @@
-//! Fills the program's input files with the values of an individual.
+//! Fills the input files of an external program with the values of an individual.
 use exchange::{Problem, dakota, pest};
-use protocol::external::{Fill, FillForm};
+use protocol::external::{InputFile, InputFormat};
 use std::collections::BTreeMap;
 
 /// Template of an input file, parsed once and filled for every individual.
@@ -22,13 +22,14 @@ enum Form {
 #[derive(Debug)]
 pub(super) struct Templates {
     all: Vec<Template>,
-    /// Width of each parameter's narrowest PEST field, which limits its digits.
+    /// Width in characters of the narrowest PEST field of each parameter, which limits the digits of its
+    /// value.
     widths: BTreeMap<String, usize>,
 }
 
 impl Templates {
-    /// Parses the templates.
-    pub(super) fn new(fills: &[Fill]) -> Result<Self, Problem> {
+    /// Parses the templates of a case's input files.
+    pub(super) fn new(fills: &[InputFile]) -> Result<Self, Problem> {
         let all: Vec<Template> = fills.iter().map(template).collect::<Result<_, _>>()?;
         let mut widths = BTreeMap::new();
         for template in &all {
@@ -42,8 +43,9 @@ impl Templates {
         Ok(Self { all, widths })
     }
 
-    /// Returns path and text of every file, for values by name in the case's order. A value is rounded to its
-    /// narrowest PEST field in all files, so that every file holds the same number.
+    /// Returns path and text of every filled input file, for values by parameter name in the case's order. A
+    /// value is rounded to its parameter's narrowest PEST field in all files, so that every file holds the
+    /// same number.
     pub(super) fn filled(
         &self,
         values: &[(String, f64)],
@@ -80,11 +82,11 @@ impl Templates {
     }
 }
 
-fn template(fill: &Fill) -> Result<Template, Problem> {
+fn template(fill: &InputFile) -> Result<Template, Problem> {
     let form = match &fill.form {
-        FillForm::Pest(text) => Form::Pest(pest::Template::parse(&fill.file, text)?),
-        FillForm::Braces(text) => Form::Braces(dakota::Template::parse(&fill.file, text)?),
-        FillForm::Dakota(name) => {
+        InputFormat::Pest(text) => Form::Pest(pest::Template::parse(&fill.file, text)?),
+        InputFormat::Braces(text) => Form::Braces(dakota::Template::parse(&fill.file, text)?),
+        InputFormat::Dakota(name) => {
             Form::Dakota(dakota::Form::named(name).ok_or_else(|| Problem {
                 file: fill.file.clone(),
                 line: None,

@@ -1,8 +1,8 @@
-//! Converts the files that the program wrote into the curves of a condition.
+//! Converts the output files of an external program into the curves of a condition.
 use exchange::{Problem, dakota, object, pest, table};
 use protocol::{
     case::Channel,
-    external::{Equation, Reading, ReadingForm, Source},
+    external::{ChannelSource, Equation, OutputFile, OutputFormat},
 };
 use std::collections::BTreeMap;
 
@@ -19,9 +19,9 @@ enum Form {
     Whole,
 }
 
-/// Contents of the output files of one run.
+/// Texts of the output files of one run of an external program, and the values read from them.
 #[derive(Debug, Default)]
-pub(super) struct Left {
+pub(super) struct Outputs {
     /// Values by name, from PEST instructions, Dakota results and equations.
     pub(super) named: BTreeMap<String, f64>,
     /// Text of each output file, in the order of the readings.
@@ -32,14 +32,14 @@ pub(super) struct Left {
 
 impl Readings {
     /// Parses the instructions by which the output files are read.
-    pub(super) fn new(readings: &[Reading]) -> Result<Self, Problem> {
-        let form = |reading: &Reading| {
+    pub(super) fn new(readings: &[OutputFile]) -> Result<Self, Problem> {
+        let form = |reading: &OutputFile| {
             let form = match &reading.form {
-                ReadingForm::Pest(text) => {
+                OutputFormat::Pest(text) => {
                     Form::Pest(pest::Instructions::parse(&reading.file, text)?)
                 }
-                ReadingForm::Dakota(functions) => Form::Dakota(functions.clone()),
-                ReadingForm::Table | ReadingForm::Object => Form::Whole,
+                OutputFormat::Dakota(functions) => Form::Dakota(functions.clone()),
+                OutputFormat::Table | OutputFormat::Object => Form::Whole,
             };
             Ok((reading.file.clone(), form))
         };
@@ -62,15 +62,15 @@ impl Readings {
         self.all.iter().map(|(file, _)| file.as_str())
     }
 
-    /// Reads all output files; `left` returns the text of one.
+    /// Reads all output files; `left` is a function that returns the text of the file with a given name.
     ///
     /// # Errors
     /// A message saying which file or value is missing or cannot be read.
     pub(super) fn read(
         &self,
         left: impl Fn(&str) -> Result<String, String>,
-    ) -> Result<Left, String> {
-        let mut all = Left::default();
+    ) -> Result<Outputs, String> {
+        let mut all = Outputs::default();
         for (file, form) in &self.all {
             let text = left(file)?;
             match form {
@@ -94,16 +94,17 @@ impl Readings {
         Ok(all)
     }
 
-    /// Returns the curve of a channel, interpolated at the channel's points if the source states its own.
+    /// Returns the curve of a channel, interpolated at the channel's abscissa points if the output file
+    /// states points of its own.
     ///
     /// # Errors
     /// A message saying which values are missing, or that their number differs from the channel's number of
     /// points.
     pub(super) fn curve(
         &self,
-        source: &Source,
+        source: &ChannelSource,
         channel: &Channel,
-        left: &Left,
+        left: &Outputs,
     ) -> Result<Vec<f64>, String> {
         let places = &channel.abscissa.points;
         let of = |reading: &usize| {
@@ -111,7 +112,7 @@ impl Readings {
             (file, left.texts.get(*reading).map_or("", String::as_str))
         };
         let (file, values, at) = match source {
-            Source::Named(names) => {
+            ChannelSource::Named(names) => {
                 let value = |name: &String| {
                     let found = left.named.get(name).copied();
                     found.ok_or_else(|| format!("the output files contain no value named `{name}`"))
@@ -119,7 +120,7 @@ impl Readings {
                 let values = names.iter().map(value).collect::<Result<Vec<f64>, _>>()?;
                 ("", values, None)
             }
-            Source::Column {
+            ChannelSource::Column {
                 reading,
                 at,
                 column,
@@ -131,7 +132,7 @@ impl Readings {
                 let at = at.as_ref().map(read).transpose()?;
                 (file, read(column)?, at)
             }
-            Source::Pointer {
+            ChannelSource::Pointer {
                 reading,
                 values,
                 at,
@@ -145,7 +146,7 @@ impl Readings {
             }
         };
         match at {
-            Some(at) => brought(file, &at, &values, places),
+            Some(at) => resample(file, &at, &values, places),
             None if values.len() == places.len() => Ok(values),
             None => Err(format!(
                 "{file} holds {} values of channel `{}`, which has {} points",
@@ -157,9 +158,9 @@ impl Readings {
     }
 }
 
-/// Evaluates the equations (weighted sums of parameters or of their decimal logarithms); returns values by
-/// equation name.
-pub(super) fn equated(
+/// Evaluates the equations of a case (weighted sums of parameters or of their decimal logarithms); returns
+/// values by equation name.
+pub(super) fn evaluate_equations(
     equations: &[Equation],
     values: &BTreeMap<String, f64>,
 ) -> BTreeMap<String, f64> {
@@ -173,8 +174,8 @@ pub(super) fn equated(
     equations.iter().map(sum).collect()
 }
 
-/// Interpolates a curve linearly at the given places.
-fn brought(file: &str, at: &[f64], values: &[f64], places: &[f64]) -> Result<Vec<f64>, String> {
+/// Interpolates a curve, given by its abscissa points `at` and its values, linearly at the points `places`.
+fn resample(file: &str, at: &[f64], values: &[f64], places: &[f64]) -> Result<Vec<f64>, String> {
     if at.len() != values.len() || at.is_empty() {
         return Err(format!(
             "{file} holds {} values but {} abscissa points",
@@ -216,12 +217,12 @@ mod tests {
     fn curves_are_brought_to_the_channels_places() {
         let at = [0.0, 1.0, 3.0];
         let values = [0.0, 2.0, 4.0];
-        let found = brought("f", &at, &values, &[0.0, 0.5, 2.0, 3.0]).unwrap();
+        let found = resample("f", &at, &values, &[0.0, 0.5, 2.0, 3.0]).unwrap();
         assert_eq!(found, [0.0, 1.0, 3.0, 4.0]);
-        let error = brought("f", &at, &values, &[3.5]).unwrap_err();
+        let error = resample("f", &at, &values, &[3.5]).unwrap_err();
         assert!(error.contains("from 0 to 3"), "{error}");
-        brought("f", &[1.0, 1.0], &[0.0, 0.0], &[1.0]).unwrap_err();
-        brought("f", &[], &[], &[1.0]).unwrap_err();
-        assert_eq!(brought("f", &[1.0], &[5.0], &[1.0]).unwrap(), [5.0]);
+        resample("f", &[1.0, 1.0], &[0.0, 0.0], &[1.0]).unwrap_err();
+        resample("f", &[], &[], &[1.0]).unwrap_err();
+        assert_eq!(resample("f", &[1.0], &[5.0], &[1.0]).unwrap(), [5.0]);
     }
 }

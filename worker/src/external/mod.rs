@@ -5,11 +5,12 @@
 //!                                                              \-> files of a failed run (left)
 //! ```
 //!
-//! This machine alone decides which programs may be started: a case can only choose an entry of its list
-//! (`exchange::allow`). This module does not know the meaning of the numbers.
+//! The computer on which the worker runs decides which programs may be started: a case can only choose an
+//! entry of that computer's list of allowed programs (`exchange::allow`). This module does not know the
+//! meaning of the numbers.
 mod fill;
 mod gather;
-mod left;
+mod leftover_files;
 mod model;
 mod run;
 mod scratch;
@@ -19,7 +20,7 @@ pub mod start;
 pub use simulator::Externals;
 
 /// Removes the folders left behind by a slot that was ended during a run.
-pub(crate) fn tidy() {
+pub(crate) fn remove_abandoned() {
     // without a list nothing was ever started here
     let allowed = exchange::allow::read(&exchange::allow::path()).unwrap_or_default();
     let places = allowed.entry.values().map(scratch::place);

@@ -1,17 +1,17 @@
 //! External program prepared for a case, ready to evaluate any number of individuals.
 use super::{
     fill::Templates,
-    gather::{Readings, equated},
-    left,
-    run::{self, Turn},
+    gather::{Readings, evaluate_equations},
+    leftover_files,
+    run::{self, RunPermit},
     scratch::{self, Scratch},
 };
 use crate::simulator::Model;
-use exchange::allow::Entry;
+use exchange::allow::AllowEntry;
 use protocol::{
     case::Case,
     external::External,
-    job::{Counters, Derivative, Failure, Observation, Reached, SimulateSpec, Verdict, Word},
+    job::{Counters, Derivative, Failure, Identifier, Observation, Reached, SimulateSpec, Verdict},
 };
 use std::{
     collections::BTreeMap,
@@ -21,26 +21,26 @@ use std::{
 };
 
 /// Failure kind reported when the program's results file itself reports a failure.
-const FAIL: Word = Word::new("fail");
+const FAIL: Identifier = Identifier::new("fail");
 
 /// Number of failures per slot whose folder contents are sent along; a program that always fails needs no
 /// more for its diagnosis.
-const MOST_SENT: u64 = 16;
+const MAX_FOLDERS_SENT: u64 = 16;
 
 /// External program prepared for a case.
 #[derive(Debug)]
 pub(super) struct Prepared {
     case: Case,
     external: External,
-    entry: Entry,
-    /// Name of the entry in this machine's list.
+    entry: AllowEntry,
+    /// Name of the program's entry in this computer's list of allowed programs.
     name: String,
     templates: Templates,
     readings: Readings,
     /// Directory in which the folders of evaluations are created.
     place: PathBuf,
     /// Exit statuses that mean a failed run rather than a crash, with the failure kind of each.
-    verdicts: Vec<(i32, Word)>,
+    verdicts: Vec<(i32, Identifier)>,
     /// Number of evaluations so far.
     evaluations: AtomicU64,
     /// Number of failures whose folder contents were sent.
@@ -51,7 +51,7 @@ impl Prepared {
     pub(super) fn new(
         case: &Case,
         external: External,
-        entry: Entry,
+        entry: AllowEntry,
         name: &str,
     ) -> Result<Self, Failure> {
         let wrong = |field: &'static str| {
@@ -74,7 +74,7 @@ impl Prepared {
             }
         }
         let verdict = |(status, word): &(i32, String)| {
-            let word = Word::of(word).ok_or_else(|| {
+            let word = Identifier::parse(word).ok_or_else(|| {
                 let problem =
                     format!("`{word}` must consist of lower-case letters, digits and `_`");
                 Failure::misconfigured("model.verdicts", problem)
@@ -101,8 +101,8 @@ impl Prepared {
         })
     }
 
-    /// Returns the values for the templates: those of the condition, and the unknowns after scaling (factor
-    /// and offset).
+    /// Returns the values that fill the templates: those of the condition, and the unknowns after scaling
+    /// (factor and offset).
     fn values(&self, spec: &SimulateSpec) -> Result<Vec<(String, f64)>, Failure> {
         let individual = &spec.individual;
         let condition = individual.condition;
@@ -117,9 +117,9 @@ impl Prepared {
         Ok(own.iter().cloned().chain(unknowns).collect())
     }
 
-    /// Returns the parameters of the equations: the condition's values and the unscaled unknowns, by the
-    /// case's names.
-    fn plain(&self, spec: &SimulateSpec) -> BTreeMap<String, f64> {
+    /// Returns the parameters on which the case's equations depend, by name: the condition's values and the
+    /// unscaled unknowns.
+    fn equation_parameters(&self, spec: &SimulateSpec) -> BTreeMap<String, f64> {
         let individual = &spec.individual;
         let own = self.external.conditions.get(individual.condition);
         let unknowns = self.case.unknowns.iter().zip(&individual.genes);
@@ -127,7 +127,8 @@ impl Prepared {
         own.into_iter().flatten().cloned().chain(unknowns).collect()
     }
 
-    /// Returns the time limit of one run: the case's deadline, at most the entry's.
+    /// Returns the time limit of one run of the program: the case's deadline, but at most that of the
+    /// program's entry.
     fn deadline(&self) -> Duration {
         let own = self.case.model.deadline_s.unwrap_or(f64::INFINITY);
         let seconds = own.min(self.entry.wall_s);
@@ -143,7 +144,7 @@ impl Prepared {
             .templates
             .filled(&values, &functions, number)
             .map_err(|problem| Failure::misconfigured("model.inputs", problem.to_string()))?;
-        let turn = Turn::wait(&self.place, &self.name, &self.entry)
+        let turn = RunPermit::acquire(&self.place, &self.name, &self.entry)
             .map_err(|error| crashed(format!("{}: {error}", self.place.display())))?;
         let mut scratch = Scratch::new(&self.place).map_err(|error| {
             crashed(format!(
@@ -165,13 +166,13 @@ impl Prepared {
         prepared.map_err(|error| {
             crashed(format!("cannot fill the program's working folder: {error}"))
         })?;
-        let outcome = self.ran(spec, &scratch);
+        let outcome = self.run_program(spec, &scratch);
         drop(turn);
-        outcome.map_err(|failure| self.noted(failure, &mut scratch))
+        outcome.map_err(|failure| self.attach_files(failure, &mut scratch))
     }
 
     /// Runs the program in a prepared folder and reads its output files.
-    fn ran(&self, spec: &SimulateSpec, scratch: &Scratch) -> Result<Observation, Failure> {
+    fn run_program(&self, spec: &SimulateSpec, scratch: &Scratch) -> Result<Observation, Failure> {
         let status = run::run(&self.entry, scratch, self.deadline())?;
         let shown = self.entry.program.display();
         if !status.success() {
@@ -181,23 +182,25 @@ impl Prepared {
                 Some((_, word)) => Ok(failed(*word)),
                 None => Err(Failure::crashed(format!(
                     "{shown} {}",
-                    run::words(status, scratch)
+                    run::describe_status(status, scratch)
                 ))),
             };
         }
         let unusable = |what: String| {
             Failure::crashed(format!(
                 "{shown} exited with status 0, but {what}{}",
-                run::last_words(scratch)
+                run::output_tail(scratch)
             ))
         };
-        let left = |file: &str| run::left(scratch, file, &self.entry);
+        let left = |file: &str| run::read_output(scratch, file, &self.entry);
         let mut left = self.readings.read(left).map_err(unusable)?;
         if left.is_fail {
             return Ok(failed(FAIL));
         }
-        left.named
-            .extend(equated(&self.external.equations, &self.plain(spec)));
+        left.named.extend(evaluate_equations(
+            &self.external.equations,
+            &self.equation_parameters(spec),
+        ));
         let condition = spec.individual.condition;
         let channels = self.case.channels_of(condition);
         let curve = |(at, channel): (usize, &protocol::case::Channel)| {
@@ -218,12 +221,13 @@ impl Prepared {
         })
     }
 
-    /// Adds the folder's files to a failure, and keeps the folder if the entry asks for it.
-    fn noted(&self, mut failure: Failure, scratch: &mut Scratch) -> Failure {
+    /// Adds the files of the working folder to a failure, and keeps the folder if the program's entry asks
+    /// for it.
+    fn attach_files(&self, mut failure: Failure, scratch: &mut Scratch) -> Failure {
         if let Failure::Crashed { left, .. } | Failure::Deadline { left, .. } = &mut failure
-            && self.sent.fetch_add(1, Ordering::Relaxed) < MOST_SENT
+            && self.sent.fetch_add(1, Ordering::Relaxed) < MAX_FOLDERS_SENT
         {
-            *left = left::left(scratch.root(), &self.external.files);
+            *left = leftover_files::collect(scratch.root(), &self.external.files);
         }
         if self.entry.keep_failed {
             let kept = scratch.keep().display();
@@ -238,7 +242,7 @@ impl Prepared {
 }
 
 /// Returns the observation of a run that the program itself reports as failed.
-fn failed(kind: Word) -> Observation {
+fn failed(kind: Identifier) -> Observation {
     Observation {
         verdict: Verdict::Failed {
             kind,

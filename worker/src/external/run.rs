@@ -2,7 +2,7 @@
 //! started.
 use super::scratch::Scratch;
 use crate::process_tree;
-use exchange::allow::Entry;
+use exchange::allow::AllowEntry;
 use protocol::job::Failure;
 use rustix::process::{WaitOptions, getpid, set_child_subreaper, wait};
 use std::{
@@ -18,20 +18,21 @@ use std::{
 };
 
 /// Interval at which the amount of output is checked.
-const LOOK: Duration = Duration::from_millis(500);
+const POLL_INTERVAL: Duration = Duration::from_millis(500);
 /// Number of bytes shown from the end of a program's output; `LINES` is the limit in lines.
 const LAST: u64 = 2000;
 const LINES: usize = 8;
 /// Environment variables of this process that are passed to every program.
-const PASSED: [&str; 6] = ["PATH", "HOME", "LANG", "LC_ALL", "TZ", "TMPDIR"];
+const INHERITED_VARIABLES: [&str; 6] = ["PATH", "HOME", "LANG", "LC_ALL", "TZ", "TMPDIR"];
 
-/// Starts an entry's program in a folder and waits for it to end, at most until the deadline.
+/// Starts the program of an entry of the list of allowed programs in a folder and waits for it to end, at
+/// most until the deadline.
 ///
 /// # Errors
 /// [`Failure::Crashed`] if the program cannot be started or writes too much, [`Failure::Deadline`] if it does
 /// not end in time.
 pub(super) fn run(
-    entry: &Entry,
+    entry: &AllowEntry,
     scratch: &Scratch,
     deadline: Duration,
 ) -> Result<ExitStatus, Failure> {
@@ -51,13 +52,13 @@ pub(super) fn run(
     while let Ok(Some(_)) = wait(WaitOptions::NOHANG) {}
     match ended {
         Ok(status) => Ok(status),
-        Err(Stopped::Late) => Err(Failure::deadline(
+        Err(Stopped::Deadline) => Err(Failure::deadline(
             u64::try_from(deadline.as_millis()).unwrap_or(u64::MAX),
         )),
-        Err(Stopped::TooMuch) => Err(crashed(format!(
+        Err(Stopped::OutputLimit) => Err(crashed(format!(
             "it wrote more than the {} MiB that its entry allows (output_mib){}",
             entry.output_mib,
-            last_words(scratch)
+            output_tail(scratch)
         ))),
         Err(Stopped::Unknown(error)) => Err(failed("its exit status cannot be determined", &error)),
     }
@@ -65,13 +66,13 @@ pub(super) fn run(
 
 /// Reason why a program is ended before it finishes.
 enum Stopped {
-    Late,
-    TooMuch,
+    Deadline,
+    OutputLimit,
     Unknown(io::Error),
 }
 
-fn begin(entry: &Entry, scratch: &Scratch) -> io::Result<Child> {
-    let said = File::create(scratch.said())?;
+fn begin(entry: &AllowEntry, scratch: &Scratch) -> io::Result<Child> {
+    let said = File::create(scratch.output_path())?;
     let mut command = Command::new(env::current_exe()?);
     command
         .arg("start")
@@ -87,7 +88,7 @@ fn begin(entry: &Entry, scratch: &Scratch) -> io::Result<Child> {
         // a group of its own: a signal that it sends to its group does not reach us
         .process_group(0)
         .env_clear();
-    for name in PASSED
+    for name in INHERITED_VARIABLES
         .into_iter()
         .chain(entry.pass.iter().map(String::as_str))
     {
@@ -101,7 +102,7 @@ fn begin(entry: &Entry, scratch: &Scratch) -> io::Result<Child> {
 /// Waits for the process to end, in a separate thread so that the end need not be polled for.
 fn watch(
     child: &mut Child,
-    entry: &Entry,
+    entry: &AllowEntry,
     scratch: &Scratch,
     until: Instant,
 ) -> Result<ExitStatus, Stopped> {
@@ -116,11 +117,11 @@ fn watch(
         });
         let stopped = loop {
             let left = until.saturating_duration_since(Instant::now());
-            match ended.recv_timeout(left.min(LOOK)) {
+            match ended.recv_timeout(left.min(POLL_INTERVAL)) {
                 Ok(()) | Err(RecvTimeoutError::Disconnected) => break None,
-                Err(RecvTimeoutError::Timeout) if left.is_zero() => break Some(Stopped::Late),
+                Err(RecvTimeoutError::Timeout) if left.is_zero() => break Some(Stopped::Deadline),
                 Err(RecvTimeoutError::Timeout) if most > 0 && scratch.bytes() > most => {
-                    break Some(Stopped::TooMuch);
+                    break Some(Stopped::OutputLimit);
                 }
                 Err(RecvTimeoutError::Timeout) => {}
             }
@@ -141,7 +142,7 @@ fn watch(
 }
 
 /// Describes an exit status, with the last lines of the program's output.
-pub(super) fn words(status: ExitStatus, scratch: &Scratch) -> String {
+pub(super) fn describe_status(status: ExitStatus, scratch: &Scratch) -> String {
     // a shell says the signal that ended what it had started
     let of_child = status.code().filter(|code| (129..160).contains(code));
     let signal = status.signal().or(of_child.map(|code| code - 128));
@@ -154,12 +155,12 @@ pub(super) fn words(status: ExitStatus, scratch: &Scratch) -> String {
         (None, Some(code)) => format!("ended with status {code}"),
         (None, None) => "ended without a status".to_owned(),
     };
-    how + &last_words(scratch)
+    how + &output_tail(scratch)
 }
 
 /// Formats the last lines of a program's output as the end of a message.
-pub(super) fn last_words(scratch: &Scratch) -> String {
-    let text = tail(&scratch.said()).unwrap_or_default();
+pub(super) fn output_tail(scratch: &Scratch) -> String {
+    let text = tail(&scratch.output_path()).unwrap_or_default();
     let text: String = text
         .chars()
         .filter(|letter| !letter.is_control() || *letter == '\n')
@@ -190,8 +191,12 @@ fn tail(path: &Path) -> io::Result<String> {
 /// Reads an output file of the program as text.
 ///
 /// # Errors
-/// A message if the file is missing, is not a regular file, or is longer than the entry allows.
-pub(super) fn left(scratch: &Scratch, file: &str, entry: &Entry) -> Result<String, String> {
+/// A message if the file is missing, is not a regular file, or is longer than the program's entry allows.
+pub(super) fn read_output(
+    scratch: &Scratch,
+    file: &str,
+    entry: &AllowEntry,
+) -> Result<String, String> {
     let path = scratch.inside(file).map_err(|error| error.to_string())?;
     let found = fs::symlink_metadata(&path).map_err(|_| format!("it wrote no file `{file}`"))?;
     if !found.is_file() {
@@ -208,18 +213,22 @@ pub(super) fn left(scratch: &Scratch, file: &str, entry: &Entry) -> Result<Strin
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// Permission to run one of an entry's simultaneous processes on this machine, held as a file lock until
-/// dropped.
-pub(super) struct Turn {
+/// Permission to run one of the limited number of simultaneous processes of a program on this computer, held
+/// as a file lock until dropped.
+pub(super) struct RunPermit {
     _lock: File,
 }
 
-impl Turn {
-    /// Waits for a free place; `None` if the entry sets no limit.
-    pub(super) fn wait(place: &Path, name: &str, entry: &Entry) -> io::Result<Option<Self>> {
-        /// Interval at which a free place is looked for.
+impl RunPermit {
+    /// Waits until another process of the program may run; returns `None` if its entry sets no limit.
+    pub(super) fn acquire(
+        place: &Path,
+        name: &str,
+        entry: &AllowEntry,
+    ) -> io::Result<Option<Self>> {
+        /// Interval at which the locks of the simultaneous processes are tried again.
         const PAUSE: Duration = Duration::from_millis(10);
-        let Some(places) = entry.places() else {
+        let Some(places) = entry.max_concurrent() else {
             return Ok(None);
         };
         loop {

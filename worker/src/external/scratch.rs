@@ -2,7 +2,7 @@
 //!
 //! A file in the folder stays locked while its process lives. The folder of a killed process is thereby
 //! recognised in any PID namespace, and removed by the next process.
-use exchange::allow::Entry;
+use exchange::allow::AllowEntry;
 use protocol::file::{File, is_below};
 use std::{
     fs::{self, OpenOptions},
@@ -17,12 +17,13 @@ use std::{
 /// Prefix of the names of all evaluation folders.
 const PREFIX: &str = "horsehead-";
 
-/// Name of the file that is locked; `KEPT` names the file that marks a folder as kept.
+/// Name of the file in a working folder that is locked while the folder is in use; `KEPT` names the file that
+/// marks a folder as kept.
 pub(super) const LOCK: &str = "lock";
 const KEPT: &str = "kept";
 /// Subfolder in which the program works.
 pub(super) const WORK: &str = "work";
-/// Age up to which a folder without a lock file counts as still being created.
+/// Age up to which a working folder without a lock file counts as still being created.
 const NEW: Duration = Duration::from_mins(1);
 
 /// Counter for the names of this process's folders.
@@ -38,8 +39,8 @@ pub(super) struct Scratch {
     kept: bool,
 }
 
-/// Returns the directory in which an entry's folders are created.
-pub(super) fn place(entry: &Entry) -> PathBuf {
+/// Returns the directory in which the working folders of a program's entry are created.
+pub(super) fn place(entry: &AllowEntry) -> PathBuf {
     entry.folder.clone().unwrap_or_else(std::env::temp_dir)
 }
 
@@ -73,11 +74,11 @@ impl Scratch {
     }
 
     /// Returns the path of the file that receives the program's standard output and error.
-    pub(super) fn said(&self) -> PathBuf {
+    pub(super) fn output_path(&self) -> PathBuf {
         self.root.join("output")
     }
 
-    /// Writes the case's files.
+    /// Writes the case's files into the program's working directory.
     pub(super) fn unpack(&self, files: &[File]) -> io::Result<()> {
         for file in files {
             let mode = if file.executable { 0o700 } else { 0o600 };
@@ -169,7 +170,7 @@ pub(super) fn clean(place: &Path) {
             })
         });
         let path = entry.path();
-        if is_ours && !path.join(KEPT).exists() && is_over(&path) {
+        if is_ours && !path.join(KEPT).exists() && is_abandoned(&path) {
             // another user's stays
             drop(remove(&path));
         }
@@ -190,8 +191,8 @@ fn remove(root: &Path) -> io::Result<()> {
     fs::remove_dir_all(root)
 }
 
-/// Returns whether no process uses a folder any more.
-fn is_over(folder: &Path) -> bool {
+/// Returns whether a working folder is abandoned: its lock is free, or it has no lock file and is not new.
+fn is_abandoned(folder: &Path) -> bool {
     if let Ok(lock) = fs::File::open(folder.join(LOCK)) {
         return lock.try_lock().is_ok();
     }

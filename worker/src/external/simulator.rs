@@ -1,7 +1,7 @@
 //! Simulator for external programs: one kind of model for each entry of this machine's list.
 use super::model::Prepared;
 use crate::simulator::{Model, Simulator};
-use exchange::allow::{self, Allowed, Entry};
+use exchange::allow::{self, AllowEntry, Allowed};
 use protocol::{
     announce::{EffectDescriptor, ModelDescriptor},
     case::Case,
@@ -14,7 +14,7 @@ use std::{
     sync::OnceLock,
 };
 
-/// External programs that this machine allows to be started.
+/// Simulator of the external programs that this computer allows to be started.
 #[derive(Clone, Copy, Debug)]
 pub struct Externals;
 
@@ -69,15 +69,15 @@ impl Simulator for Externals {
         )?))
     }
 
-    fn own(&self, name: &str, _: &[u8]) -> Result<Vec<u8>, Failure> {
+    fn run_custom(&self, name: &str, _: &[u8]) -> Result<Vec<u8>, Failure> {
         Err(Failure::Refused {
             reason: format!("an external program does not support the job `{name}`"),
         })
     }
 }
 
-/// Returns descriptions of the list's entries, for the announcement; runs their version commands, which may
-/// take time.
+/// Returns a description of each entry in the list of allowed programs, for the worker's announcement; runs
+/// the entries' version commands, which may take time.
 fn described() -> Vec<ModelDescriptor> {
     let allowed = allow::read(&allow::path()).unwrap_or_else(|problem| {
         tracing::warn!("the list of allowed programs cannot be read, so no external program will be started: {problem}");
@@ -92,9 +92,9 @@ fn described() -> Vec<ModelDescriptor> {
     described.collect()
 }
 
-/// Computes a digest of the output of an entry's version command, if it has one, to distinguish machines with
-/// different programs.
-fn digest(entry: &Entry) -> String {
+/// Returns a digest of the output of an entry's version command, if it has one, to distinguish computers with
+/// different versions of the program.
+fn digest(entry: &AllowEntry) -> String {
     let said = entry.version.split_first().map(|(program, arguments)| {
         let output = Command::new(program)
             .args(arguments)

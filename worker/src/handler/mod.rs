@@ -1,11 +1,11 @@
 //! Evaluates a job to its outcome, for every kind of model: replies and scores.
 //!
 //! The outcome is a pure function of case and job; this module does not know slots or links.
-mod joint;
-mod nothing;
+mod conditions;
+mod no_op;
 mod score;
 
-pub use nothing::nothing;
+pub use no_op::no_op;
 
 use crate::simulator::{Model, Simulator, Simulators, simulator_of};
 use protocol::{
@@ -40,9 +40,13 @@ impl Prepared {
     pub fn evaluate(&self, job: &Job) -> Outcome {
         match job {
             Job::Simulate(spec) => self.simulate(spec).into(),
-            Job::Own { name, body } => self.simulator.own(name, body).map(Answer::Own).into(),
+            Job::Own { name, body } => self
+                .simulator
+                .run_custom(name, body)
+                .map(Answer::Own)
+                .into(),
             Job::Describe => Outcome::Done(Answer::Described(self.simulator.effects())),
-            Job::Nothing { .. } => nothing(job),
+            Job::Nothing { .. } => no_op(job),
         }
     }
 
@@ -58,7 +62,7 @@ impl Prepared {
                     score::evaluation((case, spec.individual.condition), &seen, with_residual)
                 };
                 Answer::Scored(if whole && case.objective.condition == condition {
-                    joint::scored(&case.objective, spec, score)?
+                    conditions::scored(&case.objective, spec, score)?
                 } else {
                     score(spec)?
                 })
@@ -68,7 +72,7 @@ impl Prepared {
                 Answer::Channels(seen.rounded(case, condition))
             }
             Reply::Curves { pictures } => {
-                Answer::Curves(Box::new(self.model.draw(spec, pictures)?))
+                Answer::Curves(Box::new(self.model.all_curves(spec, pictures)?))
             }
         })
     }

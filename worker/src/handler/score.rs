@@ -4,7 +4,8 @@
 //! which is better than a failure under static load (the more load carried the better).
 use protocol::case::{Case, Channel, ChannelRecord, Objective, Offset, Term};
 use protocol::job::{
-    ChannelScore, Derivative, Evaluation, Failure, Observation, Reached, Verdict, single,
+    ChannelScore, Derivative, Evaluation, Failure, Observation, Reached, Verdict,
+    to_single_precision,
 };
 
 /// Fitness of a failure in motion just before the end, far above the error of any complete run;
@@ -80,7 +81,7 @@ fn graded(reached: Reached) -> f64 {
     }
 }
 
-/// Comparison of one channel with its record.
+/// Comparison of one channel's simulated curve with its measured record.
 struct Compared<'a> {
     name: &'a str,
     score: ChannelScore,
@@ -178,8 +179,8 @@ fn residual(objective: &Objective, compared: &[Compared<'_>]) -> Vec<f64> {
     terms.filter_map(scaled).flatten().collect()
 }
 
-/// Computes the derivative of the residual of the objective; `channels` are the channels of the derivative's
-/// curves.
+/// Computes the derivative of the objective's residual from the derivative of the channels' curves;
+/// `channels` are the channels of those curves, in the same order.
 fn residual_by(objective: &Objective, channels: &[&Channel], by: &Derivative) -> Derivative {
     let Derivative::Curves { per, curves } = by else {
         return by.clone();
@@ -213,7 +214,7 @@ fn residual_by(objective: &Objective, channels: &[&Channel], by: &Derivative) ->
             *x = removed - *x;
         }
         channel.weigh(&mut curve);
-        all.extend(single(curve.into_iter().map(|x| scale * x)));
+        all.extend(to_single_precision(curve.into_iter().map(|x| scale * x)));
     }
     Derivative::Curves {
         per: per.clone(),
@@ -297,7 +298,7 @@ mod tests {
         };
         let derivative = Derivative::Curves {
             per: Per::Decade,
-            curves: curves.map(single).to_vec(),
+            curves: curves.map(to_single_precision).to_vec(),
         };
         // each channel by its own treatment
         for offsets in [[Offset::Free, Offset::Fixed], [Offset::Fixed, Offset::Free]] {

@@ -5,7 +5,7 @@ use protocol::{
     id::ContentHash,
     job::Job,
     message::{FromSlot, ToSlot},
-    wire::Kind,
+    wire::FrameKind,
 };
 use rustix::process::{Pid, Signal, kill_process, kill_process_group};
 use std::{
@@ -18,7 +18,7 @@ use std::{
     time::Duration,
 };
 
-/// Environment variable that identifies the slot process to every process it starts.
+/// Environment variable that marks all processes started by a slot process as belonging to it.
 const MARK: &str = "HORSEHEAD_SLOT_PROCESS";
 
 /// Counter of the slot processes started by this worker.
@@ -26,7 +26,7 @@ static NUMBER: AtomicU64 = AtomicU64::new(0);
 
 /// Processor time of a slot process since its start; all zero where the system does not report it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Look {
+pub(super) struct ProcessorUsage {
     /// Time for which the process had a processor.
     pub(super) computed: Duration,
     /// Time for which the process was ready without a processor, excluding a wait that is still going on.
@@ -78,7 +78,7 @@ impl Child {
             .name("slot-output".to_owned())
             .spawn(move || {
                 let mut output = BufReader::new(output);
-                while let Ok(Some(message)) = stream::read(&mut output, Kind::FromSlot) {
+                while let Ok(Some(message)) = stream::read(&mut output, FrameKind::FromSlot) {
                     said(Some(message));
                 }
                 said(None);
@@ -90,19 +90,19 @@ impl Child {
     pub(super) fn run(&mut self, job: Box<Job>, case: Option<&CaseBytes>) -> io::Result<()> {
         if let Some(case) = case.filter(|case| self.case != Some(case.hash)) {
             let message = ToSlot::Case(case.bytes.to_vec());
-            stream::write(&mut self.input, Kind::ToSlot, &message)?;
+            stream::write(&mut self.input, FrameKind::ToSlot, &message)?;
             self.case = Some(case.hash);
         }
-        stream::write(&mut self.input, Kind::ToSlot, &ToSlot::Run(job))
+        stream::write(&mut self.input, FrameKind::ToSlot, &ToSlot::Run(job))
     }
 
     /// Reads the processor time of the process's two threads that take turns: the one that reads jobs and the
     /// one that computes them. Other threads, which a job might start, do not count: many of them waiting at
     /// once would stop the deadline's clock.
-    pub(super) fn look(&self) -> Look {
+    pub(super) fn processor_usage(&self) -> ProcessorUsage {
         let process = self.process.id().to_string();
         let threads = fs::read_dir(format!("/proc/{process}/task"));
-        let mut look = Look::default();
+        let mut look = ProcessorUsage::default();
         for thread in threads.into_iter().flatten().flatten() {
             let read = |name| fs::read_to_string(thread.path().join(name)).unwrap_or_default();
             let is_first = thread.file_name().to_str() == Some(&process);
@@ -128,9 +128,9 @@ impl Child {
     pub(super) fn end(mut self) -> String {
         self.kill();
         let ended = self.process.wait();
-        external::tidy();
+        external::remove_abandoned();
         match ended {
-            Ok(status) => words(status, self.memory_mib),
+            Ok(status) => describe_status(status, self.memory_mib),
             Err(error) => format!("its exit status cannot be determined: {error}"),
         }
     }
@@ -164,12 +164,12 @@ impl Drop for Child {
     fn drop(&mut self) {
         self.kill();
         drop(self.process.wait());
-        external::tidy();
+        external::remove_abandoned();
     }
 }
 
 /// Describes how a process ended, with the likely cause.
-fn words(status: ExitStatus, memory_mib: u64) -> String {
+fn describe_status(status: ExitStatus, memory_mib: u64) -> String {
     match (status.signal(), status.code()) {
         (Some(6), _) if memory_mib > 0 => format!(
             "ended by signal 6: a bug, or more memory than the {memory_mib} MiB that a slot may \
@@ -181,7 +181,8 @@ fn words(status: ExitStatus, memory_mib: u64) -> String {
     }
 }
 
-/// Ends every marked process that left the slot's process group or outlived the process that started it.
+/// Ends every process with the slot's mark that left the slot's process group or outlived the process that
+/// started it.
 fn end_marked(mark: &str) {
     let entry = format!("{MARK}={mark}");
     let processes = fs::read_dir("/proc").into_iter().flatten().flatten();

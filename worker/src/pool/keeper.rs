@@ -18,14 +18,14 @@ use tokio::sync::mpsc::UnboundedSender;
 /// Interval of a keeper's pulse, which shows that the thread is responsive.
 const PULSE: Duration = Duration::from_millis(500);
 /// Shortest pause before an overdue job that got no processor is checked again.
-const LOOK: Duration = Duration::from_millis(20);
+const MIN_RECHECK: Duration = Duration::from_millis(20);
 
 #[derive(Debug)]
 pub(super) enum ToKeeper {
     Run(Task),
     Cancel(Attempt),
-    /// Message of the slot process with this number, or `None` when its output ended.
-    Said(u64, Option<FromSlot>),
+    /// Message of the slot process with the given number, or `None` when that process's output ended.
+    FromProcess(u64, Option<FromSlot>),
     End,
 }
 
@@ -36,8 +36,8 @@ pub(super) struct Keeper {
     to_self: Sender<ToKeeper>,
     freed: UnboundedSender<Freed>,
     child: Option<Child>,
-    /// Number of the current process, so that a late message of an ended process is not attributed to its
-    /// successor.
+    /// Number of the current slot process, by which a late message of an ended process is told from one of
+    /// its successor.
     number: u64,
     current: Option<Current>,
 }
@@ -49,7 +49,7 @@ struct Current {
     deadline: Duration,
     /// Time for which the slot's process had waited for a processor before this job.
     waited: Duration,
-    /// Processor time at the last check; checks begin at the deadline.
+    /// Processor time of the slot process at the last check for an overdue job; checks begin at the deadline.
     seen: Option<Duration>,
 }
 
@@ -77,8 +77,10 @@ impl Keeper {
             match messages.recv_timeout(self.patience()) {
                 Ok(ToKeeper::Run(task)) => self.begin(task),
                 Ok(ToKeeper::Cancel(attempt)) => self.cancel(attempt),
-                Ok(ToKeeper::Said(number, message)) if number == self.number => self.said(message),
-                Ok(ToKeeper::Said(..)) | Err(RecvTimeoutError::Timeout) => {}
+                Ok(ToKeeper::FromProcess(number, message)) if number == self.number => {
+                    self.on_message(message);
+                }
+                Ok(ToKeeper::FromProcess(..)) | Err(RecvTimeoutError::Timeout) => {}
                 Ok(ToKeeper::End) | Err(RecvTimeoutError::Disconnected) => {
                     self.child = None;
                     return;
@@ -91,7 +93,7 @@ impl Keeper {
     fn patience(&self) -> Duration {
         self.current.map_or(PULSE, |current| {
             let left = current.deadline.saturating_sub(current.begun.elapsed());
-            left.clamp(LOOK, PULSE)
+            left.clamp(MIN_RECHECK, PULSE)
         })
     }
 
@@ -105,7 +107,11 @@ impl Keeper {
         if elapsed < current.deadline {
             return false;
         }
-        let look = self.child.as_ref().map(Child::look).unwrap_or_default();
+        let look = self
+            .child
+            .as_ref()
+            .map(Child::processor_usage)
+            .unwrap_or_default();
         let waited = look.waited.saturating_sub(current.waited);
         let before = current.seen.replace(look.computed);
         let waits = look.is_ready && before.is_none_or(|before| before == look.computed);
@@ -126,7 +132,7 @@ impl Keeper {
             waited: self
                 .child
                 .as_ref()
-                .map_or(Duration::ZERO, |it| it.look().waited),
+                .map_or(Duration::ZERO, |it| it.processor_usage().waited),
             seen: None,
         });
         let started = self.start_if_needed();
@@ -147,7 +153,7 @@ impl Keeper {
             let (number, to_self) = (self.number, self.to_self.clone());
             let child = Child::start(&self.options, move |message| {
                 // a keeper that has ended needs no news
-                drop(to_self.send(ToKeeper::Said(number, message)));
+                drop(to_self.send(ToKeeper::FromProcess(number, message)));
             });
             self.child = Some(child?);
         }
@@ -164,7 +170,7 @@ impl Keeper {
         }
     }
 
-    fn said(&mut self, message: Option<FromSlot>) {
+    fn on_message(&mut self, message: Option<FromSlot>) {
         match message {
             Some(FromSlot::Ready) => {}
             Some(FromSlot::Done { outcome, cpu_us }) => self.finish(Some(*outcome), cpu_us),

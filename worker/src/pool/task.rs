@@ -44,7 +44,7 @@ pub struct Freed {
     pub slot: usize,
     /// Attempt that the slot worked on.
     pub attempt: Attempt,
-    /// Cost of the attempt.
+    /// Cost of the attempt, as reported to the coordinator.
     pub cost: Cost,
     /// Outcome of the job; `None` if it was cancelled.
     pub outcome: Option<Outcome>,

@@ -1,4 +1,4 @@
-//! Derivatives of the channels by the columns that a job requests.
+//! Derivatives of a condition's channels with respect to the columns (unknowns) that a job requests.
 use super::{
     effect,
     machine::{description, no_condition},
@@ -6,20 +6,21 @@ use super::{
 };
 use protocol::{
     case::{Case, Channel, merged},
-    job::{self, Derivative, Failure, MOST_COLUMNS, Per, SimulateSpec, single},
+    job::{self, Derivative, Failure, MAX_COLUMNS, Per, SimulateSpec, to_single_precision},
     pumping_unit::{self, PumpingUnit, Sensor},
 };
 use simulation::{
-    effect::{Asked, catalogue},
+    effect::{EffectRequest, catalogue},
     model::Machine,
-    sensitivity::{self, Coefficient, Column, Origin, Plan, Refused},
+    sensitivity::{self, Coefficient, Column, ColumnOrigin, DerivativePlan, PlanError},
 };
 
-/// Returns one column of each kind for the reference individual of a case: a coefficient, a size and a shape
-/// parameter of an effect, and a generic force. Effects of the case keep their values.
+/// Returns the columns that the reference individual of a case is differentiated by, one of each kind: a
+/// coefficient, a size and a shape parameter of an effect, and a generic force. Effects of the case keep
+/// their values.
 pub(super) fn reference(case: &Case) -> Vec<job::Column> {
     let present = |effect: &str| case.effects.iter().any(|own| own.id == effect);
-    let mut shape = job::Column::of("pivot_friction.creep");
+    let mut shape = job::Column::new("pivot_friction.creep");
     if !present("pivot_friction") {
         // the shape of an absent size does nothing
         shape.values = vec![("moment".to_owned(), 1500.0)];
@@ -29,7 +30,7 @@ pub(super) fn reference(case: &Case) -> Vec<job::Column> {
         .find(|one| one.generic && !present(&one.id));
     let generic = generic.and_then(|one| {
         let parameter = one.parameters.first()?;
-        Some(job::Column::of(format!("{}.{}", one.id, parameter.name)))
+        Some(job::Column::new(format!("{}.{}", one.id, parameter.name)))
     });
     [
         "kb1",
@@ -37,7 +38,7 @@ pub(super) fn reference(case: &Case) -> Vec<job::Column> {
         "stuffing_box_friction.force",
         "head_profile_wear.depth",
     ]
-    .map(job::Column::of)
+    .map(job::Column::new)
     .into_iter()
     .chain([shape])
     .chain(generic)
@@ -46,8 +47,8 @@ pub(super) fn reference(case: &Case) -> Vec<job::Column> {
 
 /// Columns (derivatives) of a job, planned on the machine that it simulates.
 pub(super) struct Columns {
-    /// Plan of the columns for the simulation.
-    pub(super) plan: Plan,
+    /// Plan by which the simulation computes the columns.
+    pub(super) plan: DerivativePlan,
     per: Vec<Per>,
 }
 
@@ -65,9 +66,9 @@ impl Columns {
         if count == 0 {
             return Ok(None);
         }
-        if count > MOST_COLUMNS {
+        if count > MAX_COLUMNS {
             let problem = format!(
-                "{count} columns were requested; at most {MOST_COLUMNS} are allowed per job"
+                "{count} columns were requested; at most {MAX_COLUMNS} are allowed per job"
             );
             return Err(Failure::misconfigured("columns", problem));
         }
@@ -77,21 +78,21 @@ impl Columns {
         let description = description(&unit.machine, working)?;
         let own = effect::of_individual(&unit.case, &individual.genes)?;
         let effects = merged(&own, &individual.effects);
-        let effects: Vec<Asked<'_>> = effects.iter().map(effect::asked).collect();
+        let effects: Vec<EffectRequest<'_>> = effects.iter().map(effect::to_simulation).collect();
         let columns = spec.columns.iter().enumerate().map(named);
         let columns: Vec<(Column, Per)> = columns.collect::<Result<_, _>>()?;
         let (columns, per): (Vec<_>, Vec<_>) = columns.into_iter().unzip();
-        let origin = Origin {
+        let origin = ColumnOrigin {
             description: &description,
             modes: unit.machine.run.modes,
             effects: &effects,
         };
-        let plan = Plan::new(&origin, machine, &columns).map_err(|it| refused(&it))?;
+        let plan = DerivativePlan::new(&origin, machine, &columns).map_err(|it| refused(&it))?;
         Ok(Some(Self { plan, per }))
     }
 
     /// Converts the computed columns to protocol derivatives, with a curve for each channel of a condition.
-    pub(super) fn said(
+    pub(super) fn into_derivatives(
         self,
         case: &Case,
         condition: usize,
@@ -105,7 +106,8 @@ impl Columns {
     }
 }
 
-/// Converts a protocol column to that of the simulation, with the unit that its derivative is taken per.
+/// Converts a column of the protocol to that of the simulation, and returns the unit per which its derivative
+/// is taken.
 fn named((at, column): (usize, &job::Column)) -> Result<(Column, Per), Failure> {
     let job::Column { name, values } = column;
     if let Some(own) = pumping_unit::Coefficient::named(name) {
@@ -129,7 +131,7 @@ fn named((at, column): (usize, &job::Column)) -> Result<(Column, Per), Failure> 
         let coefficients = pumping_unit::Coefficient::ALL.map(pumping_unit::Coefficient::as_str);
         let known = coefficients.into_iter();
         let known = known.chain(of_effects.iter().map(String::as_str));
-        let mut problem = format!("there is no `{name}`; {}", effect::meant(name, known));
+        let mut problem = format!("there is no `{name}`; {}", effect::suggestion(name, known));
         let own = parts.and_then(|(effect, _)| catalogue().iter().find(|one| one.id == effect));
         if let Some(own) = own {
             let all: Vec<&str> = own.parameters.iter().map(|p| p.name).collect();
@@ -145,7 +147,7 @@ fn named((at, column): (usize, &job::Column)) -> Result<(Column, Per), Failure> 
     Ok((column, Per::Unit(parameter.unit.symbol().to_owned())))
 }
 
-/// Converts a coefficient of the protocol to that of the simulation.
+/// Converts the name of a rope or contact coefficient from the protocol's type to the simulation's.
 const fn coefficient(named: pumping_unit::Coefficient) -> Coefficient {
     use pumping_unit::Coefficient as Named;
     match named {
@@ -162,10 +164,10 @@ const fn coefficient(named: pumping_unit::Coefficient) -> Coefficient {
     }
 }
 
-fn refused(refused: &Refused) -> Failure {
+fn refused(refused: &PlanError) -> Failure {
     let at = match refused {
-        Refused::Effect { column, .. } | Refused::Present { column, .. } => Some(*column),
-        Refused::Machine(_) => None,
+        PlanError::Effect { column, .. } | PlanError::Present { column, .. } => Some(*column),
+        PlanError::Machine(_) => None,
     };
     let field = at.map_or_else(|| "effects".to_owned(), |at| format!("columns[{at}]"));
     Failure::misconfigured(field, refused.to_string())
@@ -177,10 +179,10 @@ fn derivative(channels: &[&Channel], column: sensitivity::Derivative, per: Per) 
         sensitivity::Derivative::Curves(changes) => {
             let curve = |channel: &&Channel| match Sensor::named(&channel.name) {
                 Some(Sensor::Gauge(number)) => {
-                    single(megapascals(&changes.gauge[usize::from(number) - 1]))
+                    to_single_precision(megapascals(&changes.gauge[usize::from(number) - 1]))
                 }
-                Some(Sensor::Position) => single(changes.suspension.iter().copied()),
-                Some(Sensor::Torque) => single(changes.torque.iter().copied()),
+                Some(Sensor::Position) => to_single_precision(changes.suspension.iter().copied()),
+                Some(Sensor::Torque) => to_single_precision(changes.torque.iter().copied()),
                 None => Vec::new(),
             };
             Derivative::Curves {
@@ -188,7 +190,7 @@ fn derivative(channels: &[&Channel], column: sensitivity::Derivative, per: Per) 
                 curves: channels.iter().map(curve).collect(),
             }
         }
-        sensitivity::Derivative::Nothing => Derivative::Nothing { per },
+        sensitivity::Derivative::Zero => Derivative::Nothing { per },
         sensitivity::Derivative::Missing(missing) => Derivative::Missing {
             reason: missing.to_string(),
         },

@@ -1,9 +1,9 @@
 //! All curves of a simulation that can be plotted.
+use super::completed_run::CompletedRun;
 use super::machines::Machines;
-use super::ran::Ran;
 use protocol::{
     job::{Curves, Failure, SimulateSpec},
-    pumping_unit::{Energy, Motion, Simulation},
+    pumping_unit::{Energy, MachineSnapshot, Simulation},
 };
 use simulation::observe::{Recorder, Shape};
 use simulation::run::RunResult;
@@ -11,7 +11,7 @@ use simulation::run::RunResult;
 /// Simulates an individual and returns all curves.
 ///
 /// # Errors
-/// As [`Ran::new`].
+/// As [`CompletedRun::new`].
 pub(super) fn run(
     machines: &Machines,
     spec: &SimulateSpec,
@@ -23,7 +23,7 @@ pub(super) fn run(
         columns: Vec::new(),
         ..spec.clone()
     };
-    let ran = Ran::new(machines, &plain, recorder)?;
+    let ran = CompletedRun::new(machines, &plain, recorder)?;
     let (gauge_mpa, suspension_m) = (ran.gauges_mpa(), ran.suspension_m());
     let channels = ran.channels(&machines.unit.case, spec.individual.condition)?;
     let curves = ran.curves;
@@ -55,7 +55,7 @@ pub(super) fn run(
         return Ok(drawn);
     }
     // the same bits once more: `wall_s` is that of a plain run
-    let derived = Ran::new(machines, spec, Recorder::gauges_only())?;
+    let derived = CompletedRun::new(machines, spec, Recorder::gauges_only())?;
     Ok(Curves {
         columns: derived.columns,
         columns_wall_s: derived.wall_s,
@@ -101,11 +101,11 @@ fn energy(result: &RunResult) -> Energy {
     clippy::cast_possible_truncation,
     reason = "pictures need no more than single precision"
 )]
-fn motion(shape: &Shape, step_deg: f64) -> Motion {
+fn motion(shape: &Shape, step_deg: f64) -> MachineSnapshot {
     let point = |p: &[f64; 2]| [p[0] as f32, p[1] as f32];
     let points = |all: &[[f64; 2]]| all.iter().map(point).collect();
     let floats = |all: &[f64]| all.iter().map(|&x| x as f32).collect();
-    Motion {
+    MachineSnapshot {
         turn_deg: step_deg * shape.sample as f64,
         crank_pin_m: point(&shape.pin),
         beam_deg: shape.beam.to_degrees() as f32,

@@ -13,7 +13,7 @@ pub(super) fn of_numerics() -> &'static str {
 
 fn computed() -> String {
     let mut bytes = Vec::new();
-    for (bits, statistics) in simulation::reference::name() {
+    for (bits, statistics) in simulation::reference::fingerprint() {
         bytes.extend(bits.iter().flat_map(|bits| bits.to_le_bytes()));
         bytes.extend_from_slice(format!("{statistics:?}").as_bytes());
     }

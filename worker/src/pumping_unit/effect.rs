@@ -3,7 +3,7 @@ use super::genes::individual;
 use protocol::announce::{self, EffectDescriptor, ParameterDescriptor};
 use protocol::case::{Case, EffectSetting};
 use protocol::job::Failure;
-use simulation::effect::{self, Asked, Refused, Selection, catalogue};
+use simulation::effect::{self, EffectRequest, Selection, SelectionError, catalogue};
 
 /// Returns descriptions of all effects of the catalogue, as announced by a worker.
 pub(super) fn descriptors() -> Vec<EffectDescriptor> {
@@ -45,9 +45,9 @@ fn parameter(p: &effect::Parameter) -> ParameterDescriptor {
 }
 
 /// Converts an effect setting of the protocol to that of the simulation.
-pub(super) fn asked(setting: &EffectSetting) -> Asked<'_> {
+pub(super) fn to_simulation(setting: &EffectSetting) -> EffectRequest<'_> {
     let parameters = setting.parameters.iter();
-    Asked {
+    EffectRequest {
         id: &setting.id,
         parameters: parameters.map(|(name, x)| (&**name, *x)).collect(),
     }
@@ -59,7 +59,7 @@ pub(super) fn asked(setting: &EffectSetting) -> Asked<'_> {
 /// [`Failure::Misconfigured`] naming the effect or its parameter by its place in the list, and the nearest
 /// known name.
 pub(super) fn selection(settings: &[EffectSetting]) -> Result<Selection, Failure> {
-    let asked: Vec<Asked<'_>> = settings.iter().map(asked).collect();
+    let asked: Vec<EffectRequest<'_>> = settings.iter().map(to_simulation).collect();
     Selection::new(&asked).map_err(|refused| {
         let place = format!("effects[{}]", refused.effect());
         let field = match refused.parameter() {
@@ -155,7 +155,7 @@ pub(super) fn check_genes(case: &Case) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Rewords a failure so that it refers to the search interval of a gene.
+/// Rewords a failure of an effect's setting so that it refers to the search interval of a gene.
 fn of_search(failure: Failure, label: &str) -> Failure {
     if let Failure::Misconfigured { field, problem } = failure {
         return Failure::misconfigured(
@@ -167,24 +167,26 @@ fn of_search(failure: Failure, label: &str) -> Failure {
 }
 
 /// Describes why a setting was refused, with the name that was probably meant.
-fn problem(refused: &Refused) -> String {
+fn problem(refused: &SelectionError) -> String {
     match refused {
-        Refused::UnknownEffect { id, .. } => {
+        SelectionError::UnknownEffect { id, .. } => {
             let known = catalogue().iter().map(|d| &*d.id);
-            format!("{refused}; {}", meant(id, known))
+            format!("{refused}; {}", suggestion(id, known))
         }
-        Refused::UnknownParameter { id, name, .. } => {
+        SelectionError::UnknownParameter { id, name, .. } => {
             let of = catalogue().iter().find(|d| d.id == *id);
             let known = of.into_iter().flat_map(|d| d.parameters.iter());
-            format!("{refused}; {}", meant(name, known.map(|p| p.name)))
+            format!("{refused}; {}", suggestion(name, known.map(|p| p.name)))
         }
-        Refused::Twice { .. } | Refused::OutOfBounds { .. } => refused.to_string(),
+        SelectionError::Duplicate { .. } | SelectionError::OutOfBounds { .. } => {
+            refused.to_string()
+        }
     }
 }
 
-/// Suggests the most similar known name if one is similar enough; otherwise lists all known names without a
-/// `.`.
-pub(super) fn meant<'a, I: Iterator<Item = &'a str> + Clone>(name: &str, known: I) -> String {
+/// Suggests the known name most similar to `name` if one is similar enough; otherwise lists all known names
+/// without a `.`.
+pub(super) fn suggestion<'a, I: Iterator<Item = &'a str> + Clone>(name: &str, known: I) -> String {
     let alike = known
         .clone()
         .map(|other| (strsim::normalized_damerau_levenshtein(name, other), other))

@@ -58,7 +58,7 @@ pub(super) fn curves(rows: &[[f64; 4]]) -> Vec<Vec<f64>> {
     (0..4).map(|gauge| line(gauge).collect()).collect()
 }
 
-/// Returns start and spacing \[rad\] of a table, which must be equally spaced.
+/// Returns first station and spacing \[rad\] of a table's stations, which must be equally spaced.
 fn grid(field: &str, degrees: &[f64]) -> Result<(f64, f64), Failure> {
     let [first, second, ..] = degrees else {
         return Err(Failure::misconfigured(field, "needs at least two stations"));

@@ -2,6 +2,7 @@
 //!
 //! This is the only folder that uses both sets of types; degrees become radians and megapascals pascals here.
 mod columns;
+mod completed_run;
 mod curves;
 mod digest;
 mod effect;
@@ -9,7 +10,6 @@ mod genes;
 mod head;
 mod machine;
 mod machines;
-mod ran;
 mod reduce_head;
 mod refinement;
 mod reply;

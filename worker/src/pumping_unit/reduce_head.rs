@@ -3,12 +3,12 @@ use protocol::pumping_unit::{Influence, TwinHead};
 use protocol::{
     job::Failure,
     pumping_unit::{
-        ElementKind, HeadFields, HeadMode, LeftOutMode, ModeFamily, ReduceHeadSpec, ReducedHead,
+        ElementKind, HeadFields, HeadMode, ModeFamily, OmittedMode, ReduceHeadSpec, ReducedHead,
         RopeWrap,
     },
 };
 use simulation::flexible::{
-    self, Family, Gauge, Mesh, Pair, Reduction, Request, Steel, SwayTables, Wrap, reduce,
+    self, Family, Gauge, Mesh, Pair, Reduction, ReductionRequest, Steel, SwayTables, Wrap, reduce,
 };
 use std::time::Instant;
 
@@ -33,7 +33,7 @@ pub(super) fn run(spec: &ReduceHeadSpec) -> Result<ReducedHead, Failure> {
         leaves: wrap.leaves_deg.to_radians(),
     };
     let started = Instant::now();
-    let reduction = reduce(&Request {
+    let reduction = reduce(&ReductionRequest {
         mesh: &mesh,
         steel: Steel {
             young: spec.young_pa,
@@ -127,7 +127,7 @@ fn mesh(spec: &ReduceHeadSpec) -> Mesh {
         },
         elements: indices(&spec.mesh.elements),
         held: indices(&spec.mesh.held),
-        rim: indices(&spec.mesh.rope_surface),
+        rope_faces: indices(&spec.mesh.rope_surface),
         half: spec.mesh.half,
     }
 }
@@ -174,7 +174,7 @@ fn assemble(spec: &ReduceHeadSpec, reduction: &Reduction, wall_s: f64) -> Reduce
         participation: mode.participation,
         coupling: mode.coupling,
     });
-    let left_out = reduction.left_out.iter().map(|mode| LeftOutMode {
+    let left_out = reduction.left_out.iter().map(|mode| OmittedMode {
         family: mode_family(mode.family),
         frequency_hz: hertz(mode.frequency),
         coupling: mode.coupling,

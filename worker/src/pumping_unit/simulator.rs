@@ -1,5 +1,7 @@
 //! Pumping unit as a [`Simulator`], one kind of model among others.
-use super::{columns, curves, digest, effect, machines::Machines, ran::Ran, reduce_head};
+use super::{
+    columns, completed_run::CompletedRun, curves, digest, effect, machines::Machines, reduce_head,
+};
 use crate::simulator::{Model, Simulator};
 use protocol::{
     announce::EffectDescriptor,
@@ -35,7 +37,7 @@ impl Simulator for PumpingUnits {
         Ok(Box::new(Machines::new(case)?))
     }
 
-    fn own(&self, name: &str, body: &[u8]) -> Result<Vec<u8>, Failure> {
+    fn run_custom(&self, name: &str, body: &[u8]) -> Result<Vec<u8>, Failure> {
         if name != REDUCE_HEAD {
             return Err(Failure::Refused {
                 reason: format!(
@@ -58,7 +60,7 @@ impl Model for Machines {
         } else {
             Recorder::everything(0)
         };
-        let ran = Ran::new(self, spec, recorder)?;
+        let ran = CompletedRun::new(self, spec, recorder)?;
         Ok(Observation {
             verdict: ran.verdict,
             counters: ran.counters,
@@ -67,7 +69,7 @@ impl Model for Machines {
         })
     }
 
-    fn draw(&self, spec: &SimulateSpec, pictures: u32) -> Result<Curves, Failure> {
+    fn all_curves(&self, spec: &SimulateSpec, pictures: u32) -> Result<Curves, Failure> {
         curves::run(self, spec, pictures)
     }
 }

@@ -4,7 +4,7 @@ use protocol::{
     job::Failure,
     pumping_unit::{Machine, TwinHead, TwinRopes},
 };
-use simulation::model::description::{Sway, Twins};
+use simulation::model::description::{AntisymmetricHead, Twins};
 
 /// Returns the twin ropes, if the case has them.
 ///
@@ -51,8 +51,8 @@ fn check(machine: &Machine, twins: &TwinRopes) -> Result<(), Failure> {
     Ok(())
 }
 
-fn sway(head: &TwinHead, modes: usize) -> Sway {
-    Sway {
+fn sway(head: &TwinHead, modes: usize) -> AntisymmetricHead {
+    AntisymmetricHead {
         frequencies: head.frequencies_hz[..modes]
             .iter()
             .map(|f| f * std::f64::consts::TAU)

@@ -1,4 +1,4 @@
-//! Case of a run: fetched once, in pieces, and checked against its content hash.
+//! Case of a run, as a worker obtains it: fetched once, in parts, and checked against its content hash.
 use crate::pool::CaseBytes;
 use protocol::id::ContentHash;
 
@@ -25,13 +25,13 @@ impl Incoming {
         self.hash
     }
 
-    /// Returns the number of the piece that is needed next.
+    /// Returns the number of the part of the case that is needed next.
     pub(super) const fn next(&self) -> u32 {
         self.next
     }
 
-    /// Adds the next piece; returns the case once it is complete. A complete case with a wrong hash is
-    /// fetched again from the start.
+    /// Adds the next part of the case; returns the case once it is complete. A complete case with a wrong
+    /// hash is fetched again from the start.
     pub(super) fn take(&mut self, piece: &[u8]) -> Option<CaseBytes> {
         self.bytes.extend_from_slice(piece);
         self.next += 1;

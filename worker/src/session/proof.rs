@@ -9,11 +9,11 @@ use crate::{
     simulator::{Simulators, simulator_of},
 };
 use protocol::{
-    case::{Case, Repeats},
+    case::{Case, Reproducibility},
     id::{AttemptId, ContentHash, JobId},
     job::{Answer, Failure, Individual, Job, Observation, Outcome, Reply, SimulateSpec},
     message::Attempt,
-    proof::{MOST_SAMPLES, Proof, Sample},
+    proof::{MAX_SAMPLES, ReferenceResult, Sample},
     wire,
 };
 use std::time::Duration;
@@ -27,15 +27,15 @@ pub(super) const ATTEMPT: Attempt = Attempt {
 /// Time limit of the reference individual.
 const DEADLINE: Duration = Duration::from_mins(10);
 
-/// Progress of the proof.
+/// Progress of the proof that this worker computes correct results.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Progress {
     /// The proof is still to be computed.
     Missing,
     /// A slot is computing the proof.
     Running,
-    /// The proof is known.
-    Known(Proof),
+    /// The proof has been computed and can be sent.
+    Known(ReferenceResult),
 }
 
 impl Progress {
@@ -44,22 +44,22 @@ impl Progress {
     ///
     /// A model whose repeatability is unknown has nothing to compare; if its program fails at the reference
     /// individual, that is left to the coordinator and to the run's own jobs.
-    pub(super) fn of(outcome: Option<Outcome>, repeats: Repeats) -> Result<Self, String> {
+    pub(super) fn of(outcome: Option<Outcome>, repeats: Reproducibility) -> Result<Self, String> {
         let Some(outcome) = outcome else {
             return Ok(Self::Missing);
         };
         let proof = match (repeats, outcome) {
             (
-                Repeats::Unknown,
+                Reproducibility::Unknown,
                 Outcome::Done(_)
                 | Outcome::Failed(Failure::Crashed { .. } | Failure::Deadline { .. }),
-            ) => Proof::Bits(ContentHash::of(b"not compared")),
+            ) => ReferenceResult::Bits(ContentHash::of(b"not compared")),
             (
-                Repeats::Within(_),
+                Reproducibility::Within(_),
                 Outcome::Failed(Failure::Crashed { .. } | Failure::Deadline { .. }),
-            ) => Proof::Failed,
-            (Repeats::Within(_), Outcome::Done(Answer::Channels(seen))) => {
-                Proof::Values(samples(&seen))
+            ) => ReferenceResult::Failed,
+            (Reproducibility::Within(_), Outcome::Done(Answer::Channels(seen))) => {
+                ReferenceResult::Values(samples(&seen))
             }
             (
                 _,
@@ -75,7 +75,7 @@ impl Progress {
                 ));
             }
             (_, outcome) => match wire::encode(&outcome) {
-                Ok(bytes) => Proof::Bits(ContentHash::of(&bytes)),
+                Ok(bytes) => ReferenceResult::Bits(ContentHash::of(&bytes)),
                 Err(error) => {
                     return Err(format!(
                         "the result of the reference individual cannot be encoded: {error}"
@@ -87,7 +87,7 @@ impl Progress {
     }
 
     /// Returns the proof if it is known.
-    pub(super) fn known(&self) -> Option<Proof> {
+    pub(super) fn known(&self) -> Option<ReferenceResult> {
         match self {
             Self::Known(proof) => Some(proof.clone()),
             Self::Missing | Self::Running => None,
@@ -98,7 +98,7 @@ impl Progress {
 /// Selects sample values that represent the curves of a run: an equal number from each curve, evenly spaced.
 fn samples(seen: &Observation) -> Vec<Sample> {
     let curves = seen.curves.iter().filter(|curve| !curve.is_empty());
-    let share = (MOST_SAMPLES / curves.clone().count().max(1)).max(1);
+    let share = (MAX_SAMPLES / curves.clone().count().max(1)).max(1);
     let of = |curve: &Vec<f64>| {
         let count = curve.len();
         let scale = (curve.iter().map(|x| x * x).sum::<f64>() / count as f64).sqrt();
@@ -110,18 +110,22 @@ fn samples(seen: &Observation) -> Vec<Sample> {
             .collect();
         values
     };
-    curves.flat_map(of).take(MOST_SAMPLES).collect()
+    curves.flat_map(of).take(MAX_SAMPLES).collect()
 }
 
-/// Builds the task of a case's reference individual, and returns the repeatability of the case's model.
+/// Builds the task of computing a case's reference individual, and returns the repeatability of the case's
+/// model.
 ///
 /// # Errors
 /// A message saying why the case cannot be simulated by this worker.
-pub(super) fn task(simulators: Simulators, case: &CaseBytes) -> Result<(Task, Repeats), String> {
+pub(super) fn task(
+    simulators: Simulators,
+    case: &CaseBytes,
+) -> Result<(Task, Reproducibility), String> {
     let decoded: Case = wire::decode(&case.bytes)
         .map_err(|error| format!("case {} cannot be read here: {error}", case.hash))?;
     let condition = decoded.objective.condition;
-    let compares_values = matches!(decoded.model.repeats, Repeats::Within(_));
+    let compares_values = matches!(decoded.model.repeats, Reproducibility::Within(_));
     let reply = if decoded.is_measured(condition) && !compares_values {
         Reply::Score {
             with_residual: true,
@@ -133,7 +137,7 @@ pub(super) fn task(simulators: Simulators, case: &CaseBytes) -> Result<(Task, Re
     let reference = Individual::new(condition, decoded.start());
     let mut spec = SimulateSpec::new(reference, reply);
     // a case of no known kind is refused by the job itself, in its own words
-    if let (Repeats::Bits, Ok(simulator)) =
+    if let (Reproducibility::Bits, Ok(simulator)) =
         (decoded.model.repeats, simulator_of(simulators, &decoded))
     {
         spec.columns = simulator.reference_columns(&decoded);
@@ -163,7 +167,8 @@ mod tests {
 
     #[test]
     fn a_proof_names_every_bit_and_only_a_case_may_be_at_fault() {
-        let of = |outcome| Progress::of(Some(outcome), Repeats::Bits).map(|proof| proof.known());
+        let of =
+            |outcome| Progress::of(Some(outcome), Reproducibility::Bits).map(|proof| proof.known());
         let one = of(Outcome::Done(Answer::Nothing(vec![1]))).unwrap();
         assert!(one.is_some());
         assert_ne!(one, of(Outcome::Done(Answer::Nothing(vec![2]))).unwrap());
@@ -172,11 +177,11 @@ mod tests {
         let refused = of(crashed()).unwrap_err();
         assert!(refused.contains("cannot be computed here"), "{refused}");
         assert_eq!(
-            Progress::of(None, Repeats::Bits),
+            Progress::of(None, Reproducibility::Bits),
             Ok(Progress::Missing),
             "cancelled: again"
         );
-        let unknown = |outcome| Progress::of(Some(outcome), Repeats::Unknown);
+        let unknown = |outcome| Progress::of(Some(outcome), Reproducibility::Unknown);
         let answer = |byte| Outcome::Done(Answer::Nothing(vec![byte]));
         assert_eq!(unknown(answer(1)), unknown(answer(2)));
         assert_eq!(unknown(answer(1)), unknown(crashed()));
@@ -195,8 +200,8 @@ mod tests {
             columns: Vec::new(),
         };
         let outcome = Outcome::Done(Answer::Channels(seen));
-        let known = Progress::of(Some(outcome), Repeats::Within(1e-3));
-        let Ok(Progress::Known(Proof::Values(samples))) = known else {
+        let known = Progress::of(Some(outcome), Reproducibility::Within(1e-3));
+        let Ok(Progress::Known(ReferenceResult::Values(samples))) = known else {
             panic!("{known:?}")
         };
         assert_eq!(
@@ -207,7 +212,7 @@ mod tests {
         assert_eq!(samples.iter().filter(|one| one.scale < 4.0).count(), 2);
         assert!((samples[31].value - 968.0).abs() < 1e-12);
         assert!((samples[33].scale - 12.5_f64.sqrt()).abs() < 1e-12);
-        let failed = Progress::of(Some(crashed()), Repeats::Within(1e-3));
-        assert_eq!(failed, Ok(Progress::Known(Proof::Failed)));
+        let failed = Progress::of(Some(crashed()), Reproducibility::Within(1e-3));
+        assert_eq!(failed, Ok(Progress::Known(ReferenceResult::Failed)));
     }
 }

@@ -11,11 +11,11 @@ use crate::{
 use link::{LinkError, WorkerEnd};
 use protocol::{
     announce::Announcement,
-    case::Repeats,
+    case::Reproducibility,
     id::{ContentHash, RunId},
     key::Lane,
-    message::{Attempt, Beat, Done, FromWorker, Order, ToWorker},
-    wire::{self, Kind, WireError},
+    message::{Assignment, Attempt, Done, FromWorker, Heartbeat, ToWorker},
+    wire::{self, FrameKind, WireError},
 };
 use std::{
     collections::{BTreeMap, VecDeque},
@@ -24,7 +24,7 @@ use std::{
 use tokio::task::{JoinError, JoinSet};
 
 /// Interval of the heartbeats.
-const BEAT: Duration = Duration::from_secs(1);
+const HEARTBEAT_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Consequence of a message: continue or end.
 #[derive(Debug)]
@@ -44,10 +44,10 @@ pub(super) struct State {
     case: Option<CaseBytes>,
     proof: Progress,
     /// Repeatability of the results of the case's model (same bits, within a tolerance, or unknown).
-    repeats: Repeats,
+    repeats: Reproducibility,
     incoming: Option<Incoming>,
     pub(super) fetching: JoinSet<Result<Vec<u8>, LinkError>>,
-    waiting: VecDeque<Order>,
+    waiting: VecDeque<Assignment>,
     /// Attempt that each slot is running, with the hash of its work, by slot index.
     running: BTreeMap<usize, (Attempt, ContentHash)>,
     outbox: Outbox,
@@ -66,7 +66,7 @@ impl State {
             admitted: false,
             case: None,
             proof: Progress::Missing,
-            repeats: Repeats::Bits,
+            repeats: Reproducibility::Bits,
             incoming: None,
             fetching: JoinSet::new(),
             waiting: VecDeque::new(),
@@ -78,13 +78,13 @@ impl State {
         }
     }
 
-    pub(super) async fn hear<L: WorkerEnd>(
+    pub(super) async fn handle_frame<L: WorkerEnd>(
         &mut self,
         link: &mut L,
         frame: &[u8],
         now: Duration,
     ) -> Step {
-        let (run, message) = match wire::unseal::<ToWorker>(Kind::ToWorker, frame) {
+        let (run, message) = match wire::decode_frame::<ToWorker>(FrameKind::ToWorker, frame) {
             Ok(heard) => heard,
             Err(error @ WireError::Version { .. }) => {
                 return Step::End(Ending::Refused(error.to_string()));
@@ -106,7 +106,7 @@ impl State {
             ToWorker::Refused { reason } => return Step::End(Ending::Refused(reason)),
             ToWorker::Run(order) if ours => self.take(link, *order, now),
             ToWorker::Cancel(attempt) if ours => self.cancel(attempt),
-            ToWorker::Stored(attempts) if ours => self.outbox.settle(&attempts),
+            ToWorker::Stored(attempts) if ours => self.outbox.acknowledge(&attempts),
             ToWorker::Ended if ours => {
                 tracing::info!(run = %self.run, "the run is over");
                 if self.options.embedded {
@@ -135,13 +135,13 @@ impl State {
         }
         if !again {
             tracing::info!(%run, "admitted");
-            if let Err(error) = link.appear(run).await {
+            if let Err(error) = link.announce_presence(run).await {
                 // the heartbeat alone will do
                 tracing::warn!(%error, "cannot declare the worker's presence on the bus");
             }
         }
         self.admitted = true;
-        self.outbox.hurry();
+        self.outbox.make_all_due();
         let held = self.case.as_ref().is_some_and(|held| held.hash == case);
         let mut incoming = self.incoming.iter();
         if held || !incoming.any(|incoming| incoming.hash() == case) {
@@ -151,7 +151,7 @@ impl State {
         self.fetch(link);
     }
 
-    /// Requests the next piece of the case, unless a request is pending.
+    /// Requests the next part of the case from the coordinator, unless a request is pending.
     fn fetch<L: WorkerEnd>(&mut self, link: &L) {
         if let (Some(incoming), true) = (&self.incoming, self.fetching.is_empty()) {
             self.fetching
@@ -171,7 +171,7 @@ impl State {
                     self.case = Some(case);
                     self.proof = Progress::Missing;
                     self.incoming = None;
-                    if let Some(refused) = self.prove() {
+                    if let Some(refused) = self.start_proof() {
                         return refused;
                     }
                 }
@@ -184,8 +184,9 @@ impl State {
         Step::Go
     }
 
-    /// Starts the reference individual of the case in a slot, if its proof is missing and a slot is free.
-    fn prove(&mut self) -> Option<Step> {
+    /// Starts the computation of the case's reference individual in a slot, if its proof is missing and a
+    /// slot is free.
+    fn start_proof(&mut self) -> Option<Step> {
         let missing = self.proof == Progress::Missing;
         let case = self.case.as_ref().filter(|_| missing)?;
         let slot = (0..self.pool.len()).find(|slot| !self.running.contains_key(slot))?;
@@ -201,7 +202,7 @@ impl State {
         }
     }
 
-    fn take<L: WorkerEnd>(&mut self, link: &mut L, order: Order, now: Duration) {
+    fn take<L: WorkerEnd>(&mut self, link: &mut L, order: Assignment, now: Duration) {
         self.last_work = now;
         let attempt = order.attempt;
         if let Some(done) = self.outbox.get(attempt) {
@@ -223,7 +224,7 @@ impl State {
             if self.running.contains_key(&slot) {
                 continue;
             }
-            let Some(Order {
+            let Some(Assignment {
                 attempt,
                 deadline_ms,
                 job,
@@ -249,7 +250,7 @@ impl State {
 
     fn cancel(&mut self, attempt: Attempt) {
         self.waiting.retain(|order| order.attempt != attempt);
-        self.outbox.settle(&[attempt]);
+        self.outbox.acknowledge(&[attempt]);
         self.outbox.remember(attempt);
         for (slot, (held, _)) in &self.running {
             if *held == attempt {
@@ -302,7 +303,7 @@ impl State {
             self.send(link, Lane::Data, &FromWorker::Done(Box::new(done)));
         }
         self.fetch(link);
-        if let Some(refused) = self.prove() {
+        if let Some(refused) = self.start_proof() {
             return refused;
         }
         if now >= self.next_beat {
@@ -318,7 +319,7 @@ impl State {
     }
 
     fn beat<L: WorkerEnd>(&mut self, link: &mut L, now: Duration) {
-        self.next_beat = now + BEAT;
+        self.next_beat = now + HEARTBEAT_INTERVAL;
         if self.admitted {
             self.send_beat(link);
         } else {
@@ -333,7 +334,7 @@ impl State {
             return;
         }
         let here = self.incoming.is_none();
-        let beat = Beat {
+        let beat = Heartbeat {
             number: self.beats,
             // what is held of an earlier run says nothing of this one
             case: self.case.as_ref().map(|case| case.hash).filter(|_| here),
@@ -356,8 +357,8 @@ impl State {
         self.send(link, Lane::Control, &message);
     }
 
-    /// Announces that the worker leaves, where the coordinator needs to know; returns whether an
-    /// acknowledgement is to be expected.
+    /// Tells the coordinator that the worker leaves, unless the coordinator itself caused this; returns
+    /// whether an acknowledgement is to be expected.
     pub(super) fn leave<L: WorkerEnd>(&self, link: &mut L, ending: &Ending) -> bool {
         let reason = match ending {
             Ending::Asked => "it was asked to end",
@@ -372,10 +373,10 @@ impl State {
     }
 
     /// Waits until the coordinator acknowledges that the worker leaves.
-    pub(super) async fn dismissed<L: WorkerEnd>(&self, link: &mut L) {
+    pub(super) async fn await_leave_ack<L: WorkerEnd>(&self, link: &mut L) {
         while let Some(frame) = link.receive().await {
             if matches!(
-                wire::unseal(Kind::ToWorker, &frame),
+                wire::decode_frame(FrameKind::ToWorker, &frame),
                 Ok((_, ToWorker::Ended))
             ) {
                 return;
@@ -384,7 +385,7 @@ impl State {
     }
 
     fn send<L: WorkerEnd>(&self, link: &mut L, lane: Lane, message: &FromWorker) {
-        match wire::seal(Kind::FromWorker, self.run, message) {
+        match wire::encode_frame(FrameKind::FromWorker, self.run, message) {
             Ok(frame) => link.send(self.run, lane, frame),
             Err(error) => tracing::error!(%error, "a message cannot be sent"),
         }

@@ -1,8 +1,8 @@
 //! Entry that a machine's allow list needs before its workers may run a case's program, built from the case's
 //! proposal.
-use super::file::OwnFile;
-use crate::{CaseError, Overrides, document::Step, load_with_notes, source::document};
-use exchange::allow::Entry;
+use super::file::CommandCaseFile;
+use crate::{CaseError, Overrides, document::DocumentStep, load_with_notes, source::document};
+use exchange::allow::AllowEntry;
 use protocol::external::{External, entry_of};
 use std::{
     env,
@@ -11,12 +11,13 @@ use std::{
 
 /// Allow-list entry as a case proposes it.
 #[derive(Debug)]
-pub struct Proposal {
+pub struct EntryProposal {
     /// Name of the allow-list entry that the case refers to.
     pub name: String,
     /// Entry that would be written to the allow list.
-    pub entry: Entry,
-    /// Paths of the files that travel with the case or are filled in for the program.
+    pub entry: AllowEntry,
+    /// Paths of the case's files that are sent to the workers, and of the input files that are filled in for
+    /// the program.
     pub files: Vec<String>,
 }
 
@@ -24,41 +25,41 @@ pub struct Proposal {
 ///
 /// # Errors
 /// Returns an error if the case cannot be read, is not of the kind `command`, or proposes no command.
-pub fn proposed(folder: &Path) -> Result<Proposal, CaseError> {
+pub fn propose_entry(folder: &Path) -> Result<EntryProposal, CaseError> {
     let overrides = Overrides::default();
     let case = load_with_notes(folder, &overrides)?.case;
     let document = document(folder, &overrides)?;
     let Some((name, external)) = entry_of(&case.model.kind).zip(External::of(&case.model).ok())
     else {
         return Err(document.field(
-            &[Step::Key("model"), Step::Key("kind")],
+            &[DocumentStep::Key("model"), DocumentStep::Key("kind")],
             format!("\"{}\"", case.model.kind),
             "\"command\": only cases with a program of the user's own need an entry in the allow list",
             "do nothing: a case of another kind needs no entry in the allow list",
         ));
     };
-    let own: OwnFile = document.parse()?;
+    let own: CommandCaseFile = document.parse()?;
     let Some((program, arguments)) = own.model.command.split_first() else {
         return Err(document.field(
-            &[Step::Key("model"), Step::Key("command")],
+            &[DocumentStep::Key("model"), DocumentStep::Key("command")],
             "absent",
             "the program with its arguments, as [\"python3\", \"model.py\"]",
             "add it, or write the entry by hand; `horsehead allow --help` says where",
         ));
     };
-    let place = found(program);
-    if !is_there(&place, folder, &external) {
+    let place = resolve_program(program);
+    if !program_exists(&place, folder, &external) {
         return Err(document.field(
-            &[Step::Key("model"), Step::Key("command")],
+            &[DocumentStep::Key("model"), DocumentStep::Key("command")],
             format!("\"{program}\""),
             "a program on this machine, by name or absolute path, or a file of the case, such as \"./model.sh\"",
             "there is no such program: install it, or correct the name",
         ));
     }
-    let mut entry = Entry::new(place, arguments.to_vec());
+    let mut entry = AllowEntry::new(place, arguments.to_vec());
     entry.files = Some(external.digest());
     if let Some((program, arguments)) = own.model.version.split_first() {
-        entry.version = vec![found(program).display().to_string()];
+        entry.version = vec![resolve_program(program).display().to_string()];
         entry.version.extend(arguments.iter().cloned());
     }
     let files = external.files.iter().map(|file| file.path.clone());
@@ -66,7 +67,7 @@ pub fn proposed(folder: &Path) -> Result<Proposal, CaseError> {
         .fills
         .iter()
         .map(|fill| format!("{} (filled in)", fill.file));
-    Ok(Proposal {
+    Ok(EntryProposal {
         name: name.to_owned(),
         entry,
         files: files.chain(filled).collect(),
@@ -75,7 +76,7 @@ pub fn proposed(folder: &Path) -> Result<Proposal, CaseError> {
 
 /// Returns whether a program exists at a path: on this machine, or among the files that the case brings or
 /// fills in.
-fn is_there(place: &Path, folder: &Path, external: &External) -> bool {
+fn program_exists(place: &Path, folder: &Path, external: &External) -> bool {
     let plain = |path: &Path| {
         path.components()
             .filter(|part| *part != Component::CurDir)
@@ -89,7 +90,7 @@ fn is_there(place: &Path, folder: &Path, external: &External) -> bool {
 
 /// Returns the path of a program: looked up in `PATH` for a bare name; unchanged if it contains `/`, since
 /// such a path may refer to a file of the case.
-fn found(program: &str) -> PathBuf {
+fn resolve_program(program: &str) -> PathBuf {
     let plain = Path::new(program);
     if program.contains('/') {
         return plain.to_owned();

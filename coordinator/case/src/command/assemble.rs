@@ -1,21 +1,21 @@
 //! Assembly of the description of a program that is sent to the workers from the case file's entries. All
 //! names are cross-checked here, so that errors are reported when the case is read and not by a worker.
 use super::{
-    file::{ChannelEntry, InputEntry, ModelEntry, OutputEntry, OwnFile, SourceEntry},
+    file::{ChannelEntry, CommandCaseFile, InputEntry, ModelEntry, OutputEntry, SourceEntry},
     files,
 };
 use crate::{
-    document::{Document, Step, nearest},
+    document::{Document, DocumentStep, nearest},
     error::CaseError,
     file,
-    source::Source,
+    source::RecordFolder,
 };
 use exchange::{Problem, dakota, object, pest, table};
 use protocol::{
     case::Case,
     external::{
-        Equation, EquationTerm, External, Fill, FillForm, Parameter, Reading, ReadingForm,
-        Source as From,
+        ChannelSource as From, Equation, EquationTerm, External, InputFile, InputFormat,
+        OutputFile, OutputFormat, Parameter,
     },
 };
 use std::{collections::BTreeSet, path::Path};
@@ -26,8 +26,8 @@ use std::{collections::BTreeSet, path::Path};
 /// Returns an error for a file that cannot be read, a name that is not defined, or a channel without a valid
 /// source.
 pub(super) fn assemble(
-    source: &Source<'_>,
-    own: &OwnFile,
+    source: &RecordFolder<'_>,
+    own: &CommandCaseFile,
     case: &Case,
 ) -> Result<External, CaseError> {
     let assembly = Assembly {
@@ -43,19 +43,19 @@ pub(super) fn assemble(
         .collect();
     let mut known: BTreeSet<String> = parameters.iter().map(|p| p.name.clone()).collect();
     for (index, values) in conditions.iter().enumerate() {
-        assembly.alike(index, values, &conditions[0])?;
+        assembly.check_same_names(index, values, &conditions[0])?;
         known.extend(values.iter().map(|(name, _)| name.clone()));
     }
-    let fills = assembly.fills(&known)?;
-    let (readings, mut named) = assembly.readings()?;
+    let fills = assembly.input_files(&known)?;
+    let (readings, mut named) = assembly.output_files()?;
     let mut plain: BTreeSet<String> = case.unknowns.iter().map(|own| own.name.clone()).collect();
     plain.extend(conditions.iter().flatten().map(|(name, _)| name.clone()));
     let equations = assembly.equations(&plain)?;
     named.extend(equations.iter().map(|equation| equation.name.clone()));
     let curves = own.channels.iter().enumerate();
     let curve = |(index, channel): (usize, &ChannelEntry)| {
-        let curve = assembly.curve(index, channel, &readings, &named)?;
-        assembly.reach(index, &curve, &readings, case)?;
+        let curve = assembly.channel_source(index, channel, &readings, &named)?;
+        assembly.check_range(index, &curve, &readings, case)?;
         Ok(curve)
     };
     Ok(External {
@@ -77,9 +77,9 @@ struct Assembly<'a> {
 }
 
 impl Assembly<'_> {
-    fn refused(
+    fn field_error(
         &self,
-        way: &[Step<'_>],
+        way: &[DocumentStep<'_>],
         value: impl std::fmt::Display,
         allowed: &str,
         help: &str,
@@ -88,12 +88,18 @@ impl Assembly<'_> {
     }
 
     /// Builds the error for an undefined name, with the most similar defined name as a suggestion.
-    fn unknown(&self, way: &[Step<'_>], name: &str, allowed: &str, names: &[&str]) -> CaseError {
+    fn unknown(
+        &self,
+        way: &[DocumentStep<'_>],
+        name: &str,
+        allowed: &str,
+        names: &[&str],
+    ) -> CaseError {
         let near = nearest(name, names.iter().copied());
         let help = near.map_or("correct the name".to_owned(), |near| {
             format!("did you mean `{near}`?")
         });
-        self.refused(way, format!("\"{name}\""), allowed, &help)
+        self.field_error(way, format!("\"{name}\""), allowed, &help)
     }
 
     /// Returns the name, factor and offset with which each unknown of the case is written to the program's
@@ -105,7 +111,7 @@ impl Assembly<'_> {
             .into_iter()
             .find(|key| names().all(|name| name != *key))
         {
-            let way = ["model", "parameters", strange].map(Step::Key);
+            let way = ["model", "parameters", strange].map(DocumentStep::Key);
             return Err(self.unknown(
                 &way,
                 strange,
@@ -127,7 +133,7 @@ impl Assembly<'_> {
 
     /// Checks that a condition sets the same value names as the first one, because all conditions share the
     /// same templates.
-    fn alike(
+    fn check_same_names(
         &self,
         index: usize,
         values: &[(String, f64)],
@@ -140,11 +146,11 @@ impl Assembly<'_> {
             return Ok(());
         }
         let way = [
-            Step::Key("conditions"),
-            Step::Index(index),
-            Step::Key("values"),
+            DocumentStep::Key("conditions"),
+            DocumentStep::Index(index),
+            DocumentStep::Key("values"),
         ];
-        Err(self.refused(
+        Err(self.field_error(
             &way,
             names(values).join(", "),
             &format!(
@@ -161,12 +167,17 @@ impl Assembly<'_> {
         file::text(&path, file::read(&path, role)?)
     }
 
-    fn fills(&self, known: &BTreeSet<String>) -> Result<Vec<Fill>, CaseError> {
+    fn input_files(&self, known: &BTreeSet<String>) -> Result<Vec<InputFile>, CaseError> {
         let inputs = self.model.inputs.iter().enumerate();
         let fill = |(index, input): (usize, &InputEntry)| {
             let way = |key| {
-                let list = [Step::Key("model"), Step::Key("inputs")];
-                [list[0], list[1], Step::Index(index), Step::Key(key)]
+                let list = [DocumentStep::Key("model"), DocumentStep::Key("inputs")];
+                [
+                    list[0],
+                    list[1],
+                    DocumentStep::Index(index),
+                    DocumentStep::Key(key),
+                ]
             };
             let (form, names) = match (&input.template, &input.braces, &input.dakota) {
                 (Some(path), None, None) => {
@@ -175,7 +186,7 @@ impl Assembly<'_> {
                     let template =
                         template.map_err(|problem| self.problem(&way("template"), &problem))?;
                     (
-                        FillForm::Pest(text),
+                        InputFormat::Pest(text),
                         template.fields().into_keys().collect(),
                     )
                 }
@@ -185,22 +196,22 @@ impl Assembly<'_> {
                     let template =
                         template.map_err(|problem| self.problem(&way("braces"), &problem))?;
                     (
-                        FillForm::Braces(text),
+                        InputFormat::Braces(text),
                         template.fields().into_iter().collect(),
                     )
                 }
                 (None, None, Some(form)) if dakota::Form::named(form).is_some() => {
-                    (FillForm::Dakota(form.clone()), Vec::new())
+                    (InputFormat::Dakota(form.clone()), Vec::new())
                 }
                 (None, None, Some(form)) => {
                     let allowed = "standard, aprepro or json";
-                    return Err(self.refused(&way("dakota"), form, allowed, "correct it"));
+                    return Err(self.field_error(&way("dakota"), form, allowed, "correct it"));
                 }
                 _ => {
                     let allowed = "exactly one of template, braces and dakota";
                     let help =
                         "state exactly one of `template`, `braces` and `dakota` for the file";
-                    return Err(self.refused(&way("file"), &input.file, allowed, help));
+                    return Err(self.field_error(&way("file"), &input.file, allowed, help));
                 }
             };
             for name in &names {
@@ -212,7 +223,7 @@ impl Assembly<'_> {
                     return Err(self.unknown(&way("file"), name, allowed, &known));
                 }
             }
-            Ok(Fill {
+            Ok(InputFile {
                 file: input.file.clone(),
                 form,
             })
@@ -220,14 +231,20 @@ impl Assembly<'_> {
         inputs.map(fill).collect()
     }
 
-    /// Reads the output entries; returns them with the names of all single values that they define.
-    fn readings(&self) -> Result<(Vec<Reading>, BTreeSet<String>), CaseError> {
+    /// Reads the case file's entries about the program's output files; returns them with the names of all
+    /// single values that they define.
+    fn output_files(&self) -> Result<(Vec<OutputFile>, BTreeSet<String>), CaseError> {
         let mut named = BTreeSet::new();
         let outputs = self.model.outputs.iter().enumerate();
         let reading = |(index, output): (usize, &OutputEntry)| {
             let way = |key| {
-                let list = [Step::Key("model"), Step::Key("outputs")];
-                [list[0], list[1], Step::Index(index), Step::Key(key)]
+                let list = [DocumentStep::Key("model"), DocumentStep::Key("outputs")];
+                [
+                    list[0],
+                    list[1],
+                    DocumentStep::Index(index),
+                    DocumentStep::Key(key),
+                ]
             };
             let form = match (&output.instructions, &output.dakota) {
                 (Some(path), None) => {
@@ -236,27 +253,27 @@ impl Assembly<'_> {
                     let read =
                         read.map_err(|problem| self.problem(&way("instructions"), &problem))?;
                     named.extend(read.observations());
-                    ReadingForm::Pest(text)
+                    OutputFormat::Pest(text)
                 }
                 (None, Some(functions)) => {
                     named.extend(functions.iter().cloned());
-                    ReadingForm::Dakota(functions.clone())
+                    OutputFormat::Dakota(functions.clone())
                 }
                 (None, None)
                     if Path::new(&output.file)
                         .extension()
                         .is_some_and(|end| end == "json") =>
                 {
-                    ReadingForm::Object
+                    OutputFormat::Object
                 }
-                (None, None) => ReadingForm::Table,
+                (None, None) => OutputFormat::Table,
                 (Some(_), Some(_)) => {
                     let allowed = "no more than one of instructions and dakota";
                     let help = "remove `instructions` or `dakota`";
-                    return Err(self.refused(&way("file"), &output.file, allowed, help));
+                    return Err(self.field_error(&way("file"), &output.file, allowed, help));
                 }
             };
-            Ok(Reading {
+            Ok(OutputFile {
                 file: output.file.clone(),
                 form,
             })
@@ -271,9 +288,9 @@ impl Assembly<'_> {
             let term = |term: &super::file::TermEntry| {
                 if !known.contains(&term.parameter) {
                     let way = [
-                        Step::Key("model"),
-                        Step::Key("equations"),
-                        Step::Index(index),
+                        DocumentStep::Key("model"),
+                        DocumentStep::Key("equations"),
+                        DocumentStep::Index(index),
                     ];
                     let allowed = "the name of an unknown, or of a value of the conditions";
                     let known: Vec<&str> = known.iter().map(String::as_str).collect();
@@ -298,11 +315,11 @@ impl Assembly<'_> {
     ///
     /// # Errors
     /// Returns an error for a channel that extends beyond that curve.
-    fn reach(
+    fn check_range(
         &self,
         index: usize,
         curve: &From,
-        readings: &[Reading],
+        readings: &[OutputFile],
         case: &Case,
     ) -> Result<(), CaseError> {
         let (reading, at) = match curve {
@@ -335,9 +352,9 @@ impl Assembly<'_> {
         if from >= first - slack && to <= last + slack {
             return Ok(());
         }
-        let way = [Step::Key("channels"), Step::Index(index)];
+        let way = [DocumentStep::Key("channels"), DocumentStep::Index(index)];
         let unit = &channel.abscissa.unit;
-        Err(self.refused(
+        Err(self.field_error(
             &way,
             format!("channel `{}` from {from} to {to} {unit}", channel.name),
             &format!("abscissa values from {first} to {last} {unit}, the range of the program's curve in {left}"),
@@ -348,24 +365,24 @@ impl Assembly<'_> {
     }
 
     /// Returns the source of a channel's values: named values, a table column or a JSON pointer.
-    fn curve(
+    fn channel_source(
         &self,
         index: usize,
         channel: &ChannelEntry,
-        readings: &[Reading],
+        readings: &[OutputFile],
         named: &BTreeSet<String>,
     ) -> Result<From, CaseError> {
         let way = [
-            Step::Key("channels"),
-            Step::Index(index),
-            Step::Key("source"),
+            DocumentStep::Key("channels"),
+            DocumentStep::Index(index),
+            DocumentStep::Key("source"),
         ];
         let allowed =
             "{ named = [..] }, { file, column } of a table or { file, values } of an object";
         let help = "state the output file and the values of it that form the channel";
         let Some(entry) = &channel.source else {
             let value = format!("absent of channel `{}`", channel.name);
-            return Err(self.refused(&way, value, allowed, help));
+            return Err(self.field_error(&way, value, allowed, help));
         };
         let SourceEntry {
             named: names,
@@ -383,7 +400,7 @@ impl Assembly<'_> {
             return Ok(From::Named(names.clone()));
         }
         let (Some(file), None) = (file, names) else {
-            return Err(self.refused(&way, "an invalid combination of keys", allowed, help));
+            return Err(self.field_error(&way, "an invalid combination of keys", allowed, help));
         };
         let Some(reading) = readings.iter().position(|reading| reading.file == *file) else {
             let files: Vec<&str> = readings
@@ -393,17 +410,17 @@ impl Assembly<'_> {
             return Err(self.unknown(&way, file, "the file of one of the outputs", &files));
         };
         match (&readings[reading].form, column, values) {
-            (ReadingForm::Table, Some(column), None) => Ok(From::Column {
+            (OutputFormat::Table, Some(column), None) => Ok(From::Column {
                 reading,
                 at: at.clone(),
                 column: column.clone(),
             }),
-            (ReadingForm::Object, None, Some(values)) => Ok(From::Pointer {
+            (OutputFormat::Object, None, Some(values)) => Ok(From::Pointer {
                 reading,
                 values: values.clone(),
                 at: at.clone(),
             }),
-            _ => Err(self.refused(&way, format!("file = \"{file}\""), allowed, help)),
+            _ => Err(self.field_error(&way, format!("file = \"{file}\""), allowed, help)),
         }
     }
 
@@ -413,22 +430,22 @@ impl Assembly<'_> {
                 .parse::<i32>()
                 .ok()
                 .filter(|number| (1..=255).contains(number));
-            let is_word = protocol::job::Word::of(word).is_some_and(|_| !word.is_empty());
+            let is_word = protocol::job::Identifier::parse(word).is_some_and(|_| !word.is_empty());
             number
                 .filter(|_| is_word)
                 .map(|number| (number, word.clone()))
                 .ok_or_else(|| {
-                    let way = ["model", "verdicts", status].map(Step::Key);
+                    let way = ["model", "verdicts", status].map(DocumentStep::Key);
                     let allowed =
                         "an exit status from 1 to 255 with a word of lower-case letters, digits and `_`";
-                    self.refused(&way, word, allowed, "as in verdicts = { 3 = \"diverged\" }")
+                    self.field_error(&way, word, allowed, "as in verdicts = { 3 = \"diverged\" }")
                 })
         };
         self.model.verdicts.iter().map(verdict).collect()
     }
 
     /// Converts a problem in a template or an instruction file to a case error.
-    fn problem(&self, way: &[Step<'_>], problem: &Problem) -> CaseError {
+    fn problem(&self, way: &[DocumentStep<'_>], problem: &Problem) -> CaseError {
         let place = problem
             .line
             .map_or_else(String::new, |line| format!(", line {line}"));

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, path::PathBuf};
 
 /// Part of a case file that only the kind `command` reads.
 #[derive(Debug, Deserialize)]
-pub(super) struct OwnFile {
+pub(super) struct CommandCaseFile {
     pub(super) model: ModelEntry,
     pub(super) conditions: Vec<ConditionEntry>,
     pub(super) channels: Vec<ChannelEntry>,
@@ -66,7 +66,7 @@ pub(super) struct EquationEntry {
     pub(super) terms: Vec<TermEntry>,
 }
 
-/// A term of an equation.
+/// Term of an equation: a parameter with its factor.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TermEntry {

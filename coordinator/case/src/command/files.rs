@@ -1,6 +1,6 @@
 //! Reading of the files that travel with a case to the workers.
 use crate::{
-    document::{Document, Step},
+    document::{Document, DocumentStep},
     error::CaseError,
 };
 use protocol::{
@@ -30,7 +30,11 @@ pub(super) fn read(
     let mut bytes = 0;
     for (index, path) in named.iter().enumerate() {
         let refused = |problem: &str, help: &str| {
-            let way = [Step::Key("model"), Step::Key("files"), Step::Index(index)];
+            let way = [
+                DocumentStep::Key("model"),
+                DocumentStep::Key("files"),
+                DocumentStep::Index(index),
+            ];
             let value = format!("\"{}\"", path.display());
             document.field(&way, value, problem, help)
         };

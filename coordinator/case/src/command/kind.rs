@@ -1,19 +1,19 @@
 //! Kind of model `command`: cases whose model is a program of the user's own.
 use super::{
     assemble::assemble,
-    file::{ModelEntry, OwnFile},
+    file::{CommandCaseFile, ModelEntry},
     parameters::parameters,
 };
 use crate::{
-    case_kind::CaseKind,
-    document::{Document, Step},
+    case_kind::ModelKind,
+    document::{Document, DocumentStep},
     error::CaseError,
     general,
     loaded::Loaded,
-    source::Source,
+    source::RecordFolder,
 };
 use protocol::{
-    case::{Case, ModelSettings, Repeats},
+    case::{Case, ModelSettings, Reproducibility},
     external::{External, KIND, entry_of, kind_of},
     wire,
 };
@@ -25,17 +25,17 @@ const LONGEST_S: f64 = 604_800.0;
 const MOST_TOLERANCE: f64 = 1.0;
 
 /// Kind of model for programs of the user's own.
-pub(crate) struct Commands;
+pub(crate) struct CommandKind;
 
-impl CaseKind for Commands {
+impl ModelKind for CommandKind {
     fn name(&self) -> &'static str {
         KIND
     }
 
-    fn read(&self, source: &Source<'_>) -> Result<Loaded, CaseError> {
+    fn read(&self, source: &RecordFolder<'_>) -> Result<Loaded, CaseError> {
         let document = source.document;
-        let own: OwnFile = document.parse()?;
-        let way = |key| [Step::Key("model"), Step::Key(key)];
+        let own: CommandCaseFile = document.parse()?;
+        let way = |key| [DocumentStep::Key("model"), DocumentStep::Key(key)];
         let entry = &own.model.entry;
         let is_plain =
             |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '_' | '-' | '.');
@@ -81,7 +81,7 @@ impl CaseKind for Commands {
         true
     }
 
-    fn unready(&self, case: &Case) -> Option<(String, String)> {
+    fn readiness_problem(&self, case: &Case) -> Option<(String, String)> {
         let name = entry_of(&case.model.kind)?;
         let path = exchange::allow::path();
         let remedy = "review the command, then allow it on this machine: horsehead allow CASE";
@@ -113,15 +113,18 @@ impl CaseKind for Commands {
 
 /// Returns how reproducible the results are between machines, as the case states: bit-identical, within a
 /// tolerance, or unknown.
-fn repeats(document: &Document, model: &ModelEntry) -> Result<Repeats, CaseError> {
+fn repeats(document: &Document, model: &ModelEntry) -> Result<Reproducibility, CaseError> {
     let Some(tolerance) = model.reference_tolerance else {
         return Ok(if model.repeatable {
-            Repeats::Bits
+            Reproducibility::Bits
         } else {
-            Repeats::Unknown
+            Reproducibility::Unknown
         });
     };
-    let way = [Step::Key("model"), Step::Key("reference_tolerance")];
+    let way = [
+        DocumentStep::Key("model"),
+        DocumentStep::Key("reference_tolerance"),
+    ];
     if model.repeatable {
         return Err(document.field(
             &way,
@@ -136,5 +139,5 @@ fn repeats(document: &Document, model: &ModelEntry) -> Result<Repeats, CaseError
         f64::MIN_POSITIVE..=MOST_TOLERANCE,
         "",
     )?;
-    Ok(Repeats::Within(tolerance))
+    Ok(Reproducibility::Within(tolerance))
 }

@@ -1,12 +1,12 @@
 //! Reading of the channels and their measured records.
 use super::{
     super::{
-        document::{Document, Step, nearest},
+        document::{Document, DocumentStep, nearest},
         error::CaseError,
         names,
         spread::mean_and_spread,
     },
-    file::{AbscissaEntry, ChannelEntry, ConditionEntry, HeldOut, PointsEntry},
+    file::{AbscissaEntry, ChannelEntry, ConditionEntry, HeldOutEntry, PointsEntry},
     record,
 };
 use protocol::case::{Abscissa, Channel, ChannelRecord, Offset};
@@ -14,53 +14,55 @@ use std::path::{Path, PathBuf};
 
 /// Maximum number of abscissa points of a channel.
 const MOST_POINTS: u32 = 1_000_000;
-/// Tolerance of equally spaced abscissa points, as a share of the spacing.
-const EVEN: f64 = 1e-6;
-/// Ratio of a channel's noise to the rounding step of its transmitted curve, as an exponent of two: 2^10,
-/// about a thousand.
-const BELOW_NOISE: f64 = 10.0;
+/// Tolerance, as a share of the spacing, within which abscissa points count as equally spaced.
+const SPACING_TOLERANCE: f64 = 1e-6;
+/// Binary logarithm of the ratio of a channel's noise to the rounding step of the curves that workers send:
+/// 2^10, about a thousand.
+const NOISE_TO_STEP_LOG2: f64 = 10.0;
 
-/// Channel with its measured record.
-pub(super) struct Read {
+/// Channel of a case with its measured record, as read from the files.
+pub(super) struct ReadChannel {
     pub(super) channel: Channel,
     /// Values of each measured cycle; empty for a channel without a record.
     pub(super) cycles: Vec<Vec<f64>>,
     /// Part of the channel that is held out from the fits of a diagnosis.
-    pub(super) held_out: HeldOut,
+    pub(super) held_out: HeldOutEntry,
     /// Correlation of the noise between successive values, if stated.
     pub(super) correlation: Option<f64>,
     /// Standard deviation of the model error, below which no model is expected to fit, if stated.
     pub(super) model_error: Option<f64>,
-    /// Name of the record's file and its condition, if the folder of replacing records lacks it.
+    /// Name of the record's file and of its condition, if the folder of `--measured` lacks the file.
     pub(super) missing: Option<(String, String)>,
 }
 
-/// Folders and defaults with which records are read.
-pub(super) struct Place<'a> {
+/// Folders from which records are read, and defaults for reading them.
+pub(super) struct RecordSources<'a> {
     /// Folder of the case.
     pub(super) folder: &'a Path,
     /// Folder whose records replace those of the case, if given.
-    pub(super) measured: Option<&'a Path>,
-    /// Names of the conditions whose records must exist.
+    pub(super) replacement_folder: Option<&'a Path>,
+    /// Names of the conditions used in the calibration, whose records must exist.
     pub(super) calibrated: &'a [String],
-    /// Default treatment of the zero (offset) for channels that do not state one.
+    /// Default for the treatment of a sensor's zero (free or fixed offset), for channels that do not state
+    /// one.
     pub(super) offset: Offset,
 }
 
-impl Place<'_> {
-    /// Returns the path of a record's file: `--measured DIR` replaces the folder, not the name.
+impl RecordSources<'_> {
+    /// Returns the path of a record's file: in the folder of `--measured DIR` under the same name if given,
+    /// otherwise in the case's folder.
     fn of(&self, named: &Path) -> PathBuf {
-        match (self.measured, named.file_name()) {
+        match (self.replacement_folder, named.file_name()) {
             (Some(measured), Some(name)) => measured.join(name),
             _ => self.folder.join(named),
         }
     }
 
-    /// Returns whether the replacing folder lacks a record that it may omit, because its condition is not
-    /// calibrated.
-    fn lacks(&self, named: &Path, condition: &str) -> bool {
+    /// Returns whether the folder of `--measured` lacks a record that may be missing, because its condition
+    /// is not used in the calibration.
+    fn may_omit(&self, named: &Path, condition: &str) -> bool {
         let needed = self.calibrated.iter().any(|name| name == condition);
-        self.measured.is_some() && !needed && !self.of(named).exists()
+        self.replacement_folder.is_some() && !needed && !self.of(named).exists()
     }
 }
 
@@ -72,16 +74,20 @@ pub(super) fn read(
     document: &Document,
     entries: &[ChannelEntry],
     conditions: &[ConditionEntry],
-    place: &Place<'_>,
-) -> Result<Vec<Read>, CaseError> {
+    place: &RecordSources<'_>,
+) -> Result<Vec<ReadChannel>, CaseError> {
     let read = |(index, entry): (usize, &ChannelEntry)| {
-        let way = [Step::Key("channels"), Step::Index(index), Step::Key("name")];
+        let way = [
+            DocumentStep::Key("channels"),
+            DocumentStep::Index(index),
+            DocumentStep::Key("name"),
+        ];
         let twin =
             |other: &ChannelEntry| other.name == entry.name && other.condition == entry.condition;
         let is_there = entries[..index].iter().any(twin);
         let what = "channel of its condition";
         names::check_one(document, &way, what, &entry.name, is_there)?;
-        let source = Source {
+        let source = ChannelReader {
             document,
             index,
             entry,
@@ -92,27 +98,37 @@ pub(super) fn read(
 }
 
 /// Channel entry of the case file with its index.
-struct Source<'a> {
+struct ChannelReader<'a> {
     document: &'a Document,
     index: usize,
     entry: &'a ChannelEntry,
 }
 
-impl Source<'_> {
+impl ChannelReader<'_> {
     /// Builds an error about a field of the channel entry.
-    fn refused(&self, keys: &[&str], value: String, allowed: &str, help: &str) -> CaseError {
-        let way = [Step::Key("channels"), Step::Index(self.index)].into_iter();
-        let way: Vec<Step<'_>> = way.chain(keys.iter().map(|key| Step::Key(key))).collect();
+    fn field_error(&self, keys: &[&str], value: String, allowed: &str, help: &str) -> CaseError {
+        let way = [
+            DocumentStep::Key("channels"),
+            DocumentStep::Index(self.index),
+        ]
+        .into_iter();
+        let way: Vec<DocumentStep<'_>> = way
+            .chain(keys.iter().map(|key| DocumentStep::Key(key)))
+            .collect();
         self.document.field(&way, value, allowed, help)
     }
 
-    fn read(&self, conditions: &[ConditionEntry], place: &Place<'_>) -> Result<Read, CaseError> {
+    fn read(
+        &self,
+        conditions: &[ConditionEntry],
+        place: &RecordSources<'_>,
+    ) -> Result<ReadChannel, CaseError> {
         let entry = self.entry;
         let names = conditions.iter().map(|condition| condition.name.as_str());
         let Some(condition) = names.clone().position(|name| name == entry.condition) else {
             let list: Vec<&str> = names.clone().collect();
             let near = nearest(&entry.condition, names);
-            return Err(self.refused(
+            return Err(self.field_error(
                 &["condition"],
                 format!("\"{}\"", entry.condition),
                 &format!("the name of a condition: {}", list.join(", ")),
@@ -125,7 +141,7 @@ impl Source<'_> {
             .noise
             .is_some_and(|noise| !(noise > 0.0 && noise.is_finite()))
         {
-            return Err(self.refused(
+            return Err(self.field_error(
                 &["noise"],
                 entry.noise.unwrap_or_default().to_string(),
                 &format!("above 0 {}", entry.unit),
@@ -133,14 +149,14 @@ impl Source<'_> {
             ));
         }
         self.check_errors()?;
-        let record::Read {
-            places: points,
+        let record::ChannelData {
+            abscissa: points,
             mut cycles,
             weights,
         } = self.places_and_cycles(place)?;
         let file = entry.record.as_ref().map(|record| &record.file);
         let missing = file
-            .filter(|file| place.lacks(file, &entry.condition))
+            .filter(|file| place.may_omit(file, &entry.condition))
             .map(|file| {
                 // the places stand, the values are another test's
                 cycles.clear();
@@ -152,7 +168,7 @@ impl Source<'_> {
         let AbscissaEntry {
             name, unit, period, ..
         } = &entry.abscissa;
-        Ok(Read {
+        Ok(ReadChannel {
             channel: Channel {
                 name: entry.name.clone(),
                 title: entry.title.clone().unwrap_or_else(|| entry.name.clone()),
@@ -180,7 +196,7 @@ impl Source<'_> {
 
     /// Checks that a held-out segment contains some of the abscissa points, but not all.
     fn check_segment(&self, points: &[f64]) -> Result<(), CaseError> {
-        let HeldOut::Segment(part) = self.entry.held_out else {
+        let HeldOutEntry::Segment(part) = self.entry.held_out else {
             return Ok(());
         };
         let inside = points.iter().filter(|x| (part.from..=part.to).contains(x));
@@ -189,7 +205,7 @@ impl Source<'_> {
             return Ok(());
         }
         let ends = [points.first(), points.last()].map(|x| x.copied().unwrap_or_default());
-        Err(self.refused(
+        Err(self.field_error(
             &["held_out"],
             format!("from {} to {}", part.from, part.to),
             &format!(
@@ -205,7 +221,7 @@ impl Source<'_> {
         let entry = self.entry;
         let correlation = entry.correlation.filter(|rho| !(0.0..1.0).contains(rho));
         if let Some(rho) = correlation {
-            return Err(self.refused(
+            return Err(self.field_error(
                 &["correlation"],
                 rho.to_string(),
                 "from 0 to below 1",
@@ -216,7 +232,7 @@ impl Source<'_> {
             .model_error
             .filter(|own| !(*own > 0.0 && own.is_finite()));
         if let Some(error) = error {
-            return Err(self.refused(
+            return Err(self.field_error(
                 &["model_error"],
                 error.to_string(),
                 &format!("above 0 {}", entry.unit),
@@ -227,7 +243,10 @@ impl Source<'_> {
     }
 
     /// Returns the abscissa points and the measured values at them.
-    fn places_and_cycles(&self, place: &Place<'_>) -> Result<record::Read, CaseError> {
+    fn places_and_cycles(
+        &self,
+        place: &RecordSources<'_>,
+    ) -> Result<record::ChannelData, CaseError> {
         let read = match (&self.entry.record, &self.entry.abscissa.points) {
             (Some(entry), None) => {
                 let role = format!(
@@ -235,21 +254,21 @@ impl Source<'_> {
                     self.entry.name,
                     self.document.path.display()
                 );
-                let path = if place.lacks(&entry.file, &self.entry.condition) {
+                let path = if place.may_omit(&entry.file, &self.entry.condition) {
                     place.folder.join(&entry.file)
                 } else {
                     place.of(&entry.file)
                 };
                 record::read(&path, entry, &role)?
             }
-            (None, Some(points)) => record::Read {
-                places: self.spaced(*points)?,
+            (None, Some(points)) => record::ChannelData {
+                abscissa: self.spaced(*points)?,
                 cycles: Vec::new(),
                 weights: Vec::new(),
             },
             (record, _) => {
                 let both = record.is_some();
-                return Err(self.refused(
+                return Err(self.field_error(
                     &["abscissa", "points"],
                     if both {
                         "stated beside a record"
@@ -266,15 +285,15 @@ impl Source<'_> {
                 ));
             }
         };
-        self.check_period(&read.places)?;
+        self.check_period(&read.abscissa)?;
         let least = match self.entry.offset.unwrap_or(place.offset) {
             Offset::Fixed => 1,
             Offset::Free => 2,
         };
-        if read.places.len() < least {
-            return Err(self.refused(
+        if read.abscissa.len() < least {
+            return Err(self.field_error(
                 &["abscissa"],
-                format!("{} value", read.places.len()),
+                format!("{} value", read.abscissa.len()),
                 "two or more values: with offset = \"free\" the mean difference is removed before the comparison",
                 "state offset = \"fixed\" if the values have an absolute zero",
             ));
@@ -287,7 +306,7 @@ impl Source<'_> {
         let PointsEntry { first, step, count } = points;
         let ascends = step > 0.0 && step.is_finite() && first.is_finite();
         if !ascends || !(1..=MOST_POINTS).contains(&count) {
-            return Err(self.refused(
+            return Err(self.field_error(
                 &["abscissa", "points"],
                 format!("{{ first = {first}, step = {step}, count = {count} }}"),
                 &format!("finite numbers, step above 0, count 1 to {MOST_POINTS}"),
@@ -306,11 +325,11 @@ impl Source<'_> {
         let first = points.first().copied().unwrap_or_default();
         let off = |(at, point): (usize, &f64)| (point - first - step * at as f64).abs();
         let furthest = points.iter().enumerate().map(off).fold(0.0, f64::max);
-        if period > 0.0 && furthest <= EVEN * step {
+        if period > 0.0 && furthest <= SPACING_TOLERANCE * step {
             return Ok(());
         }
         let unit = &self.entry.abscissa.unit;
-        Err(self.refused(
+        Err(self.field_error(
             &["abscissa", "period"],
             format!("{period} {unit}"),
             &format!(
@@ -323,19 +342,19 @@ impl Source<'_> {
     }
 }
 
-/// Returns the rounding step of a transmitted curve, as an exponent of two: the greatest power of two that
-/// does not exceed 1/1024 of the noise of the value with the largest weight.
+/// Returns the rounding step of the curves that workers send for a channel, as an exponent of two: the
+/// greatest power of two that does not exceed 1/1024 of the noise of the value with the largest weight.
 fn step(noise: f64, weights: &[f64]) -> i32 {
     let noise = noise / weights.iter().copied().fold(1.0, f64::max);
     #[expect(
         clippy::cast_possible_truncation,
         reason = "the logarithm of a finite number"
     )]
-    let power = (noise.log2() - BELOW_NOISE).floor() as i32;
+    let power = (noise.log2() - NOISE_TO_STEP_LOG2).floor() as i32;
     power
 }
 
-/// Returns mean and spread at each abscissa point over the cycles.
+/// Returns the mean and the standard deviation over the cycles at each abscissa point.
 fn averaged(cycles: &[Vec<f64>]) -> ChannelRecord {
     let places = 0..cycles.first().map_or(0, Vec::len);
     let statistics = places.map(|at| mean_and_spread(cycles.iter().map(move |cycle| cycle[at])));

@@ -9,7 +9,7 @@ use toml::Table;
 
 /// Model-specific part of a case, which is passed on to the model as TOML text.
 #[derive(Serialize)]
-struct Own<'a> {
+struct ModelSettingsToml<'a> {
     /// Table `[model]` without `kind`.
     model: &'a Table,
     /// Tables `[[conditions]]` without `name`.
@@ -35,7 +35,7 @@ pub(super) fn read(
 
 /// Returns the model-specific part of the case in the form that is sent to workers.
 pub(super) fn settings(model: &ModelEntry, conditions: &[ConditionEntry]) -> ModelSettings {
-    let own = Own {
+    let own = ModelSettingsToml {
         model: &model.own,
         conditions: conditions.iter().map(|entry| &entry.own).collect(),
     };

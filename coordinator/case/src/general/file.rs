@@ -78,12 +78,12 @@ pub(super) struct ChannelEntry {
     pub(super) correlation: Option<f64>,
     /// Standard deviation of the model error, below which no model is expected to fit.
     pub(super) model_error: Option<f64>,
-    /// Treatment of the zero: absolute values, or deviations after removal of the mean difference; the
-    /// objective's unless stated.
+    /// Treatment of the sensor's zero: compare absolute values (fixed), or values after removal of the mean
+    /// difference (free); that of the objective unless stated.
     pub(super) offset: Option<Offset>,
     /// Part of the record that is held out from the fits of a diagnosis.
     #[serde(default)]
-    pub(super) held_out: HeldOut,
+    pub(super) held_out: HeldOutEntry,
     pub(super) record: Option<RecordEntry>,
     /// Source of the values in the output of a user's program; read by the kind `command` only.
     #[serde(rename = "source")]
@@ -93,7 +93,7 @@ pub(super) struct ChannelEntry {
 /// Part of a record that is held out from the fits of a diagnosis.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(untagged)]
-pub(super) enum HeldOut {
+pub(super) enum HeldOutEntry {
     /// Whole record if true, nothing if false.
     Whole(bool),
     /// Segment of the abscissa, including its ends.
@@ -108,7 +108,7 @@ pub(super) struct SegmentEntry {
     pub(super) to: f64,
 }
 
-impl Default for HeldOut {
+impl Default for HeldOutEntry {
     fn default() -> Self {
         Self::Whole(false)
     }
@@ -163,7 +163,7 @@ pub(super) struct RowsEntry {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ObjectiveEntry {
-    pub(super) condition: Names,
+    pub(super) condition: OneOrMany,
     pub(super) terms: Vec<TermEntry>,
     pub(super) offset: Offset,
 }
@@ -171,12 +171,12 @@ pub(super) struct ObjectiveEntry {
 /// List of names, which may be written as a single name.
 #[derive(Debug, Deserialize)]
 #[serde(untagged, expecting = "a name, or a list of names")]
-pub(super) enum Names {
+pub(super) enum OneOrMany {
     One(String),
     Several(Vec<String>),
 }
 
-impl Names {
+impl OneOrMany {
     pub(super) fn all(&self) -> &[String] {
         match self {
             Self::One(name) => std::slice::from_ref(name),

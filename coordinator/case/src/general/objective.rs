@@ -1,10 +1,10 @@
 //! Reading of the objective that a calibration minimises: weighted channels of one or several conditions.
 use super::{
     super::{
-        document::{Document, Step, nearest},
+        document::{Document, DocumentStep, nearest},
         error::CaseError,
     },
-    channels::Read,
+    channels::ReadChannel,
     file::{ConditionEntry, ObjectiveEntry, TermEntry},
 };
 use protocol::case::{Objective, Term};
@@ -18,9 +18,9 @@ pub(super) fn read(
     document: &Document,
     entry: Option<&ObjectiveEntry>,
     conditions: &[ConditionEntry],
-    channels: &[Read],
+    channels: &[ReadChannel],
 ) -> Result<Objective, CaseError> {
-    let measured = |read: &&Read| read.channel.record.is_some();
+    let measured = |read: &&ReadChannel| read.channel.record.is_some();
     let Some(entry) = entry else {
         return match channels.iter().find(measured) {
             None => Ok(Objective {
@@ -29,7 +29,7 @@ pub(super) fn read(
                 terms: Vec::new(),
             }),
             Some(read) => Err(document.field(
-                &[Step::Key("objective")],
+                &[DocumentStep::Key("objective")],
                 "absent",
                 format!(
                     "a table, since channel `{}` has a record",
@@ -43,7 +43,10 @@ pub(super) fn read(
     let fitted = conditions_of(document, entry.condition.all(), conditions, &names)?;
     let Some((&condition, others)) = fitted.split_first() else {
         return Err(document.field(
-            &[Step::Key("objective"), Step::Key("condition")],
+            &[
+                DocumentStep::Key("objective"),
+                DocumentStep::Key("condition"),
+            ],
             "[]",
             "at least one condition",
             "write condition = \"NAME\", or a list of names",
@@ -51,13 +54,13 @@ pub(super) fn read(
     };
     if entry.terms.is_empty() {
         return Err(document.field(
-            &[Step::Key("objective"), Step::Key("terms")],
+            &[DocumentStep::Key("objective"), DocumentStep::Key("terms")],
             "[]",
             "at least one channel",
             "write terms = [{ channel = \"force\", weight = 1.0 }]",
         ));
     }
-    let own: Vec<&Read> = channels
+    let own: Vec<&ReadChannel> = channels
         .iter()
         .filter(|read| fitted.contains(&read.channel.condition))
         .collect();
@@ -83,7 +86,10 @@ fn conditions_of(
     conditions: &[ConditionEntry],
     names: &[&str],
 ) -> Result<Vec<usize>, CaseError> {
-    let way = [Step::Key("objective"), Step::Key("condition")];
+    let way = [
+        DocumentStep::Key("objective"),
+        DocumentStep::Key("condition"),
+    ];
     let mut found = Vec::new();
     for name in wanted {
         let at = names.iter().position(|own| own == name);
@@ -111,9 +117,9 @@ fn check_measured(
     document: &Document,
     terms: &[TermEntry],
     (fitted, names): (&[usize], &[&str]),
-    own: &[&Read],
+    own: &[&ReadChannel],
 ) -> Result<(), CaseError> {
-    let summed = |read: &&&Read| {
+    let summed = |read: &&&ReadChannel| {
         let is_named = |term: &TermEntry| term.channel == read.channel.name;
         read.channel.record.is_some() && terms.iter().any(is_named)
     };
@@ -125,9 +131,9 @@ fn check_measured(
         {
             return Err(document.field(
                 &[
-                    Step::Key("objective"),
-                    Step::Key("condition"),
-                    Step::Index(at),
+                    DocumentStep::Key("objective"),
+                    DocumentStep::Key("condition"),
+                    DocumentStep::Index(at),
                 ],
                 format!("\"{}\"", names[*condition]),
                 "conditions with a record of one of the terms",
@@ -143,15 +149,20 @@ fn check_term(
     document: &Document,
     terms: &[TermEntry],
     index: usize,
-    own: &[&Read],
+    own: &[&ReadChannel],
 ) -> Result<(), CaseError> {
     let term = &terms[index];
     let way = |key| {
-        let list = [Step::Key("objective"), Step::Key("terms")];
-        [list[0], list[1], Step::Index(index), Step::Key(key)]
+        let list = [DocumentStep::Key("objective"), DocumentStep::Key("terms")];
+        [
+            list[0],
+            list[1],
+            DocumentStep::Index(index),
+            DocumentStep::Key(key),
+        ]
     };
     let quoted = format!("\"{}\"", term.channel);
-    let called = |read: &&&Read| read.channel.name == term.channel;
+    let called = |read: &&&ReadChannel| read.channel.name == term.channel;
     if !own.iter().any(|read| called(&read)) {
         let mut names: Vec<&str> = own.iter().map(|it| it.channel.name.as_str()).collect();
         names.sort_unstable();
@@ -198,7 +209,7 @@ fn check_term(
 /// Builds the error for an unknown name, with the most similar known name as a suggestion.
 fn unknown(
     document: &Document,
-    way: &[Step<'_>],
+    way: &[DocumentStep<'_>],
     name: &str,
     what: &str,
     names: &[&str],

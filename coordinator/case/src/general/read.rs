@@ -1,16 +1,16 @@
 //! Reading of a case folder in the general form: the case file and every record that it names.
 use super::{
     super::{
-        document::{Document, Step},
+        document::{Document, DocumentStep},
         effect::{self, CaseEffect},
         error::CaseError,
         loaded::{Loaded, Records},
         note::Note,
-        source::Source,
+        source::RecordFolder,
     },
-    channels::{self, Place},
+    channels::{self, RecordSources},
     conditions,
-    file::{CaseFile, ConditionEntry, HeldOut},
+    file::{CaseFile, ConditionEntry, HeldOutEntry},
     objective, unknowns,
 };
 use discrepancy::record::{Curves, Record, Recorded, Stated};
@@ -21,8 +21,8 @@ use std::path::Path;
 ///
 /// # Errors
 /// Returns the first fault found; see [`CaseError`].
-pub fn read(source: &Source<'_>) -> Result<Loaded, CaseError> {
-    let Source {
+pub fn read(source: &RecordFolder<'_>) -> Result<Loaded, CaseError> {
+    let RecordFolder {
         folder,
         measured,
         document,
@@ -33,9 +33,9 @@ pub fn read(source: &Source<'_>) -> Result<Loaded, CaseError> {
     effect::check(document, &file.effects, &[])?;
     unknowns.extend(file.effects.iter().flat_map(CaseEffect::genes));
     let objective = file.objective.as_ref();
-    let place = Place {
+    let place = RecordSources {
         folder,
-        measured,
+        replacement_folder: measured,
         calibrated: objective.map_or(&[], |entry| entry.condition.all()),
         offset: objective.map_or(Offset::Free, |entry| entry.offset),
     };
@@ -74,11 +74,11 @@ fn cycles(
     document: &Document,
     entries: &[ConditionEntry],
     condition: usize,
-    all: &[channels::Read],
+    all: &[channels::ReadChannel],
 ) -> Result<Option<Record>, CaseError> {
     let own = all.iter().enumerate();
     let own = own.filter(|(_, read)| read.channel.condition == condition);
-    let measured: Vec<(usize, usize, &channels::Read)> = own
+    let measured: Vec<(usize, usize, &channels::ReadChannel)> = own
         .enumerate()
         .map(|(curve, (at, read))| (curve, at, read))
         .filter(|(_, _, read)| !read.cycles.is_empty())
@@ -91,7 +91,11 @@ fn cycles(
             continue;
         }
         return Err(document.field(
-            &[Step::Key("channels"), Step::Index(*at), Step::Key("record")],
+            &[
+                DocumentStep::Key("channels"),
+                DocumentStep::Index(*at),
+                DocumentStep::Key("record"),
+            ],
             format!("{} cycles", read.cycles.len()),
             format!(
                 "as many as channel `{}` of the same condition has: {}",
@@ -101,7 +105,7 @@ fn cycles(
             "give the channels of a condition the same cycles",
         ));
     }
-    let recorded = |(curve, _, read): &(usize, usize, &channels::Read)| {
+    let recorded = |(curve, _, read): &(usize, usize, &channels::ReadChannel)| {
         let own = Recorded {
             correlation: read.correlation,
             model_error: read.model_error,
@@ -129,10 +133,10 @@ fn cycles(
 
 /// Splits a channel into its fitted and its held-out part; a channel held out as a whole, or not at all,
 /// stays one part.
-fn parts(own: Recorded, held_out: HeldOut) -> Vec<Recorded> {
+fn parts(own: Recorded, held_out: HeldOutEntry) -> Vec<Recorded> {
     match held_out {
-        HeldOut::Whole(held_out) => vec![Recorded { held_out, ..own }],
-        HeldOut::Segment(part) => {
+        HeldOutEntry::Whole(held_out) => vec![Recorded { held_out, ..own }],
+        HeldOutEntry::Segment(part) => {
             let points = own.channel.abscissa.points.iter().enumerate();
             let (inside, outside): (Vec<_>, Vec<_>) =
                 points.partition(|(_, x)| (part.from..=part.to).contains(*x));
@@ -145,8 +149,8 @@ fn parts(own: Recorded, held_out: HeldOut) -> Vec<Recorded> {
     }
 }
 
-/// Returns notes on the records that the folder of `--measured DIR` lacks.
-fn not_repeated(measured: Option<&Path>, all: &[channels::Read]) -> Vec<Note> {
+/// Returns notes that list the records missing in the folder of `--measured DIR`.
+fn not_repeated(measured: Option<&Path>, all: &[channels::ReadChannel]) -> Vec<Note> {
     let Some(folder) = measured else {
         return Vec::new();
     };

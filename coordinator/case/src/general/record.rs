@@ -3,18 +3,18 @@ use super::{
     super::{
         error::{CaseError, contradiction},
         file,
-        table::Table,
+        table::CsvTable,
     },
     file::RecordEntry,
     rows,
 };
 use std::path::Path;
 
-/// Measured record of a channel.
+/// Measured record of a channel, as read from its file.
 #[derive(Debug)]
-pub(super) struct Read {
+pub(super) struct ChannelData {
     /// Abscissa points of the values, ascending.
-    pub(super) places: Vec<f64>,
+    pub(super) abscissa: Vec<f64>,
     /// Measured values of each cycle.
     pub(super) cycles: Vec<Vec<f64>>,
     /// Weights of the values; empty if all are equal.
@@ -27,7 +27,7 @@ pub(super) struct Read {
 /// Returns an error for a missing file or column, cells that are not numbers, abscissa points that do not
 /// ascend or differ between cycles, cycle numbers that are not whole or decrease, weights that are not
 /// positive, and unweighted values that are all equal.
-pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<Read, CaseError> {
+pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<ChannelData, CaseError> {
     let packed = path.extension().is_some_and(|end| end == "gz");
     let bytes = if packed {
         file::read_gzip(path, role)?
@@ -45,10 +45,10 @@ pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<Read,
         .into_iter()
         .chain(entry.weight.as_deref());
     let named: Vec<&str> = named.chain(more).collect();
-    let table = Table::read(path, &bytes, &named)?;
+    let table = CsvTable::read(path, &bytes, &named)?;
     let [at, values, more @ ..] = table.columns.as_slice() else {
-        return Ok(Read {
-            places: Vec::new(),
+        return Ok(ChannelData {
+            abscissa: Vec::new(),
             cycles: Vec::new(),
             weights: Vec::new(),
         });
@@ -90,8 +90,8 @@ pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<Read,
         .map(|span| values[span].to_vec())
         .collect();
     let weights = weights.and_then(|all| all.get(..length));
-    Ok(Read {
-        places,
+    Ok(ChannelData {
+        abscissa: places,
         cycles,
         weights: weights.unwrap_or_default().to_vec(),
     })
@@ -100,7 +100,7 @@ pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<Read,
 /// Checks that the weights are positive and the same in every cycle.
 fn check_weights(
     path: &Path,
-    table: &Table,
+    table: &CsvTable,
     weights: &[f64],
     length: usize,
 ) -> Result<(), CaseError> {
@@ -120,8 +120,12 @@ fn check_weights(
     Ok(())
 }
 
-/// Returns the index of the first row of each cycle.
-fn begins(path: &Path, table: &Table, numbers: Option<&Vec<f64>>) -> Result<Vec<usize>, CaseError> {
+/// Returns the index of the table row at which each cycle begins.
+fn begins(
+    path: &Path,
+    table: &CsvTable,
+    numbers: Option<&Vec<f64>>,
+) -> Result<Vec<usize>, CaseError> {
     let mut begins = vec![0];
     let Some(numbers) = numbers else {
         return Ok(begins);
@@ -147,7 +151,7 @@ fn begins(path: &Path, table: &Table, numbers: Option<&Vec<f64>>) -> Result<Vec<
 /// Checks that the abscissa points of a cycle ascend and equal those of the first cycle.
 fn check_places(
     path: &Path,
-    table: &Table,
+    table: &CsvTable,
     first: &[f64],
     from: usize,
     own: &[f64],

@@ -2,8 +2,8 @@
 use super::super::error::{CaseError, damaged};
 use std::path::Path;
 
-/// Returns the CSV table with its header and only the rows whose `column` contains `word`; other rows become
-/// empty lines, so that line numbers in messages match the file.
+/// Returns a CSV table with only the header and the rows whose cell in `column` equals `word`; other rows
+/// become empty lines, so that line numbers in messages match the file.
 ///
 /// # Errors
 /// Returns an error if the column is missing, no row contains the word, or the text is not valid CSV.

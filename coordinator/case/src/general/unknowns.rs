@@ -1,7 +1,7 @@
 //! Reading of the unknowns, with the location of errors in the case file.
 use super::{
     super::{
-        document::{Document, Step},
+        document::{Document, DocumentStep},
         error::CaseError,
         names,
     },
@@ -20,7 +20,13 @@ pub(super) fn read(
 ) -> Result<Vec<Unknown>, CaseError> {
     let all: Vec<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
     names::check(document, "unknowns", "unknown", &all)?;
-    let way = |index, field| [Step::Key("unknowns"), Step::Index(index), Step::Key(field)];
+    let way = |index, field| {
+        [
+            DocumentStep::Key("unknowns"),
+            DocumentStep::Index(index),
+            DocumentStep::Key(field),
+        ]
+    };
     if let Some(index) = all.iter().position(|name| name.contains('.')) {
         return Err(document.field(
             &way(index, "name"),
@@ -69,8 +75,8 @@ fn unknown(entry: &UnknownEntry, start: f64) -> Unknown {
     }
 }
 
-/// Returns the start value: as stated, or derived from the tied unknown. `ties` limits the depth of the
-/// recursion, in case ties form a loop.
+/// Returns the start value of an unknown: the stated one, or that of the unknown to which it is tied times
+/// the ratio. `ties` limits the depth of the recursion, in case ties form a loop.
 fn start(entry: &UnknownEntry, all: &[UnknownEntry], ties: usize) -> f64 {
     let tie = entry.tie.as_ref().filter(|_| ties > 0);
     let tied = || {
@@ -81,7 +87,8 @@ fn start(entry: &UnknownEntry, all: &[UnknownEntry], ties: usize) -> f64 {
     entry.start.or_else(tied).unwrap_or(f64::NAN)
 }
 
-/// Converts a finite-difference step to the search coordinate of an unknown.
+/// Converts the stated finite-difference step of an unknown to the (scaled) coordinate in which it is
+/// searched.
 fn difference_step(entry: &UnknownEntry, difference: f64) -> f64 {
     match entry.scale {
         Scale::Logarithmic => libm::log10(1.0 + difference),

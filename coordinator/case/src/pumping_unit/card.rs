@@ -2,7 +2,7 @@
 use crate::{
     error::{CaseError, contradiction},
     file,
-    table::Table,
+    table::CsvTable,
 };
 use protocol::pumping_unit::{LoadCard, Smoothing};
 use std::path::Path;
@@ -15,7 +15,7 @@ use std::path::Path;
 /// in newtons judging by their magnitude, or if the last and first rows differ by a jump.
 pub fn read(path: &Path, smoothing: Smoothing, role: &str) -> Result<LoadCard, CaseError> {
     let bytes = file::read(path, role)?;
-    let mut table = Table::read(path, &bytes, &["turn_deg", "polished_rod_load_n"])?;
+    let mut table = CsvTable::read(path, &bytes, &["turn_deg", "polished_rod_load_n"])?;
     check_turn(path, &table)?;
     check_load(path, &table)?;
     let load_n = table.columns.pop().unwrap_or_default();
@@ -28,7 +28,7 @@ pub fn read(path: &Path, smoothing: Smoothing, role: &str) -> Result<LoadCard, C
 }
 
 /// Checks that the angles run from 0 in equal steps to one step before 360.
-fn check_turn(path: &Path, table: &Table) -> Result<(), CaseError> {
+fn check_turn(path: &Path, table: &CsvTable) -> Result<(), CaseError> {
     const HELP: &str = "give the load on equally spaced crank angles 0, step, .. 360 - step, \
                         counted from bottom dead centre";
     let Some([turn, _]) = table.columns.first_chunk::<2>() else {
@@ -76,7 +76,7 @@ fn check_turn(path: &Path, table: &Table) -> Result<(), CaseError> {
 }
 
 /// Checks that the loads have the magnitude of newtons, are not negative and are periodic.
-fn check_load(path: &Path, table: &Table) -> Result<(), CaseError> {
+fn check_load(path: &Path, table: &CsvTable) -> Result<(), CaseError> {
     let Some([_, load]) = table.columns.first_chunk::<2>() else {
         return Ok(());
     };

@@ -19,8 +19,8 @@ impl Elastic {
         self.young / (2.0 * (1.0 + self.poisson))
     }
 
-    /// Returns the compliance `h` of Eq. 5 [1/Pa].
-    fn yielding(&self) -> f64 {
+    /// Returns the elastic compliance `h = (1 - nu^2) / (pi E)` of Eq. 5 [1/Pa].
+    fn contact_compliance(&self) -> f64 {
         (1.0 - self.poisson * self.poisson) / (PI * self.young)
     }
 }
@@ -30,13 +30,13 @@ impl Elastic {
 pub(super) struct Bodies {
     /// Diameter of the rope \[m\].
     diameter: f64,
-    /// Length of rope represented by one joint \[m\].
+    /// Length of the piece of rope that one joint of the rope model represents \[m\].
     length: f64,
     rope: Elastic,
     /// Radius of the back head's surface at the gauges \[m\].
     head_radius: f64,
     head: Elastic,
-    /// Exponent of the contact force law.
+    /// Exponent of the penetration in the contact force law of rope and head.
     exponent: f64,
 }
 
@@ -58,15 +58,17 @@ impl Bodies {
         }
     }
 
-    /// Returns a coefficient by a formula, in SI units; `None` if the formula does not cover it.
-    pub(super) fn give(&self, formula: Formula, name: Coefficient) -> Option<f64> {
+    /// Returns a recommended rope or contact coefficient computed by a formula, in SI units; `None` if the
+    /// formula does not apply to it.
+    pub(super) fn evaluate(&self, formula: Formula, name: Coefficient) -> Option<f64> {
         match formula {
             Formula::Eq3 => self.eq3(name),
             Formula::Hertz => (name == Coefficient::Kc).then(|| self.hertz()).flatten(),
         }
     }
 
-    /// Returns the stiffness of a joint, treated as a solid round bar [N/m, N.m/rad] (paper, Eq. 3).
+    /// Returns the stiffness of a joint between two rope cylinders, treated as a solid round bar [N/m,
+    /// N.m/rad] (paper, Eq. 3).
     fn eq3(&self, name: Coefficient) -> Option<f64> {
         let Self {
             diameter: d,
@@ -95,8 +97,9 @@ impl Bodies {
     fn hertz(&self) -> Option<f64> {
         let own = 0.5 * self.diameter;
         let radius = own * self.head_radius / (own + self.head_radius);
-        let stiffness =
-            4.0 / (3.0 * PI * (self.rope.yielding() + self.head.yielding())) * radius.sqrt();
+        let stiffness = 4.0
+            / (3.0 * PI * (self.rope.contact_compliance() + self.head.contact_compliance()))
+            * radius.sqrt();
         ((self.exponent - 1.5).abs() < 1e-9).then_some(stiffness)
     }
 }
@@ -131,11 +134,11 @@ mod tests {
             (Coefficient::Kb4, 110.0 / 4.0 * per_degree),
             (Coefficient::Kb56, 137.0 / 4.0 * per_degree),
         ] {
-            let given = BODIES.give(Formula::Eq3, name).unwrap();
+            let given = BODIES.evaluate(Formula::Eq3, name).unwrap();
             assert!((given / printed - 1.0).abs() < 6e-3, "{name:?}: {given}");
         }
         for name in [Coefficient::Cb1, Coefficient::Kc, Coefficient::Cc] {
-            assert_eq!(BODIES.give(Formula::Eq3, name), None);
+            assert_eq!(BODIES.evaluate(Formula::Eq3, name), None);
         }
     }
 
@@ -145,13 +148,13 @@ mod tests {
         let effective = 200e9 / (2.0 * (1.0 - 0.0625));
         let radius: f64 = 1.0 / (1.0 / 0.005 + 1.0 / 1.895);
         let expected = 4.0 / 3.0 * effective * radius.sqrt();
-        let given = BODIES.give(Formula::Hertz, Coefficient::Kc).unwrap();
+        let given = BODIES.evaluate(Formula::Hertz, Coefficient::Kc).unwrap();
         assert!((given / expected - 1.0).abs() < 1e-12, "{given}");
         let other = Bodies {
             exponent: 2.0,
             ..BODIES
         };
-        assert_eq!(other.give(Formula::Hertz, Coefficient::Kc), None);
-        assert_eq!(BODIES.give(Formula::Hertz, Coefficient::Kb1), None);
+        assert_eq!(other.evaluate(Formula::Hertz, Coefficient::Kc), None);
+        assert_eq!(BODIES.evaluate(Formula::Hertz, Coefficient::Kb1), None);
     }
 }

@@ -5,11 +5,11 @@ use super::{
     schema::{CaseFile, ConditionEntry},
 };
 use crate::{
-    document::{Document, Step},
+    document::{Document, DocumentStep},
     error::{CaseError, Faults, damaged},
     names,
     note::Note,
-    source::Source,
+    source::RecordFolder,
 };
 use discrepancy::record::Record;
 use protocol::{
@@ -18,12 +18,12 @@ use protocol::{
 };
 use std::path::{Path, PathBuf};
 
-/// Sources of a case's conditions.
+/// Everything from which the conditions of a pumping-unit case are read.
 #[derive(Debug, Clone, Copy)]
 struct Conditions<'a> {
     /// Folder of the case, and the folder whose cards and records of the same names replace those of the
     /// case.
-    source: Source<'a>,
+    source: RecordFolder<'a>,
     file: &'a CaseFile,
 }
 
@@ -43,7 +43,7 @@ pub(super) struct ReadCondition {
 /// # Errors
 /// Returns an error for duplicate or invalid names, and all faults of the conditions.
 pub(super) fn read_all(
-    source: &Source<'_>,
+    source: &RecordFolder<'_>,
     file: &CaseFile,
 ) -> Result<Vec<ReadCondition>, CaseError> {
     let list = file.conditions.iter();
@@ -71,7 +71,13 @@ impl Conditions<'_> {
                 "add it",
             ));
         };
-        let way = |key| [Step::Key("conditions"), Step::Index(index), Step::Key(key)];
+        let way = |key| {
+            [
+                DocumentStep::Key("conditions"),
+                DocumentStep::Index(index),
+                DocumentStep::Key(key),
+            ]
+        };
         check_condition(self.source.document, entry, way)?;
         let role = format!(
             "the load card of condition `{}` in {}",
@@ -169,7 +175,8 @@ impl Conditions<'_> {
         })
     }
 
-    /// Returns the path of a card or record: `--measured DIR` replaces the folder, not the name.
+    /// Returns the path of a load card or gauge record: in the folder of `--measured DIR` under the same name
+    /// if given, otherwise in the case's folder.
     fn place(&self, named: &Path) -> PathBuf {
         match (self.source.measured, named.file_name()) {
             (Some(measured), Some(name)) => measured.join(name),
@@ -182,7 +189,7 @@ impl Conditions<'_> {
 fn check_condition<'a>(
     document: &Document,
     entry: &ConditionEntry,
-    way: impl Fn(&'static str) -> [Step<'a>; 3],
+    way: impl Fn(&'static str) -> [DocumentStep<'a>; 3],
 ) -> Result<(), CaseError> {
     if !(0.1..=60.0).contains(&entry.speed_rpm) {
         return Err(document.field(

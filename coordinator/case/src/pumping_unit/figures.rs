@@ -8,8 +8,8 @@ use crate::{
     effect::CaseEffect,
     error::CaseError,
     note::Note,
-    source::{Overrides, Source, document},
-    summary::Summary,
+    source::{Overrides, RecordFolder, document},
+    summary::CaseSummary,
 };
 use protocol::{
     case::{Case, Term, Unknown},
@@ -19,21 +19,21 @@ use std::{fmt, path::Path};
 
 /// Key figures of a case.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Figures {
+pub struct KeyFigures {
     /// Name of the machine in the case.
     pub name: String,
     /// Range of motion of beam and ropes, by rigid kinematics.
     pub envelope: Envelope,
-    /// Length of the back rope \[m\] and its number of cylinders.
+    /// Length of the back rope \[m\], and number of rigid cylinders that represent it.
     pub back_rope: (f64, usize),
-    /// Length of the front rope \[m\] and its number of cylinders.
+    /// Length of the front rope \[m\], and number of rigid cylinders that represent it.
     pub front_rope: (f64, usize),
-    /// Frequencies of the simulated head modes \[Hz\].
+    /// Frequencies of the simulated modes of the flexible back head \[Hz\].
     pub modes_hz: Vec<f64>,
     /// Figures of a machine with two ropes on each head: distance of the ropes from the plane \[m\], excess
     /// length of the back and front rope at -z \[m\], and frequencies of the out-of-plane modes \[Hz\].
     pub twin_ropes: Option<(f64, [f64; 2], Vec<f64>)>,
-    /// Mass of the meshed head \[kg\].
+    /// Mass of the back head according to its mesh \[kg\].
     pub head_mass_kg: f64,
     /// Unknowns of the case.
     pub genes: Vec<Unknown>,
@@ -50,22 +50,22 @@ pub struct Figures {
 /// Key figures of a working condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionFigures {
-    /// Name of the condition.
+    /// Name of the working condition.
     pub name: String,
     /// Crank speed [1/min].
     pub speed_rpm: f64,
-    /// Smallest and largest load of the card \[N\].
+    /// Smallest and largest load of the condition's load card \[N\].
     pub load_n: [f64; 2],
-    /// Key figures of the record, if there is one.
+    /// Key figures of the condition's gauge record, if there is one.
     pub record: Option<RecordFigures>,
 }
 
-/// Key figures of a record.
+/// Key figures of a gauge record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordFigures {
     /// File name, samples, losses and speed of the record.
     pub facts: RecordFacts,
-    /// Number of whole cycles that were averaged.
+    /// Number of whole crank turns that were averaged to the mean curve.
     pub cycles: usize,
     /// Title, unit, half of the measured range, and noise of the mean curve (root mean square of spread /
     /// sqrt(cycles)) of each channel.
@@ -76,9 +76,9 @@ pub struct RecordFigures {
 ///
 /// # Errors
 /// As [`crate::load()`].
-pub fn figures(folder: &Path) -> Result<Figures, CaseError> {
+pub fn figures(folder: &Path) -> Result<KeyFigures, CaseError> {
     let overrides = Overrides::default();
-    of(&Source::new(
+    of(&RecordFolder::new(
         folder,
         &overrides,
         &document(folder, &overrides)?,
@@ -89,10 +89,10 @@ pub fn figures(folder: &Path) -> Result<Figures, CaseError> {
 ///
 /// # Errors
 /// As [`crate::load()`].
-pub(super) fn summary(source: &Source<'_>) -> Result<Summary, CaseError> {
+pub(super) fn summary(source: &RecordFolder<'_>) -> Result<CaseSummary, CaseError> {
     let figures = of(source)?;
     let (text, conditions) = (figures.to_string(), figures.conditions.iter());
-    Ok(Summary {
+    Ok(CaseSummary {
         key: "genes",
         text,
         conditions: conditions.map(|one| one.name.clone()).collect(),
@@ -102,8 +102,8 @@ pub(super) fn summary(source: &Source<'_>) -> Result<Summary, CaseError> {
     })
 }
 
-/// Resolves a case and collects its key figures.
-fn of(source: &Source<'_>) -> Result<Figures, CaseError> {
+/// Reads a pumping-unit case and collects its key figures.
+fn of(source: &RecordFolder<'_>) -> Result<KeyFigures, CaseError> {
     let Resolved {
         loaded,
         facts,
@@ -114,7 +114,7 @@ fn of(source: &Source<'_>) -> Result<Figures, CaseError> {
     let case = loaded.case;
     let rope = |count: usize| (count as f64 * machine.ropes.cylinder_length_m, count);
     let calibrated = case.conditions.get(case.objective.condition);
-    Ok(Figures {
+    Ok(KeyFigures {
         envelope,
         back_rope: rope(machine.ropes.back_cylinders),
         front_rope: rope(machine.ropes.front_cylinders),
@@ -192,7 +192,7 @@ fn range(values: &[f64]) -> [f64; 2] {
     ]
 }
 
-impl fmt::Display for Figures {
+impl fmt::Display for KeyFigures {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.write_machine(to)?;
         for condition in &self.conditions {
@@ -210,7 +210,7 @@ impl fmt::Display for Figures {
     }
 }
 
-impl Figures {
+impl KeyFigures {
     /// Writes the lines on machine, ropes, head, unknowns and effects.
     fn write_machine(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Envelope {

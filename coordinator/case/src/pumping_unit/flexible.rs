@@ -1,7 +1,7 @@
 //! Reading of the flexible head of a case: its tables and its mesh, with a check that they belong together.
 use super::{head, mesh, schema::CaseFile, twin};
 use crate::{
-    document::{Document, Step},
+    document::{Document, DocumentStep},
     error::{CaseError, Faults},
     file,
 };
@@ -12,13 +12,14 @@ use std::path::Path;
 pub(super) struct ReadHead {
     pub(super) head: ModalHead,
     pub(super) provenance: head::Provenance,
-    /// Mesh and the content hash of its file, if the case names one.
+    /// Mesh of the back head and the content hash of its file, if the case names one.
     pub(super) mesh: Option<(mesh::Mesh, String)>,
-    /// Content hash of all inputs of the reduction; `None` without a mesh.
+    /// Content hash of all inputs from which the head's tables were reduced; `None` without a mesh.
     pub(super) source_blake3: Option<String>,
     /// Data of two ropes on each head, with the head's response to a pair of ropes, if the case has them.
     pub(super) twins: Option<TwinRopes>,
-    /// Error that explains why the tables are out of date or do not fit together; `None` if they are valid.
+    /// Error that explains why the head's tables of modes and influence lines are out of date or do not fit
+    /// together; `None` if they are valid.
     pub(super) stale: Option<CaseError>,
 }
 
@@ -37,7 +38,7 @@ pub(super) fn read(
             "a table of the back head, named in {}",
             document.path.display()
         );
-        faults.take(file::there(&folder.join(name), &role));
+        faults.take(file::require_exists(&folder.join(name), &role));
     }
     faults.end()?;
     let (mut head, provenance) = head::read(&modes_file, &folder.join(&flexible.influence_file))?;
@@ -80,7 +81,7 @@ pub(super) fn read(
     let available = read.head.frequencies_hz.len();
     if file.run.modes > available {
         return Err(document.field(
-            &[Step::Key("run"), Step::Key("modes")],
+            &[DocumentStep::Key("run"), DocumentStep::Key("modes")],
             file.run.modes,
             format!(
                 "0 to {available}, the modes of {}",

@@ -1,17 +1,17 @@
 //! Conversion of the rope and contact coefficients that a case declares to unknowns of a search.
 use super::{coefficient::Bodies, recommended::Recommended, schema::GeneEntry};
 use crate::{
-    document::{Document, Step, units},
+    document::{Document, DocumentStep, units},
     error::{CaseError, Faults},
 };
 use protocol::{
-    case::{Scale, Shares, Shift, Unknown, Valley},
+    case::{HeldRatios, Scale, Shift, Unknown, Valley},
     pumping_unit::Coefficient,
     unit::Unit,
 };
 use std::collections::BTreeMap;
 
-/// Largest value of any coefficient, in SI units.
+/// Upper limit of the value of a rope or contact coefficient, in SI units.
 const LARGEST: f64 = 1.0e30;
 
 /// Returns the checked coefficients of a case as unknowns.
@@ -41,7 +41,7 @@ fn gene(
 ) -> Result<Unknown, CaseError> {
     let Some(entry) = table.get(&name) else {
         return Err(document.field(
-            &[Step::Key("genes")],
+            &[DocumentStep::Key("genes")],
             format!("a table without `{}`", name.as_str()),
             "all ten coefficients: kb1, kb23, kb4, kb56, cb1, cb23, cb4, cb56, kc, cc",
             &format!(
@@ -50,11 +50,17 @@ fn gene(
             ),
         ));
     };
-    let way = |key| [Step::Key("genes"), Step::Key(name.as_str()), Step::Key(key)];
+    let way = |key| {
+        [
+            DocumentStep::Key("genes"),
+            DocumentStep::Key(name.as_str()),
+            DocumentStep::Key(key),
+        ]
+    };
     check_unit(document, &way("unit"), name, entry.unit)?;
     let recommended = match entry.recommended {
         Recommended::Value(value) => value,
-        Recommended::By(formula) => match bodies.give(formula, name) {
+        Recommended::Formula(formula) => match bodies.evaluate(formula, name) {
             Some(si) => si / entry.unit.si_factor(),
             None => {
                 return Err(document.field(
@@ -117,10 +123,10 @@ pub fn unknown(name: Coefficient, unit: Unit, start: f64, bounds: [f64; 2]) -> U
     }
 }
 
-/// Returns the range, in decades about the start, in which simulations usually succeed. The stiffness of a
-/// rope is known to about a decade, its damping to several, because a bushing's dashpot represents all losses
-/// of the machine. Contact coefficients are conventions of a simulation program rather than properties of the
-/// machine, and recommended values are mostly too soft.
+/// Returns the range of a coefficient, in decades about its start value, in which simulations usually
+/// succeed. The stiffness of a rope is known to about a decade, its damping to several, because the damping
+/// of a joint represents all losses of the machine. Contact coefficients are conventions of a simulation
+/// program rather than properties of the machine, and recommended values are mostly too soft.
 const fn trust(unit: Unit) -> [f64; 2] {
     match unit {
         Unit::NewtonPerMetre | Unit::NewtonMetrePerRadian | Unit::NewtonMetrePerDegree => {
@@ -133,11 +139,12 @@ const fn trust(unit: Unit) -> [f64; 2] {
     }
 }
 
-/// Returns the description of the narrow valley of the objective along the axial stiffness. The load excites
-/// two modes of the rope, at about sixty and eighty cycles per turn, and a stiffness a few hundredths of a
-/// decade off shifts their phase. High damping hides the modes; a soft contact can compensate a soft rope;
-/// with a very hard contact no small change is visible. The damping-to-stiffness ratios correspond to 1 and 4
-/// % of critical damping at the modes' 6 Hz, the range of wire ropes.
+/// Returns the grid scan that finds the narrow minimum of the objective along the axial rope stiffness. The
+/// load excites two modes of the rope, at about sixty and eighty cycles per turn, and a stiffness a few
+/// hundredths of a decade off shifts their phase. High damping suppresses the modes; a soft contact can
+/// compensate a soft rope; with a very hard contact no small change is visible; the scan therefore also
+/// shifts these coefficients. The damping-to-stiffness ratios correspond to 1 and 4 % of critical damping at
+/// the modes' 6 Hz, the range of wire ropes.
 fn valley() -> Valley {
     let shift = |name: Coefficient, by| Shift {
         unknown: name.as_str().to_owned(),
@@ -148,7 +155,7 @@ fn valley() -> Valley {
         to: 1.1,
         step: 0.02,
         uncovered_by: vec![shift(Coefficient::Cb1, -0.8), shift(Coefficient::Kc, 1.5)],
-        shares: Some(Shares {
+        shares: Some(HeldRatios {
             unknown: Coefficient::Cb1.as_str().to_owned(),
             of_scanned: vec![6e-4, 2e-3],
         }),
@@ -159,7 +166,7 @@ fn valley() -> Valley {
 /// Checks that a unit has the dimension of a coefficient.
 pub(super) fn check_unit(
     document: &Document,
-    way: &[Step<'_>],
+    way: &[DocumentStep<'_>],
     name: Coefficient,
     unit: Unit,
 ) -> Result<(), CaseError> {
@@ -182,7 +189,7 @@ pub(super) fn check_unit(
 /// Checks that a coefficient is positive and finite, as its logarithmic scale requires.
 pub(super) fn check_value(
     document: &Document,
-    way: &[Step<'_>],
+    way: &[DocumentStep<'_>],
     value: f64,
     unit: Unit,
 ) -> Result<(), CaseError> {

@@ -16,9 +16,9 @@ pub struct Envelope {
     pub beam_deg: [f64; 2],
     /// Smallest and largest angle of the contact normal on the back head, beam frame \[deg\].
     pub contact_deg: [f64; 2],
-    /// Shortest and longest free back rope, from crossbeam to head \[m\].
+    /// Smallest and largest length of the free part of the back rope, from crossbeam to head \[m\].
     pub free_rope_m: [f64; 2],
-    /// Shortest and longest front rope below the head \[m\].
+    /// Smallest and largest length of the front rope that hangs below the head \[m\].
     pub hang_m: [f64; 2],
     /// Travel of the suspension \[m\].
     pub stroke_m: f64,
@@ -27,8 +27,8 @@ pub struct Envelope {
 /// Number of crank angles evaluated over one turn: every two degrees.
 const STEPS: u32 = 180;
 
-/// Returns the extreme values over one turn; on failure the crank-pin angle \[deg\] at which the loop cannot
-/// be closed.
+/// Returns the extreme values of the rigid kinematics over one crank turn; on failure the crank-pin angle
+/// \[deg\] at which the mechanism cannot be closed.
 pub(super) fn envelope(case: &CaseFile) -> Result<Envelope, f64> {
     let back_rope = case.ropes.back_cylinders as f64 * case.ropes.cylinder_length_m;
     let front_rope = case.ropes.front_cylinders as f64 * case.ropes.cylinder_length_m;
@@ -44,7 +44,7 @@ pub(super) fn envelope(case: &CaseFile) -> Result<Envelope, f64> {
     for step in 0..=STEPS {
         let phi = sense * f64::from(step * 360 / STEPS).to_radians();
         let loop_bodies = (&case.crank, &case.back_head);
-        let solved = close(loop_bodies, phi, guess, back_rope + case.rod.length_m);
+        let solved = solve_loop(loop_bodies, phi, guess, back_rope + case.rod.length_m);
         let Some([theta, normal]) = solved else {
             return Err(phi.to_degrees());
         };
@@ -74,9 +74,9 @@ fn widen([low, high]: &mut [f64; 2], value: f64) {
     *high = high.max(value);
 }
 
-/// Returns beam angle and contact normal for a crank-pin angle \[rad\]; `None` if Newton's method does not
-/// converge.
-fn close(
+/// Solves the rigid mechanism for a crank-pin angle \[rad\]; returns beam angle and contact normal, `None` if
+/// Newton's method does not converge.
+fn solve_loop(
     (crank, head): (&Crank, &BackHead),
     phi: f64,
     guess: [f64; 2],
@@ -116,10 +116,10 @@ fn close(
     None
 }
 
-/// Quasi-static back rope over one turn, equally spaced from bottom dead centre; computed by rigid
-/// kinematics, without the rope's own weight and vibration.
+/// Tension and contact angle of the back rope over one crank turn, equally spaced from bottom dead centre;
+/// computed by rigid kinematics, without the rope's own weight and vibration.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct QuasiStatic {
+pub struct QuasiStaticTurn {
     /// Crank angle from bottom dead centre \[deg\].
     pub turn_deg: Vec<f64>,
     /// Angle at which the rope leaves the back head, beam frame \[deg\].
@@ -128,13 +128,13 @@ pub struct QuasiStatic {
     pub tension_n: Vec<f64>,
 }
 
-/// Number of samples of the quasi-static turn.
+/// Number of equally spaced crank angles of the quasi-static turn.
 const SAMPLES: u32 = 720;
 
 /// Computes the back rope's tension and contact angle over one turn. The rope balances the load on the front
 /// arm, the beam's unbalance and its inertia, with the moment arm `h(psi)`. Returns `None` if the crank
 /// cannot complete a turn.
-pub fn quasi_static(machine: &Machine, condition: &WorkingCondition) -> Option<QuasiStatic> {
+pub fn quasi_static(machine: &Machine, condition: &WorkingCondition) -> Option<QuasiStaticTurn> {
     let bodies = (&machine.crank, &machine.back_head);
     let length = machine.ropes.back_cylinders as f64 * machine.ropes.cylinder_length_m
         + machine.rod.length_m;
@@ -146,7 +146,7 @@ pub fn quasi_static(machine: &Machine, condition: &WorkingCondition) -> Option<Q
     let turn = |start: f64, mut guess: [f64; 2]| {
         let mut angles = Vec::new();
         for k in 0..SAMPLES {
-            guess = close(bodies, start + sense * step * f64::from(k), guess, length)?;
+            guess = solve_loop(bodies, start + sense * step * f64::from(k), guess, length)?;
             angles.push(guess);
         }
         Some(angles)
@@ -161,7 +161,7 @@ pub fn quasi_static(machine: &Machine, condition: &WorkingCondition) -> Option<Q
     let angles = turn(sense * step * (low as f64 + shift), here)?;
 
     let speed = condition.speed_rpm * std::f64::consts::TAU / 60.0;
-    let mut result = QuasiStatic::default();
+    let mut result = QuasiStaticTurn::default();
     for (k, [theta, normal]) in angles.iter().enumerate() {
         let neighbours = angles[(k + n - 1) % n][0] + angles[(k + 1) % n][0];
         let acceleration = (neighbours - 2.0 * theta) / (step * step) * speed * speed;

@@ -6,7 +6,7 @@ use crate::{
     document,
     error::{CaseError, damaged},
     file,
-    table::Table,
+    table::CsvTable,
 };
 use protocol::pumping_unit::HeadGauge;
 use protocol::pumping_unit::{Influence, ModalHead, StressRecovery};
@@ -42,7 +42,7 @@ pub struct GaugePlace {
     pub y_m: f64,
     /// Out-of-plane coordinate \[m\].
     pub z_m: f64,
-    /// Length of the gauge's grid \[m\].
+    /// Length of the strain gauge's measuring grid \[m\].
     pub length_m: f64,
 }
 
@@ -159,7 +159,7 @@ fn check_modes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
     check_shapes(path, modes)
 }
 
-/// Checks that every mode has its rows and every station its values.
+/// Checks the shape of the tables: a row of values for every mode, and a value for every station.
 fn check_shapes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
     let count = modes.frequencies_hz.len();
     let stations = modes.arc_deg.len();
@@ -203,7 +203,7 @@ fn check_shapes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// Builds an error about a field of the modes file.
+/// Builds an error about a value in the modes file.
 fn field(path: &Path, field: &str, value: String, allowed: &str, help: &str) -> CaseError {
     CaseError::Field {
         path: path.into(),
@@ -218,7 +218,7 @@ fn field(path: &Path, field: &str, value: String, allowed: &str, help: &str) -> 
 /// Reads the influence lines: `psi_deg`, four normal and four tangential columns.
 fn read_influence(path: &Path, arc_deg: &[f64]) -> Result<Influence, CaseError> {
     let bytes = file::read(path, "the influence lines, `flexible_head.influence_file`")?;
-    let table = Table::read(
+    let table = CsvTable::read(
         path,
         &bytes,
         &[

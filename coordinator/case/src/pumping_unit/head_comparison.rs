@@ -4,15 +4,15 @@
 //! Quasi-static stress needs no dynamics: a rope of tension T, wrapped from its fixed end to the point where
 //! it leaves the head, presses with T per radian and pulls its end with T. Exact statics are the influence
 //! lines integrated over the wrap; mode displacement is `sum_k s_k f_k / w_k^2` for the same forces.
-use super::geometry::QuasiStatic;
+use super::geometry::QuasiStaticTurn;
 use protocol::pumping_unit::{Influence, ModalHead, ReducedHead};
-use support::interpolation::held;
+use support::interpolation::interpolate_clamped;
 
-/// Threshold, as a share of the table's largest value, below which a mode shape does not move the rope
-/// surface.
+/// Threshold for the displacement of a mode shape along the rope surface, as a share of the table's largest
+/// value; a mode below it does not move the surface.
 const INERT: f64 = 1e-6;
 
-/// Comparison of a newly reduced head with the case's tables.
+/// Comparison of a newly reduced back head with the tables of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeadComparison {
     /// Match of each new mode with the table.
@@ -20,13 +20,14 @@ pub struct HeadComparison {
     /// Frequencies of the table's modes that do not move the rope surface and so are not excited by a rope
     /// \[Hz\].
     pub inert_hz: Vec<f64>,
-    /// Largest difference of the influence lines for each gauge, relative to the table's largest value.
+    /// Largest difference between new and old influence lines for each gauge, relative to the largest value
+    /// of the case's table.
     pub influence_difference: [f64; 4],
-    /// Half-ranges of stress over the quasi-static turn \[MPa\].
+    /// Half-ranges of the gauge stress over one crank turn, by three quasi-static methods \[MPa\].
     pub half_ranges: HalfRanges,
 }
 
-/// Mode of the new head with the most similar mode of the table.
+/// Pair of a mode of the newly reduced head and the most similar mode in the case's table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModeMatch {
     /// Frequency of the new mode \[Hz\].
@@ -36,16 +37,16 @@ pub struct ModeMatch {
     pub table: Option<(f64, f64)>,
 }
 
-/// Half-ranges of the four gauges over a quasi-static turn \[MPa\].
+/// Half of the stress range of each of the four gauges over a quasi-static turn, by three methods \[MPa\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HalfRanges {
-    /// Half-ranges from exact statics with the new influence lines.
+    /// Half-ranges from exact statics with the newly computed influence lines.
     pub exact: [f64; 4],
     /// Half-ranges from exact statics with the case's influence lines.
     pub table: [f64; 4],
     /// Half-ranges from mode displacement with the modes that the case simulates.
     pub displacement: [f64; 4],
-    /// Difference of the mean stress by mode displacement from the exact mean.
+    /// Mean stress by mode displacement minus the exact mean stress, for each gauge \[MPa\].
     pub displacement_offset: [f64; 4],
 }
 
@@ -136,8 +137,8 @@ fn half_range(curve: &[f64]) -> f64 {
     0.5 * (high - low)
 }
 
-/// Returns for each gauge the largest difference at the new stations, relative to the old table's largest
-/// value.
+/// Returns for each gauge the largest difference between two tables of influence lines, relative to the old
+/// table's largest value.
 fn difference(new: &Influence, old: &Influence) -> [f64; 4] {
     [0, 1, 2, 3].map(|gauge| {
         let (mut most, mut size) = (0.0_f64, 0.0_f64);
@@ -171,12 +172,12 @@ struct Shape<'a> {
 /// Back rope wrapped on the head over one quasi-static turn.
 #[derive(Clone, Copy, Debug)]
 pub struct WrappedTurn<'a> {
-    turn: &'a QuasiStatic,
+    turn: &'a QuasiStaticTurn,
     anchor_deg: f64,
 }
 
 /// Returns the wrapped rope over one turn, with its end fixed at `anchor_deg` on the arc.
-pub const fn wrapped_turn(turn: &QuasiStatic, anchor_deg: f64) -> WrappedTurn<'_> {
+pub const fn wrapped_turn(turn: &QuasiStaticTurn, anchor_deg: f64) -> WrappedTurn<'_> {
     WrappedTurn { turn, anchor_deg }
 }
 
@@ -222,7 +223,7 @@ impl WrappedTurn<'_> {
     }
 }
 
-/// Piecewise linear function, constant beyond its end points.
+/// Piecewise linear function given by its points, constant beyond the first and last.
 #[derive(Clone, Copy, Debug)]
 struct Line<'a> {
     x: &'a [f64],
@@ -235,10 +236,10 @@ impl<'a> Line<'a> {
     }
 
     fn at(&self, x: f64) -> f64 {
-        held(self.x, self.y, x)
+        interpolate_clamped(self.x, self.y, x)
     }
 
-    /// Returns the exact integral between two abscissas, in the unit of x times that of y.
+    /// Returns the exact integral of the function between two abscissas.
     fn integral(&self, from: f64, to: f64) -> f64 {
         let inside = self.x.iter().copied().filter(|x| *x > from && *x < to);
         let knots: Vec<f64> = std::iter::once(from).chain(inside).chain([to]).collect();

@@ -5,7 +5,7 @@ use super::{
 };
 use crate::{
     error::{CaseError, damaged},
-    source::{Overrides, Source, document},
+    source::{Overrides, RecordFolder, document},
 };
 use protocol::pumping_unit::{HeadGauge, PumpingUnit};
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ pub struct HeadSource {
     pub density_kg_m3: f64,
     /// Locations of the four gauges at which stress is evaluated.
     pub gauges: [HeadGauge; 4],
-    /// Whether the case's tables are missing or were computed from other inputs.
+    /// Whether the case's tables of modes and influence lines are missing or were computed from other inputs.
     pub stale: bool,
     /// File of the modes.
     pub modes_file: PathBuf,
@@ -52,7 +52,7 @@ pub fn load_head(folder: &Path) -> Result<(PumpingUnit, HeadSource), CaseError> 
         flexible,
         twins,
         ..
-    } = resolve(&Source::new(folder, &overrides, &document))?;
+    } = resolve(&RecordFolder::new(folder, &overrides, &document))?;
     let (Some((mesh, mesh_blake3)), Some(source_blake3)) = (head.mesh, head.source_blake3) else {
         return Err(damaged(
             &folder.join("case.toml"),

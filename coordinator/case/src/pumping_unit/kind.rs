@@ -1,24 +1,25 @@
 //! Kind of model for pumping units.
 use super::{figures, numerics::numerics, read};
 use crate::{
-    case_kind::CaseKind, error::CaseError, loaded::Loaded, source::Source, summary::Summary,
+    case_kind::ModelKind, error::CaseError, loaded::Loaded, source::RecordFolder,
+    summary::CaseSummary,
 };
 use discrepancy::thresholds::Thresholds;
 use protocol::{case::Case, job::Numerics, pumping_unit::Machine, wire::WireError};
 
 /// Kind of model for pumping units with double horse heads.
-pub(crate) struct PumpingUnits;
+pub(crate) struct PumpingUnitKind;
 
-impl CaseKind for PumpingUnits {
+impl ModelKind for PumpingUnitKind {
     fn name(&self) -> &'static str {
         Machine::KIND
     }
 
-    fn read(&self, source: &Source<'_>) -> Result<Loaded, CaseError> {
+    fn read(&self, source: &RecordFolder<'_>) -> Result<Loaded, CaseError> {
         read::read(source).map(|resolved| resolved.loaded)
     }
 
-    fn check(&self, source: &Source<'_>) -> Result<Summary, CaseError> {
+    fn check(&self, source: &RecordFolder<'_>) -> Result<CaseSummary, CaseError> {
         figures::summary(source)
     }
 
@@ -30,7 +31,7 @@ impl CaseKind for PumpingUnits {
         (format!("conditions[{condition}].record_file"), remedy)
     }
 
-    fn numerics(
+    fn diagnosis_numerics(
         &self,
         case: &Case,
         thresholds: &Thresholds,
@@ -38,7 +39,7 @@ impl CaseKind for PumpingUnits {
         numerics(case, thresholds)
     }
 
-    fn unknowns(&self) -> &'static str {
+    fn unknowns_key(&self) -> &'static str {
         "genes"
     }
 }

@@ -5,19 +5,20 @@ use super::{
     schema::{CaseFile, ConditionEntry},
 };
 use crate::{
-    document::{Document, Step},
+    document::{Document, DocumentStep},
     error::{CaseError, contradiction},
 };
 use protocol::pumping_unit::Smoothing;
 
-/// Checks the consistency of a case file without its other files; returns the extremes of the kinematics.
+/// Checks that the numbers of a case file are consistent with each other, without reading its other files;
+/// returns the extreme values of the rigid kinematics.
 ///
 /// # Errors
 /// Returns an error for the first number that contradicts others.
 pub(super) fn check(document: &Document, case: &CaseFile) -> Result<Envelope, CaseError> {
     if case.name.trim().is_empty() {
         return Err(document.field(
-            &[Step::Key("name")],
+            &[DocumentStep::Key("name")],
             "\"\"",
             "a name of the machine",
             "give the machine a name; it heads every report",
@@ -33,7 +34,10 @@ fn check_output_step(document: &Document, step: f64) -> Result<(), CaseError> {
     let count = 360.0 / step;
     if (count - count.round()).abs() > 1e-9 * count {
         return Err(document.field(
-            &[Step::Key("run"), Step::Key("output_step_deg")],
+            &[
+                DocumentStep::Key("run"),
+                DocumentStep::Key("output_step_deg"),
+            ],
             step,
             "a step that divides 360 deg",
             &format!("take {} deg, for example", plain_step(step)),
@@ -45,7 +49,13 @@ fn check_output_step(document: &Document, step: f64) -> Result<(), CaseError> {
 /// Checks that the smoothing of the load cards is valid.
 fn check_smoothing(document: &Document, conditions: &[ConditionEntry]) -> Result<(), CaseError> {
     for (index, condition) in conditions.iter().enumerate() {
-        let way = |key| [Step::Key("conditions"), Step::Index(index), Step::Key(key)];
+        let way = |key| {
+            [
+                DocumentStep::Key("conditions"),
+                DocumentStep::Index(index),
+                DocumentStep::Key(key),
+            ]
+        };
         let bad = match condition.smoothing {
             Smoothing::Harmonics(0) => Some("at least 1 harmonic"),
             Smoothing::MovingAverageDeg(width) if !(width > 0.0 && width < 360.0) => {
@@ -65,7 +75,8 @@ fn check_smoothing(document: &Document, conditions: &[ConditionEntry]) -> Result
     Ok(())
 }
 
-/// Returns the divisor of 360 with few decimals that is nearest to a step \[deg\].
+/// Returns the divisor of 360 with few decimals that is nearest to a given output step, to be suggested in a
+/// message \[deg\].
 fn plain_step(step: f64) -> f64 {
     let plain = [
         0.1, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.75, 0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0,
@@ -83,7 +94,7 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
     let ropes = &case.ropes;
     let back = ropes.back_cylinders as f64 * ropes.cylinder_length_m;
     let front = ropes.front_cylinders as f64 * ropes.cylinder_length_m;
-    let cylinders = |key| [Step::Key("ropes"), Step::Key(key)];
+    let cylinders = |key| [DocumentStep::Key("ropes"), DocumentStep::Key(key)];
     let envelope = geometry::envelope(case).map_err(|pin| open_loop(document, case, pin))?;
     let pitch = ropes.cylinder_length_m;
     let [lowest, highest] = envelope.beam_deg;
@@ -126,7 +137,10 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
     }
     if case.front_head.rope_anchor_deg <= -lowest {
         return Err(document.field(
-            &[Step::Key("front_head"), Step::Key("rope_anchor_deg")],
+            &[
+                DocumentStep::Key("front_head"),
+                DocumentStep::Key("rope_anchor_deg"),
+            ],
             case.front_head.rope_anchor_deg,
             format!(
                 "above {:.1} deg, where the rope leaves the head with the front down",
@@ -150,8 +164,8 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
     Ok(envelope)
 }
 
-/// Builds the error for a crank that cannot complete a turn, because no beam angle closes the loop at a pin
-/// angle \[deg\].
+/// Builds the error for a crank that cannot complete a turn, because at a pin angle \[deg\] no beam angle
+/// closes the loop of crank, rod, rope and head.
 fn open_loop(document: &Document, case: &CaseFile, pin: f64) -> CaseError {
     let back = case.ropes.back_cylinders as f64 * case.ropes.cylinder_length_m;
     contradiction(
@@ -176,8 +190,9 @@ fn open_loop(document: &Document, case: &CaseFile, pin: f64) -> CaseError {
     )
 }
 
-/// Checks that the anchor and the whole travel of the contact lie on the arc of the reduced head.
-pub(super) fn check_arc(
+/// Checks that the rope's anchor and all its contact points over a turn lie on the arc covered by the tables
+/// of the reduced head.
+pub(super) fn check_contact_on_arc(
     document: &Document,
     case: &CaseFile,
     arc_deg: &[f64],
@@ -189,7 +204,10 @@ pub(super) fn check_arc(
     let anchor = case.back_head.rope_anchor_deg;
     if !(from..=to).contains(&&anchor) {
         return Err(document.field(
-            &[Step::Key("back_head"), Step::Key("rope_anchor_deg")],
+            &[
+                DocumentStep::Key("back_head"),
+                DocumentStep::Key("rope_anchor_deg"),
+            ],
             anchor,
             format!(
                 "{from} to {to} deg: the rope arc of {}",
@@ -201,7 +219,7 @@ pub(super) fn check_arc(
     let [_, contact] = envelope.contact_deg;
     if contact > *to {
         return Err(document.field(
-            &[Step::Key("back_head"), Step::Key("radius_m")],
+            &[DocumentStep::Key("back_head"), DocumentStep::Key("radius_m")],
             case.back_head.radius_m,
             format!(
                 "a head whose contact stays on the arc of {} ({from} to {to} deg); it reaches {contact:.1} deg",

@@ -25,9 +25,9 @@ mod schema;
 mod twin;
 
 pub use card::read as read_card;
-pub use figures::{ConditionFigures, Figures, RecordFigures, figures};
+pub use figures::{ConditionFigures, KeyFigures, RecordFigures, figures};
 pub use genes::unknown;
-pub use geometry::{Envelope, QuasiStatic, quasi_static};
+pub use geometry::{Envelope, QuasiStaticTurn, quasi_static};
 pub use head::GaugePlace;
 pub use head_comparison::{
     HalfRanges, HeadComparison, ModeMatch, WrappedTurn, compare_head, wrapped_turn,

@@ -1,4 +1,4 @@
-//! Numerical settings of a diagnosis: discretisation in space and time.
+//! Numerical settings (discretisation in space and time) of the simulations of a diagnosis.
 use discrepancy::thresholds::Thresholds;
 use protocol::{
     case::Case,
@@ -7,8 +7,9 @@ use protocol::{
     wire::WireError,
 };
 
-/// Returns the numerical settings of the experiments, and those of the numerical check: everything refined,
-/// only the cylinders refined, everything else refined.
+/// Returns the numerical settings for the simulations of a diagnosis, and those for its check of the
+/// discretisation error: everything refined, only the cylinders of the ropes refined, everything else
+/// refined.
 ///
 /// # Errors
 /// Returns an error for a case of another kind.

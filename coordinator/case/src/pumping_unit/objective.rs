@@ -2,7 +2,7 @@
 use super::record::RecordFacts;
 use super::schema::{ConditionEntry, GaugeWeight, ObjectiveEntry};
 use crate::{
-    document::{Document, Step, nearest},
+    document::{Document, DocumentStep, nearest},
     error::CaseError,
     note::Note,
     table::clip,
@@ -30,7 +30,7 @@ pub(super) fn read(
                 terms: (1..=4).map(|gauge| term(gauge, 1.0)).collect(),
             }),
             Some(recorded) => Err(document.field(
-                &[Step::Key("objective")],
+                &[DocumentStep::Key("objective")],
                 "absent",
                 format!(
                     "a table, since condition `{}` has a record_file",
@@ -42,7 +42,7 @@ pub(super) fn read(
     };
     let names = conditions.iter().map(|condition| condition.name.as_str());
     let list: Vec<&str> = names.clone().collect();
-    let way = |key| [Step::Key("objective"), Step::Key(key)];
+    let way = |key| [DocumentStep::Key("objective"), DocumentStep::Key(key)];
     let Some(condition) = names.clone().position(|name| name == entry.condition) else {
         return Err(document.field(
             &way("condition"),
@@ -75,7 +75,8 @@ pub(super) fn read(
     })
 }
 
-/// Returns the channels with the treatment of the zero (offset) that the objective states.
+/// Returns the channels with the treatment of the sensor's zero (free or fixed offset) that the objective
+/// states.
 pub(super) fn with_offset(
     entry: Option<&ObjectiveEntry>,
     channels: Vec<Channel>,
@@ -91,7 +92,7 @@ pub(super) fn with_offset(
 ///
 /// # Errors
 /// Returns an error for a record that lacks a required gauge, or all gauges of the objective.
-pub(super) fn over_recorded(
+pub(super) fn restrict_to_recorded(
     document: &Document,
     entry: Option<&ObjectiveEntry>,
     objective: &mut Objective,
@@ -128,10 +129,10 @@ pub(super) fn over_recorded(
         let gauge = gauges.get(at).map_or(0, |gauge| gauge.gauge);
         let step = |key| {
             [
-                Step::Key("objective"),
-                Step::Key("gauges"),
-                Step::Index(at),
-                Step::Key(key),
+                DocumentStep::Key("objective"),
+                DocumentStep::Key("gauges"),
+                DocumentStep::Index(at),
+                DocumentStep::Key(key),
             ]
         };
         return Err(document.field(
@@ -171,7 +172,7 @@ fn term(gauge: u8, weight: f64) -> Term {
 fn check_gauges(document: &Document, gauges: &[GaugeWeight]) -> Result<(), CaseError> {
     if gauges.is_empty() {
         return Err(document.field(
-            &[Step::Key("objective"), Step::Key("gauges")],
+            &[DocumentStep::Key("objective"), DocumentStep::Key("gauges")],
             "[]",
             "at least one gauge",
             "write gauges = [{ gauge = 1, weight = 1.0 }]",
@@ -180,10 +181,10 @@ fn check_gauges(document: &Document, gauges: &[GaugeWeight]) -> Result<(), CaseE
     for (index, part) in gauges.iter().enumerate() {
         let way = |key| {
             [
-                Step::Key("objective"),
-                Step::Key("gauges"),
-                Step::Index(index),
-                Step::Key(key),
+                DocumentStep::Key("objective"),
+                DocumentStep::Key("gauges"),
+                DocumentStep::Index(index),
+                DocumentStep::Key(key),
             ]
         };
         let twice = gauges

@@ -13,7 +13,7 @@ use crate::{
     effect::{self, CaseEffect},
     error::{CaseError, Faults, damaged},
     loaded::{Loaded, Records},
-    source::Source,
+    source::RecordFolder,
 };
 use discrepancy::record::Record;
 use protocol::{
@@ -25,7 +25,7 @@ use protocol::{
 ///
 /// # Errors
 /// Returns all faults found; see [`CaseError`].
-pub(super) fn read(source: &Source<'_>) -> Result<Resolved, CaseError> {
+pub(super) fn read(source: &RecordFolder<'_>) -> Result<Resolved, CaseError> {
     let mut resolved = resolve(source)?;
     match resolved.head.stale.take() {
         Some(stale) => Err(stale),
@@ -52,8 +52,8 @@ pub(super) struct Resolved {
 ///
 /// # Errors
 /// As [`read`], except that tables computed from another mesh are accepted.
-pub(super) fn resolve(source: &Source<'_>) -> Result<Resolved, CaseError> {
-    let Source {
+pub(super) fn resolve(source: &RecordFolder<'_>) -> Result<Resolved, CaseError> {
+    let RecordFolder {
         measured, document, ..
     } = *source;
     let file: CaseFile = document.parse()?;
@@ -78,7 +78,7 @@ pub(super) fn resolve(source: &Source<'_>) -> Result<Resolved, CaseError> {
         notes.extend(read.notes);
     }
     let recorded = (&channels[..], &facts[..]);
-    notes.extend(objective::over_recorded(
+    notes.extend(objective::restrict_to_recorded(
         document,
         stated,
         &mut objective,
@@ -133,7 +133,7 @@ pub(super) fn resolve(source: &Source<'_>) -> Result<Resolved, CaseError> {
     })
 }
 
-/// Parts of a case, read independently of each other.
+/// Parts of a pumping-unit case, read independently of each other so that all errors are reported at once.
 struct Parts {
     envelope: Envelope,
     head: ReadHead,
@@ -146,8 +146,8 @@ struct Parts {
 ///
 /// # Errors
 /// Returns the faults of all parts.
-fn parts(source: &Source<'_>, file: &CaseFile) -> Result<Parts, CaseError> {
-    let Source {
+fn parts(source: &RecordFolder<'_>, file: &CaseFile) -> Result<Parts, CaseError> {
+    let RecordFolder {
         folder, document, ..
     } = *source;
     let mut faults = Faults::default();
@@ -157,7 +157,7 @@ fn parts(source: &Source<'_>, file: &CaseFile) -> Result<Parts, CaseError> {
     let head = faults.take(flexible::read(folder, document, file));
     if let (Some(envelope), Some(head)) = (&envelope, &head) {
         let arc = &head.head.arc_deg;
-        faults.take(machine::check_arc(document, file, arc, envelope));
+        faults.take(machine::check_contact_on_arc(document, file, arc, envelope));
     }
     let stated = file.objective.as_ref();
     let objective = faults.take(objective::read(document, stated, &file.conditions));

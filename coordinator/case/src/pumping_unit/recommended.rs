@@ -12,7 +12,7 @@ pub(super) enum Recommended {
     /// Number in the unit of the unknown.
     Value(f64),
     /// Result of a formula.
-    By(Formula),
+    Formula(Formula),
 }
 
 /// Formula for a recommended value.
@@ -63,7 +63,7 @@ impl Visitor<'_> for NumberOrWord {
     fn visit_str<E: de::Error>(self, word: &str) -> Result<Recommended, E> {
         let named = Formula::ALL.into_iter().find(|known| known.word() == word);
         named
-            .map(Recommended::By)
+            .map(Recommended::Formula)
             .ok_or_else(|| E::unknown_variant(word, Formula::WORDS))
     }
 }

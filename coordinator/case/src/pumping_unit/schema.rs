@@ -42,7 +42,7 @@ pub(super) struct CaseFile {
     pub(super) flexible_head: FlexibleHead,
     /// Settings of two parallel ropes on each head; one rope per head if absent.
     pub(super) twin_ropes: Option<TwinRopesEntry>,
-    /// Effects that the machine has in addition to the plain model; none unless stated.
+    /// Effects (extra physical mechanisms) that the machine has beyond the plain model; none unless stated.
     #[serde(default)]
     pub(super) effects: Vec<CaseEffect>,
     /// Unknowns by coefficient; every coefficient is required.
@@ -68,11 +68,11 @@ pub(super) struct ModelEntry {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FlexibleHead {
-    /// Modes as JSON.
+    /// JSON file with the modes of the back head.
     pub(super) modes_file: PathBuf,
-    /// Influence lines as CSV.
+    /// CSV file with the influence lines of the back head.
     pub(super) influence_file: PathBuf,
-    /// Mesh (MSH 4.1); absent where only the reduced model is available.
+    /// Mesh file of the back head (MSH 4.1); absent where only the reduced model is available.
     pub(super) mesh_file: Option<PathBuf>,
     /// Method that recovers gauge stress from the modes; mode acceleration unless stated.
     #[serde(default)]
@@ -122,7 +122,7 @@ pub(super) struct TwinRopesEntry {
     /// Number of out-of-plane modes of the head that are simulated.
     #[serde(default = "six")]
     pub(super) modes: usize,
-    /// The head's tables for the pair, as JSON.
+    /// JSON file with the back head's tables for a pair of ropes.
     pub(super) head_file: PathBuf,
 }
 
@@ -163,7 +163,7 @@ pub(super) struct ConditionEntry {
     pub(super) card_file: PathBuf,
     #[serde(default = "no_smoothing")]
     pub(super) smoothing: Smoothing,
-    /// Gauge record; absent where the condition is simulated without measurements.
+    /// Gauge record of the condition; absent where the condition is simulated without measurements.
     pub(super) record_file: Option<PathBuf>,
 }
 

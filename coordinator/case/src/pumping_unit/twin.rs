@@ -13,7 +13,7 @@ use protocol::pumping_unit::{Influence, ModalHead, TwinHead, TwinRopes};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// Remedy stated in errors about the tables.
+/// Remedy text in errors about the head's tables for twin ropes.
 const REMEDY: &str = "`horsehead head CASE --write` computes the tables";
 
 /// Tables of the head for twin ropes, as stored in the file.
@@ -29,7 +29,7 @@ pub struct TwinFile {
     pub offset_m: f64,
     /// Frequencies of the modes out of the plane \[Hz\].
     pub frequencies_hz: Vec<f64>,
-    /// Stations along the arc \[deg\].
+    /// Angles along the rope arc of the head at which the tables have values \[deg\].
     pub arc_deg: Vec<f64>,
     /// Radial displacement of each mode at each station.
     pub radial: Vec<Vec<f64>>,
@@ -37,7 +37,7 @@ pub struct TwinFile {
     pub tangential: Vec<Vec<f64>>,
     /// Lateral displacement of each mode at each station.
     pub lateral: Vec<Vec<f64>>,
-    /// Stress of the four gauges per unit of each mode \[MPa\].
+    /// Stress at the four gauges per unit amplitude of each mode \[MPa\].
     pub gauge_stress_mpa: Vec<[f64; 4]>,
     /// Gauge stress per unit normal force at each station \[MPa/N\].
     pub normal_mpa_per_n: Vec<[f64; 4]>,
@@ -47,7 +47,7 @@ pub struct TwinFile {
     pub lateral_mpa_per_n: Vec<[f64; 4]>,
 }
 
-/// Twin ropes, and the reason why their tables cannot be used, if there is one.
+/// Settings and tables of twin ropes, and the error that says why the tables cannot be used, if there is one.
 pub(super) struct Read {
     pub(super) twins: TwinRopes,
     pub(super) unfit: Option<CaseError>,
@@ -128,7 +128,7 @@ impl TwinFile {
     }
 }
 
-/// Checks that the tables have one row per mode and one value per station.
+/// Checks that the head's tables for twin ropes have one row per mode and one value per station.
 fn check_shapes(path: &Path, tables: &TwinFile) -> Result<(), CaseError> {
     let (modes, stations) = (tables.frequencies_hz.len(), tables.arc_deg.len());
     let lengths = [

@@ -1,4 +1,4 @@
-//! Faults of modes, influence lines and mesh.
+//! Faults of the back head's modes, influence lines and mesh that must be reported.
 use super::spoilt::{INFLUENCE, MESH, MODES, Spoilt, TOML, cell, scaled};
 use std::fs;
 

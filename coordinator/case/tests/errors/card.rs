@@ -1,4 +1,4 @@
-//! Faults of a load card.
+//! Faults of a load card that must be reported.
 use super::spoilt::{CARD, Spoilt, cell, scaled};
 use std::fs;
 

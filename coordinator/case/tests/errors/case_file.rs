@@ -1,4 +1,4 @@
-//! Faults of `case.toml`.
+//! Faults of `case.toml` that must be reported.
 use super::spoilt::{Spoilt, TOML};
 use std::fs;
 

@@ -41,8 +41,8 @@ fn every_fault_of_twin_ropes_is_named() {
     assert_each_is_named(twins::FAULTS);
 }
 
-/// Checks that a measured folder may hold records for some of the conditions: the others keep their load card
-/// and have no record.
+/// Checks that the folder of `--measured` may hold records of only some conditions: the others keep their
+/// load card and have no record.
 #[test]
 fn another_test_need_not_repeat_every_condition() {
     let copy = Copy::new();
@@ -287,9 +287,9 @@ fn one_cycle_has_no_spread() {
     assert!(text.contains("one whole cycle only"), "{text}");
 }
 
-/// Checks that an effect parameter with a `search` interval becomes a gene after the coefficients, and that a
-/// fixed parameter leaves the genes unchanged. An effect that a diagnosis has added leaves the case together
-/// with its genes.
+/// Checks that an effect parameter with a `search` interval becomes an unknown, listed after the
+/// coefficients, and that one without leaves the unknowns unchanged. Removing an effect that a diagnosis has
+/// added also removes its unknowns.
 #[test]
 fn a_parameter_with_an_interval_to_search_is_a_gene() {
     let copy = Copy::new();
@@ -317,9 +317,9 @@ fn a_parameter_with_an_interval_to_search_is_a_gene() {
     assert_eq!((gene.unit.as_str(), gene.scale), ("N.m", Scale::Linear));
     assert_eq!((gene.lower, gene.start, gene.upper), (-1.0, 9.0, 20.0));
     assert_eq!(searched.case.effects, fixed.case.effects);
-    let other = searched.clone().without_found_in("another one");
+    let other = searched.clone().without_effects_from("another one");
     assert_eq!(other, searched);
-    let without = searched.without_found_in("this one").case;
+    let without = searched.without_effects_from("this one").case;
     assert_eq!(without.unknowns, fixed.case.unknowns);
     assert!(without.effects.is_empty());
 }

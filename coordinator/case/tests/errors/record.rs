@@ -1,4 +1,4 @@
-//! Faults of a gauge record and its data sheet.
+//! Faults of a gauge record and its data sheet that must be reported.
 use super::spoilt::{RECORD, SHEET, Spoilt, cell, scaled};
 use std::fs;
 

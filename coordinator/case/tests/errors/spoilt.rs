@@ -1,4 +1,4 @@
-//! Copy of the shipped case, and functions that introduce faults into it.
+//! Temporary copy of the case shipped with the program, and functions that introduce faults into it.
 use case::{self, CaseError, Overrides};
 use flate2::{Compression, read::GzDecoder, write::GzEncoder};
 use std::{
@@ -45,14 +45,14 @@ impl Copy {
         self.folder.path().join(file)
     }
 
-    /// Replaces the first occurrence of a text; fails if the file does not contain it.
+    /// Replaces the first occurrence of a text in a file of the copy; fails if the file does not contain it.
     pub(super) fn replace(&self, file: &str, from: &str, to: &str) {
         let text = fs::read_to_string(self.path(file)).unwrap();
         assert!(text.contains(from), "{file} has no `{from}`");
         fs::write(self.path(file), text.replacen(from, to, 1)).unwrap();
     }
 
-    /// Removes the text from `from` up to, but without, `until`.
+    /// Removes the text from `from` up to, but not including, `until` from a file of the copy.
     pub(super) fn cut(&self, file: &str, from: &str, until: &str) {
         let text = fs::read_to_string(self.path(file)).unwrap();
         let (before, rest) = text.split_once(from).unwrap();
@@ -66,7 +66,7 @@ impl Copy {
         self.replace(TOML, "[objective]", &added);
     }
 
-    /// Rewrites the lines of a CSV file; line 1 is the header.
+    /// Rewrites every line of a CSV file of the copied case by a function; line 1 is the header.
     pub(super) fn lines(&self, file: &str, rewrite: impl Fn(usize, &str) -> Option<String>) {
         let path = self.path(file);
         let packed = file == RECORD;
@@ -99,14 +99,14 @@ impl Copy {
     }
 }
 
-/// Replaces one cell of a line.
+/// Replaces one cell of a CSV line.
 pub(super) fn cell(line: &str, column: usize, value: &str) -> String {
     let mut cells: Vec<&str> = line.split(',').collect();
     cells[column] = value;
     cells.join(",")
 }
 
-/// Multiplies the given columns of a line by a factor; line 1, the header, is unchanged.
+/// Multiplies the given columns of a CSV line by a factor; line 1, the header, is unchanged.
 #[expect(
     clippy::unnecessary_wraps,
     reason = "the shape that rewriting lines asks for: none removes the line"

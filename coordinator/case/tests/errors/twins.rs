@@ -1,4 +1,4 @@
-//! Faults of twin ropes and of the head's tables for them.
+//! Faults of twin ropes and of the head's tables for them that must be reported.
 use super::spoilt::{Copy, MESH, Spoilt, TOML, TWINS};
 use std::fs;
 

@@ -12,7 +12,8 @@ use std::{fs, path::PathBuf};
 use tempfile::TempDir;
 
 const TOML: &str = include_str!("case.toml");
-/// Record of two cycles with four points each: means 1, 3, 5, 3, and a spread at the third point only.
+/// Record (CSV) of two cycles with four points each: means 1, 3, 5, 3; the cycles differ only at the third
+/// point.
 const SLOW: &str =
     "cycle,phase_deg,force_n\n1,0,1\n1,90,3\n1,180,6\n1,270,3\n2,0,1\n2,90,3\n2,180,4\n2,270,3\n";
 const FAST: &str = "time_s,force_n\n0,1\n0.1,2.5\n0.3,2\n";
@@ -33,7 +34,8 @@ impl Case {
         self.0.path().join(file)
     }
 
-    /// Replaces the first occurrence of a text; fails if the file does not contain it.
+    /// Replaces the first occurrence of a text in a file of the test case; fails if the file does not contain
+    /// it.
     fn replace(&self, file: &str, from: &str, to: &str) {
         let text = fs::read_to_string(self.path(file)).unwrap();
         assert!(text.contains(from), "{file} has no `{from}`");

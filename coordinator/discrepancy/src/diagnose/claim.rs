@@ -1,15 +1,15 @@
-//! Sizes and traits that an answer claims, collected from its fit and its estimates.
-use crate::cause::round::Round;
-use crate::cause::suspect::Suspect;
-use crate::diagnose::carry::Size;
-use crate::ground::base::Base;
+//! Sizes and common traits of the effects that a diagnosis names, collected from its fit and estimates.
+use crate::baseline::base::Baseline;
+use crate::diagnose::plausibility::Size;
+use crate::estimate::effect_size::{Estimate, ParameterEstimate};
+use crate::hypothesis::candidate::CandidateEffect;
+use crate::hypothesis::round::Round;
 use crate::model::fit::Fit;
-use crate::size::estimate::{Estimate, ParameterEstimate};
 use crate::thresholds::MOST_NAMES;
 use nalgebra::{Complex, DVector};
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Role};
 
-/// Returns the sizes of all effects of an answer.
+/// Returns the estimated sizes of all effects in the answer of a diagnosis.
 pub(crate) fn claim(answer: &Fit, effects: &[Estimate]) -> Vec<Size> {
     let added = answer.model.added.iter();
     let sizes = added.filter_map(|effect| {
@@ -19,7 +19,7 @@ pub(crate) fn claim(answer: &Fit, effects: &[Estimate]) -> Vec<Size> {
     sizes.flatten().collect()
 }
 
-/// Returns the sizes of one added effect.
+/// Returns the estimated sizes of one effect of the answer.
 fn sizes(answer: &Fit, effect: &EffectDescriptor, found: &Estimate) -> Vec<Size> {
     let both = effect.parameters.iter().zip(&found.parameters);
     let sizes = both.filter(|(p, _)| p.role == Role::Size);
@@ -40,11 +40,11 @@ fn sizes(answer: &Fit, effect: &EffectDescriptor, found: &Estimate) -> Vec<Size>
     sizes.map(size).collect()
 }
 
-/// Returns the reason why the ambiguity set of a round is no answer, if there is one: too many effects, or
-/// effects without a common trait.
-pub(crate) fn no_answer(base: &Base, round: &Round) -> Option<String> {
-    let of_set = |id: &String| round.suspects.iter().find(|own| own.effect.id == *id);
-    let members: Vec<&Suspect> = round.set.iter().filter_map(of_set).collect();
+/// Returns the reason why the ambiguity set of a round cannot be reported as answer, if there is one: too
+/// many effects, or effects that have neither joint, channel nor order in common.
+pub(crate) fn no_answer(base: &Baseline, round: &Round) -> Option<String> {
+    let of_set = |id: &String| round.candidates.iter().find(|own| own.effect.id == *id);
+    let members: Vec<&CandidateEffect> = round.set.iter().filter_map(of_set).collect();
     let traits: Vec<Traits> = members.iter().map(|own| Traits::of(base, own)).collect();
     let common = Common::of(&traits);
     if round.set.len() > MOST_NAMES {
@@ -63,7 +63,7 @@ pub(crate) fn no_answer(base: &Base, round: &Round) -> Option<String> {
     })
 }
 
-/// Joint at which an effect acts, and the channel and order in which it is strongest.
+/// Traits of an effect: the joint at which it acts, and the channel and order in which it is strongest.
 struct Traits {
     joint: String,
     channel: Option<usize>,
@@ -71,7 +71,7 @@ struct Traits {
 }
 
 impl Traits {
-    fn of(base: &Base, suspect: &Suspect) -> Self {
+    fn of(base: &Baseline, suspect: &CandidateEffect) -> Self {
         let sizes = suspect.score.as_ref().map(|score| score.size.clone());
         let shown = sizes
             .filter(|sizes| sizes.len() == suspect.signature.ncols())
@@ -81,7 +81,7 @@ impl Traits {
                     .project(&(&suspect.signature * DVector::from_vec(sizes)))
             });
         let waves = shown
-            .map(|shown| base.on.metric.waves(&shown))
+            .map(|shown| base.record.metric.waves(&shown))
             .unwrap_or_default();
         let power = |own: &Vec<Complex<f64>>| own.iter().map(Complex::norm_sqr).sum::<f64>();
         let highest = waves.iter().map(Vec::len).max().unwrap_or_default();
@@ -103,7 +103,7 @@ fn strongest(powers: impl Iterator<Item = f64>) -> Option<usize> {
     powers.enumerate().max_by(by_power).map(|(k, _)| k)
 }
 
-/// Traits that several effects share.
+/// Joint, channel and order that several effects have in common.
 struct Common {
     joint: Option<String>,
     channel: Option<usize>,
@@ -135,8 +135,8 @@ impl Common {
         self.joint.is_none() && self.channel.is_none() && self.order.is_none()
     }
 
-    fn words(&self, base: &Base) -> String {
-        let channels = &base.on.record.channels;
+    fn words(&self, base: &Baseline) -> String {
+        let channels = &base.record.record.channels;
         let channel = self.channel.and_then(|c| channels.get(c));
         let parts = [
             self.joint

@@ -4,40 +4,41 @@
 //! effects found are withdrawn from the answer. They remain visible as suspects with size and evidence in
 //! nats, and the reason states what is needed to name them. Effects with implausible sizes are treated
 //! likewise.
-use crate::cause::round::Round;
-use crate::diagnose::carry;
+use crate::baseline::base::Baseline;
+use crate::baseline::session::Session;
 use crate::diagnose::claim::{claim, no_answer};
 use crate::diagnose::diagnosis::Diagnosis;
+use crate::diagnose::plausibility;
 use crate::diagnose::reason::{Rejection, left, reason, remarks};
-use crate::ground::base::Base;
-use crate::ground::session::Session;
+use crate::estimate::effect_size::{Estimate, estimates, refitted};
+use crate::estimate::force::ForceEstimate;
+use crate::estimate::nuisances::nuisance_estimates;
+use crate::estimate::spread::{Spread, coloured};
+use crate::hypothesis::round::Round;
 use crate::laboratory::{Laboratory, Stage};
+use crate::localisation::parameter_drift::refit::drifts;
+use crate::localisation::summary;
 use crate::model::fit::Fit;
-use crate::place::wander::refit::wander;
-use crate::place::whereabouts;
-use crate::proof::compare::{Shown, compare};
-use crate::proof::predictive::{scores, unpredicted};
 use crate::record::metric::Metric;
-use crate::record::noise::Known;
-use crate::size::estimate::{Estimate, estimates, refitted};
-use crate::size::force::Force;
-use crate::size::never_exact::never_exact;
-use crate::size::spread::{Spread, coloured};
-use crate::verdict::{Findings, Ground, verdict};
+use crate::record::noise::NoiseSource;
+use crate::validation::compare::{ValidationRecord, compare};
+use crate::validation::predictive::{rejection_reason, scores};
+use crate::verdict::{Findings, TestValidity, verdict};
 
-/// Computes estimates, validation and verdict; `shown` are the records used for the validation.
+/// Computes estimates, validation and verdict of a diagnosis; `shown` are the records used for the
+/// validation.
 pub(crate) async fn conclude<L: Laboratory>(
     session: &mut Session<'_, L>,
     answer: Fit,
-    shown: &[Shown<'_>],
+    shown: &[ValidationRecord<'_>],
     diagnosis: &mut Diagnosis,
 ) -> Result<(), L::Error> {
     let (base, inputs) = (session.base, session.inputs);
     let claims = !answer.model.added.is_empty() || diagnosis.generic.is_some();
     let ground = ground(session, claims, diagnosis);
-    diagnosis.effects = estimates(&diagnosis.rounds, &answer, &base.on.metric);
+    diagnosis.effects = estimates(&diagnosis.rounds, &answer, &base.record.metric);
     prove(session, &answer, shown, diagnosis).await?;
-    let firm = matches!(ground, Ground::Firm | Ground::NoiseStated);
+    let firm = matches!(ground, TestValidity::Valid | TestValidity::NoiseStated);
     let predicted = predict(session, &answer, shown, diagnosis).await?;
     let doubt = if firm {
         predicted.or_else(|| doubt(base, &answer, diagnosis))
@@ -52,11 +53,11 @@ pub(crate) async fn conclude<L: Laboratory>(
         prove(session, &base.fit, shown, diagnosis).await?;
         (base.fit.clone(), suspect)
     };
-    diagnosis.whiteness = Some([&base.fit, &after].map(|fit| whereabouts::white(base, fit)));
+    diagnosis.whiteness = Some([&base.fit, &after].map(|fit| summary::white(base, fit)));
     let mut experiments = session.experiments(Stage::Show);
-    diagnosis.wander = wander(&mut experiments, &base.fit, inputs.others()).await?;
+    diagnosis.drifts = drifts(&mut experiments, &base.fit, inputs.others()).await?;
     if !after.model.added.is_empty() {
-        diagnosis.wander_after = wander(&mut experiments, &after, inputs.others()).await?;
+        diagnosis.drifts_after = drifts(&mut experiments, &after, inputs.others()).await?;
     }
     let thresholds = &inputs.thresholds;
     let misfit = !base.explains(&after, thresholds.adequacy);
@@ -69,7 +70,7 @@ pub(crate) async fn conclude<L: Laboratory>(
         doubt,
         left: misfit.then(|| left(base, &after)),
     };
-    let seen = diagnosis.whereabouts.as_ref();
+    let seen = diagnosis.localisation.as_ref();
     let maps = seen.is_some_and(|seen| seen.rejects(thresholds.alpha));
     let findings = Findings {
         ground,
@@ -81,11 +82,11 @@ pub(crate) async fn conclude<L: Laboratory>(
             .map(|r| r.set.len())
             .max()
             .unwrap_or(0),
-        generic: diagnosis.generic.is_some(),
+        probe_force_wins: diagnosis.generic.is_some(),
     };
     diagnosis.verdict = verdict(&findings);
     diagnosis.reason = reason(ground, diagnosis, &rejection);
-    if let Some(instruments) = base.strained() {
+    if let Some(instruments) = base.instruments_beyond_tolerance() {
         match &mut diagnosis.reason {
             Some(reason) => reason.extend(["; ", &instruments]),
             None => diagnosis.notes.push(instruments),
@@ -95,18 +96,20 @@ pub(crate) async fn conclude<L: Laboratory>(
         diagnosis.notes.extend(rejection.left);
     }
     remarks(inputs, diagnosis);
-    let spread = Spread::of(&base.on.metric, &after);
+    let spread = Spread::of(&base.record.metric, &after);
     if let Some(growth) = spread.largest_growth() {
         diagnosis.notes.push(coloured(growth));
     }
-    diagnosis.nuisances = never_exact(&after, &spread);
+    diagnosis.nuisances = nuisance_estimates(&after, &spread);
     // what a missing effect leaves is no noise: limits are those beside the answer
     let ratio = (after.dispersion() / base.fit.dispersion()).sqrt();
     for limit in &mut diagnosis.limits {
         limit.size *= ratio;
     }
     let rounds = diagnosis.rounds.iter();
-    diagnosis.sizes = rounds.map(|round| sizes(round, &base.on.metric)).collect();
+    diagnosis.sizes = rounds
+        .map(|round| sizes(round, &base.record.metric))
+        .collect();
     diagnosis.after = Some(after);
     Ok(())
 }
@@ -117,20 +120,21 @@ fn sizes(round: &Round, metric: &Metric) -> Vec<Estimate> {
     ids.filter_map(|id| refitted(round, id, metric)).collect()
 }
 
-/// Returns the reliability of the basis of the tests.
-fn ground<L>(session: &Session<'_, L>, claims: bool, diagnosis: &Diagnosis) -> Ground {
+/// Returns how reliable the tests are, given the source of the noise level and whether a model was compared
+/// with a finer one.
+fn ground<L>(session: &Session<'_, L>, claims: bool, diagnosis: &Diagnosis) -> TestValidity {
     let (base, inputs) = (session.base, session.inputs);
     let checked = base.preflight.is_some() || diagnosis.preflight_after.is_some();
     if claims && !checked {
-        Ground::Unsound
-    } else if base.known() == Known::Guessed {
-        Ground::NoiseUnknown
+        TestValidity::DiscretisationUnknown
+    } else if base.known() == NoiseSource::Estimated {
+        TestValidity::NoiseUnknown
     } else if inputs.considered().all(|effect| effect.generic) {
-        Ground::NothingConsidered
-    } else if base.known() == Known::Stated {
-        Ground::NoiseStated
+        TestValidity::NothingConsidered
+    } else if base.known() == NoiseSource::Stated {
+        TestValidity::NoiseStated
     } else {
-        Ground::Firm
+        TestValidity::Valid
     }
 }
 
@@ -140,7 +144,7 @@ fn ground<L>(session: &Session<'_, L>, claims: bool, diagnosis: &Diagnosis) -> G
 async fn predict<L: Laboratory>(
     session: &mut Session<'_, L>,
     answer: &Fit,
-    shown: &[Shown<'_>],
+    shown: &[ValidationRecord<'_>],
     diagnosis: &mut Diagnosis,
 ) -> Result<Option<String>, L::Error> {
     let (base, thresholds) = (session.base, &session.inputs.thresholds);
@@ -150,7 +154,7 @@ async fn predict<L: Laboratory>(
     }
     let ids: Vec<&str> = added.iter().map(|own| &*own.id).collect();
     let ids = ids.join(" with ");
-    if !session.lab.may(Stage::Show) {
+    if !session.lab.has_budget(Stage::Show) {
         return Ok(Some(format!(
             "{ids} explains the fitted data, but the budget for validation on other data is used up"
         )));
@@ -158,13 +162,13 @@ async fn predict<L: Laboratory>(
     let mut experiments = session.experiments(Stage::Show);
     let whole = scores(&mut experiments, shown, [answer, &base.fit]).await?;
     diagnosis.prediction.clone_from(&whole.records);
-    let tried = diagnosis.rounds.first().map_or(1, |r| r.suspects.len());
+    let tried = diagnosis.rounds.first().map_or(1, |r| r.candidates.len());
     // a name that what took no part has chosen needs as many times more as it chose from
     let rounds = diagnosis.rounds.iter();
     let kept = rounds.filter(|round| round.added.is_some());
     let chosen: f64 = kept.map(|round| libm::log(round.ranked as f64)).sum();
     let needed = whole.needed(thresholds, added.len(), tried) + chosen;
-    Ok(unpredicted(
+    Ok(rejection_reason(
         &ids,
         &whole,
         [thresholds.prediction, needed],
@@ -173,16 +177,16 @@ async fn predict<L: Laboratory>(
 }
 
 /// Returns the reason why an answer is not named, if there is one.
-fn doubt(base: &Base, answer: &Fit, diagnosis: &Diagnosis) -> Option<String> {
+fn doubt(base: &Baseline, answer: &Fit, diagnosis: &Diagnosis) -> Option<String> {
     let sets = || {
         let mut rounds = diagnosis.rounds.iter();
         rounds.find_map(|round| no_answer(base, round))
     };
-    carry::doubt(&claim(answer, &diagnosis.effects)).or_else(sets)
+    plausibility::doubt(&claim(answer, &diagnosis.effects)).or_else(sets)
 }
 
-/// Withdraws the added effects from the answer, and with `force_too` the generic force as well; returns a
-/// description of what was withdrawn.
+/// Withdraws the added effects from the answer of a diagnosis, and the generic force as well if `force_too`;
+/// returns a description of what was withdrawn.
 fn withhold(diagnosis: &mut Diagnosis, force_too: bool) -> Option<String> {
     let nats = |id: &str, nats: f64| format!("{id}, at {nats:.0} nats");
     let mut suspects = Vec::new();
@@ -196,17 +200,19 @@ fn withhold(diagnosis: &mut Diagnosis, force_too: bool) -> Option<String> {
     }
     if force_too && diagnosis.generic.take().is_some() {
         let force = diagnosis.force.as_ref();
-        let said = |force: &Force| nats(&format!("a force {}", force.id), force.ln_evidence);
+        let said =
+            |force: &ForceEstimate| nats(&format!("a force {}", force.id), force.ln_evidence);
         suspects.extend(force.map(said));
     }
     (!suspects.is_empty()).then(|| suspects.join(" and "))
 }
 
-/// Computes the gap before and after for the answer, its best rejected rival and the generic force.
+/// Computes the misfit to each record before and after adding effects: for the answer, its best rejected
+/// rival and the generic force.
 async fn prove<L: Laboratory>(
     session: &mut Session<'_, L>,
     after: &Fit,
-    shown: &[Shown<'_>],
+    shown: &[ValidationRecord<'_>],
     diagnosis: &mut Diagnosis,
 ) -> Result<(), L::Error> {
     let base = session.base;

@@ -1,29 +1,29 @@
 //! Correlation of the noise where there is one cycle and the channels do not state it: estimated once from
 //! the residual of the likeliest model.
-use crate::diagnose::rounds::suspicion;
-use crate::ground::session::Session;
+use crate::baseline::session::Session;
+use crate::diagnose::rounds::test_effects;
 use crate::inputs::Inputs;
 use crate::laboratory::Laboratory;
 use crate::model::fit::Fit;
 use crate::record::measured::Record;
-use crate::record::noise::Known;
+use crate::record::noise::NoiseSource;
 
-/// Returns the record with the missing correlations filled in and a note about them; `None` where no
+/// Returns the record with the missing noise correlations filled in and a note about them; `None` where no
 /// correlation is missing or the noise is not stated.
 ///
 /// # Errors
-/// Those of the laboratory.
-pub(crate) async fn completed<L: Laboratory>(
+/// Returns an error if no worker is left to simulate, or the user stops the run.
+pub(crate) async fn with_correlations<L: Laboratory>(
     session: &mut Session<'_, L>,
 ) -> Result<Option<(Record, String)>, L::Error> {
     let base = session.base;
-    let mut record = base.on.record.clone();
+    let mut record = base.record.record.clone();
     let lacks = record.channels.iter().any(|own| own.correlation.is_none());
-    if base.known() != Known::Stated || !lacks {
+    if base.known() != NoiseSource::Stated || !lacks {
         return Ok(None);
     }
     let named: Vec<_> = session.inputs.considered().filter(|e| !e.generic).collect();
-    let round = suspicion(session, &base.fit, &named, &[]).await?;
+    let round = test_effects(session, &base.fit, &named, &[]).await?;
     let refitted = round.refits.iter().map(|own| &own.fit);
     let likeliest = refitted
         .chain([&base.fit])
@@ -52,10 +52,9 @@ pub(crate) async fn completed<L: Laboratory>(
     Ok(Some((record, words)))
 }
 
-/// Returns the inputs of a repeated diagnosis that starts from a fit. Missing correlations are taken from the
-/// channel of the same name in `record`, or are the largest of the record for channels of other names, which
-/// are held out.
-pub(crate) fn again(inputs: &Inputs, record: &Record, fit: &Fit) -> Inputs {
+/// Returns the inputs of a repeated diagnosis that starts from a fit. A missing noise correlation is that of
+/// the channel of the same name in `record`, or the record's largest for a channel that it lacks.
+pub(crate) fn repeated_inputs(inputs: &Inputs, record: &Record, fit: &Fit) -> Inputs {
     let mut again = inputs.clone();
     let all = record.channels.iter().filter_map(|own| own.correlation);
     let largest = all.reduce(f64::max);
@@ -71,8 +70,8 @@ pub(crate) fn again(inputs: &Inputs, record: &Record, fit: &Fit) -> Inputs {
 
 /// Returns the lag-1 correlation of the residual of a fit, by channel; 0 where it is not significant.
 fn correlations(record: &Record, fit: &Fit) -> Vec<f64> {
-    /// Upper limit of the correlation; a model error that is correlated more strongly is not noise of a
-    /// channel.
+    /// Upper limit of the estimated noise correlation: a residual that is correlated more strongly is model
+    /// error and not noise of a channel.
     const MOST: f64 = 0.99;
     let mean = record.mean();
     let channels = mean.iter().zip(&fit.curves).zip(&record.channels);

@@ -1,26 +1,26 @@
 //! Result of a diagnosis with all intermediate results.
-use crate::cause::refit::Refitted;
-use crate::cause::round::Round;
-use crate::ground::preflight::Preflight;
+use crate::baseline::discretisation_check::Preflight;
+use crate::estimate::absorbed::Absorbed;
+use crate::estimate::effect_size::Estimate;
+use crate::estimate::experiment_design::IndistinguishablePair;
+use crate::estimate::force::ForceEstimate;
+use crate::estimate::limit::Limit;
+use crate::estimate::nuisances::NuisanceEstimate;
+use crate::hypothesis::refit::Refitted;
+use crate::hypothesis::round::Round;
 use crate::laboratory::Stage;
+use crate::localisation::parameter_drift::shifts::ParameterDrift;
+use crate::localisation::summary::Localisation;
 use crate::model::fit::Fit;
-use crate::place::wander::shifts::Wander;
-use crate::place::whereabouts::Where;
-use crate::proof::compare::Row;
-use crate::proof::predictive::Prediction;
-use crate::record::noise::Known;
-use crate::size::absorbed::Absorbed;
-use crate::size::data_value::LookAlikes;
-use crate::size::estimate::Estimate;
-use crate::size::force::Force;
-use crate::size::limit::Limit;
-use crate::size::never_exact::NeverExact;
+use crate::record::noise::NoiseSource;
+use crate::validation::compare::GapRow;
+use crate::validation::predictive::Prediction;
 use crate::verdict::Verdict;
 
 /// Result of a diagnosis.
 #[derive(Clone, Debug)]
 pub struct Diagnosis {
-    /// Verdict.
+    /// Verdict of the diagnosis.
     pub verdict: Verdict,
     /// Reason of the verdict in one sentence, where it needs one.
     pub reason: Option<String>,
@@ -30,47 +30,48 @@ pub struct Diagnosis {
     pub rounds: Vec<Round>,
     /// Sizes of the candidate effects that were refitted, each from its own refit, by round.
     pub sizes: Vec<Vec<Estimate>>,
-    /// Localisation of the residual of the recalibrated model.
-    pub whereabouts: Option<Where>,
-    /// The numerical check of the recalibrated model.
+    /// Channels, orders and joints in which the residual of the recalibrated model is concentrated.
+    pub localisation: Option<Localisation>,
+    /// Comparison of the recalibrated model with a finer discretisation.
     pub preflight: Option<Preflight>,
-    /// Numerical check of the answer, or of the likeliest candidate effect that was rejected because of that
-    /// check.
+    /// Comparison of the answer with a finer discretisation, or of the likeliest candidate effect that was
+    /// rejected because of that comparison.
     pub preflight_after: Option<Preflight>,
     /// Detection limits of all effects.
     pub limits: Vec<Limit>,
-    /// Estimated errors of the instruments under the answer.
-    pub nuisances: Vec<NeverExact>,
+    /// Errors of the instruments (such as gains and delays), estimated together with the answer.
+    pub nuisances: Vec<NuisanceEstimate>,
     /// Effects that this record cannot reveal because the unknowns absorb them, and the data that would
     /// reveal them.
     pub absorbed: Vec<Absorbed>,
     /// Effects that this record cannot distinguish, and the data that would distinguish them.
-    pub look_alikes: Vec<LookAlikes>,
-    /// The recalibrated model without effects.
+    pub look_alikes: Vec<IndistinguishablePair>,
+    /// Fit of the recalibrated model without effects.
     pub before: Option<Fit>,
-    /// The model of the answer.
+    /// Fit of the model with the effects of the answer.
     pub after: Option<Fit>,
     /// p-value of the whiteness test of the residual: of the recalibrated model, and of the answer.
     pub whiteness: Option<[f64; 2]>,
-    /// Shifts of single parameters of the recalibrated model when refitted on parts of the abscissa and under
+    /// Shifts of single parameters when the recalibrated model is refitted on parts of the abscissa and under
     /// other conditions.
-    pub wander: Vec<Wander>,
+    pub drifts: Vec<ParameterDrift>,
     /// Shifts of single parameters of the answer when refitted on parts of the abscissa and under other
     /// conditions; empty where no effect was added.
-    pub wander_after: Vec<Wander>,
-    /// Gap of the answer, by record.
-    pub rows: Vec<Row>,
+    pub drifts_after: Vec<ParameterDrift>,
+    /// Misfit to each record before and after adding the effects of the answer.
+    pub rows: Vec<GapRow>,
     /// Predictive scores of the answer, or of the effects withheld as suspects, by record; empty where no
     /// effect was added or no data were held out.
     pub prediction: Vec<Prediction>,
-    /// The best rejected rival and its gap by record.
-    pub rival: Option<(String, Vec<Row>)>,
-    /// Form and joint of a generic force that beats every named effect, unless its basis is in doubt.
+    /// Identifier of the best rejected rival effect, with its misfit to each record before and after.
+    pub rival: Option<(String, Vec<GapRow>)>,
+    /// Form and joint of a generic force that beats every named effect, unless the tests lack a reliable
+    /// basis.
     pub generic: Option<String>,
     /// Generic force that beats every named effect, with its size, regardless of the verdict.
-    pub force: Option<Force>,
-    /// Source of the noise level.
-    pub noise: Known,
+    pub force: Option<ForceEstimate>,
+    /// Source of the noise level of the fitted record: scatter of cycles, stated, or guessed.
+    pub noise: NoiseSource,
     /// Stages that used up their budget of simulations.
     pub ran_out: Vec<Stage>,
     /// Further remarks for the user.
@@ -78,7 +79,7 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// Returns the best refit whose effect is in no answer, neither as added nor as a member of an ambiguity
+    /// Returns the best refit whose effect was neither added in any round nor is a member of an ambiguity
     /// set, with the first round in which an effect was added.
     pub fn rejected(&self) -> Option<(&Round, &Refitted)> {
         let round = self.rounds.iter().find(|round| round.added.is_some())?;
@@ -101,7 +102,7 @@ impl Diagnosis {
             effects: Vec::new(),
             rounds: Vec::new(),
             sizes: Vec::new(),
-            whereabouts: None,
+            localisation: None,
             preflight: None,
             preflight_after: None,
             limits: Vec::new(),
@@ -111,14 +112,14 @@ impl Diagnosis {
             before: None,
             after: None,
             whiteness: None,
-            wander: Vec::new(),
-            wander_after: Vec::new(),
+            drifts: Vec::new(),
+            drifts_after: Vec::new(),
             rows: Vec::new(),
             prediction: Vec::new(),
             rival: None,
             generic: None,
             force: None,
-            noise: Known::Seen,
+            noise: NoiseSource::Measured,
             ran_out: Vec::new(),
             notes: Vec::new(),
         }

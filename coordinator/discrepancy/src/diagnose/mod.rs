@@ -1,44 +1,44 @@
 //! Diagnosis from the record to the verdict: order of its steps (baseline, localisation, hypotheses,
 //! validation) and their results.
-mod belief;
-mod carry;
+mod acceptance;
+mod backward_elimination;
 mod claim;
 mod conclude;
 mod correlation;
 pub(crate) mod diagnosis;
-mod prune;
+mod plausibility;
 mod reason;
 mod rivals;
 mod rounds;
 
-pub use crate::cause::round::Round;
+pub use crate::estimate::absorbed::Absorbed;
+pub use crate::estimate::effect_size::{Estimate, ParameterEstimate};
+pub use crate::estimate::experiment_design::IndistinguishablePair;
+pub use crate::estimate::force::ForceEstimate;
+pub use crate::estimate::limit::Limit;
+pub use crate::estimate::nuisances::NuisanceEstimate;
+pub use crate::hypothesis::round::Round;
 pub use crate::inputs::Inputs;
-pub use crate::size::absorbed::Absorbed;
-pub use crate::size::data_value::LookAlikes;
-pub use crate::size::estimate::{Estimate, ParameterEstimate};
-pub use crate::size::force::Force;
-pub use crate::size::limit::Limit;
-pub use crate::size::never_exact::NeverExact;
 pub use diagnosis::Diagnosis;
 
-use crate::ground::budget::Budgeted;
-use crate::ground::establish::establish;
-use crate::ground::session::Session;
+use crate::baseline::budget::Budgeted;
+use crate::baseline::establish::establish;
+use crate::baseline::session::Session;
 use crate::laboratory::{Laboratory, Stage};
-use crate::place::whereabouts;
-use crate::proof::compare::shown;
+use crate::localisation::summary;
 use crate::record::measured::Record;
-use crate::thresholds::PROMISED;
+use crate::thresholds::MAX_PREDICTED_DECREASE;
+use crate::validation::compare::validation_records;
 use conclude::conclude;
 use rounds::rounds;
 
 /// Runs a diagnosis within the budget of simulations.
 ///
 /// # Errors
-/// Those of the laboratory: no worker is left, or the user stopped the run.
+/// Returns an error if no worker is left to simulate, or the user stops the run.
 pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis, L::Error> {
     let mut counted = Budgeted::new(lab, &inputs.thresholds.budget);
-    let mut diagnosis = within(&mut counted, inputs).await?;
+    let mut diagnosis = diagnose_budgeted(&mut counted, inputs).await?;
     diagnosis
         .notes
         .extend(counted.ran_out().iter().map(|stage| {
@@ -52,8 +52,11 @@ pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Dia
     Ok(diagnosis)
 }
 
-/// Runs a diagnosis in a laboratory that enforces the budget.
-async fn within<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis, L::Error> {
+/// Runs a diagnosis with a simulator that enforces the budget.
+async fn diagnose_budgeted<L: Laboratory>(
+    lab: &mut L,
+    inputs: &Inputs,
+) -> Result<Diagnosis, L::Error> {
     let Some(record) = inputs
         .records
         .first()
@@ -79,11 +82,11 @@ async fn within<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis
         base: &base,
         inputs,
     };
-    let completed = correlation::completed(&mut first).await?;
+    let completed = correlation::with_correlations(&mut first).await?;
     let again: Inputs;
     let mut inputs = inputs;
     if let Some((fitted, said)) = completed {
-        again = correlation::again(inputs, &fitted, &base.fit);
+        again = correlation::repeated_inputs(inputs, &fitted, &base.fit);
         inputs = &again;
         split = again.records.first().map_or(split, Record::split);
         base = match establish(lab, inputs, split.fitted.clone()).await? {
@@ -100,20 +103,20 @@ async fn within<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis
     };
     let mut diagnosis = Diagnosis {
         reason: None,
-        whereabouts: Some(whereabouts::look(&mut session).await?),
+        localisation: Some(summary::localise(&mut session).await?),
         noise: base.known(),
         preflight: base.preflight.clone(),
         notes: base.notes.clone(),
         before: Some(base.fit.clone()),
         ..Diagnosis::unresolved("")
     };
-    if !session.lab.may(Stage::What) {
+    if !session.lab.has_budget(Stage::Test) {
         let reason = "the budget of the tests is used up: no effect was tested";
         diagnosis.reason = Some(reason.to_owned());
         return Ok(diagnosis);
     }
-    let promised = base.fit.search.promised_decrease();
-    if promised > PROMISED {
+    let promised = base.fit.search.predicted_decrease();
+    if promised > MAX_PREDICTED_DECREASE {
         diagnosis.reason = Some(format!(
             "the recalibration did not converge: one more step is predicted to lower the misfit by {:.0} %, \
              so that tests of effects would respond to calibration error",
@@ -121,8 +124,8 @@ async fn within<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis
         ));
         return Ok(diagnosis);
     }
-    let shown = shown(&mut session, &split).await?;
-    let after = rounds(&mut session, &shown, &mut diagnosis).await?;
-    conclude(&mut session, after, &shown, &mut diagnosis).await?;
+    let validation_records = validation_records(&mut session, &split).await?;
+    let after = rounds(&mut session, &validation_records, &mut diagnosis).await?;
+    conclude(&mut session, after, &validation_records, &mut diagnosis).await?;
     Ok(diagnosis)
 }

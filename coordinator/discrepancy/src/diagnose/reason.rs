@@ -1,29 +1,29 @@
 //! Verbal results of a diagnosis: reason of the verdict and further remarks.
+use crate::baseline::base::Baseline;
+use crate::baseline::discretisation_check::Preflight;
 use crate::diagnose::diagnosis::Diagnosis;
-use crate::ground::base::Base;
-use crate::ground::preflight::Preflight;
 use crate::inputs::Inputs;
 use crate::model::fit::Fit;
-use crate::verdict::{Ground, Verdict};
+use crate::verdict::{TestValidity, Verdict};
 
-/// Ratio of numerical error to the record's standard error above which a remark is added.
+/// Ratio of numerical error to the record's standard error above which the result contains a remark.
 const FINE_ENOUGH: f64 = 1.0 / 3.0;
 
-/// Evidence against the hypothesis that the residual is noise alone.
+/// Findings that contradict the hypothesis that the residual is noise alone, from which the verdict follows.
 #[derive(Debug)]
 pub(crate) struct Rejection {
-    /// Whether the tests of the named effects reject.
+    /// Whether the tests of the named effects reject the hypothesis of noise alone.
     pub(crate) names: bool,
-    /// Description of the effects found that cannot be named.
+    /// Description of the effects that were found but cannot be named.
     pub(crate) suspect: Option<String>,
     /// Reason why the effects are not named, although the basis of the tests is reliable.
     pub(crate) doubt: Option<String>,
-    /// Description of the remaining residual that is not noise.
+    /// Description of the residual that the answer leaves, if it is more than noise.
     pub(crate) left: Option<String>,
 }
 
-/// Describes the remaining residual relative to the noise.
-pub(crate) fn left(base: &Base, after: &Fit) -> String {
+/// Describes the size of the residual that the answer leaves, relative to the noise.
+pub(crate) fn left(base: &Baseline, after: &Fit) -> String {
     let ratio = after.chi_squared() / base.noise();
     let assumed = !base.known().is_seen();
     if assumed && ratio < 1.0 {
@@ -37,14 +37,14 @@ pub(crate) fn left(base: &Base, after: &Fit) -> String {
     }
 }
 
-/// Returns the reason of the verdict, where it needs one.
+/// Returns the reason for the verdict of a diagnosis in words; `None` where it needs none.
 pub(crate) fn reason(
-    ground: Ground,
+    ground: TestValidity,
     diagnosis: &Diagnosis,
     rejection: &Rejection,
 ) -> Option<String> {
     let nothing = diagnosis.verdict == Verdict::NothingDetected;
-    if ground == Ground::NothingConsidered && nothing {
+    if ground == TestValidity::NothingConsidered && nothing {
         return Some("no effect of the library was considered, so none was looked for".to_owned());
     }
     if diagnosis.verdict != Verdict::Unresolved {
@@ -72,16 +72,16 @@ pub(crate) fn reason(
             .to_owned(),
     };
     Some(match ground {
-        Ground::Firm | Ground::NoiseStated => what,
-        Ground::Unsound => format!(
+        TestValidity::Valid | TestValidity::NoiseStated => what,
+        TestValidity::DiscretisationUnknown => format!(
             "no finer model completes its simulation, so that the discretisation error of the curves \
              is not known; {what}"
         ),
-        Ground::NoiseUnknown => format!(
+        TestValidity::NoiseUnknown => format!(
             "the noise is not known: there is one cycle, and some channel states no noise; {what}; \
              record more cycles, or state `noise` of every channel"
         ),
-        Ground::NothingConsidered => format!(
+        TestValidity::NothingConsidered => format!(
             "the residual is not explained, and no effect of the library was considered; {what}"
         ),
     })

@@ -4,36 +4,37 @@
 //! The rank is the log evidence of the fit divided by its dispersion, plus the predictive score on data
 //! excluded from the fit; left-out blocks of the fitted record are already contained in the evidence. A rival
 //! replaces the added effect only if it passes the same checks: evidence, and comparison with a finer model.
-use crate::cause::round::Round;
-use crate::cause::suspect::Suspect;
+use crate::baseline::recheck::check_against_finer;
+use crate::baseline::session::Session;
 use crate::diagnose::diagnosis::Diagnosis;
-use crate::ground::believed::believed;
-use crate::ground::session::Session;
+use crate::hypothesis::candidate::CandidateEffect;
+use crate::hypothesis::round::Round;
 use crate::laboratory::{Laboratory, Stage};
 use crate::linear::evidence::ambiguity_set;
-use crate::linear::isolability::likeness;
+use crate::linear::isolability::similarity;
 use crate::model::fit::Fit;
-use crate::proof::compare::{Portion, Shown};
-use crate::proof::predictive::scores;
-use crate::thresholds::{RANKED, SET};
-use search::least_squares::Settings;
+use crate::thresholds::{AMBIGUITY_MARGIN, RANKED};
+use crate::validation::compare::{DataRole, ValidationRecord};
+use crate::validation::predictive::scores;
+use search::least_squares::LeastSquaresSettings;
 
-/// Number of rivals of an effect that was found together with others: those with the most similar signatures.
+/// Number of rivals with which an effect is compared that was added together with others: those with the most
+/// similar signatures.
 const ALIKE: usize = 3;
 
-/// Rival in the place of an added effect: its merit relative to that effect (nats), and its fit.
+/// Rival effect fitted in place of an added effect: its merit relative to that effect (nats), and its fit.
 struct Ranked {
     id: String,
     merit: f64,
     fit: Fit,
 }
 
-/// Ranks the rivals of each added effect: the best replaces it, and those within [`SET`] of the best form its
-/// ambiguity set. Returns the fit of the answer.
+/// Ranks the rivals of each added effect: the best replaces it, and those whose merit is within [`AMBIGUITY_MARGIN`] of
+/// the best form its ambiguity set. Returns the fit of the answer.
 pub(crate) async fn rank<L: Laboratory>(
     session: &mut Session<'_, L>,
     mut answer: Fit,
-    shown: &[Shown<'_>],
+    shown: &[ValidationRecord<'_>],
     diagnosis: &mut Diagnosis,
 ) -> Result<Fit, L::Error> {
     for at in 0..diagnosis.rounds.len() {
@@ -49,11 +50,11 @@ pub(crate) async fn rank<L: Laboratory>(
         let merits = std::iter::once(0.0).chain(ranked.iter().map(|own| own.merit));
         let names = std::iter::once(&added).chain(ranked.iter().map(|own| &own.id));
         let (merits, names): (Vec<f64>, Vec<&String>) = merits.zip(names).unzip();
-        let places = ambiguity_set(&merits, 1.0, SET);
+        let places = ambiguity_set(&merits, 1.0, AMBIGUITY_MARGIN);
         let mut set: Vec<String> = places.iter().map(|k| names[*k].clone()).collect();
         let count = merits.len();
         let exchanged = match ranked.first().filter(|own| own.merit > 0.0) {
-            Some(own) if carries(session, (&answer, position), &own.fit).await? => {
+            Some(own) if is_acceptable(session, (&answer, position), &own.fit).await? => {
                 Some(ranked.swap_remove(0))
             }
             _ => None,
@@ -78,7 +79,7 @@ pub(crate) async fn rank<L: Laboratory>(
 async fn merits<L: Laboratory>(
     session: &mut Session<'_, L>,
     at: (&Fit, usize),
-    shown: &[Shown<'_>],
+    shown: &[ValidationRecord<'_>],
     round: &Round,
 ) -> Result<Vec<Ranked>, L::Error> {
     let (answer, _) = at;
@@ -90,7 +91,7 @@ async fn merits<L: Laboratory>(
         if !own.failed.is_empty() {
             continue;
         }
-        let held_out = own.records.iter().all(|one| one.part != Portion::LeftOut);
+        let held_out = own.records.iter().all(|one| one.part != DataRole::LeftOut);
         let predicted = own.together.filter(|_| held_out).unwrap_or(0.0);
         let dispersion = fit.dispersion().min(answer.dispersion());
         let evidence = (fit.log_evidence() - answer.log_evidence()) / dispersion;
@@ -103,9 +104,9 @@ async fn merits<L: Laboratory>(
     Ok(ranked)
 }
 
-/// Returns whether a fit with another effect in a place of the answer gains enough evidence over the model
-/// without either effect, also when the change by a finer model counts as noise.
-async fn carries<L: Laboratory>(
+/// Returns whether a fit, in which a rival replaces an effect of the answer, gains enough evidence over the
+/// model without either, also when the change by a finer discretisation counts as noise.
+async fn is_acceptable<L: Laboratory>(
     session: &mut Session<'_, L>,
     (answer, position): (&Fit, usize),
     fit: &Fit,
@@ -116,7 +117,9 @@ async fn carries<L: Laboratory>(
     } else {
         let start = answer.point().without(position);
         let mut experiments = session.experiments(Stage::Refit);
-        experiments.fit(start, Settings::short(6)).await?
+        experiments
+            .fit(start, LeastSquaresSettings::short(6))
+            .await?
     };
     let Some(without) = without else {
         return Ok(false);
@@ -124,7 +127,7 @@ async fn carries<L: Laboratory>(
     if (fit.log_evidence() - without.log_evidence()) / fit.dispersion() < needed {
         return Ok(false);
     }
-    let checked = believed(session, &without, fit).await?;
+    let checked = check_against_finer(session, &without, fit).await?;
     Ok(checked.is_none_or(|checked| checked.gain >= needed))
 }
 
@@ -143,11 +146,13 @@ async fn swapped<L: Laboratory>(
     if round.together {
         // alone each may explain nothing
         let tangent = session.base.fit.tangent();
-        let of = |id: &str| round.suspects.iter().find(|own| own.effect.id == id);
+        let of = |id: &str| round.candidates.iter().find(|own| own.effect.id == id);
         let added = of(&answer.model.added[position].id);
-        let alike = |other: Option<&Suspect>| {
+        let alike = |other: Option<&CandidateEffect>| {
             let pair = added.zip(other);
-            pair.map_or(0.0, |(a, b)| likeness(&a.signature, &b.signature, &tangent))
+            pair.map_or(0.0, |(a, b)| {
+                similarity(&a.signature, &b.signature, &tangent)
+            })
         };
         rivals.sort_by(|a, b| alike(of(&b.id)).total_cmp(&alike(of(&a.id))));
         rivals.truncate(ALIKE);
@@ -179,7 +184,9 @@ async fn swapped<L: Laboratory>(
     });
     let (ids, starts): (Vec<String>, Vec<_>) = swapped.unzip();
     let mut experiments = session.experiments(Stage::Refit);
-    let fits = experiments.fits(starts, Settings::short(5)).await?;
+    let fits = experiments
+        .fits(starts, LeastSquaresSettings::short(5))
+        .await?;
     let there = ids.into_iter().zip(fits);
     Ok(there.filter_map(|(id, fit)| Some((id, fit?))).collect())
 }

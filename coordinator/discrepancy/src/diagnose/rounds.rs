@@ -1,25 +1,25 @@
 //! Rounds of hypothesis tests: each tests all effects, refits the likeliest, compares them with generic
 //! forces, and accepts the best or stops; afterwards unnecessary effects are removed.
-use crate::cause::refit::refit;
-use crate::cause::round::Round;
-use crate::cause::signature::examine;
-use crate::cause::suspect::{self, Suspect};
-use crate::cause::valley_search;
-use crate::diagnose::belief::believe;
+use crate::baseline::discretisation_check;
+use crate::baseline::session::Session;
+use crate::diagnose::acceptance::accept;
+use crate::diagnose::backward_elimination::prune;
 use crate::diagnose::diagnosis::Diagnosis;
-use crate::diagnose::prune::prune;
 use crate::diagnose::rivals::rank;
-use crate::ground::preflight;
-use crate::ground::session::Session;
+use crate::estimate::absorbed::absorbed;
+use crate::estimate::experiment_design;
+use crate::estimate::limit::limits;
+use crate::hypothesis::candidate::{self, CandidateEffect};
+use crate::hypothesis::refit::refit;
+use crate::hypothesis::round::Round;
+use crate::hypothesis::signature::examine;
+use crate::hypothesis::valley_search;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
-use crate::proof::compare::Shown;
-use crate::size::absorbed::absorbed;
-use crate::size::data_value;
-use crate::size::limit::limits;
+use crate::validation::compare::ValidationRecord;
 use protocol::announce::EffectDescriptor;
 
-/// Number of rounds in which the narrow minimum is searched.
+/// Number of rounds of a diagnosis in which the narrow minimum of the misfit is searched.
 const LOOKS: usize = 2;
 /// Minimum number of candidate effects that are refitted.
 const RIVALS: usize = 3;
@@ -32,7 +32,7 @@ const AGAIN: usize = 2;
 /// found does not matter.
 pub(crate) async fn rounds<L: Laboratory>(
     session: &mut Session<'_, L>,
-    shown: &[Shown<'_>],
+    shown: &[ValidationRecord<'_>],
     diagnosis: &mut Diagnosis,
 ) -> Result<Fit, L::Error> {
     let (base, inputs) = (session.base, session.inputs);
@@ -40,21 +40,21 @@ pub(crate) async fn rounds<L: Laboratory>(
     let mut met: Vec<Vec<String>> = Vec::new();
     let mut changed = false;
     for _ in 0..=AGAIN {
-        current = forward(session, current, diagnosis).await?;
+        current = forward_selection(session, current, diagnosis).await?;
         let found = ids(&current);
         current = prune(session, current, shown, diagnosis).await?;
         current = rank(session, current, shown, diagnosis).await?;
         let kept = ids(&current);
         changed |= kept != found;
-        if kept == found || met.contains(&kept) || !session.lab.may(Stage::Refit) {
+        if kept == found || met.contains(&kept) || !session.lab.has_budget(Stage::Refit) {
             break;
         }
         met.push(kept);
     }
-    if changed && !current.model.added.is_empty() && session.lab.may(Stage::Preflight) {
+    if changed && !current.model.added.is_empty() && session.lab.has_budget(Stage::Preflight) {
         let mut finer = session.experiments(Stage::Preflight);
         diagnosis.preflight_after =
-            preflight::check(&mut finer, &current, &base.fit, &inputs.finer).await?;
+            discretisation_check::check(&mut finer, &current, &base.fit, &inputs.finer).await?;
     }
     Ok(current)
 }
@@ -67,7 +67,7 @@ fn ids(fit: &Fit) -> Vec<String> {
 }
 
 /// Runs rounds from a model until no further effect is accepted, and returns the final model.
-async fn forward<L: Laboratory>(
+async fn forward_selection<L: Laboratory>(
     session: &mut Session<'_, L>,
     mut current: Fit,
     diagnosis: &mut Diagnosis,
@@ -78,50 +78,53 @@ async fn forward<L: Laboratory>(
     let mut in_valley = false;
     while current.model.added.len() < inputs.thresholds.rounds {
         let number = diagnosis.rounds.len();
-        if number > 0 && !(session.lab.may(Stage::What) && session.lab.may(Stage::Refit)) {
+        if number > 0
+            && !(session.lab.has_budget(Stage::Test) && session.lab.has_budget(Stage::Refit))
+        {
             break;
         }
         let mut open = named.clone();
         open.retain(|effect| current.model.added.iter().all(|a| a.id != effect.id));
-        let mut round = suspicion(session, &current, &open, &generic).await?;
+        let mut round = test_effects(session, &current, &open, &generic).await?;
         // the valley does not move far once it is found; a second effect may hide it from the first
         if !in_valley && number < LOOKS {
             in_valley = valley_search::search(session, &current, &mut round).await?;
         }
         if number == 0 {
             let limits = limits(&round, &current, inputs.thresholds.alpha);
-            diagnosis.look_alikes = data_value::weigh(session, &current, &round, &limits).await?;
+            diagnosis.look_alikes =
+                experiment_design::weigh(session, &current, &round, &limits).await?;
             diagnosis.limits = limits;
             diagnosis.absorbed = absorbed(&round, &current);
         }
-        let next = believe(session, &current, &mut round, diagnosis).await?;
+        let next = accept(session, &current, &mut round, diagnosis).await?;
         diagnosis.rounds.push(round);
         let Some(next) = next else { break };
-        diagnosis.rounds.extend(next.beside);
+        diagnosis.rounds.extend(next.further_rounds);
         current = next.fit;
     }
     Ok(current)
 }
 
 /// Tests all effects that are not yet in the model, and refits the likeliest.
-pub(crate) async fn suspicion<L: Laboratory>(
+pub(crate) async fn test_effects<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
     named: &[EffectDescriptor],
     generic: &[EffectDescriptor],
 ) -> Result<Round, L::Error> {
     let thresholds = &session.inputs.thresholds;
-    let mut tests = session.experiments(Stage::What);
+    let mut tests = session.experiments(Stage::Test);
     let suspects = examine(&mut tests, current, named).await?;
     let generics = examine(&mut tests, current, generic).await?;
-    let mut order = suspect::ranked(&suspects);
+    let mut order = candidate::ranked(&suspects);
     // what its own test does not speak for is refitted only to have rivals
     let clear = order.iter().filter(|s| s.p_value() < thresholds.alpha);
     let likely = clear.count().max(RIVALS);
     let rest = order.split_off(likely.min(order.len()));
     // what acts from a level on may do so whatever a test at one size says
     let held: Vec<&str> = order.iter().map(|own| &*own.effect.id).collect();
-    let mut bent: Vec<&Suspect> = suspects
+    let mut bent: Vec<&CandidateEffect> = suspects
         .iter()
         .filter(|own| !own.rungs.is_empty() && !held.contains(&&*own.effect.id))
         .collect();
@@ -137,7 +140,7 @@ pub(crate) async fn suspicion<L: Laboratory>(
     let mut refits = Vec::new();
     for some in order.chunks(thresholds.suspects.max(RIVALS)) {
         let spent = session.lab.left(Stage::Refit) < share;
-        if !refits.is_empty() && (spent || !session.lab.may(Stage::Refit)) {
+        if !refits.is_empty() && (spent || !session.lab.has_budget(Stage::Refit)) {
             break;
         }
         refits.extend(refit(&mut session.experiments(Stage::Refit), current, some).await?);

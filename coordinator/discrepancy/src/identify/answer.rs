@@ -1,30 +1,30 @@
 //! Results of an identifiability analysis, as data.
+use crate::estimate::nuisances::NuisanceEstimate;
 use crate::record::measured::Curves;
-use crate::record::noise::Known;
-use crate::size::never_exact::NeverExact;
+use crate::record::noise::NoiseSource;
 use serde::{Deserialize, Serialize};
 
 /// Identifiability of a model's unknowns from a record.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Identified {
-    /// The fitted individual \[declared units\], in the case's order.
+pub struct IdentificationResult {
+    /// Fitted values of the unknowns \[declared units\], in the case's order.
     pub genes: Vec<f64>,
     /// Estimates of all fitted unknowns.
     pub unknowns: Vec<UnknownEstimate>,
     /// Eigenvectors of the Fisher information of the unknowns, best determined first.
     pub directions: Vec<Direction>,
-    /// Estimated errors of the instruments.
-    pub nuisances: Vec<NeverExact>,
-    /// Predictions of the fit, by condition.
+    /// Estimated errors of the instruments, such as gains and delays.
+    pub nuisances: Vec<NuisanceEstimate>,
+    /// Predicted curves of the fit with their 95 % bands, by condition.
     pub bands: Vec<Band>,
     /// Further measurements that would determine unknowns, most informative first.
-    pub further: Vec<Further>,
+    pub further: Vec<FurtherMeasurement>,
     /// Squared residual of the fit divided by that expected of noise alone.
     pub left: f64,
     /// Whether the residual may be noise alone.
     pub is_noise: bool,
-    /// Source of the noise level.
-    pub noise: Known,
+    /// Source of the noise level of the fitted record: scatter of cycles, stated, or guessed.
+    pub noise: NoiseSource,
     /// Further remarks for the user.
     pub notes: Vec<String>,
 }
@@ -40,11 +40,11 @@ pub struct UnknownEstimate {
     pub value: f64,
     /// Lower and upper end of the 95 % interval, where the profile rises by 3.84; `None` for an open end.
     pub interval: [Option<f64>; 2],
-    /// Type of end of the profile on the lower and the upper side.
-    pub ends: [End; 2],
-    /// Sides on which the record bounds the unknown.
-    pub seen: Seen,
-    /// Names of strongly correlated unknowns, with the correlations.
+    /// How the profile ends on the lower and on the upper side: risen, bound reached, failed or given up.
+    pub ends: [IntervalEnd; 2],
+    /// Sides (lower, upper) on which the record limits the unknown.
+    pub seen: Determination,
+    /// Names of other unknowns whose estimates are strongly correlated with this one, with the correlations.
     pub correlated: Vec<(String, f64)>,
     /// Profile likelihood: pairs of value and rise of `-2 ln L` with all other unknowns refitted, sorted by
     /// value.
@@ -54,7 +54,7 @@ pub struct UnknownEstimate {
 /// Sides on which a record bounds an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Seen {
+pub enum Determination {
     /// Bounded on both sides.
     Both,
     /// Bounded below only.
@@ -65,8 +65,8 @@ pub enum Seen {
     NotSeen,
 }
 
-impl Seen {
-    /// Creates the value from the sides on which the profile rises.
+impl Determination {
+    /// Creates the value from two flags: whether the profile rises below and above the estimate.
     pub const fn of(below: bool, above: bool) -> Self {
         match (below, above) {
             (true, true) => Self::Both,
@@ -77,11 +77,11 @@ impl Seen {
     }
 }
 
-/// Type of end of one side of a profile likelihood.
+/// Way in which one side of a profile likelihood ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum End {
-    /// The profile rises by 3.84.
+pub enum IntervalEnd {
+    /// Rise of `-2 ln L` by 3.84, the end of a 95 % interval.
     Rises,
     /// The bound of the search is reached before the profile has risen by 3.84.
     Bound,
@@ -99,32 +99,32 @@ pub struct Direction {
     /// a linear scale; infinite where the record does not determine the direction.
     pub sd_decades: f64,
     /// Unknowns with their components of the unit vector, largest first.
-    pub parts: Vec<Part>,
-    /// Description in words.
+    pub parts: Vec<DirectionPart>,
+    /// Description of the combination of unknowns in words.
     pub words: String,
 }
 
 /// Component of one unknown in a direction.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Part {
+pub struct DirectionPart {
     /// Name of the unknown.
     pub name: String,
-    /// Component of the unit vector.
+    /// Component of the direction's unit vector along the unknown.
     pub part: f64,
 }
 
-/// What is predicted under a condition: 95 % bands of the simulated channels.
+/// Predicted curves of all channels under one condition, with 95 % bands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
     /// Index of the condition in the case.
     pub condition: usize,
     /// Predicted curves of the condition's channels, in order.
-    pub channels: Vec<Curve>,
+    pub channels: Vec<BandCurve>,
 }
 
 /// Predicted curve with its 95 % band.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curve {
+pub struct BandCurve {
     /// Most likely curve.
     pub likeliest: Vec<f64>,
     /// Lower end of the band.
@@ -133,7 +133,7 @@ pub struct Curve {
     pub high: Vec<f64>,
 }
 
-impl Curve {
+impl BandCurve {
     /// Returns the mean half-width of the band, in the channel's unit.
     pub fn half_width(&self) -> f64 {
         let widths = self
@@ -147,27 +147,29 @@ impl Curve {
 
 /// Possible further measurement, and the unknowns that it would determine.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Further {
+pub struct FurtherMeasurement {
     /// Description of the measurement.
     pub measurement: String,
     /// Unknowns whose standard deviation the measurement would at least halve, strongest reduction first.
-    pub pins: Vec<Pin>,
+    pub pins: Vec<DeterminedUnknown>,
 }
 
 /// Unknown that a further measurement would determine.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Pin {
+pub struct DeterminedUnknown {
     /// Name of the unknown.
     pub name: String,
-    /// Present standard deviation (decades, or half-widths of the interval on a linear scale).
+    /// Standard deviation of the unknown with the present record (decades, or half-widths of the interval on
+    /// a linear scale).
     pub sd_now: f64,
-    /// Standard deviation if the measurement is added to the record.
+    /// Standard deviation of the unknown if the measurement is added to the record, in the same unit.
     pub sd_then: f64,
 }
 
-/// Curves under a condition, and their derivatives by every variable of a fit.
+/// Simulated curves under a condition, with their derivatives by every variable of a fit, for prediction
+/// bands.
 #[derive(Clone, Debug)]
-pub(crate) struct Sight {
+pub(crate) struct Sensitivity {
     pub(crate) condition: usize,
     /// Curves of all channels of the condition at the fit.
     pub(crate) curves: Curves,

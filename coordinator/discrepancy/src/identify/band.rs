@@ -3,9 +3,9 @@
 //! A band is the envelope of all curves compatible with the record: the linear band, with each unknown
 //! limited to its own interval, and the curves at the outermost point of each side of the profiles. It is a
 //! band of the simulated curve and does not include measurement noise.
-use super::answer::{Band, Curve, End, Sight};
-use super::profile::{Mark, NEAR, Next};
-use super::walk::Walked;
+use super::answer::{Band, BandCurve, IntervalEnd, Sensitivity};
+use super::profile::{NEAR, ProfilePoint, ProfileStep};
+use super::profiles::Profiles;
 use crate::laboratory::{Laboratory, channels};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
@@ -13,23 +13,23 @@ use crate::record::measured::{Curves, Record, Recorded, Stated};
 use nalgebra::{DMatrix, DVector};
 use protocol::case::Channel;
 
-/// Maximum rise of a profile point that counts as compatible with the record, relative to the rise that ends
-/// an interval.
+/// Maximum rise of the cost at a profile point that counts as compatible with the record, as a multiple of
+/// the rise at the end of an interval.
 const INSIDE: f64 = 1.0 + NEAR;
 
 /// Computes, for every condition, the curves at a fit, their derivatives by every variable, and the curves at
 /// the outermost points compatible with the record. Conditions under which the fit fails are omitted.
 pub(super) async fn sights<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
-    walked: &Walked,
+    walked: &Profiles,
     conditions: &[Vec<Channel>],
-) -> Result<Vec<Sight>, L::Error> {
+) -> Result<Vec<Sensitivity>, L::Error> {
     let fit = &walked.fit;
     let least = fit.search.cost();
     let inside = walked.sides.iter().filter_map(|side| {
         let marks = side.marks.iter();
         let kept = marks.filter(|mark| mark.cost - least <= INSIDE * walked.rises[side.unknown]);
-        let away = |mark: &&Mark| side.sign * mark.at;
+        let away = |mark: &&ProfilePoint| side.sign * mark.at;
         kept.max_by(|a, b| away(a).total_cmp(&away(b)))
     });
     let inside: Vec<&[f64]> = inside.map(|mark| mark.x.as_slice()).collect();
@@ -45,7 +45,7 @@ pub(super) async fn sights<L: Laboratory>(
         let observed = experiments.lab.observe(experiments.stage, batch.collect());
         let observed = observed.await?.into_iter();
         let others = observed.filter_map(|seen| channels(&seen?, &record));
-        sights.push(Sight {
+        sights.push(Sensitivity {
             condition,
             curves: ungained(fit, &record, seen.curves),
             changes: seen.changes,
@@ -55,7 +55,7 @@ pub(super) async fn sights<L: Laboratory>(
     Ok(sights)
 }
 
-/// Creates a record without measurements of all channels of a condition.
+/// Creates a record of all channels of a condition, without measured values.
 fn blank(condition: usize, channels: &[Channel]) -> Record {
     let channels = channels.iter().enumerate();
     Record {
@@ -69,9 +69,9 @@ fn blank(condition: usize, channels: &[Channel]) -> Record {
     }
 }
 
-/// Divides the estimated gains of the instruments out of the curves.
+/// Divides the curves by the estimated gains of the instruments, which leaves the true quantities.
 fn ungained(fit: &Fit, record: &Record, mut curves: Curves) -> Curves {
-    for (place, one) in fit.model.placed() {
+    for (place, one) in fit.model.indexed_nuisances() {
         if let Some(channel) = one.channel(record) {
             let gain = 1.0 + fit.x()[place] * one.nuisance.deviation;
             for y in &mut curves[channel] {
@@ -85,7 +85,7 @@ fn ungained(fit: &Fit, record: &Record, mut curves: Curves) -> Curves {
 /// Returns the covariance of the variables from a Jacobian, including dispersion and autocorrelation of the
 /// residual. An unknown that the record does not bound on both sides is limited to its own interval by a
 /// prior; `None` if the information matrix is singular.
-pub(super) fn covariance(walked: &Walked, jacobian: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+pub(super) fn covariance(walked: &Profiles, jacobian: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let fit = &walked.fit;
     let spread = &walked.spread;
     let scaled = jacobian / spread.dispersion.sqrt();
@@ -93,9 +93,9 @@ pub(super) fn covariance(walked: &Walked, jacobian: &DMatrix<f64>) -> Option<DMa
     for (k, _) in fit.model.space.axes().iter().enumerate() {
         let (mut width, mut seen) = (0.0, true);
         for side in walked.of(k) {
-            if let Next::Over(end, at) = walked.end(side) {
+            if let ProfileStep::Over(end, at) = walked.end(side) {
                 width += (at - fit.x()[k]).abs();
-                seen &= end == End::Rises;
+                seen &= end == IntervalEnd::Rises;
             }
         }
         if seen {
@@ -114,13 +114,13 @@ pub(super) fn covariance(walked: &Walked, jacobian: &DMatrix<f64>) -> Option<DMa
     Some(covariance)
 }
 
-/// Computes the bands of a condition.
-pub(super) fn band(walked: &Walked, sight: &Sight) -> Band {
+/// Computes the prediction bands of all channels under a condition.
+pub(super) fn band(walked: &Profiles, sight: &Sensitivity) -> Band {
     let covariance = covariance(walked, &walked.fit.search.best().jacobian);
     let gains: Vec<usize> = walked
         .fit
         .model
-        .placed()
+        .indexed_nuisances()
         .filter(|(_, one)| one.effect().is_none())
         .map(|(place, _)| place)
         .collect();
@@ -149,7 +149,7 @@ pub(super) fn band(walked: &Walked, sight: &Sight) -> Band {
                 high[t] = high[t].max(other[c][t]);
             }
         }
-        Curve {
+        BandCurve {
             likeliest,
             low,
             high,

@@ -1,28 +1,28 @@
 //! Estimates of the unknowns with intervals from their profiles.
-use super::answer::{End, Seen, UnknownEstimate};
+use super::answer::{Determination, IntervalEnd, UnknownEstimate};
 use super::information::correlation;
-use super::profile::Next;
-use super::walk::Walked;
+use super::profile::ProfileStep;
+use super::profiles::Profiles;
 
 /// Absolute correlation above which two unknowns are reported as correlated.
 const TRADES: f64 = 0.7;
 
 /// Returns the estimates of all unknowns of a fit, in the order of the axes.
-pub(super) fn estimates(walked: &Walked) -> Vec<UnknownEstimate> {
+pub(super) fn estimates(walked: &Profiles) -> Vec<UnknownEstimate> {
     (0..walked.fit.model.space.dimension())
         .map(|k| estimate(walked, k))
         .collect()
 }
 
-fn estimate(walked: &Walked, k: usize) -> UnknownEstimate {
+fn estimate(walked: &Profiles, k: usize) -> UnknownEstimate {
     let axes = walked.fit.model.space.axes();
     let axis = &axes[k];
     let mut interval = [None; 2];
-    let mut ends = [End::Bound; 2];
+    let mut ends = [IntervalEnd::Bound; 2];
     for (place, side) in walked.of(k).enumerate().take(2) {
-        if let Next::Over(end, at) = walked.end(side) {
+        if let ProfileStep::Over(end, at) = walked.end(side) {
             ends[place] = end;
-            interval[place] = (end == End::Rises).then(|| axis.value(at));
+            interval[place] = (end == IntervalEnd::Rises).then(|| axis.value(at));
         }
     }
     let correlated = walked.covariance.iter().flat_map(|covariance| {
@@ -38,7 +38,7 @@ fn estimate(walked: &Walked, k: usize) -> UnknownEstimate {
         value: axis.value(walked.fit.x()[k]),
         interval,
         ends,
-        seen: Seen::of(ends[0] == End::Rises, ends[1] == End::Rises),
+        seen: Determination::of(ends[0] == IntervalEnd::Rises, ends[1] == IntervalEnd::Rises),
         correlated,
         profile: profile(walked, k),
     }
@@ -46,7 +46,7 @@ fn estimate(walked: &Walked, k: usize) -> UnknownEstimate {
 
 /// Returns the profile as pairs of value and rise of `-2 ln L`, scaled so that the rise is 3.84 at the ends
 /// of the interval.
-fn profile(walked: &Walked, k: usize) -> Vec<[f64; 2]> {
+fn profile(walked: &Profiles, k: usize) -> Vec<[f64; 2]> {
     let axis = &walked.fit.model.space.axes()[k];
     let cost = walked.fit.search.cost();
     let scale = super::profile::RISE / walked.rises[k];

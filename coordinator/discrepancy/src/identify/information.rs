@@ -2,14 +2,14 @@
 //!
 //! Whitened residuals have variance 1, so the information of a record is `J^T J`; priors add their own. The
 //! information of the record is divided by the dispersion (Cramér-Rao bound, widened).
-use super::answer::{Direction, Part};
+use super::answer::{Direction, DirectionPart};
+use crate::estimate::spread::Spread;
 use crate::model::fit::Fit;
-use crate::size::spread::Spread;
 use nalgebra::{DMatrix, DVector};
 use protocol::case::Scale;
 use search::least_squares::Variable;
 
-/// Returns the information matrix of a Jacobian and the priors.
+/// Returns the Fisher information `J^T J` of a Jacobian plus that of the priors.
 pub(super) fn with_priors(jacobian: &DMatrix<f64>, variables: &[Variable]) -> DMatrix<f64> {
     let mut information = jacobian.tr_mul(jacobian);
     for (k, v) in variables.iter().enumerate() {
@@ -20,12 +20,13 @@ pub(super) fn with_priors(jacobian: &DMatrix<f64>, variables: &[Variable]) -> DM
     information
 }
 
-/// Inverse of an information; nothing where a variable is left open.
+/// Returns the inverse of an information matrix, the covariance; `None` if some combination of variables is
+/// not determined.
 pub(super) fn inverse(information: DMatrix<f64>) -> Option<DMatrix<f64>> {
     Some(information.cholesky()?.inverse())
 }
 
-/// Correlation of two variables.
+/// Returns the correlation of two variables from their covariance matrix.
 pub(super) fn correlation(covariance: &DMatrix<f64>, i: usize, j: usize) -> f64 {
     covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt()
 }
@@ -45,12 +46,12 @@ fn of_unknowns(jacobian: &DMatrix<f64>, variables: &[Variable], unknowns: usize)
     information
 }
 
-/// Absolute component below which an unknown is omitted from a direction.
+/// Minimum absolute component of an unknown that is listed in a direction.
 const LEAST_PART: f64 = 0.1;
-/// Absolute component above which an unknown is named in the description.
+/// Minimum absolute component of an unknown that is named in a direction's description.
 const NAMED: f64 = 0.3;
-/// Standard deviation above which a direction counts as undetermined: a 95 % interval of a factor of a
-/// thousand either way.
+/// Standard deviation (decades) from which a direction counts as undetermined: the 95 % interval is then a
+/// factor of a thousand either way.
 const BLIND: f64 = 1.5;
 
 /// Returns the eigenvectors of the information of a fit's unknowns, best determined first.
@@ -119,7 +120,7 @@ fn described(fit: &Fit, mut along: DVector<f64>, deviation: f64) -> Direction {
         sd_decades: deviation,
         parts: order
             .into_iter()
-            .map(|k| Part {
+            .map(|k| DirectionPart {
                 name: name(k).to_owned(),
                 part: along[k],
             })
@@ -128,7 +129,7 @@ fn described(fit: &Fit, mut along: DVector<f64>, deviation: f64) -> Direction {
     }
 }
 
-/// Describes the precision with which a direction is determined.
+/// Describes in words the precision with which the record determines a direction.
 fn seen_to(deviation: f64, linear: bool) -> String {
     /// Half width of a 95 % interval in standard deviations.
     const NORMAL: f64 = 1.96;

@@ -7,27 +7,28 @@
 pub mod answer;
 mod band;
 mod estimate;
-mod further;
-mod glance;
 mod information;
+mod linear_estimate;
+mod measurement_proposals;
 mod profile;
+mod profiles;
 mod refit;
 mod settings;
-mod walk;
 
 pub use answer::{
-    Band, Curve, Direction, End, Further, Identified, Part, Pin, Seen, UnknownEstimate,
+    Band, BandCurve, Determination, DeterminedUnknown, Direction, DirectionPart,
+    FurtherMeasurement, IdentificationResult, IntervalEnd, UnknownEstimate,
 };
 
-pub use glance::glance;
+pub use linear_estimate::glance;
 
-use crate::ground::establish::establish;
+use crate::baseline::establish::establish;
+use crate::estimate::nuisances::nuisance_estimates;
+use crate::estimate::spread::coloured;
 use crate::inputs::Inputs;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::experiments::Experiments;
-use crate::model::unknowns::Unstated;
-use crate::size::never_exact::never_exact;
-use crate::size::spread::coloured;
+use crate::model::unknowns::DefaultPrior;
 use protocol::case::Channel;
 use settings::FREE;
 
@@ -36,12 +37,12 @@ use settings::FREE;
 /// completes or there is nothing to fit.
 ///
 /// # Errors
-/// Those of the laboratory: no worker is left, or the user stopped the run.
+/// Returns an error if no worker is left to simulate, or the user stops the run.
 pub async fn identify<L: Laboratory>(
     lab: &mut L,
     inputs: &Inputs,
     conditions: &[Vec<Channel>],
-) -> Result<Option<Identified>, L::Error> {
+) -> Result<Option<IdentificationResult>, L::Error> {
     let record = inputs.records.first().filter(|record| record.is_fitted());
     let Some(record) = record else {
         return Ok(None);
@@ -51,36 +52,46 @@ pub async fn identify<L: Laboratory>(
     };
     let mut experiments = Experiments {
         lab,
-        on: &base.on,
+        on: &base.record,
         stage: Stage::Refit,
     };
     let mut start = base.fit.point();
-    start.model.unstated = Unstated::Bounds;
+    start.model.unstated = DefaultPrior::Bounds;
     let Some(fit) = experiments.fit(start, FREE).await? else {
         return Ok(None);
     };
-    let walked = walk::walk(&mut experiments, fit).await?;
+    let walked = profiles::walk(&mut experiments, fit).await?;
     let fit = &walked.fit;
-    let mut shown = experiments.during(Stage::Show);
+    let mut shown = experiments.for_stage(Stage::Show);
     let sights = band::sights(&mut shown, &walked, conditions).await?;
     let spread = &walked.spread;
     let coloured: Vec<String> = spread.largest_growth().map(coloured).into_iter().collect();
     // less than the noise that was stated is nothing to explain
     let is_noise =
         fit.chi_squared() <= base.noise() || base.explains(fit, inputs.thresholds.adequacy);
-    Ok(Some(Identified {
+    Ok(Some(IdentificationResult {
         genes: fit.model.genes(fit.x()),
         unknowns: estimate::estimates(&walked),
         directions: information::directions(fit, spread),
-        nuisances: never_exact(fit, spread),
+        nuisances: nuisance_estimates(fit, spread),
         bands: sights
             .iter()
             .map(|sight| band::band(&walked, sight))
             .collect(),
-        further: further::further(&walked, &sights, (inputs, &base.on), conditions),
+        further: measurement_proposals::further(
+            &walked,
+            &sights,
+            (inputs, &base.record),
+            conditions,
+        ),
         left: fit.chi_squared() / base.noise(),
         is_noise,
         noise: base.known(),
-        notes: [&base.notes[..], base.strained().as_slice(), &coloured[..]].concat(),
+        notes: [
+            &base.notes[..],
+            base.instruments_beyond_tolerance().as_slice(),
+            &coloured[..],
+        ]
+        .concat(),
     }))
 }

@@ -3,53 +3,53 @@
 //! The square root of the rise of a quadratic is linear in the distance, so the next point is where that line
 //! would cross the wanted rise; a bracket is narrowed until the rise is close enough. No simulations are run
 //! here.
-use super::answer::End;
+use super::answer::IntervalEnd;
 
 /// The rise of `-2 ln L` at the ends of a 95 % interval of one unknown.
 pub(super) const RISE: f64 = 3.84;
-/// Relative tolerance on the wanted rise at which a side ends.
+/// Relative tolerance on the rise of a profile within which the end of its side counts as found.
 pub(super) const NEAR: f64 = 0.3;
-/// Longest step outwards (scaled coordinate).
+/// Maximum distance between successive points of a profile, outwards from the estimate (scaled coordinate).
 const LONGEST: f64 = 1.0;
-/// Maximum number of points on a side.
+/// Maximum number of points computed on one side of a profile.
 const MOST: usize = 12;
 
 /// A point of a profile.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Mark {
+pub(super) struct ProfilePoint {
     /// Value at which the unknown was held (scaled coordinate).
     pub(super) at: f64,
-    /// Cost at that value, with all other variables refitted.
+    /// Cost of the refit with the unknown held at that value.
     pub(super) cost: f64,
-    /// All variables at the point.
+    /// Values of all variables at the point.
     pub(super) x: Vec<f64>,
 }
 
 /// One side of the profile of an unknown.
 #[derive(Clone, Debug)]
 pub(super) struct Side {
-    /// Index of the unknown.
+    /// Index of the unknown whose profile this is.
     pub(super) unknown: usize,
     /// 1 for the upper side, -1 for the lower side.
     pub(super) sign: f64,
     /// The bound of the search on this side (coordinate).
     pub(super) bound: f64,
-    /// Distance of the end as predicted by the quadratic approximation.
+    /// Distance from the estimate at which the quadratic approximation predicts the end of the side.
     pub(super) predicted: f64,
-    /// Points computed on this side.
-    pub(super) marks: Vec<Mark>,
-    /// Nearest value at which no simulation completes.
+    /// Points of the profile on this side.
+    pub(super) marks: Vec<ProfilePoint>,
+    /// Value nearest to the estimate at which no simulation completes, if any.
     wall: Option<f64>,
     looks: usize,
 }
 
 /// Next step on a side of a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Next {
+pub(super) enum ProfileStep {
     /// Compute the profile at this value (scaled coordinate).
     Look(f64),
-    /// The side ends in this way, at this value (scaled coordinate).
-    Over(End, f64),
+    /// End of the side: its type, and the value of the unknown (scaled coordinate).
+    Over(IntervalEnd, f64),
 }
 
 impl Side {
@@ -65,34 +65,35 @@ impl Side {
         }
     }
 
-    /// Adds the result of a computed point; `None` where no simulation completed.
-    pub(super) fn absorb(&mut self, at: f64, found: Option<(f64, Vec<f64>)>) {
+    /// Adds the result of a computed profile point to the side; `None` where no simulation completed.
+    pub(super) fn add_result(&mut self, at: f64, found: Option<(f64, Vec<f64>)>) {
         self.looks += 1;
         if let Some((cost, x)) = found {
-            self.marks.push(Mark { at, cost, x });
+            self.marks.push(ProfilePoint { at, cost, x });
         } else if self.wall.is_none_or(|wall| self.sign * (at - wall) < 0.0) {
             self.wall = Some(at);
         }
     }
 
-    /// Adds a point from another fit if it lies on this side and sufficiently far from the estimate. A fit in
-    /// another valley with nearly the same value of the unknown gives no information on the profile.
-    pub(super) fn know(&mut self, from: f64, cost: f64, x: &[f64]) {
+    /// Adds a profile point from another fit if it lies on this side and sufficiently far from the estimate.
+    /// A fit in another local minimum with nearly the same value of the unknown gives no information on the
+    /// profile.
+    pub(super) fn add_known_point(&mut self, from: f64, cost: f64, x: &[f64]) {
         let at = x[self.unknown];
         if self.sign * (at - from) > 0.5 * self.predicted.min(LONGEST) {
             let x = x.to_vec();
-            self.marks.push(Mark { at, cost, x });
+            self.marks.push(ProfilePoint { at, cost, x });
         }
     }
 
     /// Returns the next step, from an estimate at `from` with cost `best`; `rise` is the rise of the cost
     /// that ends a side.
-    pub(super) fn next(&self, from: f64, best: f64, rise: f64) -> Next {
+    pub(super) fn next(&self, from: f64, best: f64, rise: f64) -> ProfileStep {
         let there = |distance: f64| from + self.sign * distance;
         let away = |at: f64| self.sign * (at - from);
         let span = away(self.bound);
         if span <= 1e-9 {
-            return Next::Over(End::Bound, self.bound);
+            return ProfileStep::Over(IntervalEnd::Bound, self.bound);
         }
         let mut seen: Vec<(f64, f64)> = self
             .marks
@@ -114,35 +115,35 @@ impl Side {
                 || width <= 0.1 * outside.0
                 || self.looks >= MOST;
             return if near {
-                Next::Over(End::Rises, there(inside.0 + share * width))
+                ProfileStep::Over(IntervalEnd::Rises, there(inside.0 + share * width))
             } else {
-                Next::Look(there(inside.0 + share.clamp(0.15, 0.85) * width))
+                ProfileStep::Look(there(inside.0 + share.clamp(0.15, 0.85) * width))
             };
         }
         if inside.1 >= (1.0 - NEAR) * rise {
             // straight on to where it would cross
             let crossing = inside.0 * (rise / inside.1).sqrt();
             if crossing < span {
-                return Next::Over(End::Rises, there(crossing));
+                return ProfileStep::Over(IntervalEnd::Rises, there(crossing));
             }
         }
         if inside.0 >= span * (1.0 - 1e-9) {
-            return Next::Over(End::Bound, self.bound);
+            return ProfileStep::Over(IntervalEnd::Bound, self.bound);
         }
         let wall = self.wall.map(away).filter(|wall| *wall > inside.0);
         if self.looks >= MOST {
             let end = if wall.is_some() {
-                End::Fails
+                IntervalEnd::Fails
             } else {
-                End::GivenUp
+                IntervalEnd::GivenUp
             };
-            return Next::Over(end, there(inside.0));
+            return ProfileStep::Over(end, there(inside.0));
         }
         if let Some(wall) = wall {
             return if wall - inside.0 <= 0.1 * wall.max(0.1) {
-                Next::Over(End::Fails, there(inside.0))
+                ProfileStep::Over(IntervalEnd::Fails, there(inside.0))
             } else {
-                Next::Look(there(f64::midpoint(inside.0, wall)))
+                ProfileStep::Look(there(f64::midpoint(inside.0, wall)))
             };
         }
         let growth = 1.05 * (rise / inside.1.max(1e-3 * rise)).sqrt();
@@ -150,7 +151,7 @@ impl Side {
         if inside.0 < 0.5 * self.predicted {
             distance = distance.max(self.predicted);
         }
-        Next::Look(there(distance.min(inside.0 + LONGEST).min(span)))
+        ProfileStep::Look(there(distance.min(inside.0 + LONGEST).min(span)))
     }
 }
 
@@ -163,14 +164,14 @@ mod tests {
         bound: f64,
         predicted: f64,
         profile: impl Fn(f64) -> Option<f64>,
-    ) -> (End, f64, usize) {
+    ) -> (IntervalEnd, f64, usize) {
         let mut side = Side::new(0, 1.0, bound, predicted);
         for looks in 0..50 {
             match side.next(0.0, 10.0, RISE) {
-                Next::Over(end, at) => return (end, at, looks),
-                Next::Look(at) => {
+                ProfileStep::Over(end, at) => return (end, at, looks),
+                ProfileStep::Look(at) => {
                     let found = profile(at).map(|rise| (10.0 + rise, Vec::new()));
-                    side.absorb(at, found);
+                    side.add_result(at, found);
                 }
             }
         }
@@ -181,18 +182,18 @@ mod tests {
     fn a_quadratic_ends_where_it_was_predicted() {
         let half = 0.3;
         let (end, at, looks) = follow(4.0, half, |d| Some(RISE * (d / half).powi(2)));
-        assert_eq!((end, looks), (End::Rises, 1));
+        assert_eq!((end, looks), (IntervalEnd::Rises, 1));
         assert!((at - half).abs() < 1e-12, "{at}");
     }
 
-    /// Checks that the crossing is found within the tolerance and few points, however wrong the prediction
-    /// is.
+    /// Checks that the end of a side is found within the tolerance and few points, however wrong its
+    /// predicted distance is.
     #[test]
     fn a_wrong_prediction_costs_a_few_looks() {
         for (predicted, half) in [(0.001, 0.3), (0.9, 0.004), (2.0, 3.3)] {
             let profile = |d: f64| Some(RISE * (d / half).powi(2) * (1.0 + 0.3 * d));
             let (end, at, looks) = follow(4.0, predicted, profile);
-            assert_eq!(end, End::Rises);
+            assert_eq!(end, IntervalEnd::Rises);
             let rise = profile(at).expect("finite") / RISE;
             assert!((rise - 1.0).abs() < 0.1, "{rise} at {at}");
             assert!(looks <= 8, "{looks}");
@@ -202,34 +203,37 @@ mod tests {
     #[test]
     fn what_never_rises_ends_at_the_bound_and_what_fails_at_a_wall() {
         let (end, at, _) = follow(4.0, 50.0, |d| Some(0.1 * d));
-        assert_eq!((end, at), (End::Bound, 4.0));
+        assert_eq!((end, at), (IntervalEnd::Bound, 4.0));
         let (end, at, _) = follow(4.0, 50.0, |d| (d < 1.7).then_some(0.2 * d));
-        assert_eq!(end, End::Fails);
+        assert_eq!(end, IntervalEnd::Fails);
         assert!((1.4..1.7).contains(&at), "{at}");
         // at its bound already
-        assert_eq!(follow(0.0, 0.1, |_| None), (End::Bound, 0.0, 0));
+        assert_eq!(follow(0.0, 0.1, |_| None), (IntervalEnd::Bound, 0.0, 0));
         // nothing completes anywhere
-        assert_eq!(follow(4.0, 0.5, |_| None).0, End::Fails);
+        assert_eq!(follow(4.0, 0.5, |_| None).0, IntervalEnd::Fails);
     }
 
-    /// Checks that a fit in another valley with nearly the same value of the unknown does not end the side,
-    /// and that one with a distant value is used as a point of the profile.
+    /// Checks that a fit in another local minimum with nearly the same value of the unknown does not end the
+    /// side, and that one with a distant value is used as a point of the profile.
     #[test]
     fn another_valley_counts_where_it_is_another_value() {
         let mut side = Side::new(0, 1.0, 4.0, 50.0);
-        side.know(0.0, 10.0 + 0.9 * RISE, &[1e-6]);
-        assert_eq!(side.next(0.0, 10.0, RISE), Next::Look(LONGEST));
-        side.absorb(0.3, Some((10.0 + 2.0 * RISE, vec![0.3])));
-        side.know(0.0, 10.0 + 0.4 * RISE, &[2.5]);
+        side.add_known_point(0.0, 10.0 + 0.9 * RISE, &[1e-6]);
+        assert_eq!(side.next(0.0, 10.0, RISE), ProfileStep::Look(LONGEST));
+        side.add_result(0.3, Some((10.0 + 2.0 * RISE, vec![0.3])));
+        side.add_known_point(0.0, 10.0 + 0.4 * RISE, &[2.5]);
         let next = side.next(0.0, 10.0, RISE);
-        assert!(matches!(next, Next::Look(at) if at > 2.5), "{next:?}");
+        assert!(
+            matches!(next, ProfileStep::Look(at) if at > 2.5),
+            "{next:?}"
+        );
     }
 
-    /// Checks that the end of a profile that is flat up to a step is bracketed.
+    /// Checks that the end of a profile that is flat up to a step is enclosed between two points.
     #[test]
     fn a_cliff_is_bracketed() {
         let (end, at, _) = follow(4.0, 50.0, |d| Some(if d < 2.6 { 0.5 } else { 400.0 }));
-        assert_eq!(end, End::Rises);
+        assert_eq!(end, IntervalEnd::Rises);
         assert!((2.2..3.0).contains(&at), "{at}");
     }
 }

@@ -7,25 +7,27 @@ use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::unknowns::Point;
 use nalgebra::{DMatrix, DVector};
-use search::least_squares::{Linearized, Settings, prior_cost, undamped};
+use search::least_squares::{LeastSquaresSettings, Linearized, prior_cost, undamped};
 
-/// Share of the wanted rise below which a point is not refitted, because a refit would only lower it further.
+/// Share of the rise that ends a profile side, below which a point is not refitted, because a refit would
+/// only lower its cost further.
 const LITTLE: f64 = 1.0 - NEAR;
-/// Share of the wanted rise that a step must gain; after a smaller gain the Jacobian is renewed.
+/// Minimum gain of a step, as a share of the rise that ends a profile side; after a smaller gain the Jacobian
+/// is computed anew.
 const GAIN: f64 = 0.02;
 /// Step lengths that are tried in parallel, as shares of the full step.
 const TRIED: [f64; 2] = [1.0, 0.3];
-/// Maximum number of steps. [`JACOBIANS`] is the maximum number of new Jacobians.
+/// Maximum number of steps of a refit. [`JACOBIANS`] is the maximum number of its new Jacobians.
 const STEPS: usize = 8;
 const JACOBIANS: usize = 2;
 
-/// Original fit, and the wanted rise of the cost for each unknown that may be held.
-pub(super) struct Asked<'a> {
+/// Inputs of the refits: the original fit, and for each unknown the rise of the cost that ends its profile.
+pub(super) struct RefitRequest<'a> {
     pub(super) fit: &'a Fit,
     pub(super) rises: &'a [f64],
 }
 
-/// State of a refit in progress.
+/// State of a refit with one unknown held.
 struct Descent {
     point: Point,
     residual: DVector<f64>,
@@ -33,15 +35,15 @@ struct Descent {
     jacobian: DMatrix<f64>,
     /// Number of Jacobians computed for this refit so far.
     own: usize,
-    /// Whether the Jacobian was computed at this point.
+    /// Whether the Jacobian was computed at the current point.
     fresh: bool,
     over: bool,
-    /// Wanted rise of the cost.
+    /// Rise of the cost that ends the profile of the held unknown.
     rise: f64,
 }
 
 impl Descent {
-    /// Returns candidate points along the undamped step.
+    /// Returns trial points of several lengths along the undamped Gauss-Newton step.
     fn trials(&self) -> Vec<Point> {
         let at = Linearized {
             x: self.point.x.clone(),
@@ -63,10 +65,11 @@ impl Descent {
     }
 }
 
-/// Refits from the best of several starts each; returns cost and variables, `None` where no start completes.
+/// Refits several profile points, each from the best of its starts; returns cost and variables, `None` where
+/// no start completes.
 pub(super) async fn refit<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
-    asked: &Asked<'_>,
+    asked: &RefitRequest<'_>,
     starts: Vec<Vec<Point>>,
 ) -> Result<Vec<Option<(f64, Vec<f64>)>>, L::Error> {
     let least = asked.fit.search.cost();
@@ -76,7 +79,10 @@ pub(super) async fn refit<L: Laboratory>(
         .into_iter()
         .map(|begun| {
             let (cost, residual, point) = begun?;
-            let rise = point.model.held.and_then(|k| asked.rises.get(k).copied());
+            let rise = point
+                .model
+                .fixed_unknown
+                .and_then(|k| asked.rises.get(k).copied());
             let rise = rise.unwrap_or(RISE);
             Some(Descent {
                 over: cost - least <= LITTLE * rise,
@@ -127,7 +133,7 @@ async fn renew<L: Laboratory>(
     if stale.is_empty() {
         return Ok(());
     }
-    let here = Settings {
+    let here = LeastSquaresSettings {
         iterations: 1,
         ..FREE
     };
@@ -143,8 +149,8 @@ async fn renew<L: Laboratory>(
     Ok(())
 }
 
-/// Returns the point with the least cost of each set, with its cost and residual; `None` where no point
-/// completes.
+/// Returns the point with the least cost of each set of points, with its cost and residual; `None` where no
+/// point completes.
 async fn best_of<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     sets: Vec<Vec<Point>>,

@@ -1,8 +1,9 @@
 //! Settings of the fits of an identifiability analysis.
-use search::least_squares::Settings;
+use search::least_squares::LeastSquaresSettings;
 
-/// Settings of the free fit: to full convergence, with variables of negligible curvature held.
-pub(super) const FREE: Settings = Settings {
+/// Settings of the fit in which no unknown is held: to full convergence, with variables of negligible
+/// curvature held.
+pub(super) const FREE: LeastSquaresSettings = LeastSquaresSettings {
     iterations: 20,
     gradient: 3e-3,
     decrease: 1e-4,

@@ -8,16 +8,16 @@ use crate::thresholds::APART;
 use nalgebra::DMatrix;
 use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 
-/// Detection threshold of an effect.
+/// Requirements that an effect must meet to be detected, used for detection limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hurdle {
+pub struct DetectionThreshold {
     /// p-value below which the effect's own score test must fall.
     pub p_value: f64,
     /// Variance of the residual in units of the noise variance.
     pub dispersion: f64,
 }
 
-/// Normal quantile of the power at which a limit is stated: 90 %.
+/// Standard normal quantile of the detection probability for which a limit is stated: 90 %.
 const POWER: f64 = 1.281_551_565_544_6;
 
 /// Returns the detection limit of one size of an effect: the size that is detected in 90 % of records, in
@@ -31,7 +31,7 @@ pub fn detection_limit(
     column: usize,
     one_sided: bool,
     tangent: &Tangent,
-    hurdle: &Hurdle,
+    hurdle: &DetectionThreshold,
 ) -> f64 {
     let one = signature.columns(column, 1);
     let own = one.dot(&tangent.project_columns(&one.into_owned()));
@@ -57,7 +57,7 @@ pub fn detection_limit(
 
 /// Returns the similarity of two effects after recalibration has absorbed its share: the squared cosine of
 /// the smallest principal angle between their projected signatures; 0 where either is absorbed.
-pub fn likeness(a: &DMatrix<f64>, b: &DMatrix<f64>, tangent: &Tangent) -> f64 {
+pub fn similarity(a: &DMatrix<f64>, b: &DMatrix<f64>, tangent: &Tangent) -> f64 {
     let visible = |g: &DMatrix<f64>| {
         let projected = tangent.project_columns(g);
         (projected.norm_squared() > 1e-9 * g.norm_squared()).then(|| orthonormal(&projected))
@@ -93,8 +93,9 @@ pub fn distances(signatures: &[DMatrix<f64>], tangent: &Tangent) -> DMatrix<f64>
 pub struct Separation {
     /// Indices of the two effects, in ascending order.
     pub members: [usize; 2],
-    /// Smaller of the two distances `D^2`, divided by the distance needed for isolation at this dispersion.
-    pub apart: f64,
+    /// Smaller of the two distances `D^2` of the pair, divided by the distance needed to tell them apart at
+    /// this dispersion.
+    pub relative_distance: f64,
 }
 
 /// Returns the separations of all pairs at the signatures' sizes under a dispersion, in the list's order.
@@ -103,7 +104,7 @@ pub fn pairs(signatures: &[DMatrix<f64>], tangent: &Tangent, dispersion: f64) ->
     let n = signatures.len();
     let of = |j: usize, k: usize| Separation {
         members: [j, k],
-        apart: distances[(j, k)].min(distances[(k, j)]) / (APART * dispersion),
+        relative_distance: distances[(j, k)].min(distances[(k, j)]) / (APART * dispersion),
     };
     (0..n)
         .flat_map(|j| (j + 1..n).map(move |k| of(j, k)))
@@ -168,7 +169,7 @@ mod tests {
         );
         let alike: Vec<[usize; 2]> = near
             .iter()
-            .filter(|pair| pair.apart < 1.0)
+            .filter(|pair| pair.relative_distance < 1.0)
             .map(|pair| pair.members)
             .collect();
         assert_eq!(alike, vec![[0, 1]]);
@@ -184,11 +185,11 @@ mod tests {
     #[test]
     fn a_limit_has_the_power_that_it_states() {
         let tangent = nothing(1);
-        let hurdle = Hurdle {
+        let hurdle = DetectionThreshold {
             p_value: 1e-3,
             dispersion: 1.0,
         };
-        let limit = |strength: f64, hurdle: &Hurdle| {
+        let limit = |strength: f64, hurdle: &DetectionThreshold| {
             detection_limit(&column(&[strength]), 0, false, &tangent, hurdle)
         };
         // chi2_1 above 10.828 at p = 0.001, so d = 3.291 + 1.282
@@ -196,7 +197,7 @@ mod tests {
         assert!((plain / (3.291 + 1.282) - 1.0).abs() < 0.03, "{plain}");
         // ten times the signature is seen at a tenth of the size; four times the variance at twice it
         assert!((10.0 * limit(10.0, &hurdle) / plain - 1.0).abs() < 1e-9);
-        let doubtful = Hurdle {
+        let doubtful = DetectionThreshold {
             dispersion: 4.0,
             ..hurdle
         };

@@ -12,13 +12,13 @@ use statrs::distribution::{ChiSquared, ContinuousCDF as _, FisherSnedecor, Stude
 pub struct Score {
     /// Test statistic `T^2`.
     pub statistic: f64,
-    /// Degrees of freedom: number of sizes that are not absorbed by the projection.
+    /// Degrees of freedom: number of the effect's sizes that recalibration does not absorb.
     pub freedom: usize,
     /// Tail probability, before any correction for the number of tests.
     pub p_value: f64,
     /// Estimated sizes, in the units of the signatures.
     pub size: Vec<f64>,
-    /// Standard deviations of `size`; infinite for a size that recalibration absorbs completely.
+    /// Standard deviations of the estimated sizes; infinite for a size that recalibration absorbs completely.
     pub deviation: Vec<f64>,
     /// Share of the signature that recalibration absorbs, 0 to 1.
     pub absorbed: f64,

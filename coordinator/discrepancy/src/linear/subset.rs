@@ -18,9 +18,9 @@ pub(crate) struct Subsets {
     /// Information matrix `G^T B G` of all columns; `gain` is `G^T r`.
     information: DMatrix<f64>,
     gain: DVector<f64>,
-    /// First column and number of columns of each effect.
+    /// Index of the first column, and number of columns, of each effect in the normal equations.
     columns: Vec<(usize, usize)>,
-    /// Whether the size of each column cannot be negative.
+    /// Whether the size that belongs to each column cannot be negative.
     positive: Vec<bool>,
 }
 
@@ -77,8 +77,8 @@ impl Subsets {
         }
     }
 
-    /// Returns the joint estimate of the effects `members`; `None` where they are linearly dependent or a
-    /// size has a sign that is not allowed.
+    /// Returns the joint estimate of the sizes of the effects `members`; `None` where they are linearly
+    /// dependent or a size has a sign that is not allowed.
     fn judge(&self, members: &[usize]) -> Option<Subset> {
         let of = |&member: &usize| {
             let (first, count) = self.columns[member];

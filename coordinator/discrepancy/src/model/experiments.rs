@@ -1,16 +1,19 @@
 //! Simulations for one record: curves of points and their derivatives, and fits of models to the record.
 use crate::laboratory::{Laboratory, Stage, channels};
-use crate::model::change::Wanted;
+use crate::model::derivative::DerivativeRequest;
 use crate::model::fit::Fit;
-use crate::model::unknowns::{Model, Point};
+use crate::model::unknowns::{FittedModel, Point};
 use crate::record::measured::{Curves, Record, Recorded, difference};
 use crate::record::whitened::WhitenedRecord;
 use protocol::job::{Column, Derivative, Observation, SimulateSpec};
-use search::derivative::Term;
-use search::least_squares::{Ended, Evaluated, LeastSquares, Settings, Variable};
+use search::derivative::DerivativeTerm;
+use search::least_squares::{
+    EvaluatedPoint, LeastSquares, LeastSquaresSettings, Termination, Variable,
+};
 use search::strategy::Residual;
 
-/// Laboratory, the record with which its simulations are compared, and the stage whose budget they use.
+/// Means of running simulations for a record: the laboratory, the record with which simulations are compared,
+/// and the stage whose budget they use.
 #[derive(Debug)]
 pub struct Experiments<'a, L> {
     /// Laboratory that runs the simulations.
@@ -22,14 +25,14 @@ pub struct Experiments<'a, L> {
 }
 
 impl<L: Laboratory> Experiments<'_, L> {
-    /// Returns these experiments for another record.
-    pub fn with<'b>(&'b mut self, on: &'b WhitenedRecord) -> Experiments<'b, L> {
+    /// Returns a view that compares simulations with another record, in the same laboratory.
+    pub fn for_record<'b>(&'b mut self, on: &'b WhitenedRecord) -> Experiments<'b, L> {
         let (lab, stage) = (&mut *self.lab, self.stage);
         Experiments { lab, on, stage }
     }
 
-    /// Returns these experiments for another stage.
-    pub fn during(&mut self, stage: Stage) -> Experiments<'_, L> {
+    /// Returns a view that charges simulations to the budget of another stage.
+    pub fn for_stage(&mut self, stage: Stage) -> Experiments<'_, L> {
         let (lab, on) = (&mut *self.lab, self.on);
         Experiments { lab, on, stage }
     }
@@ -39,8 +42,10 @@ impl<L: Laboratory> Experiments<'_, L> {
     /// # Errors
     /// Those of the laboratory.
     pub async fn curves(&mut self, points: &[Point]) -> Result<Vec<Option<Curves>>, L::Error> {
-        let wanted = points.iter().map(|point| Wanted::new(point.clone(), false));
-        let seen = self.seen(&self.on.record, wanted.collect()).await?;
+        let wanted = points
+            .iter()
+            .map(|point| DerivativeRequest::new(point.clone(), false));
+        let seen = self.simulate(&self.on.record, wanted.collect()).await?;
         Ok(seen.into_iter().map(|seen| Some(seen?.curves)).collect())
     }
 
@@ -62,7 +67,7 @@ impl<L: Laboratory> Experiments<'_, L> {
                 0
             };
             let moved = axes.flat_map(|axis| space.rates(axis, point.x[axis]));
-            let columns = moved.map(|(_, name, _)| Column::of(name));
+            let columns = moved.map(|(_, name, _)| Column::new(name));
             columns.collect::<Vec<Column>>()
         };
         let experiment = |(point, wanted): &(Point, bool)| SimulateSpec {
@@ -74,12 +79,12 @@ impl<L: Laboratory> Experiments<'_, L> {
         let residual = |((point, wanted), seen): (&(Point, bool), Option<Observation>)| {
             let seen = seen?;
             let mut curves = channels(&seen, &on.record)?;
-            point.read(&on.record, &mut curves);
+            point.apply_gains(&on.record, &mut curves);
             let columns = columns(point, *wanted).into_iter().zip(seen.columns);
             let by = columns.map(|(column, by)| (column.name, whitened(&by, on, point)));
             Some(Residual {
                 values: on.residual(&curves).as_slice().to_vec(),
-                by: by.collect(),
+                derivatives: by.collect(),
             })
         };
         Ok(points.iter().zip(observed).map(residual).collect())
@@ -87,24 +92,24 @@ impl<L: Laboratory> Experiments<'_, L> {
 
     /// Simulates points under the condition of a record, with the requested derivatives; `None` for a point
     /// that failed.
-    async fn seen(
+    async fn simulate(
         &mut self,
         record: &Record,
-        wanted: Vec<Wanted>,
-    ) -> Result<Vec<Option<Seen>>, L::Error> {
+        wanted: Vec<DerivativeRequest>,
+    ) -> Result<Vec<Option<Linearization>>, L::Error> {
         let numerics = &self.on.numerics;
-        let experiment = |wanted: &Wanted| SimulateSpec {
+        let experiment = |wanted: &DerivativeRequest| SimulateSpec {
             columns: wanted.columns(),
             ..wanted.point.experiment(record.condition, numerics)
         };
         let batch = wanted.iter().map(experiment).collect();
         let observed = self.lab.observe(self.stage, batch).await?;
-        let seen = |(wanted, seen): (Wanted, Option<Observation>)| {
+        let seen = |(wanted, seen): (DerivativeRequest, Option<Observation>)| {
             let seen = seen?;
             let mut curves = channels(&seen, record)?;
             let changes = wanted.changes(&seen.columns, (record, &curves));
-            wanted.point.read(record, &mut curves);
-            Some(Seen { curves, changes })
+            wanted.point.apply_gains(record, &mut curves);
+            Some(Linearization { curves, changes })
         };
         Ok(wanted.into_iter().zip(observed).map(seen).collect())
     }
@@ -114,22 +119,22 @@ impl<L: Laboratory> Experiments<'_, L> {
     pub(crate) async fn changes(
         &mut self,
         fit: &Fit,
-        terms: Vec<Option<Term>>,
+        terms: Vec<Option<DerivativeTerm>>,
     ) -> Result<Vec<Option<Curves>>, L::Error> {
-        /// Number of terms in one simulation: the more terms, the lower the cost of each; several simulations
-        /// occupy several slots.
+        /// Maximum number of derivative terms in one simulation: more terms lower the cost of each term,
+        /// several simulations occupy several slots.
         const TOGETHER: usize = 80;
         let mut changes = vec![None; terms.len()];
         if !self.lab.differentiates() {
             return Ok(changes);
         }
         let there = terms.into_iter().enumerate();
-        let (places, terms): (Vec<usize>, Vec<Term>) = there
+        let (places, terms): (Vec<usize>, Vec<DerivativeTerm>) = there
             .filter_map(|(place, term)| Some((place, term?)))
             .unzip();
-        let together = |terms: &[Term]| Wanted::with_terms(fit.point(), terms);
-        let wanted: Vec<Wanted> = terms.chunks(TOGETHER).map(together).collect();
-        let seen = self.seen(&self.on.record, wanted).await?;
+        let together = |terms: &[DerivativeTerm]| DerivativeRequest::with_terms(fit.point(), terms);
+        let wanted: Vec<DerivativeRequest> = terms.chunks(TOGETHER).map(together).collect();
+        let seen = self.simulate(&self.on.record, wanted).await?;
         for (places, seen) in places.chunks(TOGETHER).zip(seen) {
             for (place, change) in places.iter().zip(seen.into_iter().flat_map(|s| s.changes)) {
                 changes[*place] = change;
@@ -145,15 +150,15 @@ impl<L: Laboratory> Experiments<'_, L> {
         &mut self,
         fit: &Fit,
         record: &Record,
-    ) -> Result<Option<Seen>, L::Error> {
+    ) -> Result<Option<Linearization>, L::Error> {
         let neighbours: Vec<(f64, Point)> = fit.neighbours().collect();
         let exact = self.lab.differentiates();
-        let mut wanted = vec![Wanted::new(fit.point(), exact)];
-        let beside = |point: &Point| Wanted::new(point.clone(), false);
+        let mut wanted = vec![DerivativeRequest::new(fit.point(), exact)];
+        let beside = |point: &Point| DerivativeRequest::new(point.clone(), false);
         if !exact {
             wanted.extend(neighbours.iter().map(|(_, point)| beside(point)));
         }
-        let mut seen = self.seen(record, wanted).await?.into_iter();
+        let mut seen = self.simulate(record, wanted).await?.into_iter();
         let Some(mut own) = seen.next().flatten() else {
             return Ok(None);
         };
@@ -163,12 +168,13 @@ impl<L: Laboratory> Experiments<'_, L> {
             .collect();
         let rest = if exact {
             let wanted = open.iter().map(|k| beside(&neighbours[*k].1));
-            self.seen(record, wanted.collect()).await?
+            self.simulate(record, wanted.collect()).await?
         } else {
             seen.collect()
         };
         for (k, there) in open.into_iter().zip(rest) {
-            let change = |there: Seen| difference(&there.curves, &own.curves, neighbours[k].0);
+            let change =
+                |there: Linearization| difference(&there.curves, &own.curves, neighbours[k].0);
             own.changes[k] = there.map(change);
         }
         Ok(Some(own))
@@ -182,9 +188,9 @@ impl<L: Laboratory> Experiments<'_, L> {
     pub async fn fits(
         &mut self,
         starts: Vec<Point>,
-        how: Settings,
+        how: LeastSquaresSettings,
     ) -> Result<Vec<Option<Fit>>, L::Error> {
-        let how = Settings {
+        let how = LeastSquaresSettings {
             exact: self.lab.differentiates(),
             ..how
         };
@@ -192,14 +198,14 @@ impl<L: Laboratory> Experiments<'_, L> {
             let search = LeastSquares::new(start.model.variables(&start.x), how);
             (start.model, search)
         };
-        let mut fits: Vec<(Model, LeastSquares)> = starts.into_iter().map(search).collect();
+        let mut fits: Vec<(FittedModel, LeastSquares)> = starts.into_iter().map(search).collect();
         let mut at_best: Vec<Option<Curves>> = vec![None; fits.len()];
         let mut nudged = vec![false; fits.len()];
         loop {
             for ((_, search), nudged) in fits.iter_mut().zip(&mut nudged) {
-                if search.ended() == Some(Ended::StartFailed) && !*nudged {
+                if search.ended() == Some(Termination::StartFailed) && !*nudged {
                     *nudged = true;
-                    *search = LeastSquares::new(beside(search.variables()), how);
+                    *search = LeastSquares::new(shifted_start(search.variables()), how);
                 }
             }
             let plans: Vec<Vec<Vec<f64>>> = fits.iter().map(|(_, search)| search.plan()).collect();
@@ -210,44 +216,50 @@ impl<L: Laboratory> Experiments<'_, L> {
                     x: x.clone(),
                 };
                 let exact = search.wants_columns();
-                plan.iter().map(move |x| Wanted::new(point(x), exact))
+                plan.iter()
+                    .map(move |x| DerivativeRequest::new(point(x), exact))
             });
-            let wanted: Vec<Wanted> = wanted.collect();
+            let wanted: Vec<DerivativeRequest> = wanted.collect();
             if wanted.is_empty() {
                 break;
             }
-            let mut results = self.seen(&self.on.record, wanted).await?.into_iter();
+            let mut results = self.simulate(&self.on.record, wanted).await?.into_iter();
             for (((_, search), best), plan) in fits.iter_mut().zip(&mut at_best).zip(&plans) {
                 if plan.is_empty() {
                     continue;
                 }
-                let own: Vec<Option<Seen>> = results.by_ref().take(plan.len()).collect();
+                let own: Vec<Option<Linearization>> = results.by_ref().take(plan.len()).collect();
                 let whitened = own
                     .iter()
                     .map(|seen| Some(seen.as_ref()?.whitened(self.on)));
-                search.absorb(whitened.collect::<Vec<Option<Evaluated>>>());
+                search.absorb(whitened.collect::<Vec<Option<EvaluatedPoint>>>());
                 let arrived = plan.iter().position(|x| *x == search.best().x);
                 if let Some(seen) = arrived.and_then(|k| own.into_iter().nth(k)) {
                     *best = seen.map(|seen| seen.curves);
                 }
             }
         }
-        let finished = |((model, search), curves): ((Model, LeastSquares), Option<Curves>)| {
-            let curves = curves?;
-            Some(Fit {
-                model,
-                search,
-                curves,
-            })
-        };
+        let finished =
+            |((model, search), curves): ((FittedModel, LeastSquares), Option<Curves>)| {
+                let curves = curves?;
+                Some(Fit {
+                    model,
+                    search,
+                    curves,
+                })
+            };
         Ok(fits.into_iter().zip(at_best).map(finished).collect())
     }
 
-    /// Runs one fit.
+    /// Fits a model to the record from a start point; `None` if the fit failed.
     ///
     /// # Errors
     /// Those of the laboratory.
-    pub async fn fit(&mut self, start: Point, how: Settings) -> Result<Option<Fit>, L::Error> {
+    pub async fn fit(
+        &mut self,
+        start: Point,
+        how: LeastSquaresSettings,
+    ) -> Result<Option<Fit>, L::Error> {
         let fits = self.fits(vec![start], how).await?;
         Ok(fits.into_iter().next().flatten())
     }
@@ -268,7 +280,7 @@ fn whitened(by: &Derivative, on: &WhitenedRecord, point: &Point) -> Derivative {
         let reason = "the derivative lacks a channel of the record".to_owned();
         return Derivative::Missing { reason };
     };
-    point.read(&on.record, &mut own);
+    point.apply_gains(&on.record, &mut own);
     #[expect(
         clippy::cast_possible_truncation,
         reason = "derivatives travel in single precision"
@@ -281,17 +293,17 @@ fn whitened(by: &Derivative, on: &WhitenedRecord, point: &Point) -> Derivative {
 }
 
 /// Curves at a point, with the requested derivatives.
-pub(crate) struct Seen {
+pub(crate) struct Linearization {
     pub(crate) curves: Curves,
     pub(crate) changes: Vec<Option<Curves>>,
 }
 
-impl Seen {
+impl Linearization {
     /// Whitens the residual and its derivatives in the metric of a record; the residual is measured less
     /// simulated.
-    fn whitened(&self, on: &WhitenedRecord) -> Evaluated {
+    fn whitened(&self, on: &WhitenedRecord) -> EvaluatedPoint {
         let column = |change: &Option<Curves>| Some(-on.metric.whiten(change.as_ref()?));
-        Evaluated {
+        EvaluatedPoint {
             residual: on.residual(&self.curves),
             columns: self.changes.iter().map(column).collect(),
         }
@@ -300,7 +312,7 @@ impl Seen {
 
 /// Returns the variables with each start shifted by a tenth of its difference step, away from the nearer
 /// bound.
-fn beside(variables: &[Variable]) -> Vec<Variable> {
+fn shifted_start(variables: &[Variable]) -> Vec<Variable> {
     let moved = |v: &Variable| {
         let upwards = v.upper - v.start > v.start - v.lower;
         let inwards = if upwards { 1.0 } else { -1.0 };

@@ -1,7 +1,7 @@
 //! Model that was fitted to a record, with the quantities that the tests use.
 use crate::linear::evidence;
 use crate::linear::tangent::Tangent;
-use crate::model::unknowns::{Model, Point};
+use crate::model::unknowns::{FittedModel, Point};
 use crate::record::measured::Curves;
 use protocol::announce::EffectDescriptor;
 use search::least_squares::{LeastSquares, Variable};
@@ -10,8 +10,8 @@ use search::least_squares::{LeastSquares, Variable};
 #[derive(Clone, Debug)]
 pub struct Fit {
     /// Fitted model.
-    pub model: Model,
-    /// Search at its end: point, residual, Jacobian.
+    pub model: FittedModel,
+    /// Least-squares search at its end: point, residual, Jacobian.
     pub search: LeastSquares,
     /// Simulated curves at the fitted point.
     pub curves: Curves,
@@ -33,7 +33,7 @@ impl Fit {
         self.at(self.x().to_vec())
     }
 
-    /// Returns the model at other values.
+    /// Returns the fitted model at other values of its unknowns.
     pub fn at(&self, x: Vec<f64>) -> Point {
         Point {
             model: self.model.clone(),
@@ -57,7 +57,7 @@ impl Fit {
         self.search.best().residual.len()
     }
 
-    /// Returns the degrees of freedom of the residual: `n - p`, at least 1.
+    /// Returns the residual's degrees of freedom: number of entries less number of unknowns, at least 1.
     pub fn freedom(&self) -> f64 {
         (self.entries() as f64 - self.tangent().parameters()).max(1.0)
     }
@@ -74,7 +74,8 @@ impl Fit {
         evidence::log_evidence(self.search.best(), self.variables())
     }
 
-    /// Returns the tangent space of the fitted model.
+    /// Returns the tangent space of the fitted model: the changes of the whitened residual that its unknowns
+    /// can produce.
     pub fn tangent(&self) -> Tangent {
         Tangent::new(self.search.best(), self.variables())
     }

@@ -1,16 +1,16 @@
 //! Models and their fits: the unknowns of the case, nuisance parameters and parameters of added effects,
 //! their fits to a record, and the simulations that a fit needs. The module does not know how an effect acts.
-pub(crate) mod change;
+pub(crate) mod derivative;
 pub mod experiments;
 pub(crate) mod fit;
-pub(crate) mod off;
+pub(crate) mod inactive_unknowns;
+pub(crate) mod nuisance_parameter;
 pub(crate) mod parameter;
 pub mod probe;
-pub(crate) mod tolerated;
 pub(crate) mod unknowns;
 
 pub use fit::Fit;
-pub use off::Off;
+pub use inactive_unknowns::InactiveUnknowns;
+pub use nuisance_parameter::NuisanceParameter;
 pub use parameter::{absent, at_typical, bounds, shapes, sizes};
-pub use tolerated::Tolerated;
-pub use unknowns::{Model, Point};
+pub use unknowns::{FittedModel, Point};

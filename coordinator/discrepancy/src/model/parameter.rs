@@ -1,11 +1,12 @@
-//! Parameters of an effect as unknowns, in units of their physical scale, counted from their absent value. A
-//! size is zero where the effect is absent; a shape has a value even then.
+//! Parameters of an effect as unknowns of a fit, in units of their physical scale and relative to the value
+//! at which the effect is absent. A size parameter is zero where the effect is absent; a shape parameter has
+//! a value even then.
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Role, Sign};
 use protocol::case::EffectSetting;
 use search::least_squares::{Prior, Variable};
 use std::slice::Iter;
 
-/// Prior standard deviation of a size, in units of its scale.
+/// Prior standard deviation of an effect's size parameter, in units of its scale.
 const SIZE_DEVIATION: f64 = 2.0;
 
 /// Returns a parameter as a variable of the search, in units of its scale from its absent value.
@@ -33,7 +34,7 @@ pub(crate) fn variable(parameter: &ParameterDescriptor) -> Variable {
     }
 }
 
-/// Returns the setting of an effect at scaled parameter values, one per parameter.
+/// Returns the setting of an effect for a simulation, from the scaled values of its parameters.
 pub(crate) fn setting(effect: &EffectDescriptor, scaled: &[f64]) -> EffectSetting {
     let value = |(p, u): (&ParameterDescriptor, &f64)| {
         let value = (p.absent + u * p.scale).clamp(p.lower, p.upper);
@@ -45,7 +46,8 @@ pub(crate) fn setting(effect: &EffectDescriptor, scaled: &[f64]) -> EffectSettin
     }
 }
 
-/// Returns the scaled parameter values of an absent effect: sizes zero, shapes typical.
+/// Returns the scaled parameter values of an absent effect: zero for size parameters, typical for shape
+/// parameters.
 pub fn absent(effect: &EffectDescriptor) -> Vec<f64> {
     effect
         .parameters
@@ -54,12 +56,12 @@ pub fn absent(effect: &EffectDescriptor) -> Vec<f64> {
         .collect()
 }
 
-/// Returns the positions of an effect's sizes among its parameters.
+/// Returns the indices of an effect's size parameters among its parameters.
 pub fn sizes(effect: &EffectDescriptor) -> Vec<usize> {
     positions(effect, Role::Size)
 }
 
-/// Returns the positions of an effect's shapes among its parameters.
+/// Returns the indices of an effect's shape parameters among its parameters.
 pub fn shapes(effect: &EffectDescriptor) -> Vec<usize> {
     positions(effect, Role::Shape)
 }
@@ -83,8 +85,8 @@ pub(crate) fn typical(parameter: &ParameterDescriptor) -> f64 {
     (parameter.typical - parameter.absent) / parameter.scale
 }
 
-/// Returns the scaled values of an effect with the sizes at the given positions typical and all others
-/// absent.
+/// Returns the scaled parameter values of an effect with the size parameters at the indices `sizes` typical
+/// and all others absent.
 pub fn at_typical(effect: &EffectDescriptor, sizes: &[usize]) -> Vec<f64> {
     let mut own = absent(effect);
     for &k in sizes {

@@ -1,12 +1,12 @@
 //! Parsing of the identifiers `probe.JOINT.FORM` of probe forces, that is of forces at a joint without a
 //! physical cause.
 
-/// Returns the form of a probe force: the last part of its identifier.
+/// Returns the form of a probe force, e.g. `sin2`: the last part of its identifier.
 pub fn form(id: &str) -> &str {
     id.rsplit_once('.').map_or(id, |(_, form)| form)
 }
 
-/// Returns whether a periodic probe force is a sine.
+/// Returns whether the probe force with an identifier is a sine of the period's phase.
 pub fn is_sine(id: &str) -> bool {
     form(id).starts_with("sin")
 }

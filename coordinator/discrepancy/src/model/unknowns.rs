@@ -4,9 +4,9 @@
 //! record in standard deviations, then the parameters of each added effect in units of their physical scale,
 //! from their absent value. Only the workers know how an effect acts; here it is a name with parameter
 //! values.
-use crate::model::off::Off;
+use crate::model::inactive_unknowns::InactiveUnknowns;
+use crate::model::nuisance_parameter::{NuisanceParameter, apply_gains, effects};
 use crate::model::parameter::{setting, variable};
-use crate::model::tolerated::{Tolerated, effects, read};
 use crate::record::measured::{Curves, Record};
 use protocol::announce::EffectDescriptor;
 use protocol::case::EffectSetting;
@@ -18,31 +18,32 @@ use search::space::Space;
 /// of a manual are rarely off by more than a few of these decades. An unknown on a linear scale is hardly
 /// constrained by it, since its whole interval has the length two.
 const USUAL_DEVIATION: f64 = 1.5;
-/// First difference step of an unknown of the case (coordinate).
+/// Initial finite-difference step of an unknown of the case, in its coordinate of the search space.
 const STEP: f64 = 0.02;
-/// Longest step of an unknown of the case (coordinate): resonances move with a twentieth of it.
+/// Longest step of a fit in an unknown of the case (coordinate of the search space): a twentieth of it
+/// already shifts resonances.
 const LONGEST: f64 = 0.7;
 
 /// Model of a case with added effects.
 #[derive(Clone, Debug)]
-pub struct Model {
+pub struct FittedModel {
     /// Space of the case's unknowns that are searched.
     pub space: Space,
     /// Unknowns of the case that are off.
-    pub off: Vec<Off>,
+    pub off: Vec<InactiveUnknowns>,
     /// Nuisance parameters of the record; those that an added effect stands for are ignored.
-    pub nuisances: Vec<Tolerated>,
+    pub nuisances: Vec<NuisanceParameter>,
     /// Added effects, in the order in which they were added.
     pub added: Vec<EffectDescriptor>,
     /// Prior of an unknown for which the case states only bounds.
-    pub unstated: Unstated,
+    pub unstated: DefaultPrior,
     /// Index of an unknown that is held at its start.
-    pub held: Option<usize>,
+    pub fixed_unknown: Option<usize>,
 }
 
 /// Prior of an unknown for which the case states only bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Unstated {
+pub enum DefaultPrior {
     /// Normal prior about the recommended value, with a standard deviation of 1.5 coordinates: a recommended
     /// value is rarely off by more than a few decades.
     #[default]
@@ -52,7 +53,7 @@ pub enum Unstated {
     Bounds,
 }
 
-impl Model {
+impl FittedModel {
     /// Creates the model of the case without nuisance parameters and effects.
     pub const fn plain(space: Space) -> Self {
         Self {
@@ -60,35 +61,39 @@ impl Model {
             off: Vec::new(),
             nuisances: Vec::new(),
             added: Vec::new(),
-            unstated: Unstated::Recommended,
-            held: None,
+            unstated: DefaultPrior::Recommended,
+            fixed_unknown: None,
         }
     }
 
     /// Iterates over the nuisance parameters that no added effect replaces, in the order of their unknowns.
-    pub fn standing(&self) -> impl Iterator<Item = &Tolerated> {
-        let replaced = |one: &&Tolerated| self.added.iter().any(|effect| one.is(&effect.id));
+    pub fn active_nuisances(&self) -> impl Iterator<Item = &NuisanceParameter> {
+        let replaced =
+            |one: &&NuisanceParameter| self.added.iter().any(|effect| one.is(&effect.id));
         self.nuisances.iter().filter(move |one| !replaced(one))
     }
 
     /// Iterates over the nuisance parameters that no added effect replaces, each with the index of its
     /// unknown.
-    pub(crate) fn placed(&self) -> impl Iterator<Item = (usize, &Tolerated)> {
+    pub(crate) fn indexed_nuisances(&self) -> impl Iterator<Item = (usize, &NuisanceParameter)> {
         let first = self.space.dimension();
-        self.standing()
+        self.active_nuisances()
             .enumerate()
             .map(move |(k, one)| (first + k, one))
     }
 
     /// Iterates over the nuisance parameters that no added effect replaces, each with its value at a point.
-    pub(crate) fn valued(&self, x: &[f64]) -> impl Iterator<Item = (&Tolerated, f64)> {
-        self.placed().map(|(k, one)| (one, x[k]))
+    pub(crate) fn nuisance_values(
+        &self,
+        x: &[f64],
+    ) -> impl Iterator<Item = (&NuisanceParameter, f64)> {
+        self.indexed_nuisances().map(|(k, one)| (one, x[k]))
     }
 
     /// Returns the index of the first unknown of the added effect at `position`.
     pub fn first_of(&self, position: usize) -> usize {
         let before = self.added.iter().take(position);
-        let nuisances = self.standing().count();
+        let nuisances = self.active_nuisances().count();
         self.space.dimension() + nuisances + before.map(|e| e.parameters.len()).sum::<usize>()
     }
 
@@ -108,11 +113,11 @@ impl Model {
                 step: axis.unknown.step.unwrap_or(STEP),
                 longest: LONGEST,
                 prior: prior.or(Some(match self.unstated {
-                    Unstated::Recommended => Prior {
+                    DefaultPrior::Recommended => Prior {
                         mean: 0.0,
                         deviation: USUAL_DEVIATION,
                     },
-                    Unstated::Bounds => Prior {
+                    DefaultPrior::Bounds => Prior {
                         mean: f64::midpoint(interval.from, interval.to),
                         deviation: interval.length(),
                     },
@@ -123,12 +128,12 @@ impl Model {
             .added
             .iter()
             .flat_map(|e| e.parameters.iter().map(variable));
-        let nuisances = self.standing().map(Tolerated::variable);
+        let nuisances = self.active_nuisances().map(NuisanceParameter::variable);
         let mut all: Vec<Variable> = own.chain(nuisances).chain(effects).collect();
         for (variable, x) in all.iter_mut().zip(x) {
             variable.start = *x;
         }
-        if let Some(held) = self.held.and_then(|k| all.get_mut(k)) {
+        if let Some(held) = self.fixed_unknown.and_then(|k| all.get_mut(k)) {
             held.lower = held.start;
             held.upper = held.start;
         }
@@ -149,12 +154,15 @@ impl Model {
 
     /// Iterates over the added effects with their settings at a point, each with the unknowns of the case
     /// that it stands for, if any.
-    fn settings(&self, x: &[f64]) -> impl Iterator<Item = (Option<&Off>, EffectSetting)> {
+    fn settings(
+        &self,
+        x: &[f64],
+    ) -> impl Iterator<Item = (Option<&InactiveUnknowns>, EffectSetting)> {
         let added = self.added.iter().enumerate();
         added.map(move |(position, added)| {
             let first = self.first_of(position);
             let own = &x[first..first + added.parameters.len()];
-            let off = self.off.iter().find(|off| off.suspect.id == added.id);
+            let off = self.off.iter().find(|off| off.candidate.id == added.id);
             (off, setting(added, own))
         })
     }
@@ -164,7 +172,7 @@ impl Model {
 #[derive(Clone, Debug)]
 pub struct Point {
     /// Model.
-    pub model: Model,
+    pub model: FittedModel,
     /// Values of the unknowns, one each.
     pub x: Vec<f64>,
 }
@@ -175,7 +183,10 @@ impl Point {
     #[must_use]
     pub fn with(mut self, effect: &EffectDescriptor, own: &[f64]) -> Self {
         let mut own = own.to_vec();
-        let placed = self.model.placed().filter(|(_, one)| one.is(&effect.id));
+        let placed = self
+            .model
+            .indexed_nuisances()
+            .filter(|(_, one)| one.is(&effect.id));
         let mut replaced: Vec<usize> = Vec::new();
         for (place, one) in placed {
             if let Some((_, k)) = one.effect() {
@@ -199,7 +210,7 @@ impl Point {
         let effect = self.model.added.remove(position);
         self.x.drain(first..first + effect.parameters.len());
         // what it was as a nuisance is one again
-        let placed = self.model.placed();
+        let placed = self.model.indexed_nuisances();
         let again = placed.filter(|(_, one)| one.is(&effect.id));
         for place in again.map(|(place, _)| place).collect::<Vec<usize>>() {
             self.x.insert(place, 0.0);
@@ -208,15 +219,15 @@ impl Point {
     }
 
     /// Applies the gains of the record's channels to simulated curves.
-    pub(crate) fn read(&self, record: &Record, curves: &mut Curves) {
-        read(self.model.valued(&self.x), record, curves);
+    pub(crate) fn apply_gains(&self, record: &Record, curves: &mut Curves) {
+        apply_gains(self.model.nuisance_values(&self.x), record, curves);
     }
 
     /// Creates the job that simulates the point under a condition.
     pub fn experiment(&self, condition: usize, numerics: &Numerics) -> SimulateSpec {
         let Self { model, x } = self;
         let added = model.settings(x).filter(|(off, _)| off.is_none());
-        let never_exact = effects(model.valued(x)).into_iter();
+        let never_exact = effects(model.nuisance_values(x)).into_iter();
         let never_exact = never_exact.map(|(effect, own)| setting(effect, &own));
         let mut individual = Individual::new(condition, model.genes(x));
         individual.effects = never_exact

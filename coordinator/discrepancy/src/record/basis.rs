@@ -10,12 +10,13 @@ use std::ops::RangeInclusive;
 
 type C = Complex<f64>;
 
-/// Largest number of waves of a row of samples: model errors lie in the slow ones.
+/// Maximum number of waves (Fourier orders) computed from a sequence of samples: model errors lie in the slow
+/// waves.
 const WAVES: usize = 240;
 
 /// Channels that share an abscissa, and the basis in which they are compared.
 #[derive(Clone, Debug)]
-pub struct Group {
+pub struct ChannelGroup {
     /// Indices of the channels in the record, ascending.
     pub channels: Vec<usize>,
     /// Common abscissa of the channels.
@@ -34,7 +35,7 @@ pub enum Basis {
 }
 
 impl Basis {
-    /// Returns the number of entries of a curve.
+    /// Returns the number of entries (basis coefficients) of a curve.
     pub fn places(&self) -> usize {
         match self {
             Self::Orders(orders) => orders.highest(),
@@ -50,7 +51,7 @@ impl Basis {
         }
     }
 
-    /// Returns the entries of a curve; `row` is the index of its channel in the group.
+    /// Returns the entries (basis coefficients) of a curve; `row` is the index of its channel in the group.
     pub fn transform(&self, row: usize, curve: &[f64]) -> Vec<C> {
         match self {
             Self::Orders(orders) => orders.transform(curve),
@@ -58,8 +59,9 @@ impl Basis {
         }
     }
 
-    /// Returns the entries about `place` (from 0) in which noise is about as strong, `place` among them. Slow
-    /// curves of samples form groups of their own: the constant, and both phases of the first order.
+    /// Returns the range of entries about the index `place`, inclusive, over which noise is about equally
+    /// strong. Slow curves of a sample basis have ranges of their own: the constant, and both phases of the
+    /// first order.
     pub fn neighbours(&self, place: usize) -> RangeInclusive<usize> {
         let (reach, slow) = match self {
             Self::Orders(_) => {
@@ -81,7 +83,8 @@ impl Basis {
         }
     }
 
-    /// Returns how many entries, from the first on, are slow curves of samples.
+    /// Returns the number of leading entries that are slow curves (constant and first order of the span) of a
+    /// sample basis; 0 for orders.
     pub fn slow(&self) -> usize {
         match self {
             Self::Orders(_) => 0,
@@ -130,8 +133,9 @@ impl Basis {
         }
     }
 
-    /// Returns the waves of a channel's whitened entries, each with two parts that are as strong as one
-    /// entry: the orders themselves, or the Fourier coefficients of a row of samples.
+    /// Returns the waves (Fourier coefficients) of a channel, from its whitened entries: the entries
+    /// themselves for orders, else a Fourier transform over the samples. Real and imaginary part of a wave
+    /// each have the variance of a real entry.
     pub fn waves(&self, row: usize, entries: Vec<C>) -> Vec<C> {
         match self {
             Self::Orders(_) => entries,
@@ -148,7 +152,7 @@ impl Basis {
     }
 }
 
-impl Group {
+impl ChannelGroup {
     /// Groups a record's channels by abscissa and selects their basis, with orders up to `highest` where they
     /// have a period. `inputs` are curves by which cycles may differ because their input did.
     pub fn of(record: &Record, highest: usize, inputs: &[Vec<Vec<f64>>]) -> Vec<Self> {
@@ -157,7 +161,7 @@ impl Group {
             let own = &own.channel;
             let alike = |other: &Channel| {
                 other.abscissa == own.abscissa
-                    && is_turn(other) == is_turn(own)
+                    && is_compared_by_orders(other) == is_compared_by_orders(own)
                     && other.offset == own.offset
             };
             match groups.iter_mut().find(|(_, other)| alike(other)) {
@@ -168,7 +172,7 @@ impl Group {
         let group = |(channels, first): (Vec<usize>, &Channel)| {
             let abscissa = first.abscissa.clone();
             let n = abscissa.points.len();
-            let basis = if is_turn(first) {
+            let basis = if is_compared_by_orders(first) {
                 Basis::Orders(Orders::new(n, highest))
             } else {
                 Basis::Samples(samples(record, &channels, &abscissa, inputs))
@@ -221,7 +225,7 @@ impl Group {
 
 /// Returns whether a channel is compared by the orders of its period: it has a period in equal steps, equal
 /// weights and no fixed zero.
-fn is_turn(channel: &Channel) -> bool {
+fn is_compared_by_orders(channel: &Channel) -> bool {
     let abscissa = &channel.abscissa;
     if channel.is_absolute() || !channel.weights.is_empty() {
         return false;
@@ -234,8 +238,8 @@ fn is_turn(channel: &Channel) -> bool {
     points.all(|(i, x)| (x - first - step * i as f64).abs() < 1e-6 * step)
 }
 
-/// Estimates the noise model of each channel along its samples: its correlation from the scatter between
-/// cycles where there are several, else as stated.
+/// Builds the sample basis of each channel of a group: the noise's correlation length is estimated from the
+/// scatter between cycles where there are several, else taken as stated.
 fn samples(
     record: &Record,
     channels: &[usize],

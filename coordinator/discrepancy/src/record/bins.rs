@@ -1,5 +1,5 @@
 //! Equal bins of an abscissa, and the values of a whitened curve in them.
-use crate::record::basis::{Basis, Group};
+use crate::record::basis::{Basis, ChannelGroup};
 use nalgebra::Complex;
 
 /// Largest number of bins of an abscissa.
@@ -15,12 +15,12 @@ pub struct Bins {
     /// Number of bins.
     pub count: usize,
     /// Whether the abscissa is periodic, so that the first bin follows the last.
-    pub around: bool,
+    pub is_periodic: bool,
 }
 
 impl Bins {
     /// Divides a group's abscissa into bins: no more than there are samples.
-    pub fn of(group: &Group) -> Self {
+    pub fn of(group: &ChannelGroup) -> Self {
         let points = &group.abscissa.points;
         let from = points.first().copied().unwrap_or_default();
         let around = group.is_periodic();
@@ -35,7 +35,7 @@ impl Bins {
             from,
             width: span / count.max(1) as f64,
             count,
-            around,
+            is_periodic: around,
         }
     }
 
@@ -46,7 +46,7 @@ impl Bins {
 
     /// Returns the number of windows of `width` bins; 0 if the abscissa is shorter.
     pub const fn windows(&self, width: usize) -> usize {
-        match (self.around, self.count < width) {
+        match (self.is_periodic, self.count < width) {
             (_, true) => 0,
             (true, _) => self.count,
             (false, _) => self.count + 1 - width,
@@ -69,7 +69,7 @@ impl Bins {
 
 /// Returns a channel's whitened entries as values along the abscissa, one per bin; `row` is the index of the
 /// channel in its group.
-pub(crate) fn along(group: &Group, row: usize, entries: &[Complex<f64>]) -> Vec<f64> {
+pub(crate) fn along(group: &ChannelGroup, row: usize, entries: &[Complex<f64>]) -> Vec<f64> {
     match &group.basis {
         Basis::Orders(_) => turn(entries),
         Basis::Samples(samples) => {
@@ -97,7 +97,8 @@ pub(crate) fn along(group: &Group, row: usize, entries: &[Complex<f64>]) -> Vec<
     }
 }
 
-/// Returns the curve of a spectrum at the bins' centres, from orders below half the number of bins.
+/// Returns the curve with given Fourier coefficients at the centres of the bins, using orders below half the
+/// number of bins.
 fn turn(spectrum: &[Complex<f64>]) -> Vec<f64> {
     let turn = std::f64::consts::TAU / (2 * BINS) as f64;
     let table: Vec<(f64, f64)> = (0..2 * BINS)

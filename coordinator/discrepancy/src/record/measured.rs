@@ -12,8 +12,8 @@ pub type Curves = Vec<Vec<f64>>;
 pub struct Recorded {
     /// Index of the simulated curve with which the channel is compared, among the channels of its condition.
     pub curve: usize,
-    /// Indices of the curve's values that the channel has, ascending; `None` where it has all. A channel of
-    /// which a part is held out occurs twice in a record.
+    /// Indices of the simulated curve's values that the channel contains, ascending; `None` if it contains
+    /// all. A channel of which a part is held out occurs twice in a record.
     pub rows: Option<Vec<usize>>,
     /// Whether the gap is counted on this channel. Other channels only help to tell causes apart; where no
     /// channel is marked, the gap is counted on all.

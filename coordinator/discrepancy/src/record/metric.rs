@@ -1,13 +1,13 @@
 //! Metric in which curves are fitted and tested: residuals in units of their own uncertainty.
 //!
-//! The entries of all channels of a group at one place of their basis (an order of the period, a sample) are
-//! divided by the Cholesky factor of their covariance. Errors of the measured input are marginalised: with
-//! nuisance columns N of standard deviations T, `(I + N T^2 N^T)^(-1/2)` is applied on top. Every entry of a
-//! residual that is noise alone then has variance 1.
-use crate::record::basis::{Group, smoothed};
+//! The entries of all channels of a group with the same index in their basis (an order of the period, a
+//! sample) are divided by the Cholesky factor of their covariance. Errors of the measured input are
+//! marginalised: with nuisance columns N of standard deviations T, `(I + N T^2 N^T)^(-1/2)` is applied on
+//! top. Every entry of a residual that is noise alone then has variance 1.
+use crate::record::basis::{ChannelGroup, smoothed};
 use crate::record::bins::{Bins, along};
 use crate::record::measured::Curves;
-use crate::record::noise::{Known, Noise};
+use crate::record::noise::{Noise, NoiseSource};
 use crate::record::spectrum::Spectra;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -18,20 +18,21 @@ type C = Complex<f64>;
 pub struct Metric {
     blocks: Vec<Block>,
     channels: usize,
-    known: Known,
+    known: NoiseSource,
     /// Orthonormal directions of the marginalised errors, and the share by which each is shortened.
     shrunk: Option<(DMatrix<f64>, DVector<f64>)>,
 }
 
-/// Group of channels and its part of a whitened vector, ordered by place, channel, real and imaginary part.
+/// Part of a whitened vector that belongs to one group of channels, ordered by entry, channel, real and
+/// imaginary part.
 #[derive(Clone, Debug)]
 struct Block {
-    group: Group,
-    /// Inverse Cholesky factors of the covariances, by place.
+    group: ChannelGroup,
+    /// Inverse Cholesky factor of the channels' noise covariance, by entry.
     factors: Vec<DMatrix<C>>,
-    /// Degrees of freedom of the variances, by place.
+    /// Degrees of freedom of the noise variances, by entry.
     freedoms: Vec<f64>,
-    /// Index of the group's first number in the whitened vector.
+    /// Index in the whitened vector at which the group's part begins.
     begin: usize,
 }
 
@@ -44,7 +45,8 @@ impl Block {
         self.group.basis.parts()
     }
 
-    /// Returns the factor that gives each real part of an entry of variance 1 the variance 1.
+    /// Returns the factor that gives the real and imaginary part of an entry variance 1: sqrt(2) for complex
+    /// entries, else 1.
     fn scale(&self) -> f64 {
         if self.parts() == 2 {
             // a circular complex variable of variance 1 has parts of variance 1/2
@@ -58,7 +60,7 @@ impl Block {
         self.parts() * self.rows() * self.factors.len()
     }
 
-    /// Returns the index at which an entry begins in a whitened vector.
+    /// Returns the index in the whitened vector of entry `place` of the group's channel `row`.
     fn at(&self, place: usize, row: usize) -> usize {
         self.begin + self.parts() * (place * self.rows() + row)
     }
@@ -74,7 +76,7 @@ impl Block {
         Complex::new(whitened[at], imaginary)
     }
 
-    /// Returns all entries of a channel; `row` is its index in the group.
+    /// Returns all entries of a channel in a whitened vector; `row` is the channel's index in the group.
     fn entries(&self, whitened: &DVector<f64>, row: usize) -> Vec<C> {
         let places = 0..self.factors.len();
         places
@@ -126,26 +128,27 @@ impl Block {
 impl Metric {
     /// Builds the metric from the Hermitian covariances of the mean's entries, for groups that together hold
     /// all channels of a record. An entry whose covariance is not positive definite is left out.
-    pub fn new(groups: &[Group], noise: &Noise) -> Self {
+    pub fn new(groups: &[ChannelGroup], noise: &Noise) -> Self {
         let mut begin = 0;
-        let block = |((group, covariances), freedoms): ((&Group, &Vec<DMatrix<C>>), &Vec<f64>)| {
-            let rows = group.channels.len();
-            let factor = |covariance: &DMatrix<C>| {
-                let lower = covariance.clone().cholesky()?.unpack();
-                lower.solve_lower_triangular(&DMatrix::identity(rows, rows))
+        let block =
+            |((group, covariances), freedoms): ((&ChannelGroup, &Vec<DMatrix<C>>), &Vec<f64>)| {
+                let rows = group.channels.len();
+                let factor = |covariance: &DMatrix<C>| {
+                    let lower = covariance.clone().cholesky()?.unpack();
+                    lower.solve_lower_triangular(&DMatrix::identity(rows, rows))
+                };
+                let factors = covariances.iter();
+                let block = Block {
+                    factors: factors
+                        .map(|s| factor(s).unwrap_or_else(|| DMatrix::zeros(rows, rows)))
+                        .collect(),
+                    freedoms: freedoms.clone(),
+                    group: group.clone(),
+                    begin,
+                };
+                begin += block.len();
+                block
             };
-            let factors = covariances.iter();
-            let block = Block {
-                factors: factors
-                    .map(|s| factor(s).unwrap_or_else(|| DMatrix::zeros(rows, rows)))
-                    .collect(),
-                freedoms: freedoms.clone(),
-                group: group.clone(),
-                begin,
-            };
-            begin += block.len();
-            block
-        };
         Self {
             blocks: groups
                 .iter()
@@ -159,8 +162,8 @@ impl Metric {
         }
     }
 
-    /// Returns how the noise is known.
-    pub const fn known(&self) -> Known {
+    /// Returns whether the noise was estimated, stated or guessed.
+    pub const fn known(&self) -> NoiseSource {
         self.known
     }
 
@@ -192,9 +195,9 @@ impl Metric {
         pooled.copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the degrees of freedom of the noise variance that intervals use, from the least well known
-    /// entry, slow curves left out: those of a single order, since neighbouring orders are only about as
-    /// strong, or of the pooled innovations of samples.
+    /// Returns the degrees of freedom of the noise variance for confidence intervals: those of the least well
+    /// known entry, slow curves left out. An order counts alone, without the neighbours it is pooled with,
+    /// since these are only about as strong; innovations of samples count pooled.
     pub fn freedom_of_intervals(&self) -> f64 {
         let each = self.blocks.iter().flat_map(|block| {
             let basis = &block.group.basis;
@@ -242,7 +245,7 @@ impl Metric {
         out
     }
 
-    /// Marginalises error directions, given as images under this metric times their standard deviation.
+    /// Marginalises error directions, given as whitened curves times the standard deviation of the error.
     pub fn marginalize(&mut self, directions: &[DVector<f64>]) {
         if directions.is_empty() {
             return;
@@ -257,7 +260,7 @@ impl Metric {
 
     /// Inverts the whitening: returns the entries of a whitened vector by channel. Marginalised directions
     /// stay shortened.
-    pub fn colour(&self, whitened: &DVector<f64>) -> Spectra {
+    pub fn unwhiten(&self, whitened: &DVector<f64>) -> Spectra {
         let mut out = vec![Vec::new(); self.channels];
         for block in &self.blocks {
             block.colour(whitened, &mut out);
@@ -265,7 +268,7 @@ impl Metric {
         out
     }
 
-    /// Returns the entries of curves, by channel.
+    /// Returns the basis entries (orders or innovations) of curves, by channel, without whitening.
     pub fn entries(&self, curves: &Curves) -> Spectra {
         self.by_channel(|block, row| {
             let curve = &curves[block.group.channels[row]];
@@ -299,7 +302,7 @@ impl Metric {
         self.by_channel(|block, row| block.group.basis.waves(row, block.entries(whitened, row)))
     }
 
-    /// Returns a whitened vector along each channel's abscissa, in the channel's bins.
+    /// Returns a whitened vector as values along each channel's abscissa, one per bin.
     pub fn along(&self, whitened: &DVector<f64>) -> Vec<Vec<f64>> {
         self.by_channel(|block, row| along(&block.group, row, &block.entries(whitened, row)))
     }
@@ -315,7 +318,7 @@ impl Metric {
     pub(crate) fn blocks(&self, residual: &DVector<f64>) -> Vec<Vec<usize>> {
         const MOST: usize = 10;
         const ORDERS: usize = 5;
-        /// Least number of correlation lengths in a stretch.
+        /// Minimum length of a block of samples, in correlation lengths.
         const LENGTHS: f64 = 5.0;
         let samples = self.blocks.iter().filter(|own| !own.group.is_periodic());
         let lengths = samples.map(|block| {
@@ -396,7 +399,7 @@ impl Metric {
     }
 }
 
-/// Returns the integrated autocorrelation time of a row, in values: `1 + 2 sum rho_k` up to the first
+/// Returns the integrated autocorrelation time of a sequence, in samples: `1 + 2 sum rho_k` up to the first
 /// correlation below 0, at least 1 (Sokal 1997).
 fn correlation_length(row: &[f64]) -> f64 {
     let power: f64 = row.iter().map(|x| x * x).sum();
@@ -415,8 +418,8 @@ mod tests {
     use crate::record::spectrum::Orders;
     use protocol::case::Abscissa;
 
-    fn group() -> Group {
-        Group {
+    fn group() -> ChannelGroup {
+        ChannelGroup {
             channels: vec![0, 1],
             abscissa: Abscissa {
                 name: "phase".to_owned(),
@@ -444,7 +447,7 @@ mod tests {
         };
         let noise = Noise {
             covariances: vec![(0..3).map(covariance).collect()],
-            known: Known::Stated,
+            known: NoiseSource::Stated,
             freedoms: vec![vec![f64::INFINITY; 3]],
         };
         Metric::new(&[group()], &noise)
@@ -481,7 +484,11 @@ mod tests {
         }
         assert!((whitened.norm_squared() - expected).abs() < 1e-9 * expected);
         // coloured again, they are the curves' own entries
-        for (back, own) in metric.colour(&whitened).iter().zip(metric.entries(&curves)) {
+        for (back, own) in metric
+            .unwhiten(&whitened)
+            .iter()
+            .zip(metric.entries(&curves))
+        {
             assert!(back.iter().zip(&own).all(|(a, b)| (a - b).norm() < 1e-9));
         }
     }

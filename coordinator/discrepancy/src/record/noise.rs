@@ -6,7 +6,7 @@
 //! there is no scatter: the noise is then taken from the channels' statements and from the roughness of the
 //! curves, and all results are marked as resting on that assumption.
 use crate::linear::score::student;
-use crate::record::basis::{Basis, Group, smoothed};
+use crate::record::basis::{Basis, ChannelGroup, smoothed};
 use crate::record::measured::Record;
 use crate::record::scatter::unexplained;
 use crate::record::spectrum::{Orders, Spectra};
@@ -17,19 +17,19 @@ type C = Complex<f64>;
 
 /// Source of the knowledge of a record's noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Known {
-    /// Estimated from the scatter of several cycles.
-    Seen,
+pub enum NoiseSource {
+    /// Measured: estimated from the scatter of several cycles.
+    Measured,
     /// Single cycle, with the noise stated for every channel.
     Stated,
     /// Single cycle, with no noise stated for some channel: estimated from the roughness of the curve.
-    Guessed,
+    Estimated,
 }
 
-impl Known {
+impl NoiseSource {
     /// Returns whether the noise was estimated from cycles.
     pub const fn is_seen(self) -> bool {
-        matches!(self, Self::Seen)
+        matches!(self, Self::Measured)
     }
 }
 
@@ -39,7 +39,7 @@ pub struct Noise {
     /// Covariances of the mean over the cycles, by group and entry; channels x channels.
     pub covariances: Vec<Vec<DMatrix<C>>>,
     /// Source of the knowledge of the noise.
-    pub known: Known,
+    pub known: NoiseSource,
     /// Degrees of freedom of the variances, by group and entry; infinite where they were not estimated from
     /// cycles.
     pub freedoms: Vec<Vec<f64>>,
@@ -48,20 +48,20 @@ pub struct Noise {
 impl Noise {
     /// Estimates the noise of a record. `inputs` are curves by which cycles may differ because their input
     /// did (per unit of that input), channel by channel.
-    pub fn estimate(record: &Record, groups: &[Group], inputs: &[Vec<Vec<f64>>]) -> Self {
+    pub fn estimate(record: &Record, groups: &[ChannelGroup], inputs: &[Vec<Vec<f64>>]) -> Self {
         let mut noise = Self::measured(record, groups, inputs);
         noise.add_model_error(record, groups);
         noise
     }
 
     /// Estimates the noise of the measurement alone, without the model error.
-    fn measured(record: &Record, groups: &[Group], inputs: &[Vec<Vec<f64>>]) -> Self {
+    fn measured(record: &Record, groups: &[ChannelGroup], inputs: &[Vec<Vec<f64>>]) -> Self {
         if record.cycles.len() < 2 {
             let stated = |c: usize| record.noise(c).is_some();
             let known = if (0..record.channels.len()).all(stated) {
-                Known::Stated
+                NoiseSource::Stated
             } else {
-                Known::Guessed
+                NoiseSource::Estimated
             };
             let assume = |group| assumed(record, group);
             return Self {
@@ -77,14 +77,14 @@ impl Noise {
         let (covariances, freedoms) = seen.unzip();
         Self {
             covariances,
-            known: Known::Seen,
+            known: NoiseSource::Measured,
             freedoms,
         }
     }
 
     /// Adds the stated model error of the channels: spread equally over all compared entries, and independent
     /// of the number of cycles.
-    fn add_model_error(&mut self, record: &Record, groups: &[Group]) {
+    fn add_model_error(&mut self, record: &Record, groups: &[ChannelGroup]) {
         for (group, covariances) in groups.iter().zip(&mut self.covariances) {
             let places = covariances.len() as f64;
             for (row, &channel) in group.channels.iter().enumerate() {
@@ -112,7 +112,7 @@ impl Noise {
 
     /// Adds an error with known entries (for example the numerical error of the model), by channel, smoothed
     /// over neighbours and taken as independent between channels.
-    pub fn add_error(&mut self, groups: &[Group], spectra: &[Vec<C>]) {
+    pub fn add_error(&mut self, groups: &[ChannelGroup], spectra: &[Vec<C>]) {
         for (group, covariances) in groups.iter().zip(&mut self.covariances) {
             for (row, &channel) in group.channels.iter().enumerate() {
                 let powers: Vec<f64> = spectra[channel].iter().map(C::norm_sqr).collect();
@@ -132,7 +132,11 @@ impl Noise {
 /// Because of their few degrees of freedom `nu` it is widened by the ratio of Student's 95 % interval to the
 /// normal one: two cycles determine a mean to a factor of six. The variance of a channel over all its entries
 /// is at least half of the stated variance: a data sheet may be off by as much, a few cycles by more.
-fn seen(record: &Record, group: &Group, inputs: &[Vec<Vec<f64>>]) -> (Vec<DMatrix<C>>, Vec<f64>) {
+fn seen(
+    record: &Record,
+    group: &ChannelGroup,
+    inputs: &[Vec<Vec<f64>>],
+) -> (Vec<DMatrix<C>>, Vec<f64>) {
     let basis = &group.basis;
     let of = |curves: &Vec<Vec<f64>>| group.transform(curves);
     let inputs: Vec<Spectra> = inputs.iter().map(of).collect();
@@ -196,7 +200,7 @@ fn seen(record: &Record, group: &Group, inputs: &[Vec<Vec<f64>>]) -> (Vec<DMatri
     (covariances, freedoms)
 }
 
-/// Raises each variance to that of another covariance and keeps the correlations.
+/// Raises each variance of a covariance matrix to at least that of another one, keeping the correlations.
 fn at_least(covariance: &mut DMatrix<C>, least: &DMatrix<C>) {
     for k in 0..covariance.nrows() {
         let (own, least) = (covariance[(k, k)].re, least[(k, k)].re);
@@ -212,7 +216,7 @@ fn at_least(covariance: &mut DMatrix<C>, least: &DMatrix<C>) {
 
 /// Returns diagonal covariances for a single cycle: the larger of the stated noise and the roughness of the
 /// curve.
-fn assumed(record: &Record, group: &Group) -> Vec<DMatrix<C>> {
+fn assumed(record: &Record, group: &ChannelGroup) -> Vec<DMatrix<C>> {
     let variance = |c: &usize| {
         let curve = record.cycles.first().map_or(&[][..], |cycle| &cycle[*c]);
         let stated = record.noise(*c).unwrap_or(0.0);
@@ -249,7 +253,8 @@ fn assumed(record: &Record, group: &Group) -> Vec<DMatrix<C>> {
     (0..group.basis.places()).map(at).collect()
 }
 
-/// Shrinks a covariance towards its diagonal: slightly with many terms, completely with few.
+/// Shrinks a covariance towards its diagonal: slightly if `terms`, the number of averaged terms, is large,
+/// completely if it is small.
 fn shrink(mut covariance: DMatrix<C>, terms: f64) -> DMatrix<C> {
     let channels = covariance.nrows() as f64;
     let keep = 1.0 - (2.0 * (channels + 1.0) / terms).clamp(0.1, 1.0);
@@ -269,7 +274,8 @@ mod tests {
     use crate::record::measured::Stated;
     use crate::record::measured::tests::recorded;
 
-    /// A model error is in the unit of a value, so a weighted entry has its square times that of the weight.
+    /// Checks that the model error, stated in the unit of an unweighted value, is multiplied by the squared
+    /// weight exactly once.
     #[test]
     fn the_model_error_of_a_weighted_value_is_counted_once() {
         let error = 0.1;
@@ -285,7 +291,7 @@ mod tests {
             held_out: false,
             stated: Stated::default(),
         };
-        let groups = Group::of(&record, 10, &[]);
+        let groups = ChannelGroup::of(&record, 10, &[]);
         let [group] = &groups[..] else {
             panic!("one channel makes one group");
         };

@@ -8,9 +8,9 @@
 pub struct Nuisance {
     /// Identifier of the library's effect that the error is, or name of a channel's gain.
     pub id: String,
-    /// Name of the effect's size.
+    /// Name of the effect's size parameter that the error sets.
     pub parameter: String,
-    /// Unit of the deviation.
+    /// Unit of the error's standard deviation.
     pub unit: String,
     /// Way in which the error acts.
     pub acts: Acts,
@@ -18,7 +18,7 @@ pub struct Nuisance {
     pub deviation: f64,
     /// Whether the value is never negative: its prior is half a normal distribution.
     pub never_negative: bool,
-    /// Whether the deviation is not stated but a usual value for such instruments.
+    /// Whether the standard deviation is a usual value for such instruments, not stated in the data sheet.
     pub assumed: bool,
 }
 

@@ -19,11 +19,11 @@ pub struct Samples {
     /// Correlation of each sample with the one before it; 0 for the first.
     rho: Vec<f64>,
     /// Householder vectors of the reflections that turn slow curves into the first entries: the constant, and
-    /// where it counts the first order of the span as well.
-    mirrors: Vec<Vec<f64>>,
+    /// where the constant counts the first order of the span as well.
+    householder_vectors: Vec<Vec<f64>>,
     /// Norm of the part of each slow curve that is orthogonal to the ones before it.
     lengths: Vec<f64>,
-    /// Whether the constant of a curve counts.
+    /// Whether the constant of a curve counts (channel with a fixed zero).
     absolute: bool,
     /// Weights of the values; empty where all weights are equal.
     weights: Vec<f64>,
@@ -53,14 +53,14 @@ impl Samples {
         });
         let mut samples = Self {
             rho: std::iter::once(0.0).chain(rho).collect(),
-            mirrors: Vec::new(),
+            householder_vectors: Vec::new(),
             lengths: Vec::new(),
             absolute,
             weights: weights.to_vec(),
         };
         for slow in slow_curves(points, absolute) {
             let mut mirror = samples.reflected(samples.innovations(&slow));
-            let known = samples.mirrors.len();
+            let known = samples.householder_vectors.len();
             mirror[..known].fill(0.0);
             let norm = length_of(&mirror);
             if norm <= f64::EPSILON * points.len() as f64 {
@@ -70,7 +70,7 @@ impl Samples {
             mirror[known] += norm.copysign(mirror[known]);
             let length = length_of(&mirror);
             samples
-                .mirrors
+                .householder_vectors
                 .push(mirror.iter().map(|v| v / length).collect());
             samples.lengths.push(norm);
         }
@@ -97,7 +97,7 @@ impl Samples {
             };
             Self::of(channel, length)
         });
-        let surprise = tried.map(|samples| (samples.surprise(deviations), samples));
+        let surprise = tried.map(|samples| (samples.negative_log_likelihood(deviations), samples));
         let least = surprise.min_by(|(a, _), (b, _)| a.total_cmp(b));
         least.map_or_else(|| Self::of(channel, 0.0), |(_, samples)| samples)
     }
@@ -112,14 +112,24 @@ impl Samples {
         self.absolute
     }
 
-    /// Returns how many entries, from the first on, are slow curves instead of samples.
+    /// Returns the number of leading entries that are slow curves (constant, first order of the span) instead
+    /// of innovations.
     pub const fn slow(&self) -> usize {
-        if self.absolute { self.mirrors.len() } else { 0 }
+        if self.absolute {
+            self.householder_vectors.len()
+        } else {
+            0
+        }
     }
 
-    /// Returns the number of reflected innovations that are left out of the entries.
+    /// Returns the number of leading reflected innovations that are left out of the entries, since the
+    /// constant does not count.
     const fn left_out(&self) -> usize {
-        if self.absolute { 0 } else { self.mirrors.len() }
+        if self.absolute {
+            0
+        } else {
+            self.householder_vectors.len()
+        }
     }
 
     /// Returns entries sample by sample: slow curves are transformed back to their values at each sample.
@@ -178,21 +188,21 @@ impl Samples {
     }
 
     fn reflected(&self, x: Vec<f64>) -> Vec<f64> {
-        self.mirrors
+        self.householder_vectors
             .iter()
             .fold(x, |x, mirror| reflected(x, mirror))
     }
 
     fn turned_back(&self, x: Vec<f64>) -> Vec<f64> {
-        self.mirrors
+        self.householder_vectors
             .iter()
             .rev()
             .fold(x, |x, mirror| reflected(x, mirror))
     }
 
-    /// Returns minus twice the log restricted likelihood, with slow curves left open and at the most likely
-    /// variance, up to a constant of the curves.
-    fn surprise(&self, deviations: &[Vec<f64>]) -> f64 {
+    /// Returns minus twice the log restricted likelihood of this correlation length, with slow curves left
+    /// free and at the most likely variance, up to a constant of the curves.
+    fn negative_log_likelihood(&self, deviations: &[Vec<f64>]) -> f64 {
         let square = |curve: &Vec<f64>| {
             let entries = self.transform(curve).into_iter().skip(self.slow());
             entries.map(|e| e.norm_sqr()).sum::<f64>()
@@ -330,8 +340,8 @@ mod tests {
         assert_eq!(one.transform(&[2.5]), [C::from(10.0)]);
     }
 
-    /// Checks that entries of coloured noise have the same power as those of the few cycles from which the
-    /// correlation length was estimated, and are uncorrelated from one to the next.
+    /// Checks that the entries of coloured noise are uncorrelated from one to the next and as strong as in
+    /// the few cycles from which the correlation length was estimated.
     #[test]
     fn entries_of_coloured_noise_are_white() {
         let points = uneven(400);

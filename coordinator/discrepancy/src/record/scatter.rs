@@ -30,7 +30,7 @@ pub(crate) fn unexplained(cycles: Vec<Spectra>, inputs: &[Spectra]) -> Vec<Spect
         .collect()
 }
 
-/// Subtracts the least-squares combination of the inputs from a cycle, each channel weighted by the inverse
+/// Subtracts from a cycle its least-squares fit by the input curves; each channel is weighted by the inverse
 /// power of its mean.
 fn regress_out(cycle: &mut [Vec<C>], inputs: &[Spectra], means: &[Vec<C>]) {
     if inputs.is_empty() {

@@ -5,7 +5,7 @@
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
-/// Entries of curves in their basis, channel by channel.
+/// Entries (basis coefficients) of curves, channel by channel.
 pub type Spectra = Vec<Vec<Complex<f64>>>;
 
 /// Discrete Fourier transform on a grid of equally spaced phases, from 0 on, without the end of the period.

@@ -1,5 +1,5 @@
 //! Record with its metric, the reference with which every simulation is compared.
-use crate::record::basis::Group;
+use crate::record::basis::ChannelGroup;
 use crate::record::measured::{Curves, Record};
 use crate::record::metric::Metric;
 use crate::record::noise::Noise;
@@ -34,7 +34,7 @@ impl WhitenedRecord {
     /// Builds the metric of a record from its own noise, with orders up to `highest`, without errors of its
     /// input.
     pub fn under_own_noise(record: Record, highest: usize, numerics: Numerics) -> Self {
-        let groups = Group::of(&record, highest, &[]);
+        let groups = ChannelGroup::of(&record, highest, &[]);
         let metric = Metric::new(&groups, &Noise::estimate(&record, &groups, &[]));
         Self::new(record, metric, numerics)
     }

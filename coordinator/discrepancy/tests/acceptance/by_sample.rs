@@ -3,11 +3,11 @@
 use crate::trial::{say, trials};
 use discrepancy::linear::score::misfit_tail;
 use discrepancy::linear::tangent::Tangent;
-use discrepancy::place::residual::Residual;
-use discrepancy::place::{along, order, whiteness};
-use discrepancy::record::basis::Group;
+use discrepancy::localisation::residual::Residual;
+use discrepancy::localisation::{order, whiteness, window_test};
+use discrepancy::record::basis::ChannelGroup;
 use discrepancy::record::metric::Metric;
-use discrepancy::record::noise::{Known, Noise};
+use discrepancy::record::noise::{Noise, NoiseSource};
 use discrepancy::record::{Curves, Record, Recorded, Stated};
 use nalgebra::{DMatrix, DVector};
 use protocol::case::{Abscissa, Channel, Offset};
@@ -115,7 +115,7 @@ fn zero() -> Curves {
 /// Returns the metric of a record's own noise, the degrees of freedom of its variances, and the whitened
 /// mean.
 fn whitened(record: &Record) -> (Metric, f64, DVector<f64>) {
-    let groups = Group::of(record, 120, &[]);
+    let groups = ChannelGroup::of(record, 120, &[]);
     let noise = Noise::estimate(record, &groups, &[]);
     let metric = Metric::new(&groups, &noise);
     let mean = metric.whiten(&record.mean());
@@ -133,7 +133,8 @@ fn nothing(entries: usize) -> Tangent {
     Tangent::new(&at, &[])
 }
 
-/// Checks that entries have variance 1 and are uncorrelated along a channel and between channels.
+/// Checks that the whitened entries of noise have variance 1 and are uncorrelated along a channel and between
+/// channels.
 #[test]
 fn entries_of_noise_are_white() {
     let (mut square, mut along, mut across, mut count) = (0.0, 0.0, 0.0, 0.0);
@@ -170,14 +171,14 @@ fn noise_is_rejected_as_often_as_is_said() {
             let (metric, freedom, z) = whitened(&own);
             let tangent = nothing(z.len());
             let residual = Residual {
-                left: &z,
+                values: &z,
                 metric: &metric,
                 tangent: &tangent,
             };
             let each = own.cycles.iter();
             let deviations: Vec<DVector<f64>> =
                 each.map(|cycle| metric.whiten(cycle) - &z).collect();
-            let map = along::map(&residual, &deviations, 100, 0.05);
+            let map = window_test::map(&residual, &deviations, 100, 0.05);
             windows += usize::from(!map.windows.is_empty());
             coloured += usize::from(whiteness::p_value(&order::powers(&residual), freedom) < 0.05);
             let behind = z.len() as f64 * (cycles as f64 - 1.0);
@@ -206,14 +207,14 @@ fn noise_of_one_cycle_is_as_stated_or_guessed() {
         let sets = 20;
         let each = (0..sets).map(|seed| {
             let own = record(3000 + seed, 1, &zero(), stated);
-            let groups = Group::of(&own, 120, &[]);
+            let groups = ChannelGroup::of(&own, 120, &[]);
             let known = Noise::estimate(&own, &groups, &[]).known;
             assert_eq!(
                 known,
                 if stated {
-                    Known::Stated
+                    NoiseSource::Stated
                 } else {
-                    Known::Guessed
+                    NoiseSource::Estimated
                 }
             );
             let (metric, _, z) = whitened(&own);
@@ -237,13 +238,13 @@ fn a_bump_is_found_where_it_is() {
     let (metric, freedom, z) = whitened(&own);
     let tangent = nothing(z.len());
     let residual = Residual {
-        left: &z,
+        values: &z,
         metric: &metric,
         tangent: &tangent,
     };
     let each = own.cycles.iter();
     let deviations: Vec<DVector<f64>> = each.map(|cycle| metric.whiten(cycle) - &z).collect();
-    let map = along::map(&residual, &deviations, 200, 0.05);
+    let map = window_test::map(&residual, &deviations, 200, 0.05);
     let orders = order::map(&residual, freedom, 0.05);
     assert!(orders.ratio.iter().all(Vec::is_empty) && orders.peaks.is_empty());
     let first = map.windows.first().expect("a window");

@@ -1,15 +1,15 @@
-//! Data sheet of the stand-in machine, shared by its simulation and the diagnosis: load cards, unknowns and
-//! grid, without the equation of motion.
+//! Data sheet of the stand-in machine (a cheap model for tests), shared by its simulation and the diagnosis:
+//! load cards, unknowns and grid, without the equation of motion.
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
-use protocol::case::{Scale, Shares, Shift, Unknown, Valley};
+use protocol::case::{HeldRatios, Scale, Shift, Unknown, Valley};
 use search::space::Space;
 use std::f64::consts::TAU;
 
-/// Number of samples of a turn.
+/// Number of samples per turn of the crank.
 pub(crate) const SAMPLES: usize = 144;
 /// Highest order that is compared.
 pub(crate) const ORDERS: usize = 40;
-/// Speeds of the conditions, as shares of the first.
+/// Crank speeds of the two conditions, relative to that of the first.
 pub(crate) const SPEED: [f64; 2] = [1.0, 0.8];
 
 /// Returns the load card of a condition (kN) at a crank angle (rad): 14 harmonics of a pump's load, and the
@@ -60,8 +60,8 @@ pub(crate) fn unknown(name: &str, start: f64, trust: [f64; 2]) -> Unknown {
 pub(crate) const STIFFNESS: [f64; 2] = [-1.0, 1.5];
 pub(crate) const LOSS: [f64; 2] = [-1.0, 4.0];
 
-/// Returns the narrow valley of a resonant stiffness, with the shifts of the unknowns `loss` and `contact`
-/// that uncover it and the shifts of `contact` that can stand in for it.
+/// Describes the narrow minimum (valley) of a resonant stiffness for the valley search, with the shifts of
+/// the unknowns `loss` and `contact` that uncover it and the shifts of `contact` that can stand in for it.
 pub(crate) fn valley(loss: &str, contact: &str) -> Valley {
     let shift = |unknown: &str, by| Shift {
         unknown: unknown.to_owned(),
@@ -72,7 +72,7 @@ pub(crate) fn valley(loss: &str, contact: &str) -> Valley {
         to: 1.1,
         step: 0.02,
         uncovered_by: vec![shift(loss, -0.8), shift(contact, 1.5)],
-        shares: Some(Shares {
+        shares: Some(HeldRatios {
             unknown: loss.to_owned(),
             of_scanned: vec![6e-4, 2e-3],
         }),
@@ -101,7 +101,7 @@ pub(crate) fn grid() -> impl Iterator<Item = f64> {
     (0..SAMPLES).map(|i| TAU * i as f64 / SAMPLES as f64)
 }
 
-/// Creates a size with bounds at forty times its typical value.
+/// Creates a size parameter of an effect, with bounds at forty times its typical value.
 pub(crate) fn size(name: &str, unit: &str, typical: f64, sign: Sign) -> ParameterDescriptor {
     ParameterDescriptor {
         name: name.to_owned(),

@@ -3,20 +3,20 @@
 use crate::trial::{diagnose_usual, line};
 use crate::truth::Truth;
 use discrepancy::diagnose::Limit;
-use discrepancy::place::wander::Wander;
+use discrepancy::localisation::parameter_drift::ParameterDrift;
 use discrepancy::verdict::Verdict;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Results of the diagnosis of a healthy machine.
 pub(crate) struct Healthy {
-    /// Detection limits.
+    /// Detection limits of all effects on the healthy machine.
     pub(crate) limits: Vec<Limit>,
-    /// Verdict.
+    /// Verdict on the healthy machine.
     pub(crate) verdict: Verdict,
     /// Parameters that would have to vary along the abscissa or with the condition.
-    pub(crate) wander: Vec<Wander>,
-    /// Summary in one line.
+    pub(crate) wander: Vec<ParameterDrift>,
+    /// Summary of the diagnosis in one line.
     pub(crate) line: String,
 }
 
@@ -37,7 +37,7 @@ pub(crate) fn healthy(seed: u64, noise: f64) -> Arc<Healthy> {
             verdict: answer.verdict,
             line: line(&answer),
             limits: answer.limits,
-            wander: answer.wander,
+            wander: answer.drifts,
         })
     });
     Arc::clone(made)

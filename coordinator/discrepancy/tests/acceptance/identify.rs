@@ -3,7 +3,9 @@
 use crate::by_curves::ByCurves;
 use crate::trial::{now, say};
 use discrepancy::diagnose::Inputs;
-use discrepancy::identify::{End, Identified, Seen, UnknownEstimate, identify};
+use discrepancy::identify::{
+    Determination, IdentificationResult, IntervalEnd, UnknownEstimate, identify,
+};
 use discrepancy::linear::score::student;
 use discrepancy::record::whitened::WhitenedRecord;
 use discrepancy::record::{Curves, Record, Recorded, Stated};
@@ -104,7 +106,7 @@ fn conditions() -> Vec<Vec<Channel>> {
 
 const TRUTH: [f64; 6] = [3.0, -2.0, 1.0, 1.0, 3e4, 3e-6];
 
-fn seen(seed: u64, unknowns: Vec<Unknown>) -> Identified {
+fn seen(seed: u64, unknowns: Vec<Unknown>) -> IdentificationResult {
     let space = Space::new(&unknowns).expect("ordered");
     let inputs = Inputs {
         conditions: Vec::new(),
@@ -114,9 +116,9 @@ fn seen(seed: u64, unknowns: Vec<Unknown>) -> Identified {
         unknowns,
         records: vec![record(seed, &TRUTH)],
         library: Vec::new(),
-        usual: Numerics::OF_THE_CASE,
+        usual: Numerics::FROM_CASE,
         finer: Vec::new(),
-        entrance: "least-squares",
+        global_search: "least-squares",
         seed: 1,
         thresholds: Thresholds::default(),
     };
@@ -124,7 +126,7 @@ fn seen(seed: u64, unknowns: Vec<Unknown>) -> Identified {
     now(identify(&mut waves, &inputs, &conditions())).expect("it fits")
 }
 
-fn named<'a>(all: &'a Identified, name: &str) -> &'a UnknownEstimate {
+fn named<'a>(all: &'a IdentificationResult, name: &str) -> &'a UnknownEstimate {
     all.unknowns
         .iter()
         .find(|own| own.name == name)
@@ -137,7 +139,7 @@ fn named<'a>(all: &'a Identified, name: &str) -> &'a UnknownEstimate {
 #[test]
 fn intervals_are_those_of_the_closed_form() {
     let all = seen(5, unknowns());
-    let on = WhitenedRecord::under_own_noise(record(5, &TRUTH), 120, Numerics::OF_THE_CASE);
+    let on = WhitenedRecord::under_own_noise(record(5, &TRUTH), 120, Numerics::FROM_CASE);
     let column = |k: usize| {
         let mut x = TRUTH;
         let base = on
@@ -154,7 +156,7 @@ fn intervals_are_those_of_the_closed_form() {
     assert!(all.is_noise, "{}", all.left);
     for (k, name) in ["first", "alike", "both"].into_iter().enumerate() {
         let own = named(&all, name);
-        assert_eq!(own.seen, Seen::Both, "{own:?}");
+        assert_eq!(own.seen, Determination::Both, "{own:?}");
         let [low, high] = own.interval.map(|end| end.expect("an end"));
         let freedom = (on.metric.len() as f64 - 5.0).max(1.0);
         let dispersion = (all.left * on.metric.len() as f64 / freedom).max(1.0);
@@ -170,15 +172,18 @@ fn intervals_are_those_of_the_closed_form() {
     assert_eq!(trade[0].0, "alike");
     assert!((trade[0].1 - expected).abs() < 0.01, "{trade:?} {expected}");
     let blind = named(&all, "blind");
-    assert_eq!((blind.seen, blind.interval), (Seen::NotSeen, [None; 2]));
-    assert_eq!(blind.ends, [End::Bound, End::Fails]);
+    assert_eq!(
+        (blind.seen, blind.interval),
+        (Determination::NotSeen, [None; 2])
+    );
+    assert_eq!(blind.ends, [IntervalEnd::Bound, IntervalEnd::Fails]);
     let stiff = named(&all, "stiff");
-    assert_eq!(stiff.seen, Seen::LowerBound, "{stiff:?}");
+    assert_eq!(stiff.seen, Determination::LowerBound, "{stiff:?}");
     // where 30 N / (1 + x) is some standard errors of a sine's amplitude, 0.5 N / sqrt(900)
     let least = stiff.interval[0].expect("an end");
     assert!((300.0..TRUTH[4]).contains(&least), "{stiff:?}");
     let light = named(&all, "light");
-    assert_eq!(light.seen, Seen::UpperBound, "{light:?}");
+    assert_eq!(light.seen, Determination::UpperBound, "{light:?}");
     let last = all.directions.last().expect("six");
     assert!(last.words.contains("not seen"), "{last:?}");
 }
@@ -229,7 +234,7 @@ fn what_is_known_beforehand_counts() {
     });
     let all = seen(7, unknowns);
     let blind = named(&all, "blind");
-    assert_eq!(blind.seen, Seen::Both, "{blind:?}");
+    assert_eq!(blind.seen, Determination::Both, "{blind:?}");
     let [low, high] = blind.interval.map(|end| end.expect("an end"));
     // the quantile is that of the noise, an order of which ten cycles tell
     let factor = 10_f64.powf(student(18.0) * 0.2);
@@ -274,7 +279,7 @@ fn line(spec: &SimulateSpec) -> Curves {
 
 /// Identifies a straight line from one log with AR(1) noise of the given correlation and stated noise;
 /// returns the result and the half-widths of the textbook's least-squares intervals.
-fn of_line(seed: u64, correlation: f64, stated: Option<f64>) -> (Identified, [f64; 2]) {
+fn of_line(seed: u64, correlation: f64, stated: Option<f64>) -> (IdentificationResult, [f64; 2]) {
     let mut stream = Streams::new(seed, 34).at(0, Phase::Initial, 0);
     let mut noise = stream.normal();
     let mut next = || {
@@ -311,9 +316,9 @@ fn of_line(seed: u64, correlation: f64, stated: Option<f64>) -> (Identified, [f6
             stated: Stated::default(),
         }],
         library: Vec::new(),
-        usual: Numerics::OF_THE_CASE,
+        usual: Numerics::FROM_CASE,
         finer: Vec::new(),
-        entrance: "least-squares",
+        global_search: "least-squares",
         seed: 1,
         thresholds: Thresholds::default(),
     };
@@ -335,7 +340,7 @@ fn of_line(seed: u64, correlation: f64, stated: Option<f64>) -> (Identified, [f6
 
 /// Returns the half-width, and whether the interval contains the truth, for both unknowns of the straight
 /// line.
-fn ends_of_line(all: &Identified) -> [(f64, bool); 2] {
+fn ends_of_line(all: &IdentificationResult) -> [(f64, bool); 2] {
     let of = |k: usize| {
         let own = named(all, ["constant", "slope"][k]);
         let [low, high] = own.interval.map(|end| end.expect("an end"));

@@ -7,12 +7,12 @@ use crate::trial::{MACHINE, diagnose_usual, say, trials};
 use crate::truth::{ALL, Truth, record};
 use discrepancy::linear::score::score;
 use discrepancy::linear::tangent::Tangent;
-use discrepancy::model::{Model, Point, probe};
-use discrepancy::place::residual::Residual;
-use discrepancy::place::wander::Wander;
-use discrepancy::place::whereabouts::Where;
-use discrepancy::place::{along, joint, order};
-use discrepancy::record::basis::Group;
+use discrepancy::localisation::parameter_drift::ParameterDrift;
+use discrepancy::localisation::residual::Residual;
+use discrepancy::localisation::summary::Localisation;
+use discrepancy::localisation::{joint, order, window_test};
+use discrepancy::model::{FittedModel, Point, probe};
+use discrepancy::record::basis::ChannelGroup;
 use discrepancy::record::metric::Metric;
 use discrepancy::record::noise::Noise;
 use discrepancy::record::{Curves, Record, mean_of};
@@ -21,14 +21,14 @@ use protocol::job::Numerics;
 use search::least_squares::{Linearized, Variable};
 
 fn simulate(point: &Point) -> Curves {
-    let spec = point.experiment(0, &Numerics::OF_THE_CASE);
+    let spec = point.experiment(0, &Numerics::FROM_CASE);
     MACHINE.observe(&spec).curves
 }
 
 /// Returns the machine without effects at the given genes.
 fn plain(genes: &[f64]) -> Point {
     Point {
-        model: Model::plain(space()),
+        model: FittedModel::plain(space()),
         x: genes.to_vec(),
     }
 }
@@ -82,7 +82,7 @@ fn linear_fit(
 fn maps_of_noise_are_empty_in_nineteen_of_twenty() {
     let sets = trials(200);
     let truth = Truth::healthy(9100);
-    let model = Model::plain(space());
+    let model = FittedModel::plain(space());
     let at = simulate(&plain(&truth.genes));
     let slopes = slopes(&truth.genes);
     let variables = model.variables(&truth.genes);
@@ -93,7 +93,7 @@ fn maps_of_noise_are_empty_in_nineteen_of_twenty() {
     for set in 0..sets {
         // noise of its own: cycles of a machine whose curves are the model's
         let noisy = noise_of(&truth, set, &clean, &template);
-        let groups = Group::of(&noisy, ORDERS, &[]);
+        let groups = ChannelGroup::of(&noisy, ORDERS, &[]);
         let noise = Noise::estimate(&noisy, &groups, &[]);
         let metric = Metric::new(&groups, &noise);
         let (residual, tangent) = linear_fit(&noisy, &metric, &at, &slopes, &variables);
@@ -103,18 +103,18 @@ fn maps_of_noise_are_empty_in_nineteen_of_twenty() {
             .map(|cycle| tangent.project(&(metric.whiten(cycle) - &measured)))
             .collect();
         let all = Residual {
-            left: &residual,
+            values: &residual,
             metric: &metric,
             tangent: &tangent,
         };
-        let along = along::map(&all, &deviations, 200, 0.05);
+        let along = window_test::map(&all, &deviations, 200, 0.05);
         windows += usize::from(!along.windows.is_empty());
         let order = order::map(&all, metric.freedom(), 0.05);
         peaks += usize::from(!order.peaks.is_empty());
         let seen: Vec<joint::Latent> = latents.iter().map(|l| l.seen(&metric)).collect();
         let ranked = joint::rank(&seen, &residual, &tangent);
         joints += usize::from(ranked[0].log_bayes > 20_f64.ln());
-        let seen = Where {
+        let seen = Localisation {
             along,
             order,
             equivalent: joint::indistinguishable(&ranked, 1.0),
@@ -209,7 +209,7 @@ fn noise_of(truth: &Truth, set: u64, clean: &Curves, template: &Record) -> Recor
 #[test]
 fn scores_do_not_see_what_recalibration_explains() {
     let truth = Truth::healthy(9200);
-    let model = Model::plain(space());
+    let model = FittedModel::plain(space());
     let at = simulate(&plain(&truth.genes));
     let slopes = slopes(&truth.genes);
     let variables: Vec<Variable> = model
@@ -218,7 +218,7 @@ fn scores_do_not_see_what_recalibration_explains() {
         .map(|v| Variable { prior: None, ..v })
         .collect();
     let measured = record(&truth, 0, &ALL, 6);
-    let groups = Group::of(&measured, ORDERS, &[]);
+    let groups = ChannelGroup::of(&measured, ORDERS, &[]);
     let metric = Metric::new(&groups, &Noise::estimate(&measured, &groups, &[]));
     let (residual, tangent) = linear_fit(&measured, &metric, &at, &slopes, &variables);
     // a tenth of a decade of the back rope's damping and of the contact's
@@ -251,7 +251,7 @@ fn scores_do_not_see_what_recalibration_explains() {
 /// is missing from the model, and no longer once the found effect is in the model.
 #[test]
 fn parameters_wander_with_what_is_missing_and_not_with_the_answer() {
-    let least = |all: &[Wander]| {
+    let least = |all: &[ParameterDrift]| {
         let shifts = all.iter().flat_map(|wander| &wander.shifts);
         shifts.map(|shift| shift.p_value).fold(1.0, f64::min)
     };
@@ -269,8 +269,8 @@ fn parameters_wander_with_what_is_missing_and_not_with_the_answer() {
             .any(|round| round.added.as_ref() == Some(&effect.id))
         {
             named_right += 1;
-            before += usize::from(least(&answer.wander) < 0.05);
-            after += usize::from(least(&answer.wander_after) < 0.05);
+            before += usize::from(least(&answer.drifts) < 0.05);
+            after += usize::from(least(&answer.drifts_after) < 0.05);
         }
     }
     say(&format!(

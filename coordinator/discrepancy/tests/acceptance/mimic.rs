@@ -103,9 +103,9 @@ fn diagnosed(ids: &[&str], hidden: &[&[(&str, f64)]], seed: u64) -> Diagnosis {
         records: records.map(|(at, amounts)| record(at, amounts)).collect(),
         library: ids.iter().map(own).collect(),
         start: Some(vec![0.0]),
-        usual: Numerics::OF_THE_CASE,
+        usual: Numerics::FROM_CASE,
         finer: Vec::new(),
-        entrance: "least-squares",
+        global_search: "least-squares",
         seed: 1,
         thresholds: Thresholds {
             draws: 100,

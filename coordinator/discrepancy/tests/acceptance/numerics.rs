@@ -4,8 +4,8 @@ use crate::machine::Roughness;
 use crate::strata::{named, planted};
 use crate::trial::{Setup, diagnosed, line};
 use crate::truth::Truth;
+use discrepancy::baseline::discretisation_check::Preflight;
 use discrepancy::diagnose::Diagnosis;
-use discrepancy::ground::preflight::Preflight;
 use discrepancy::verdict::Verdict;
 
 fn with(numerics: Roughness) -> Setup {

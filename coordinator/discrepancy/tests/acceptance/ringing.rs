@@ -5,9 +5,9 @@ use crate::by_sample::{SAMPLES, SIZES, record, times};
 use crate::case::{effect, size};
 use crate::trial::{now, say, trials};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
-use discrepancy::proof::compare::Portion;
 use discrepancy::record::{Acts, Curves, Nuisance, Record};
 use discrepancy::thresholds::Thresholds;
+use discrepancy::validation::compare::DataRole;
 use discrepancy::verdict::Verdict;
 use protocol::announce::{EffectDescriptor, Place, Sign};
 use protocol::case::{Offset, Scale, Unknown};
@@ -15,7 +15,7 @@ use protocol::job::{Individual, Numerics, SimulateSpec};
 use search::random::{Phase, Streams};
 use search::space::Space;
 
-/// True frequency and damping, in decades from the start.
+/// True frequency and damping of the oscillation, in decades from the start values.
 const TRUTH: [f64; 2] = [0.03, -0.1];
 
 /// Returns the deflection and the force of a decaying oscillation with effects.
@@ -138,9 +138,9 @@ fn diagnosed_without(records: Vec<Record>, without: &[&str]) -> Diagnosis {
         records,
         library: library(),
         start: Some(vec![TRUTH[0] + 0.004, TRUTH[1] - 0.02]),
-        usual: Numerics::OF_THE_CASE,
-        finer: vec![Numerics::OF_THE_CASE],
-        entrance: "quick",
+        usual: Numerics::FROM_CASE,
+        finer: vec![Numerics::FROM_CASE],
+        global_search: "quick",
         seed: 1,
         thresholds: Thresholds {
             draws: 100,
@@ -178,7 +178,7 @@ fn what_is_hidden_in_a_record_without_a_period_gets_its_name() {
             "{said}"
         );
         assert_eq!(one.prediction.len(), 1, "{said}");
-        assert_eq!(one.prediction[0].part, Portion::LeftOut, "{said}");
+        assert_eq!(one.prediction[0].part, DataRole::LeftOut, "{said}");
         let unknown = diagnosed(vec![hidden(&[(id, 5.0 * amount)], 1, false)]);
         let said = crate::trial::line(&unknown);
         assert_eq!(unknown.verdict, Verdict::Unresolved, "{said}");
@@ -196,12 +196,12 @@ fn what_is_held_out_is_compared_at_the_end() {
     let mut other = hidden(&effects, 4, false);
     other.condition = 1;
     let parts =
-        |answer: &Diagnosis| -> Vec<Portion> { answer.rows.iter().map(|row| row.part).collect() };
+        |answer: &Diagnosis| -> Vec<DataRole> { answer.rows.iter().map(|row| row.part).collect() };
     let all = [
-        Portion::Fitted,
-        Portion::Cycles,
-        Portion::Channels,
-        Portion::Condition,
+        DataRole::Fitted,
+        DataRole::Cycles,
+        DataRole::Channels,
+        DataRole::Condition,
     ];
     let free = diagnosed(vec![own.clone(), other.clone()]);
     other.held_out = true;
@@ -222,7 +222,7 @@ fn what_is_held_out_is_compared_at_the_end() {
         );
     }
     // four parts of the abscissa, and the other condition where it may be looked at
-    let shifts = |answer: &Diagnosis| answer.wander[0].shifts.len();
+    let shifts = |answer: &Diagnosis| answer.drifts[0].shifts.len();
     assert_eq!((shifts(&free), shifts(&held)), (5, 4));
 }
 
@@ -397,8 +397,8 @@ fn a_part_that_is_held_out_judges_the_name() {
     let said = crate::trial::line(&answer);
     assert_eq!(answer.verdict, Verdict::Named, "{said}");
     assert_eq!(answer.effects[0].id, "hardening", "{said}");
-    let parts: Vec<Portion> = answer.prediction.iter().map(|one| one.part).collect();
-    assert_eq!(parts, [Portion::Segment], "{said}");
+    let parts: Vec<DataRole> = answer.prediction.iter().map(|one| one.part).collect();
+    assert_eq!(parts, [DataRole::Segment], "{said}");
     assert!(answer.prediction[0].nats > 3.0, "{:?}", answer.prediction);
 }
 

@@ -6,8 +6,8 @@ use crate::truth::{ALL, Truth};
 use discrepancy::diagnose::{Diagnosis, Round};
 use discrepancy::laboratory::Stage;
 use discrepancy::model::Fit;
-use discrepancy::proof::compare::Portion;
-use discrepancy::record::noise::Known;
+use discrepancy::record::noise::NoiseSource;
+use discrepancy::validation::compare::DataRole;
 use discrepancy::verdict::Verdict;
 
 /// Returns healthy machines and machines with one planted effect.
@@ -121,10 +121,10 @@ fn one_cycle_carries_a_name_where_its_noise_is_stated() {
     let mut quiet = 0;
     for seed in 0..8 {
         let (answer, _) = diagnosed(&Truth::healthy(8000 + seed), &setup(1.0));
-        assert_eq!(answer.noise, Known::Stated);
+        assert_eq!(answer.noise, NoiseSource::Stated);
         withheld(&answer);
         quiet += usize::from(answer.verdict == Verdict::NothingDetected);
-        assert!(answer.rows.iter().all(|row| row.part != Portion::Cycles));
+        assert!(answer.rows.iter().all(|row| row.part != DataRole::Cycles));
     }
     assert!(quiet >= 7, "{quiet} of 8");
     let id = &named()[1].id;
@@ -134,11 +134,11 @@ fn one_cycle_carries_a_name_where_its_noise_is_stated() {
     assert_eq!(strong.effects[0].id, *id);
     let elsewhere = &strong.prediction[..];
     assert!(
-        matches!(elsewhere, [one] if one.part == Portion::Condition && one.nats > 3.0),
+        matches!(elsewhere, [one] if one.part == DataRole::Condition && one.nats > 3.0),
         "{elsewhere:?}"
     );
     let (unknown, _) = diagnosed(&sick, &setup(f64::NAN));
-    assert_eq!(unknown.noise, Known::Guessed);
+    assert_eq!(unknown.noise, NoiseSource::Estimated);
     withheld(&unknown);
     let reason = unknown.reason.as_deref().unwrap_or_default();
     for said in [id.as_str(), "not known", "record more cycles"] {
@@ -207,7 +207,7 @@ fn every_stage_may_run_out_of_simulations() {
         let idle = stage == Stage::Basin && answer.ran_out.is_empty();
         assert!(idle || answer.ran_out.contains(&stage), "{stage:?} {said}");
         if stage == Stage::Where {
-            let seen = answer.whereabouts.as_ref().expect("maps");
+            let seen = answer.localisation.as_ref().expect("maps");
             assert!(seen.joints.is_empty(), "{said}");
         }
     }
@@ -248,7 +248,7 @@ fn a_named_effect_closes_the_gap_where_nothing_was_fitted() {
         .iter()
         .find(|row| row.condition == 1)
         .expect("a row of the other condition");
-    assert_eq!(other.part, Portion::Condition);
+    assert_eq!(other.part, DataRole::Condition);
     let interval = other.closed.interval.expect("four cycles");
     assert!(interval[0] > 0.0, "{:?}", other.closed);
     assert!(other.closed.closed > 0.5, "{:?}", other.closed);

@@ -106,7 +106,7 @@ fn expected(answer: &Diagnosis, effect: &EffectDescriptor, (rival, truth): (&str
     let Some(before) = &answer.before else {
         return false;
     };
-    let suspects = &answer.rounds[0].suspects;
+    let suspects = &answer.rounds[0].candidates;
     let pair: Vec<_> = [effect.id.as_str(), rival]
         .iter()
         .filter_map(|id| suspects.iter().find(|s| s.effect.id == *id))

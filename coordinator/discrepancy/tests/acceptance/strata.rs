@@ -17,8 +17,8 @@ pub(crate) fn machine(k: usize, seed: u64) -> Truth {
     Truth::healthy(100 + 100 * k as u64 + seed).noisy(NOISES[level])
 }
 
-/// Returns the detection limits that a diagnosis of this machine prints with the same noise and no hidden
-/// effect; those of another such machine if its recalibration does not converge.
+/// Returns the detection limits that a diagnosis of a machine prints with the same noise and no hidden
+/// effect; if its recalibration does not converge, those of a similar healthy machine.
 pub(crate) fn limits(truth: &Truth) -> Vec<Limit> {
     let own = healthy(truth.seed, truth.noise);
     if own.limits.is_empty() {

@@ -1,6 +1,6 @@
 //! Diagnosis of one true machine, and helpers for checking the answer.
 use crate::case::{ORDERS, space};
-use crate::machine::{AtOnce, Machine, Roughness, finer, ripple};
+use crate::machine::{ImmediateLaboratory, Machine, Roughness, finer, ripple};
 use crate::truth::{ALL, Truth, record};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::thresholds::Thresholds;
@@ -29,11 +29,11 @@ pub(crate) struct Setup {
     pub(crate) lost_every: u64,
     /// Pairs of a library label and the machine's own identifier, where the two differ.
     pub(crate) labels: Vec<(String, String)>,
-    /// Discretisation error of the tool's machine.
+    /// Discretisation error of the stand-in machine that the diagnosis simulates.
     pub(crate) numerics: Roughness,
     /// Ripple added to the gauges of the record that no model reproduces (MPa).
     pub(crate) ripple_mpa: f64,
-    /// Whether every derivative is a difference of whole simulations.
+    /// Whether derivatives are finite differences of whole simulations, not computed by the laboratory.
     pub(crate) differences: bool,
     /// Ratio of the noise that the data sheet states to the true noise; NaN if no noise is stated.
     pub(crate) stated: f64,
@@ -93,13 +93,13 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
                 .map(|(k, x)| x + if k % 2 == 0 { 0.008 } else { -0.03 })
                 .collect(),
         ),
-        usual: Numerics::OF_THE_CASE,
+        usual: Numerics::FROM_CASE,
         finer: finer(),
-        entrance: "quick",
+        global_search: "quick",
         seed: 1,
         thresholds: setup.thresholds.clone(),
     };
-    let mut lab = AtOnce::new(
+    let mut lab = ImmediateLaboratory::new(
         &MACHINE,
         setup.lost_every,
         &setup.labels,
@@ -169,7 +169,7 @@ pub(crate) fn trials(few: u64) -> u64 {
     if full { 5 * few } else { few }
 }
 
-/// Prints a measurement of a stratum; shown with `--nocapture` and when a test fails.
+/// Prints a line about the result of a stratum; shown with `--nocapture` and when a test fails.
 #[expect(
     clippy::print_stdout,
     reason = "captured by the test harness, shown on request"

@@ -24,7 +24,8 @@ pub(crate) enum Unlisted {
     GearMesh(f64),
     /// Coulomb friction of the gearbox teeth (kN m).
     GearFriction(f64),
-    /// A mass oscillating on the beam, 3.3 times per turn (1).
+    /// A mass oscillating on the beam at 3.3 times the crank's frequency (mass in the unit of the machine's
+    /// masses).
     SwingingMass(f64),
 }
 
@@ -33,11 +34,11 @@ pub(crate) enum Unlisted {
 pub(crate) struct Truth {
     /// Genes as decades from the recommended values.
     pub(crate) genes: [f64; 10],
-    /// Hidden effects with their amounts, parameters in the library's order.
+    /// Hidden effects of the library with their parameter values, in the library's order.
     pub(crate) effects: Vec<(String, Vec<f64>)>,
     /// Hidden effect that is not in the library.
     pub(crate) unlisted: Option<Unlisted>,
-    /// Noise, as a factor of the usual noise.
+    /// Noise of the sensors, as a factor of the usual noise.
     pub(crate) noise: f64,
     /// Seed of the noise.
     pub(crate) seed: u64,
@@ -64,7 +65,7 @@ impl Truth {
         self
     }
 
-    /// Adds an effect with its amounts.
+    /// Adds a hidden effect of the library with its parameter values.
     #[must_use]
     pub(crate) fn with(mut self, id: &str, amounts: &[f64]) -> Self {
         self.effects.push((id.to_owned(), amounts.to_vec()));
@@ -83,8 +84,8 @@ impl Truth {
     }
 }
 
-/// Returns height, slope and bend (first and second derivative by the angle) of the drive at a crank angle
-/// (m).
+/// Returns height (m), slope (m/rad) and curvature (m/rad^2) of the drive's motion at a crank angle: the
+/// value and its first and second derivative by the angle.
 fn drive(angle: f64) -> [f64; 3] {
     let quarter = 1.0 / 4.0;
     let height = 1.5 * (1.0 - angle.cos()) + 1.5 * quarter * quarter * (1.0 - (2.0 * angle).cos());
@@ -93,8 +94,8 @@ fn drive(angle: f64) -> [f64; 3] {
     [height, slope, bend]
 }
 
-/// Time integration of one cycle under one condition, with the cycle's scale of the load.
-struct March<'a> {
+/// Time integration of one cycle under one condition, with a random scale factor of the cycle's load.
+struct TimeIntegration<'a> {
     truth: &'a Truth,
     condition: usize,
     scale: f64,
@@ -107,9 +108,9 @@ type Reading = [f64; 6];
 /// Lags of rod, beam, head and swinging mass, then their rates.
 type State = [f64; 8];
 
-impl March<'_> {
-    /// Returns the crank's rate in turns of the first condition, and the derivative of that rate by the
-    /// angle.
+impl TimeIntegration<'_> {
+    /// Returns the crank's angular rate, relative to that of the first condition, and the derivative of that
+    /// rate by the angle.
     fn rate(&self, angle: f64) -> [f64; 2] {
         let ratio = SPEED[self.condition];
         let (a, b) = (
@@ -330,7 +331,8 @@ impl March<'_> {
         out
     }
 
-    /// Applies the amplifier's lag to the gauges, passing over the turn twice to reach the periodic state.
+    /// Applies the gauge amplifier's lag to the readings, passing over the turn twice to reach the periodic
+    /// state.
     fn amplify(&self, readings: &mut [Reading]) {
         let lag = self.truth.amount("amplifier_lag", 0) * SPEED[self.condition];
         if lag <= 0.0 {
@@ -436,7 +438,7 @@ fn cycle(
     channels: &[usize],
 ) -> Curves {
     let scale = 1.0 + LOAD_SCATTER * stream.normal();
-    let readings = March {
+    let readings = TimeIntegration {
         truth,
         condition,
         scale,

@@ -11,12 +11,12 @@ use crate::truth::recorded;
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::laboratory::Stage;
 use discrepancy::model::experiments::Experiments;
-use discrepancy::model::{Fit, Model, Point};
+use discrepancy::model::{Fit, FittedModel, Point};
 use discrepancy::record::whitened::WhitenedRecord;
 use discrepancy::record::{Curves, Record, Stated};
 use discrepancy::thresholds::Thresholds;
 use discrepancy::verdict::Verdict;
-use discrepancy::{cause::low_orders, cause::signature, ground::valley};
+use discrepancy::{baseline::narrow_minimum, hypothesis::low_orders, hypothesis::signature};
 use nalgebra::Complex;
 use protocol::announce::{EffectDescriptor, Place, Sign};
 use protocol::job::{Numerics, SimulateSpec};
@@ -36,7 +36,7 @@ const SHARES: [[f64; 4]; 2] = [[0.09, 0.05, -0.06, 0.04], [-0.05, 0.06, 0.04, -0
 const STATIC: [f64; 4] = [0.5, -0.35, 0.45, 0.3];
 /// Stress that rotates with the crank independently of the load, by gauge (MPa).
 const WEIGHT: [f64; 4] = [2.0, 1.5, -1.0, 2.5];
-/// Ratio of the stiffness of the contact's share of the rope's compliance to the contact gene.
+/// Stiffness of the rope's contact relative to the contact gene; in series with the rope.
 const CONTACT: f64 = 80.0;
 /// Standard deviation of the noise of a sample (MPa).
 const NOISE: f64 = 0.05;
@@ -107,7 +107,7 @@ fn gauges(genes: [f64; 3], clock: f64, lag: f64, gain: f64) -> Curves {
     curves
 }
 
-/// Returns `exp(i order phi)` at a sample.
+/// Returns the phasor `exp(i order phi)` at the crank angle of a sample.
 fn turn(order: usize, sample: usize) -> Complex<f64> {
     let angle = TAU * (order * sample % SAMPLES) as f64 / SAMPLES as f64;
     Complex::from_polar(1.0, angle)
@@ -147,10 +147,10 @@ fn record(truth: Ringing) -> Record {
 
 /// Returns the record whitened by its own noise.
 fn whole(truth: Ringing) -> WhitenedRecord {
-    WhitenedRecord::under_own_noise(record(truth), ORDERS, Numerics::OF_THE_CASE)
+    WhitenedRecord::under_own_noise(record(truth), ORDERS, Numerics::FROM_CASE)
 }
 
-/// Returns experiments on a record, charged to the basin stage.
+/// Returns a view for simulations that compares with a record and is charged to the basin stage.
 fn basin<'a>(lab: &'a mut ByCurves, on: &'a WhitenedRecord) -> Experiments<'a, ByCurves> {
     Experiments {
         lab,
@@ -162,12 +162,12 @@ fn basin<'a>(lab: &'a mut ByCurves, on: &'a WhitenedRecord) -> Experiments<'a, B
 /// Returns the machine without effects at the given genes (decades).
 fn at(genes: [f64; 3]) -> Point {
     Point {
-        model: Model::plain(space()),
+        model: FittedModel::plain(space()),
         x: genes.to_vec(),
     }
 }
 
-/// Diagnoses a machine; the search for another valley starts from misfit `valley` on.
+/// Diagnoses a machine; `valley` is the misfit from which the search for another narrow minimum starts.
 fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
     let inputs = Inputs {
         conditions: Vec::new(),
@@ -177,9 +177,9 @@ fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
         records: vec![record(truth)],
         library: library(),
         start: None,
-        usual: Numerics::OF_THE_CASE,
-        finer: vec![Numerics::OF_THE_CASE],
-        entrance: "quick",
+        usual: Numerics::FROM_CASE,
+        finer: vec![Numerics::FROM_CASE],
+        global_search: "quick",
         seed: 1,
         thresholds: Thresholds {
             draws: 20,
@@ -190,7 +190,7 @@ fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
     now(diagnose(&mut ByCurves(|spec| Some(ropes(spec))), &inputs))
 }
 
-/// Returns chi-squared per entry of the answer's model, and its stiffness (decades).
+/// Returns chi-squared per entry of the diagnosed model, and its stiffness (decades).
 fn end(diagnosis: &Diagnosis) -> (f64, f64) {
     let fit = diagnosis.after.as_ref().expect("a model");
     let n = fit.search.best().residual.len();
@@ -210,16 +210,19 @@ fn a_fit_outside_the_valley_finds_its_way_into_it() {
     let mut ropes = ByCurves(|spec| Some(ropes(spec)));
     let mut experiments = basin(&mut ropes, &whole);
     let left = |fit: &Fit| fit.chi_squared() / whole.metric.len() as f64;
-    let outside = now(experiments.fit(at([0.6, 0.2, 0.0]), least_squares::Settings::short(1)));
+    let outside = now(experiments.fit(
+        at([0.6, 0.2, 0.0]),
+        least_squares::LeastSquaresSettings::short(1),
+    ));
     let outside = outside.expect("it simulates");
     assert!(left(&outside) > 9.0, "{}", left(&outside));
-    let found = now(valley::enter(&mut experiments, &outside)).expect("a valley");
+    let found = now(narrow_minimum::scan(&mut experiments, &outside)).expect("a valley");
     assert!(left(&found) < 1.3, "{}", left(&found));
     assert!((found.x()[0] - truth.stiffness).abs() < 0.01);
     let inside = at([truth.stiffness, truth.damping, 0.1]);
-    let inside = now(experiments.fit(inside, least_squares::Settings::short(8)));
+    let inside = now(experiments.fit(inside, least_squares::LeastSquaresSettings::short(8)));
     let inside = inside.expect("it simulates");
-    assert!(now(valley::enter(&mut experiments, &inside)).is_none());
+    assert!(now(narrow_minimum::scan(&mut experiments, &inside)).is_none());
 }
 
 /// Checks that a load card 1.5 degrees late is named: without that effect in the model there is no valley to
@@ -256,7 +259,10 @@ fn low_orders_see_the_size_that_the_modes_hide() {
     let whole = whole(truth);
     let mut ropes = ByCurves(|spec| Some(ropes(spec)));
     let mut experiments = basin(&mut ropes, &whole);
-    let lost = now(experiments.fit(at([1.9, -1.9, 0.0]), least_squares::Settings::short(6)));
+    let lost = now(experiments.fit(
+        at([1.9, -1.9, 0.0]),
+        least_squares::LeastSquaresSettings::short(6),
+    ));
     let lost = lost.expect("it simulates");
     let library = library();
     let clock = |scaled: f64| scaled * library[0].parameters[0].scale;

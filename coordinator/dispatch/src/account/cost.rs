@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 /// Cost of one job.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JobCost {
-    /// Wall-clock time in the slot \[s\].
+    /// Wall-clock time that the job occupied its slot \[s\].
     pub wall_s: f64,
     /// Processor time \[s\]; 0 for a job without an answer.
     pub processor_s: f64,

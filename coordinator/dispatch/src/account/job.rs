@@ -10,7 +10,7 @@ use support::quantile;
 /// Statistics of the results of one kind of job.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JobUse {
-    /// Number of results.
+    /// Number of results of jobs of this kind.
     pub results: u64,
     /// Number of results in which the simulated machine failed before completion.
     pub machine_failed: u64,

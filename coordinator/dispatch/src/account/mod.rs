@@ -15,7 +15,7 @@ use protocol::{
 };
 use std::{collections::BTreeMap, path::Path};
 
-/// Smallest share of slot time that is reported \[1\].
+/// Smallest share of slot time for which a cause of loss is reported \[1\].
 const NOTABLE: f64 = 0.02;
 
 /// Slot use of the workers of one host.
@@ -63,7 +63,7 @@ pub struct RunAccount {
 /// # Errors
 /// [`JournalError::Io`] if the journal cannot be read, [`JournalError::Version`] if another version wrote it.
 pub fn read(path: &Path) -> Result<RunAccount, JournalError> {
-    let mut folding = Folding::default();
+    let mut folding = AccountBuilder::default();
     let report = journal::fold(path, |_, event| folding.apply(&event))?;
     Ok(folding.finish(report.damage))
 }
@@ -73,7 +73,7 @@ pub fn read(path: &Path) -> Result<RunAccount, JournalError> {
 /// # Errors
 /// [`JournalError::Io`] if the journal cannot be read, [`JournalError::Version`] if another version wrote it.
 pub fn read_with_costs(path: &Path) -> Result<(RunAccount, Costs), JournalError> {
-    let (mut folding, mut costs) = (Folding::default(), Costs::new());
+    let (mut folding, mut costs) = (AccountBuilder::default(), Costs::new());
     let report = journal::fold(path, |_, event| {
         if let Event::Finished(finished) = &event {
             cost::add(&mut costs, finished);
@@ -85,7 +85,7 @@ pub fn read_with_costs(path: &Path) -> Result<(RunAccount, Costs), JournalError>
 
 /// Accumulator of a run's account, for callers that read the journal's events for other purposes too.
 #[derive(Debug, Default)]
-pub struct Folding {
+pub struct AccountBuilder {
     account: RunAccount,
     rows: BTreeMap<(WorkerId, u32), WorkerAccount>,
     left: BTreeMap<String, u64>,
@@ -94,7 +94,7 @@ pub struct Folding {
     lasted: BTreeMap<u32, u64>,
 }
 
-impl Folding {
+impl AccountBuilder {
     /// Adds the next event of the journal.
     pub fn apply(&mut self, event: &Event) {
         match event {
@@ -120,7 +120,7 @@ impl Folding {
         }
     }
 
-    /// Returns the account, including the unreadable stretches of the journal.
+    /// Completes the account; `damage` lists the unreadable stretches of the journal.
     pub fn finish(self, damage: Vec<Damage>) -> RunAccount {
         let mut account = self.account;
         account.damage = damage;

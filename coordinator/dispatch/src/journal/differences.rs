@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Maximum number of differing settings that are named individually.
 const MOST_NAMED: usize = 3;
 
-/// Describes the differences in command, case and settings.
+/// Describes how command, case and settings of an existing run differ from those with which it is opened.
 pub(super) fn differences(was: &RunHeader, is: &RunHeader) -> Vec<String> {
     let mut what = Vec::new();
     if was.kind != is.kind {

@@ -35,7 +35,7 @@ pub enum JournalError {
     Differs {
         /// Run folder.
         folder: PathBuf,
-        /// Differences, with both values.
+        /// Descriptions of the differences, with both values.
         what: Vec<String>,
     },
     /// The journal was written by another version of this program.
@@ -50,13 +50,13 @@ pub enum JournalError {
         /// Version of the journal.
         found: u8,
     },
-    /// Every record that identifies the run is lost, and so is the copy in the head file.
+    /// Every record of the journal that identifies the run is lost, and so is the copy of the first record.
     #[error(
         "the run of the journal {} cannot be identified, because every copy of its first record is \
          lost, so it cannot be continued: choose another run folder",
         path.display()
     )]
-    Headless {
+    Unidentified {
         /// Path of the journal.
         path: PathBuf,
     },

@@ -14,7 +14,8 @@ use protocol::{
 use std::path::Path;
 use support::atomic_file;
 
-/// Reads the copy in a run folder; returns `None` if there is no readable copy.
+/// Reads the copy of the journal's first record (run identifier and settings) in a run folder; `None` if
+/// there is no readable copy.
 pub(super) fn read(folder: &Path) -> Result<Option<(RunId, RunHeader)>, JournalError> {
     let path = folder.join(HEAD);
     if !path.exists() {
@@ -33,7 +34,7 @@ pub(super) fn read(folder: &Path) -> Result<Option<(RunId, RunHeader)>, JournalE
     }
 }
 
-/// Writes the copy into a run folder atomically.
+/// Writes the copy of the journal's first record into a run folder, atomically.
 pub(super) fn write(folder: &Path, run: RunId, header: &RunHeader) -> Result<(), JournalError> {
     let header = header.clone();
     let bytes = record(&Event::Begun { run, header })?;

@@ -81,7 +81,7 @@ impl Results {
 struct Index(Vec<(JobId, u64)>);
 
 impl Index {
-    /// Sorts results given in file order; of several results of one job the first counts.
+    /// Creates the index from results in file order; of several results of one job the first counts.
     fn new(mut results: Vec<(JobId, u64)>) -> Self {
         results.sort_unstable();
         results.dedup_by_key(|(job, _)| *job);

@@ -26,8 +26,8 @@ mod tests;
 mod write;
 
 pub use error::JournalError;
-pub use open::{Begun, Journal};
-pub use read::{Damage, Entry, ReadReport, fold, words};
+pub use open::{Journal, OpenedRun};
+pub use read::{Damage, JournalEntry, ReadReport, describe_damage, fold};
 pub use record::{FILE, HEAD, LOCK, MARK};
-pub use recording::{Recording, numbers};
-pub use write::Appended;
+pub use recording::{JournalSnapshot, numbers};
+pub use write::WriterReport;

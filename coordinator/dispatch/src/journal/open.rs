@@ -4,14 +4,14 @@ use super::{
     error::JournalError,
     head,
     index::Results,
-    read::{Entry, ReadReport, fold},
+    read::{JournalEntry, ReadReport, fold},
     record::{FILE, LOCK, record},
-    write::{Appended, Writer},
+    write::{Writer, WriterReport},
 };
 use protocol::{
     event::{Event, Finished, RunHeader},
     id::{JobId, RunId, WorkerId},
-    proof::Proof,
+    proof::ReferenceResult,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -26,23 +26,24 @@ use std::{
     thread,
 };
 
-/// Maximum length of an unreadable file that still counts as a truncated first record (bytes). A longer file
-/// is taken for something else and left untouched.
-const UNFINISHED: u64 = 4096;
+/// Maximum length of an unreadable journal that still counts as a truncated first record (bytes). A longer
+/// file is taken for something other than a journal and left untouched.
+const MAX_UNFINISHED_BYTES: u64 = 4096;
 
-/// Minimum length of the record of an opening (bytes); bounds how many openings a damaged stretch may have
-/// held.
-const OPENED: u64 = 20;
+/// Minimum length of the record that a coordinator process writes when it opens the journal (bytes); bounds
+/// how many such records a damaged stretch may have held.
+const MIN_OPENED_BYTES: u64 = 20;
 
-/// Maximum number of epochs skipped for openings that may be lost in damaged stretches.
+/// Maximum number of epochs (numbers of coordinator processes) skipped because their opening records may be
+/// lost in damaged stretches.
 const MOST_HIDDEN: u64 = 1000;
 
-/// Number of the run's coordinator processes after which an absent worker is no longer waited for.
-const REMEMBERED: u32 = 8;
+/// Number of later coordinator processes of the run after which an absent worker is no longer expected back.
+const MAX_ABSENT_EPOCHS: u32 = 8;
 
 /// State of a run as read from its journal at opening.
 #[derive(Clone, Debug)]
-pub struct Begun {
+pub struct OpenedRun {
     /// Identifier of the run.
     pub run: RunId,
     /// Number of this coordinator process within the run, from 1; higher than the number of processes if
@@ -51,7 +52,7 @@ pub struct Begun {
     /// Digest of the model (numerics) on the run's first worker.
     pub model_digest: Option<String>,
     /// Result of the case's reference individual on the run's first worker.
-    pub proof: Option<Proof>,
+    pub proof: Option<ReferenceResult>,
     /// Workers connected when the last process ended without closing the run; they may still hold jobs and
     /// results.
     pub present: BTreeSet<WorkerId>,
@@ -68,22 +69,23 @@ pub struct Journal {
     writer: Option<thread::JoinHandle<()>>,
     closing: Arc<AtomicBool>,
     /// Lock held until the process ends.
-    _lock: Held,
+    _lock: RunLock,
 }
 
 impl Journal {
-    /// Opens or creates the journal of a run folder; `said` is called from the writing thread.
+    /// Opens or creates the journal of a run folder; `said` receives the reports of the writing thread, on
+    /// that thread.
     ///
     /// # Errors
-    /// [`JournalError::Locked`], [`JournalError::Differs`], [`JournalError::Headless`],
+    /// [`JournalError::Locked`], [`JournalError::Differs`], [`JournalError::Unidentified`],
     /// [`JournalError::Version`] or [`JournalError::Io`].
     pub fn open(
         folder: &Path,
         header: &RunHeader,
         fresh: RunId,
         at_unix_ms: u64,
-        said: impl FnMut(Appended) + Send + 'static,
-    ) -> Result<(Self, Begun), JournalError> {
+        said: impl FnMut(WriterReport) + Send + 'static,
+    ) -> Result<(Self, OpenedRun), JournalError> {
         let failed = |doing, path: &Path| {
             let path = path.to_owned();
             move |source| JournalError::Io {
@@ -102,7 +104,7 @@ impl Journal {
             .truncate(false)
             .open(&path)
             .map_err(failed("open", &path))?;
-        let mut past = Past::default();
+        let mut past = RecoveredRun::default();
         let report = fold(&path, |entry, event| past.apply(entry, event))?;
         let copy = head::read(folder)?;
         let run = identify(folder, header, &past, copy.as_ref(), &report)?.unwrap_or(fresh);
@@ -134,7 +136,7 @@ impl Journal {
             .name("journal".to_owned())
             .spawn(move || writing.run(&events))
             .map_err(failed("start the thread of", &path))?;
-        let begun = Begun {
+        let begun = OpenedRun {
             run,
             epoch,
             model_digest: past.model_digest,
@@ -220,24 +222,24 @@ impl Drop for Journal {
 
 /// State of a run, folded from the events of its journal.
 #[derive(Default)]
-struct Past {
+struct RecoveredRun {
     begun: Option<(RunId, RunHeader)>,
     epoch: u32,
     model_digest: Option<String>,
-    proof: Option<Proof>,
+    proof: Option<ReferenceResult>,
     /// Workers that joined and did not leave, with the epoch in which they joined.
     present: BTreeMap<WorkerId, u32>,
     results: Vec<(JobId, u64)>,
 }
 
-impl Past {
-    fn apply(&mut self, entry: Entry, event: Event) {
+impl RecoveredRun {
+    fn apply(&mut self, entry: JournalEntry, event: Event) {
         match event {
             Event::Begun { run, header } => self.begun = self.begun.take().or(Some((run, header))),
             Event::Opened { epoch, .. } => {
                 self.epoch = self.epoch.max(epoch);
                 self.present
-                    .retain(|_, joined| *joined + REMEMBERED >= epoch);
+                    .retain(|_, joined| *joined + MAX_ABSENT_EPOCHS >= epoch);
             }
             Event::Joined {
                 worker,
@@ -258,10 +260,12 @@ impl Past {
         }
     }
 
-    /// Returns an epoch that no earlier process of the run has used. Attempts are named after it, and workers
-    /// of a lost process may still hold attempts.
+    /// Returns a number for this coordinator process (epoch) that no earlier process of the run has used:
+    /// identifiers of attempts contain it, and workers of a lost process may still hold attempts.
     fn next_epoch(&self, report: &ReadReport) -> u32 {
-        let damaged = damaged_bytes(report).div_ceil(OPENED).min(MOST_HIDDEN);
+        let damaged = damaged_bytes(report)
+            .div_ceil(MIN_OPENED_BYTES)
+            .min(MOST_HIDDEN);
         self.epoch + 1 + u32::try_from(damaged).unwrap_or(0)
     }
 }
@@ -274,11 +278,11 @@ fn damaged_bytes(report: &ReadReport) -> u64 {
 fn identify(
     folder: &Path,
     header: &RunHeader,
-    past: &Past,
+    past: &RecoveredRun,
     copy: Option<&(RunId, RunHeader)>,
     report: &ReadReport,
 ) -> Result<Option<RunId>, JournalError> {
-    let nothing = report.records == 0 && damaged_bytes(report) <= UNFINISHED;
+    let nothing = report.records == 0 && damaged_bytes(report) <= MAX_UNFINISHED_BYTES;
     // a copy beside nothing binds nobody
     let copy = copy.filter(|(_, was)| !nothing || was == header);
     match past.begun.as_ref().or(copy) {
@@ -288,7 +292,7 @@ fn identify(
             what: differences(was, header),
         }),
         None if nothing => Ok(None),
-        None => Err(JournalError::Headless {
+        None => Err(JournalError::Unidentified {
             path: folder.join(FILE),
         }),
     }
@@ -297,16 +301,16 @@ fn identify(
 /// Lock of a run. It is released explicitly on drop: a child process being spawned by another thread briefly
 /// inherits all open files, and would keep the lock.
 #[derive(Debug)]
-struct Held(File);
+struct RunLock(File);
 
-impl Drop for Held {
+impl Drop for RunLock {
     fn drop(&mut self) {
         // closing the file gives it back as well
         drop(self.0.unlock());
     }
 }
 
-fn lock(folder: &Path) -> Result<Held, JournalError> {
+fn lock(folder: &Path) -> Result<RunLock, JournalError> {
     let path = folder.join(LOCK);
     let failed = |source: io::Error| JournalError::Io {
         doing: "lock",
@@ -320,7 +324,7 @@ fn lock(folder: &Path) -> Result<Held, JournalError> {
         .open(&path);
     let lock = lock.map_err(failed)?;
     match lock.try_lock() {
-        Ok(()) => Ok(Held(lock)),
+        Ok(()) => Ok(RunLock(lock)),
         Err(TryLockError::WouldBlock) => Err(JournalError::Locked {
             folder: folder.to_owned(),
         }),

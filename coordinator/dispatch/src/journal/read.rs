@@ -21,7 +21,7 @@ pub struct Damage {
     pub at: u64,
     /// Length of the stretch (bytes).
     pub bytes: u64,
-    /// Whether nothing readable follows: a record cut short by a crash.
+    /// Whether nothing readable follows the stretch: a record cut short by a crash.
     pub torn: bool,
 }
 
@@ -45,8 +45,9 @@ impl fmt::Display for Damage {
 /// Maximum number of damaged stretches that are named individually.
 const MOST_NAMED: usize = 3;
 
-/// Describes damage in words: the first stretches individually, then the total of the others.
-pub fn words(damage: &[Damage]) -> Vec<String> {
+/// Describes damaged stretches of a journal in words: the first ones individually, then the total of the
+/// others.
+pub fn describe_damage(damage: &[Damage]) -> Vec<String> {
     let named = damage.iter().take(MOST_NAMED).map(ToString::to_string);
     let mut words: Vec<String> = named.collect();
     let more = damage.get(MOST_NAMED..).unwrap_or_default();
@@ -62,7 +63,7 @@ pub fn words(damage: &[Damage]) -> Vec<String> {
 
 /// Location of a record's body in the journal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Entry {
+pub struct JournalEntry {
     /// Offset of the body from the start of the file (bytes).
     pub at: u64,
     /// Length of the body (bytes).
@@ -85,7 +86,10 @@ pub struct ReadReport {
 /// # Errors
 /// [`JournalError::Io`] if the file cannot be read, [`JournalError::Version`] if all that is sound
 /// in it was written by another version; damage is no error.
-pub fn fold(path: &Path, mut apply: impl FnMut(Entry, Event)) -> Result<ReadReport, JournalError> {
+pub fn fold(
+    path: &Path,
+    mut apply: impl FnMut(JournalEntry, Event),
+) -> Result<ReadReport, JournalError> {
     let failed = |source| JournalError::Io {
         doing: "read",
         path: path.to_owned(),
@@ -139,13 +143,13 @@ struct Reader {
     file: BufReader<File>,
     at: u64,
     length: u64,
-    /// Version of an intact record written by another version.
+    /// Format version of an intact record that another version of the program wrote, if one was found.
     foreign: Option<u8>,
 }
 
 impl Reader {
     /// Reads the record at the current offset; `None` if there is no intact record of this version.
-    fn record(&mut self) -> io::Result<Option<(Entry, Event)>> {
+    fn record(&mut self) -> io::Result<Option<(JournalEntry, Event)>> {
         let left = self.length - self.at;
         let mut header = [0; RECORD_HEADER];
         if left < RECORD_HEADER as u64 {
@@ -172,7 +176,7 @@ impl Reader {
         let Ok(event) = wire::decode(&body) else {
             return Ok(None);
         };
-        let entry = Entry {
+        let entry = JournalEntry {
             at: self.at + RECORD_HEADER as u64,
             length,
         };

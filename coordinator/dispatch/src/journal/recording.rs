@@ -2,7 +2,7 @@
 use super::{
     error::JournalError,
     index::Results,
-    read::{Entry, ReadReport, fold},
+    read::{JournalEntry, ReadReport, fold},
 };
 use protocol::{
     event::{Event, Finished},
@@ -12,17 +12,20 @@ use std::path::Path;
 
 /// Snapshot of the results in a journal; records written later are not included.
 #[derive(Debug)]
-pub struct Recording {
+pub struct JournalSnapshot {
     results: Results,
     report: ReadReport,
 }
 
-impl Recording {
+impl JournalSnapshot {
     /// Reads a journal; `heard` is called with every event, in order.
     ///
     /// # Errors
     /// As [`fold`].
-    pub fn read(path: &Path, mut heard: impl FnMut(Entry, Event)) -> Result<Self, JournalError> {
+    pub fn read(
+        path: &Path,
+        mut heard: impl FnMut(JournalEntry, Event),
+    ) -> Result<Self, JournalError> {
         let mut results = Vec::new();
         let report = fold(path, |entry, event| {
             if let Event::Finished(finished) = &event {

@@ -20,7 +20,7 @@ fn header() -> RunHeader {
     }
 }
 
-fn open(folder: &Path) -> Result<(Journal, Begun), JournalError> {
+fn open(folder: &Path) -> Result<(Journal, OpenedRun), JournalError> {
     Journal::open(folder, &header(), RunId(5), 17, |_| {})
 }
 
@@ -65,7 +65,7 @@ fn what_was_stored_is_recalled_by_the_next_process() {
     let stored = Arc::new(Mutex::new(Vec::new()));
     let seen = Arc::clone(&stored);
     let (journal, begun) = Journal::open(folder.path(), &header(), RunId(5), 1, move |said| {
-        if let Appended::Stored(jobs) = said {
+        if let WriterReport::Stored(jobs) = said {
             seen.lock().unwrap().extend(jobs);
         }
     })
@@ -214,8 +214,8 @@ fn every_flipped_byte_loses_one_record_and_the_run_goes_on() {
     }
 }
 
-/// Checks that damage to or loss of the copy in the head file is harmless while the journal has its own first
-/// record.
+/// Checks that damage to or loss of the copy of the first record is harmless while the journal has its own
+/// first record.
 #[test]
 fn damage_of_the_copy_does_no_harm() {
     let folder = tempfile::tempdir().unwrap();
@@ -270,8 +270,8 @@ fn a_journal_of_zeros_is_begun_anew_under_its_own_name() {
     assert_eq!(goes_on(folder.path(), &zeros, 3, "more zeros"), 0);
 }
 
-/// Regression test: the results in a run folder of an older version were all taken for damage and would have
-/// been computed again.
+/// Regression test: a journal of an older version is refused and left unchanged; it was once taken for
+/// damaged, and all its results would have been computed again.
 #[test]
 fn a_journal_of_another_version_is_refused_as_such_and_left_as_it_is() {
     let folder = tempfile::tempdir().unwrap();
@@ -302,10 +302,10 @@ fn nothing_is_acknowledged_that_was_written_to_a_deleted_file() {
     })
     .unwrap();
     journal.append(result(1)).unwrap();
-    assert_eq!(said.recv(), Ok(Appended::Stored(vec![JobId(1)])));
+    assert_eq!(said.recv(), Ok(WriterReport::Stored(vec![JobId(1)])));
     fs::remove_dir_all(folder.path()).unwrap();
     journal.append(result(2)).unwrap();
-    assert_eq!(said.recv(), Ok(Appended::Deleted));
+    assert_eq!(said.recv(), Ok(WriterReport::Deleted));
     drop(journal);
     assert!(said.recv().is_err(), "nothing else");
 }
@@ -325,11 +325,12 @@ fn a_journal_of_which_nothing_says_what_it_is_is_not_continued() {
     fs::remove_file(folder.path().join(HEAD)).unwrap();
     assert!(matches!(
         open(folder.path()),
-        Err(JournalError::Headless { .. })
+        Err(JournalError::Unidentified { .. })
     ));
 }
 
-/// Checks that a head file of another run is ignored beside an empty journal, and refused beside results.
+/// Checks that a copy of another run's first record is ignored beside an empty journal, and refused beside
+/// results.
 #[test]
 fn a_copy_of_another_run_refuses_only_if_there_is_something_to_mix() {
     let folder = tempfile::tempdir().unwrap();

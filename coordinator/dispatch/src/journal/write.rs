@@ -19,7 +19,7 @@ const RETRY: Duration = Duration::from_secs(1);
 
 /// Report of the writing thread.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Appended {
+pub enum WriterReport {
     /// Results of these jobs are on the disk.
     Stored(Vec<JobId>),
     /// Writing fails for the given reason; it is retried every second.
@@ -68,21 +68,21 @@ pub(super) struct Writer<M, F> {
     /// End of the last durable record (bytes).
     end: u64,
     /// Whether bytes of a failed write may lie behind `end`.
-    soiled: bool,
+    needs_truncation: bool,
     said: F,
     closing: Arc<AtomicBool>,
     paused: bool,
     retry: Duration,
 }
 
-impl<M: Medium, F: FnMut(Appended)> Writer<M, F> {
+impl<M: Medium, F: FnMut(WriterReport)> Writer<M, F> {
     /// Creates a writer that appends from offset `end` (bytes); `closing` makes it give up on a disk that
     /// cannot be written.
     pub(super) const fn new(medium: M, end: u64, said: F, closing: Arc<AtomicBool>) -> Self {
         Self {
             medium,
             end,
-            soiled: false,
+            needs_truncation: false,
             said,
             closing,
             paused: false,
@@ -113,10 +113,10 @@ impl<M: Medium, F: FnMut(Appended)> Writer<M, F> {
             if !is_due {
                 continue;
             }
-            let written = self.insist(&batch);
+            let written = self.write_with_retry(&batch);
             batch.clear();
             if !self.medium.is_there() {
-                (self.said)(Appended::Deleted);
+                (self.said)(WriterReport::Deleted);
                 return;
             }
             if !written {
@@ -128,44 +128,45 @@ impl<M: Medium, F: FnMut(Appended)> Writer<M, F> {
                 return;
             }
             if !jobs.is_empty() {
-                (self.said)(Appended::Stored(jobs));
+                (self.said)(WriterReport::Stored(jobs));
             }
         }
     }
 
-    /// Retries a write until it succeeds; returns `false` if the journal is being closed and the write fails.
-    fn insist(&mut self, batch: &[u8]) -> bool {
+    /// Retries the write of a batch until it succeeds; returns `false` if the write fails while the journal
+    /// is being closed.
+    fn write_with_retry(&mut self, batch: &[u8]) -> bool {
         while let Err(error) = self.write(batch) {
             if self.closing.load(Ordering::Relaxed) {
                 return false;
             }
             if !self.paused {
                 self.paused = true;
-                (self.said)(Appended::Paused(error.to_string()));
+                (self.said)(WriterReport::Paused(error.to_string()));
             }
             // closing ends this pause at once
             thread::park_timeout(self.retry);
         }
         if std::mem::take(&mut self.paused) {
-            (self.said)(Appended::Resumed);
+            (self.said)(WriterReport::Resumed);
         }
         true
     }
 
     /// Writes all of a batch or nothing: remains of a failed earlier write are truncated first.
     fn write(&mut self, batch: &[u8]) -> io::Result<()> {
-        if self.soiled {
+        if self.needs_truncation {
             self.medium.cut(self.end)?;
-            self.soiled = false;
+            self.needs_truncation = false;
         }
-        self.soiled = true;
+        self.needs_truncation = true;
         let written = self.medium.add(batch).and_then(|()| self.medium.flush());
         if written.is_ok() {
-            self.soiled = false;
+            self.needs_truncation = false;
             self.end += batch.len() as u64;
         } else if self.medium.cut(self.end).is_ok() {
             // no torn record is left behind should this process end now
-            self.soiled = false;
+            self.needs_truncation = false;
         }
         written
     }
@@ -184,15 +185,15 @@ mod tests {
     struct State {
         bytes: Vec<u8>,
         room: usize,
-        /// Number of flushes and truncations that fail before one succeeds.
+        /// Number of flushes and truncations of the mock disk that fail before one succeeds.
         bad: usize,
         attempts: usize,
-        /// Bytes that would survive a power failure.
+        /// Number of bytes on the mock disk that would survive a power failure.
         safe: usize,
     }
 
     impl State {
-        /// Creates a disk with a capacity (bytes) and a number of failures to come.
+        /// Creates a mock disk with a capacity (bytes) and a number of failures to come.
         fn with(room: usize, bad: usize) -> Self {
             Self {
                 bytes: Vec::new(),
@@ -252,7 +253,7 @@ mod tests {
         jobs: u64,
         state: State,
         relief: impl Fn(&mut State, &AtomicBool),
-    ) -> (Vec<u8>, Vec<Appended>) {
+    ) -> (Vec<u8>, Vec<WriterReport>) {
         let (to, events) = mpsc::channel();
         for job in 0..jobs {
             to.send(result(job)).unwrap();
@@ -261,14 +262,14 @@ mod tests {
         let disk = Full(Arc::new(Mutex::new(state)));
         let (shared, closing) = (disk.clone(), Arc::new(AtomicBool::new(false)));
         let (mut heard, flag) = (Vec::new(), Arc::clone(&closing));
-        let said = |what: Appended| {
+        let said = |what: WriterReport| {
             let mut state = shared.0.lock().unwrap();
             match &what {
-                Appended::Paused(_) => relief(&mut state, &flag),
-                Appended::Stored(_) => {
+                WriterReport::Paused(_) => relief(&mut state, &flag),
+                WriterReport::Stored(_) => {
                     assert_eq!(state.safe, state.bytes.len(), "told before it is safe");
                 }
-                Appended::Resumed | Appended::Deleted => {}
+                WriterReport::Resumed | WriterReport::Deleted => {}
             }
             drop(state);
             heard.push(what);
@@ -298,7 +299,7 @@ mod tests {
                 assert!(
                     matches!(
                         &heard[..],
-                        [Appended::Paused(_), Appended::Resumed, Appended::Stored(jobs)]
+                        [WriterReport::Paused(_), WriterReport::Resumed, WriterReport::Stored(jobs)]
                             if jobs.len() == 4
                     ),
                     "room {room}: {heard:?}"
@@ -316,7 +317,7 @@ mod tests {
             assert!(
                 matches!(
                     &heard[..],
-                    [Appended::Paused(_), Appended::Resumed, Appended::Stored(jobs)]
+                    [WriterReport::Paused(_), WriterReport::Resumed, WriterReport::Stored(jobs)]
                         if jobs.len() == 4
                 ),
                 "{bad} mishaps: {heard:?}"
@@ -331,6 +332,6 @@ mod tests {
             closing.store(true, Ordering::Relaxed);
         });
         assert!(bytes.is_empty(), "{bytes:?}");
-        assert!(matches!(&heard[..], [Appended::Paused(_)]), "{heard:?}");
+        assert!(matches!(&heard[..], [WriterReport::Paused(_)]), "{heard:?}");
     }
 }

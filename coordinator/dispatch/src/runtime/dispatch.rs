@@ -1,7 +1,7 @@
 //! Handle of an open run, used by the caller that submits jobs.
 use super::{
     control::Control,
-    engine::{Engine, Request, Summary},
+    engine::{Engine, Request, RunSummary},
     error::DispatchError,
     listen::{addresses, admissible, allow_connections, keys},
     local::LocalWorkers,
@@ -31,7 +31,7 @@ pub struct Dispatch {
     requests: UnboundedSender<Request>,
     completed: UnboundedReceiver<Result<Completed, DispatchError>>,
     snapshot: Arc<Mutex<Snapshot>>,
-    engine: JoinHandle<Summary>,
+    engine: JoinHandle<RunSummary>,
     listening: Vec<Locator>,
     recorded: usize,
     /// Control socket, if it could be opened.
@@ -44,7 +44,7 @@ impl Dispatch {
     /// # Errors
     /// [`DispatchError::Journal`] if the run cannot be written or was begun with other settings,
     /// [`DispatchError::Link`] if the address cannot be listened on, [`DispatchError::Locate`] if there is no
-    /// worker program, [`DispatchError::NobodyToAsk`] without any workers.
+    /// worker program, [`DispatchError::NoWorkers`] without any workers.
     pub async fn open(options: DispatchOptions) -> Result<Self, DispatchError> {
         let (listen, local) = addresses(&options)?;
         allow_connections();
@@ -82,7 +82,7 @@ impl Dispatch {
         let requests = open.requests.downgrade();
         let ask = move |asked| {
             let requests = requests.upgrade();
-            requests.is_some_and(|requests| requests.send(Request::Ask(asked)).is_ok())
+            requests.is_some_and(|requests| requests.send(Request::Control(asked)).is_ok())
         };
         open.control = Control::open(&options.run_dir, ask)
             .inspect_err(|error| {
@@ -92,8 +92,8 @@ impl Dispatch {
         Ok(open)
     }
 
-    /// Opens a run over a given link, without local workers; `make` receives the run's identifier and the
-    /// data that workers may fetch. `options.listen`, `insecure` and `local_workers` are not used.
+    /// Opens a run over the link that `make` creates from the run's identifier and the data that workers may
+    /// fetch, without local workers. `options.listen`, `insecure` and `local_workers` are not used.
     ///
     /// # Errors
     /// [`DispatchError::Journal`] as [`Self::open`].
@@ -141,7 +141,8 @@ impl Dispatch {
         self.listening.iter().map(ToString::to_string).collect()
     }
 
-    /// Submits a job, once per process; a result that the journal already holds is delivered at once.
+    /// Submits a job; each id may be submitted once per process. A result that the journal already holds is
+    /// delivered at once.
     ///
     /// # Errors
     /// [`DispatchError::Closed`] once the run has been stopped.
@@ -178,7 +179,7 @@ impl Dispatch {
     ///
     /// # Errors
     /// [`DispatchError::Closed`] if the runtime failed before.
-    pub async fn close(self) -> Result<Summary, DispatchError> {
+    pub async fn close(self) -> Result<RunSummary, DispatchError> {
         // an engine that has stopped needs no request
         drop(self.requests);
         drop(self.control);

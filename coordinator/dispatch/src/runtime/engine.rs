@@ -2,27 +2,27 @@
 //! decisions itself.
 use super::{
     control::{
-        Asked,
-        words::{Question, Reply},
+        PendingRequest,
+        messages::{ControlReply, ControlRequest},
     },
-    crew,
     error::DispatchError,
     local::{LocalEvent, LocalWorkers},
     parts::Parts,
-    sleep::Sleep,
+    suspend::SuspendDetector,
+    worker_control,
 };
 use crate::{
-    journal::{Appended, Journal},
+    journal::{Journal, WriterReport},
     scheduler::{Command, Completed, Core, Input, Snapshot},
 };
-use link::{CoordinatorEnd, Heard};
+use link::{CoordinatorEnd, LinkEvent};
 use protocol::{
     event::Event,
     id::{JobId, RunId, WorkerId},
     job::Job,
     key::Lane,
     message::{FromWorker, ToWorker},
-    wire::{self, Kind, WireError},
+    wire::{self, FrameKind, WireError},
 };
 use std::{
     mem,
@@ -34,11 +34,11 @@ use tokio::{
     time::{MissedTickBehavior, interval, timeout},
 };
 
-/// Interval at which the core checks its deadlines.
+/// Interval at which the scheduler core checks its deadlines.
 const TICK: Duration = Duration::from_millis(250);
-/// Maximum age of a snapshot; making a snapshot costs more than handling a result.
+/// Maximum age of the run's published snapshot; making a snapshot costs more than handling a result.
 const FRESH: Duration = Duration::from_millis(20);
-/// Maximum number of messages read before the core checks its deadlines.
+/// Maximum number of queued messages handled before the scheduler core checks its deadlines.
 const MOST_WAITING: usize = 1 << 16;
 /// Time limit for the last results to reach the journal at the end, if the disk is not full.
 const LAST_WRITE: Duration = Duration::from_secs(1);
@@ -51,13 +51,13 @@ pub(super) enum Request {
         job: Box<Job>,
     },
     /// Request from the control socket.
-    Ask(Asked),
+    Control(PendingRequest),
 }
 
 /// Summary of a run, from opening to closing in this process.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Summary {
-    /// Final state, including the account of slot time.
+pub struct RunSummary {
+    /// Final state of the run, including the account of slot time.
     pub last: Snapshot,
     /// Number of results taken from the journal instead of being computed.
     pub replayed: u64,
@@ -80,14 +80,14 @@ pub(super) struct Engine<L> {
     run: RunId,
     core: Core,
     journal: Journal,
-    said: UnboundedReceiver<Appended>,
+    said: UnboundedReceiver<WriterReport>,
     link: L,
     workers: Option<LocalWorkers>,
     only_local: bool,
     deliver: Deliver,
     shown: Arc<Mutex<Snapshot>>,
     begun: Instant,
-    sleep: Sleep,
+    sleep: SuspendDetector,
     replayed: u64,
     /// Pause while the journal cannot be written; `None` for a deleted journal, which is not waited for.
     paused: Option<Pause>,
@@ -128,7 +128,7 @@ impl<L: CoordinatorEnd> Engine<L> {
             deliver,
             shown,
             begun,
-            sleep: Sleep::since_now(),
+            sleep: SuspendDetector::since_now(),
             replayed: 0,
             paused: None,
             pause_limit,
@@ -137,7 +137,7 @@ impl<L: CoordinatorEnd> Engine<L> {
         }
     }
 
-    pub(super) async fn run(mut self, mut requests: UnboundedReceiver<Request>) -> Summary {
+    pub(super) async fn run(mut self, mut requests: UnboundedReceiver<Request>) -> RunSummary {
         let mut ticks = interval(TICK);
         ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
         loop {
@@ -145,7 +145,7 @@ impl<L: CoordinatorEnd> Engine<L> {
             tokio::select! {
                 request = requests.recv() => match request {
                     Some(Request::Submit { id, job }) => self.submit(id, *job),
-                    Some(Request::Ask((question, to))) => {
+                    Some(Request::Control((question, to))) => {
                         let reply = self.ask(&question);
                         // who asked may not wait any more
                         drop(to.send(reply));
@@ -200,11 +200,11 @@ impl<L: CoordinatorEnd> Engine<L> {
         }
     }
 
-    /// Tells the core if the machine was suspended.
+    /// Tells the scheduler core if the machine was suspended since the last call, and for how long.
     fn wake(&mut self) {
         let time = self.sleep.since_last();
         if time > TICK {
-            self.handle(Input::Slept { time });
+            self.handle(Input::Suspended { time });
         }
     }
 
@@ -226,30 +226,31 @@ impl<L: CoordinatorEnd> Engine<L> {
     }
 
     /// Answers a control request and drains workers as requested.
-    fn ask(&mut self, question: &Question) -> Reply {
-        let crew = self.core.crew(self.begun.elapsed());
-        let (drains, reply) = crew::answer(question, crew, |worker| self.link.owner(worker));
+    fn ask(&mut self, question: &ControlRequest) -> ControlReply {
+        let crew = self.core.worker_statuses(self.begun.elapsed());
+        let (drains, reply) =
+            worker_control::answer(question, crew, |worker| self.link.owner(worker));
         for (worker, how) in drains {
             self.handle(Input::Drain { worker, how });
         }
         reply
     }
 
-    fn hear(&mut self, heard: Heard) {
+    fn hear(&mut self, heard: LinkEvent) {
         let (from, frame) = match heard {
-            Heard::Gone(worker) => {
+            LinkEvent::Disconnected(worker) => {
                 self.wake();
-                return self.handle(Input::Gone { worker });
+                return self.handle(Input::Disconnected { worker });
             }
-            Heard::Frame(from, frame) => (from, frame),
+            LinkEvent::Frame(from, frame) => (from, frame),
         };
-        match wire::unseal::<FromWorker>(Kind::FromWorker, &frame) {
+        match wire::decode_frame::<FromWorker>(FrameKind::FromWorker, &frame) {
             Ok((run, message)) => {
                 let known = run == self.run || matches!(message, FromWorker::Announce(_));
                 self.handle(if known {
-                    Input::Heard { from, message }
+                    Input::Message { from, message }
                 } else {
-                    Input::Stranger { from }
+                    Input::OtherRun { from }
                 });
             }
             Err(WireError::Version { found: version }) => {
@@ -259,10 +260,10 @@ impl<L: CoordinatorEnd> Engine<L> {
         }
     }
 
-    fn appended(&mut self, appended: Appended) {
+    fn appended(&mut self, appended: WriterReport) {
         match appended {
-            Appended::Stored(jobs) => self.handle(Input::Stored { jobs }),
-            Appended::Paused(why) => {
+            WriterReport::Stored(jobs) => self.handle(Input::Stored { jobs }),
+            WriterReport::Paused(why) => {
                 self.handle(Input::Writable(false));
                 tracing::error!(
                     "the journal cannot be written ({why}): the run is paused and no result is lost; \
@@ -272,11 +273,11 @@ impl<L: CoordinatorEnd> Engine<L> {
                 let ends = tokio::time::Instant::now() + self.pause_limit;
                 self.paused = Some(Pause { why, ends });
             }
-            Appended::Deleted => {
+            WriterReport::Deleted => {
                 self.handle(Input::Writable(false));
                 self.give(Err(self.journal.deleted().into()));
             }
-            Appended::Resumed => {
+            WriterReport::Resumed => {
                 (self.paused, self.given_up) = (None, false);
                 self.handle(Input::Writable(true));
                 tracing::warn!("the journal can be written again: the run continues");
@@ -331,7 +332,7 @@ impl<L: CoordinatorEnd> Engine<L> {
             | ToWorker::Stored(_)
             | ToWorker::Ended => Lane::Control,
         };
-        match wire::seal(Kind::ToWorker, self.run, message) {
+        match wire::encode_frame(FrameKind::ToWorker, self.run, message) {
             Ok(frame) => self.link.send(to, lane, frame),
             Err(error) => tracing::error!(%error, "a message cannot be sent"),
         }
@@ -393,7 +394,7 @@ impl<L: CoordinatorEnd> Engine<L> {
         }
     }
 
-    async fn close(mut self) -> Summary {
+    async fn close(mut self) -> RunSummary {
         self.handle(Input::Finish);
         self.write_last().await;
         self.handle(Input::Close);
@@ -410,7 +411,7 @@ impl<L: CoordinatorEnd> Engine<L> {
                 tracing::warn!("the {what} did not end in time");
             }
         }
-        Summary {
+        RunSummary {
             last,
             replayed: self.replayed,
             wall_s: now.as_secs_f64(),

@@ -1,6 +1,6 @@
 //! Errors of opening and running a run, with the remedy where there is one.
 use super::locate::LocateError;
-use crate::{journal::JournalError, scheduler::Stop};
+use crate::{journal::JournalError, scheduler::StopReason};
 use link::LinkError;
 use protocol::{id::JobId, wire::WireError};
 use std::time::Duration;
@@ -27,7 +27,7 @@ pub enum DispatchError {
     #[error(
         "the run has no workers: start local ones with --workers N, or let others join with --listen LOCATOR"
     )]
-    NobodyToAsk,
+    NoWorkers,
     /// Local workers end repeatedly without a result, and no other workers can join.
     #[error("the local workers keep ending without a result (the last one {how})")]
     LocalWorkers {
@@ -64,14 +64,14 @@ pub enum DispatchError {
     },
     /// The scheduler core stopped the run.
     #[error("{0}")]
-    Stopped(Stop),
+    Stopped(StopReason),
     /// The run was closed or stopped before.
     #[error("the run is closed")]
     Closed,
 }
 
-impl From<Stop> for DispatchError {
-    fn from(stop: Stop) -> Self {
+impl From<StopReason> for DispatchError {
+    fn from(stop: StopReason) -> Self {
         Self::Stopped(stop)
     }
 }

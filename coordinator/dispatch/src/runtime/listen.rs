@@ -2,7 +2,7 @@
 use super::{error::DispatchError, options::DispatchOptions};
 use link::{
     LinkError,
-    keys::{Keys, Role},
+    keys::{KeyRole, Keys},
     locator::{Locator, Protocol},
 };
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
@@ -53,7 +53,7 @@ pub(super) fn keys(
     let folder = options.tls.as_ref().ok_or_else(|| LinkError::NoKeys {
         locator: secured.to_string(),
     })?;
-    let keys = Keys::read(folder, Role::Coordinator).map_err(LinkError::from)?;
+    let keys = Keys::read(folder, KeyRole::Coordinator).map_err(LinkError::from)?;
     Ok(Some(keys))
 }
 
@@ -64,7 +64,7 @@ pub(super) fn addresses(
     let loopback = || Locator::parse("tcp/127.0.0.1:0");
     let listen = options.listen.as_deref().map(Locator::parse).transpose()?;
     match (listen, options.local_workers) {
-        (None, 0) => Err(DispatchError::NobodyToAsk),
+        (None, 0) => Err(DispatchError::NoWorkers),
         (None, _) => Ok((vec![loopback()?], Some(0))),
         (Some(asked), 0) => Ok((vec![asked], None)),
         (Some(asked), _) if asked.protocol == Protocol::Tcp => Ok((vec![asked], Some(0))),

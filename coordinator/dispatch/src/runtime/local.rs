@@ -44,7 +44,7 @@ const LAST_WORDS: Duration = Duration::from_millis(200);
 /// Maximum length of a worker's output that is forwarded as one line (bytes).
 const LONGEST_LINE: u64 = 64 << 10;
 
-/// Event of the local workers.
+/// Event of the local workers, each with a description of the exit: one ended, was given up, or all were.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum LocalEvent {
     Ended { how: String },
@@ -84,7 +84,7 @@ impl LocalWorkers {
             // and none is started once the end is asked for
             while places.len() < count && matches!(ended.try_recv(), Err(mpsc::TryRecvError::Empty))
             {
-                match Place::start(&program) {
+                match LocalWorker::start(&program) {
                     Ok(place) => places.push(place),
                     Err(error) if places.is_empty() => {
                         drop(begun_to.send(Err(error)));
@@ -102,7 +102,7 @@ impl LocalWorkers {
                     drop(begun_to.send(Ok(())));
                 }
             }
-            tend(&mut places, &program, &progress, &say, &ended);
+            supervise(&mut places, &program, &progress, &say, &ended);
             end_all(places);
         };
         let thread = thread::Builder::new()
@@ -150,13 +150,13 @@ struct Program {
 }
 
 /// Standard error of a worker, forwarded line by line; the last line is kept.
-struct Said {
+struct WorkerOutput {
     last: Arc<Mutex<String>>,
     /// Channel that is disconnected at the end of the output.
     over: mpsc::Receiver<()>,
 }
 
-impl Said {
+impl WorkerOutput {
     fn listen(output: ChildStderr) -> io::Result<Self> {
         let last = Arc::new(Mutex::new(String::new()));
         let (open, over) = mpsc::channel();
@@ -195,9 +195,9 @@ impl Said {
 }
 
 /// Local worker process with its restart history.
-struct Place {
+struct LocalWorker {
     child: Option<Child>,
-    said: Said,
+    said: WorkerOutput,
     begun: Instant,
     /// Number of results of the run when the worker last ended.
     results: u64,
@@ -209,7 +209,7 @@ struct Place {
     again_at: Option<Instant>,
 }
 
-impl Place {
+impl LocalWorker {
     fn start(program: &Program) -> io::Result<Self> {
         let mut child = Command::new(&program.path)
             .args(["--connect", &program.connect, "--slots", "1", "--embedded"])
@@ -221,7 +221,7 @@ impl Place {
             .process_group(0)
             .spawn()?;
         let output = child.stderr.take();
-        let said = Said::listen(output.ok_or(io::ErrorKind::BrokenPipe)?)?;
+        let said = WorkerOutput::listen(output.ok_or(io::ErrorKind::BrokenPipe)?)?;
         Ok(Self {
             child: Some(child),
             said,
@@ -257,7 +257,7 @@ impl Place {
 
     /// Schedules a restart of a worker that ended, or gives it up; `results` is the run's current number of
     /// results.
-    fn again(&mut self, how: String, results: u64) -> LocalEvent {
+    fn schedule_restart(&mut self, how: String, results: u64) -> LocalEvent {
         if results > self.results {
             (self.results, self.restarts) = (results, 0);
         }
@@ -284,8 +284,8 @@ impl Place {
     }
 }
 
-fn tend(
-    places: &mut [Place],
+fn supervise(
+    places: &mut [LocalWorker],
     program: &Program,
     results: &AtomicU64,
     say: &UnboundedSender<LocalEvent>,
@@ -295,9 +295,11 @@ fn tend(
     while matches!(end.recv_timeout(LOOK), Err(mpsc::RecvTimeoutError::Timeout)) {
         for place in &mut *places {
             let results = results.load(Ordering::Relaxed);
-            let ended = place.ended().map(|how| place.again(how, results));
+            let ended = place
+                .ended()
+                .map(|how| place.schedule_restart(how, results));
             let restarted = place.restart_when_due(program);
-            let failed = restarted.map(|error| place.again(error, results));
+            let failed = restarted.map(|error| place.schedule_restart(error, results));
             for event in ended.into_iter().chain(failed) {
                 let gone = match &event {
                     LocalEvent::GivenUp { how } => Some(how.clone()),
@@ -317,7 +319,7 @@ fn tend(
 }
 
 /// Ends workers by closing their standard input, and kills those that do not end in time.
-fn end_all(places: Vec<Place>) {
+fn end_all(places: Vec<LocalWorker>) {
     let mut children: Vec<Child> = places.into_iter().filter_map(|place| place.child).collect();
     for child in &mut children {
         // the end of its input is what it listens for

@@ -44,7 +44,8 @@ pub fn worker_program() -> Result<PathBuf, LocateError> {
     })
 }
 
-/// Returns the worker program in a folder, or else in the first folder of `path` that has it.
+/// Returns the path of the worker program in `folder`, or else in the first folder of the search path `path`
+/// that has it.
 fn nearest(folder: &Path, path: &OsStr) -> Option<PathBuf> {
     let folders = [folder.to_owned()]
         .into_iter()

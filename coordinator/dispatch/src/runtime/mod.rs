@@ -4,7 +4,6 @@
 //! that a caller busy with computations delays no worker.
 mod bench;
 pub mod control;
-mod crew;
 mod dispatch;
 mod engine;
 mod error;
@@ -13,15 +12,16 @@ mod local;
 pub mod locate;
 mod options;
 mod parts;
-mod sleep;
+mod suspend;
+mod worker_control;
 
 pub use crate::scheduler::{Completed, Policy, Snapshot, WorkerSnapshot};
 pub use bench::{
-    BenchPlan, BenchResult, BenchWorkers, Silence, SilentPlan, SilentResult, Slept, bench, connect,
-    keep_silent, processor_time, sleep_through,
+    BenchPlan, BenchResult, BenchWorkers, SilentPlan, SilentResult, SilentStage,
+    SleepingJobsResult, bench, connect, keep_silent, processor_time, sleep_through,
 };
 pub use dispatch::Dispatch;
-pub use engine::Summary;
+pub use engine::RunSummary;
 pub use error::DispatchError;
 pub use options::{DispatchOptions, PAUSE_LIMIT};
 pub use protocol::event::{RunHeader, Spent};

@@ -2,7 +2,8 @@
 use protocol::{case::Case, event::RunHeader};
 use std::{path::PathBuf, time::Duration};
 
-/// Default pause limit, long enough for a person to free space on the disk.
+/// Default time for which a run waits while the journal cannot be written, long enough for a person to free
+/// space on the disk.
 pub const PAUSE_LIMIT: Duration = Duration::from_mins(10);
 
 /// Options for opening a run.

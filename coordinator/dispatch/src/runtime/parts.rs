@@ -2,7 +2,7 @@
 //! journal.
 use super::{error::DispatchError, options::DispatchOptions};
 use crate::{
-    journal::{self, Appended, Journal},
+    journal::{self, Journal, WriterReport},
     scheduler::{Core, CoreOptions, Policy},
 };
 use link::Blob;
@@ -16,12 +16,12 @@ use std::{
 };
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
-/// Parts of a run that do not depend on its link.
+/// Journal and scheduler core of a run, independent of its link.
 pub(super) struct Parts {
     pub(super) run: RunId,
     pub(super) core: Core,
     pub(super) journal: Journal,
-    pub(super) said: UnboundedReceiver<Appended>,
+    pub(super) said: UnboundedReceiver<WriterReport>,
     pub(super) blob: Blob,
     pub(super) pause_limit: Duration,
 }
@@ -47,7 +47,7 @@ impl Parts {
                 drop(say.send(appended));
             },
         )?;
-        for damage in journal::words(&begun.report.damage) {
+        for damage in journal::describe_damage(&begun.report.damage) {
             tracing::warn!("{damage}");
         }
         let blob = Blob::new(wire::encode(&options.case)?);

@@ -4,7 +4,7 @@
 //! case's own reference individual, which each worker computes once it holds the case. The first worker of a
 //! run sets the expected result, which others must match to the last bit or within the tolerance of the case.
 use super::{
-    admission_rules::{malformed, model, objection, shown},
+    admission_rules::{malformed, model, refusal_reason, sanitized},
     drain::turn_away,
     member::Member,
     notice::Notice,
@@ -13,11 +13,11 @@ use super::{
 };
 use protocol::{
     announce::Announcement,
-    case::Repeats,
+    case::Reproducibility,
     event::Event,
     id::WorkerId,
-    message::{Beat, ToWorker},
-    proof::{MOST_SAMPLES, Proof},
+    message::{Heartbeat, ToWorker},
+    proof::{MAX_SAMPLES, ReferenceResult},
 };
 use std::time::Duration;
 
@@ -26,8 +26,8 @@ const MOST_REFUSED: usize = 4096;
 
 /// Handles the announcement of a worker: admits or refuses it.
 pub(super) fn announce(core: &mut Core, from: WorkerId, announcement: Announcement, now: Duration) {
-    if let Some(reason) = malformed(&announcement).or_else(|| objection(core, &announcement)) {
-        let host = shown(&announcement.host);
+    if let Some(reason) = malformed(&announcement).or_else(|| refusal_reason(core, &announcement)) {
+        let host = sanitized(&announcement.host);
         refuse(core, from, host, reason);
         return;
     }
@@ -96,7 +96,7 @@ fn admit(core: &mut Core, worker: WorkerId, announcement: Announcement, now: Dur
 }
 
 /// Returns whether a worker can be given jobs; `None` if it has just been refused.
-pub(super) fn is_ready(core: &mut Core, from: WorkerId, beat: &Beat) -> Option<bool> {
+pub(super) fn is_ready(core: &mut Core, from: WorkerId, beat: &Heartbeat) -> Option<bool> {
     let expected = core.options.case;
     match beat.case {
         None => return Some(false),
@@ -118,33 +118,34 @@ pub(super) fn is_ready(core: &mut Core, from: WorkerId, beat: &Beat) -> Option<b
     }
 }
 
-/// Checks a worker's proof against that of the run's first worker; the first proof becomes the reference.
-fn agreement(core: &mut Core, proof: &Proof) -> Result<(), String> {
+/// Checks a worker's result of the case's reference individual against that of the run's first worker; the
+/// first such result becomes the reference.
+fn agreement(core: &mut Core, proof: &ReferenceResult) -> Result<(), String> {
     let tolerance = match core.options.repeats {
-        Repeats::Within(tolerance) => tolerance,
-        Repeats::Bits | Repeats::Unknown => 0.0,
+        Reproducibility::Within(tolerance) => tolerance,
+        Reproducibility::Bits | Reproducibility::Unknown => 0.0,
     };
-    if let Proof::Values(values) = proof
-        && values.len() > MOST_SAMPLES
+    if let ReferenceResult::Values(values) = proof
+        && values.len() > MAX_SAMPLES
     {
         let count = values.len();
         return Err(format!(
-            "proof has {count} values, at most {MOST_SAMPLES} are allowed: use the same build of horsehead-worker"
+            "proof has {count} values, at most {MAX_SAMPLES} are allowed: use the same build of horsehead-worker"
         ));
     }
     let Some(expected) = &core.options.proof else {
         // where every machine fails at it, the run's own jobs say so
-        if *proof != Proof::Failed {
+        if *proof != ReferenceResult::Failed {
             core.options.proof = Some(proof.clone());
             let proof = proof.clone();
             core.record(Event::Proved { proof });
         }
         return Ok(());
     };
-    expected.agrees(proof, tolerance).map_err(|differs| {
+    expected.compare(proof, tolerance).map_err(|differs| {
         let remedy = match core.options.repeats {
-            Repeats::Bits => "use the same build of horsehead-worker",
-            Repeats::Within(_) | Repeats::Unknown => {
+            Reproducibility::Bits => "use the same build of horsehead-worker",
+            Reproducibility::Within(_) | Reproducibility::Unknown => {
                 "use the same program and files on every machine (`reference_tolerance` of the case says how \
                  much results may differ)"
             }

@@ -68,7 +68,7 @@ pub(super) fn malformed(announcement: &Announcement) -> Option<String> {
 }
 
 /// Returns the reason why a worker may not join this run, with the remedy; `None` if it may.
-pub(super) fn objection(core: &Core, announcement: &Announcement) -> Option<String> {
+pub(super) fn refusal_reason(core: &Core, announcement: &Announcement) -> Option<String> {
     const SAME: &str = "use the same build of horsehead and horsehead-worker on every machine";
     let Announcement {
         protocol,
@@ -110,7 +110,7 @@ pub(super) fn objection(core: &Core, announcement: &Announcement) -> Option<Stri
             if kinds.is_empty() {
                 "none".to_owned()
             } else {
-                shown(&kinds.join(", "))
+                sanitized(&kinds.join(", "))
             }
         ));
     };
@@ -138,7 +138,7 @@ pub(super) fn objection(core: &Core, announcement: &Announcement) -> Option<Stri
 }
 
 /// Returns the beginning of an untrusted text without control characters.
-pub(super) fn shown(text: &str) -> String {
+pub(super) fn sanitized(text: &str) -> String {
     let plain = text.chars().filter(|letter| !letter.is_control());
     plain.take(MOST_SHOWN).collect()
 }

@@ -50,7 +50,7 @@ fn pick(core: &Core, job: JobId) -> Option<WorkerId> {
                 && member.leases.len() < room(member)
                 && reserved != Some(**id)
                 && may_have(core, pending, **id)
-                && (!alone || member.taken.is_empty())
+                && (!alone || member.revoked.is_empty())
         })
         .min_by_key(|(_, member)| member.leases.len() * 4096 / member.slots())
         .map(|(id, _)| *id)

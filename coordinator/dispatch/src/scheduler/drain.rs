@@ -1,7 +1,7 @@
 //! Draining of workers: they get no new jobs, finish or return their current jobs, and stay idle or end.
 use super::{
-    input::Drain, lease::release, member::Member, notice::Notice, roster::dismiss, slot_time::Use,
-    state::Core,
+    input::Drain, lease::release, member::Member, notice::Notice, roster::dismiss,
+    slot_time::AttemptUse, state::Core,
 };
 use protocol::{
     id::WorkerId,
@@ -19,11 +19,11 @@ pub(super) fn drain(core: &mut Core, worker: WorkerId, how: Drain, now: Duration
     if how.now {
         let held: Vec<Attempt> = member.leases.iter().map(|lease| lease.attempt).collect();
         member
-            .taken
+            .revoked
             .extend(held.iter().map(|attempt| (*attempt, now)));
         for attempt in held {
             core.send(worker, ToWorker::Cancel(attempt));
-            release(core, worker, attempt.job, Use::Lost);
+            release(core, worker, attempt.job, AttemptUse::Lost);
         }
     }
 }
@@ -46,8 +46,8 @@ pub(super) fn end_drained(core: &mut Core, now: Duration) {
     }
 }
 
-/// Tells a worker that was asked to end to do so; returns whether it was asked. The message may be lost, in
-/// which case the worker announces itself again.
+/// Sends a worker the order to end, if a drain requested its end, and returns whether it did. The message may
+/// be lost; the worker then announces itself again.
 pub(super) fn turn_away(core: &mut Core, worker: WorkerId) -> bool {
     let ends = core.drained.get(&worker).is_some_and(|how| how.end);
     if ends {

@@ -3,7 +3,7 @@ use super::{
     admission, assign, drain,
     input::{Command, Input},
     lease, membership, reconcile, result,
-    slot_time::Doing,
+    slot_time::WorkState,
     state::{Core, Pending, Phase},
     stragglers,
 };
@@ -11,7 +11,7 @@ use protocol::{
     event::Event,
     id::{JobId, WorkerId},
     job::Job,
-    message::{Beat, FromWorker, ToWorker},
+    message::{FromWorker, Heartbeat, ToWorker},
 };
 use std::{mem, time::Duration};
 
@@ -20,17 +20,17 @@ impl Core {
     /// order.
     pub fn handle(&mut self, input: Input, now: Duration) -> Vec<Command> {
         self.clocks.advance(now);
-        membership::forgive_stall(self, now);
+        membership::compensate_stall(self, now);
         match input {
             Input::Submit { id, job } => submit(self, id, job, now),
-            Input::Heard { from, message } => heard(self, from, message, now),
-            Input::Stranger { from } => self.send(from, ToWorker::Identify),
+            Input::Message { from, message } => heard(self, from, message, now),
+            Input::OtherRun { from } => self.send(from, ToWorker::Identify),
             Input::OtherVersion { from, version } => {
                 admission::other_version(self, from, version);
             }
-            Input::Gone { worker } => membership::gone(self, worker, now),
+            Input::Disconnected { worker } => membership::connection_lost(self, worker, now),
             Input::Stored { jobs } => result::stored(self, jobs),
-            Input::Slept { time } => membership::excuse(self, time, now),
+            Input::Suspended { time } => membership::start_reconnect_grace(self, time, now),
             Input::Drain { worker, how } => drain::drain(self, worker, how, now),
             Input::Tick => tick(self, now),
             Input::Finish => self.phase = Phase::Finishing,
@@ -38,15 +38,15 @@ impl Core {
             Input::Close => close(self, now),
         }
         drain::end_drained(self, now);
-        if self.may_give_out() && membership::is_complete(self, now) {
+        if self.may_give_out() && membership::rejoin_finished(self, now) {
             assign::assign(self, now);
             stragglers::steal(self, now);
         }
-        self.clocks.go_on(Doing {
+        self.clocks.set_state(WorkState {
             computes: self.jobs.len() > self.queue.len(),
             waits_for_others: self.waits_for_others(),
         });
-        mem::take(&mut self.out)
+        mem::take(&mut self.commands)
     }
 }
 
@@ -69,11 +69,11 @@ fn submit(core: &mut Core, id: JobId, job: Job, now: Duration) {
 
 fn heard(core: &mut Core, from: WorkerId, message: FromWorker, now: Duration) {
     let member = core.members.get_mut(&from);
-    let known = member.map(|member| member.heard = now).is_some();
+    let known = member.map(|member| member.last_heard = now).is_some();
     match message {
         FromWorker::Announce(_) if core.phase == Phase::Closed => {}
         FromWorker::Announce(announcement) => admission::announce(core, from, *announcement, now),
-        FromWorker::Beat(beat) if known => beaten(core, from, &beat, now),
+        FromWorker::Beat(beat) if known => handle_heartbeat(core, from, &beat, now),
         FromWorker::Beat(_) => core.send(from, ToWorker::Identify),
         // it differs from the others, and so may what it computes
         FromWorker::Done(_) if core.refused.contains(&from) => {}
@@ -88,7 +88,7 @@ fn heard(core: &mut Core, from: WorkerId, message: FromWorker, now: Duration) {
     }
 }
 
-fn beaten(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
+fn handle_heartbeat(core: &mut Core, from: WorkerId, beat: &Heartbeat, now: Duration) {
     let Some(ready) = admission::is_ready(core, from, beat) else {
         return;
     };
@@ -97,16 +97,16 @@ fn beaten(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
     }
     reconcile::reconcile(core, from, beat, now);
     if beat.case.is_some() {
-        membership::welcome(core, from, now);
+        membership::worker_returned(core, from, now);
     }
 }
 
 fn tick(core: &mut Core, now: Duration) {
     membership::check_silence(core, now);
     result::check_overdue(core, now);
-    membership::check_deserted(core, now);
+    membership::check_no_workers(core, now);
     stragglers::copy_slow(core, now);
-    if now.saturating_sub(core.accounted) >= core.options.policy.account_interval {
+    if now.saturating_sub(core.last_account) >= core.options.policy.account_interval {
         core.account(now);
     }
 }

@@ -1,7 +1,7 @@
 //! Inputs and commands of the scheduler core.
 use super::{
     completed::Completed,
-    notice::{Notice, Stop},
+    notice::{Notice, StopReason},
 };
 use protocol::{
     event::{Event, Finished},
@@ -27,31 +27,31 @@ pub enum Input {
     Submit {
         /// Identifier of the job.
         id: JobId,
-        /// Request to execute.
+        /// Content of the submitted job: the work to execute.
         job: Job,
     },
     /// A message from a worker arrived.
-    Heard {
+    Message {
         /// Identifier of the worker.
         from: WorkerId,
         /// Message of the worker.
         message: FromWorker,
     },
     /// A worker sent a message that belongs to another run.
-    Stranger {
-        /// Identifier of the worker.
+    OtherRun {
+        /// Identifier of the worker that belongs to another run.
         from: WorkerId,
     },
     /// A worker sent a message in another version of the wire protocol.
     OtherVersion {
-        /// Identifier of the worker.
+        /// Identifier of the worker with the other protocol version.
         from: WorkerId,
         /// Version used by the worker.
         version: u8,
     },
     /// The transport lost the connection to a worker.
-    Gone {
-        /// Identifier of the worker.
+    Disconnected {
+        /// Identifier of the worker whose connection was lost.
         worker: WorkerId,
     },
     /// Results were safely written to the journal.
@@ -62,15 +62,15 @@ pub enum Input {
     /// The journal became writable or unwritable; it is writable initially.
     Writable(bool),
     /// The machine was suspended, and its clock stood still.
-    Slept {
+    Suspended {
         /// Duration of the suspend.
         time: Duration,
     },
     /// A worker is to be drained.
     Drain {
-        /// Identifier of the worker.
+        /// Identifier of the worker to drain.
         worker: WorkerId,
-        /// Drain options.
+        /// Options of the drain: whether jobs are returned at once, and whether the worker ends.
         how: Drain,
     },
     /// Time has passed; deadlines must be checked.
@@ -81,14 +81,14 @@ pub enum Input {
     Close,
 }
 
-/// Command of the scheduler core to the runtime.
+/// Command that the scheduler core emits for the runtime to execute.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Send a message to a worker.
     Send {
         /// Recipient.
         to: WorkerId,
-        /// Message.
+        /// Message to send to the worker.
         message: ToWorker,
     },
     /// Write a result to the journal and answer [`Input::Stored`] once it is safe.
@@ -100,5 +100,5 @@ pub enum Command {
     /// Report to the user.
     Notice(Notice),
     /// Stop the run, which cannot continue.
-    Stop(Stop),
+    Stop(StopReason),
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// Set of job ids, stored as disjoint ranges.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct JobSet {
-    /// First to last id of each range; ranges neither overlap nor touch.
+    /// Ranges of job ids, first to last, which neither overlap nor touch.
     ranges: BTreeMap<u64, u64>,
     count: usize,
 }

@@ -2,30 +2,30 @@
 //! coordinator process.
 use super::{
     member::Lease,
-    slot_time::Use,
+    slot_time::AttemptUse,
     state::{Core, millis},
 };
 use protocol::{
     id::{AttemptId, JobId, WorkerId},
     job::Job,
-    message::{Attempt, Order, ToWorker},
+    message::{Assignment, Attempt, ToWorker},
 };
 use std::time::Duration;
 
 /// Attempt id used for a failure that the coordinator itself records, without any dispatch to a worker.
-pub(super) const STATED: AttemptId = AttemptId(u32::MAX);
+pub(super) const COORDINATOR_ATTEMPT: AttemptId = AttemptId(u32::MAX);
 
-/// Builds an attempt id from the epoch (coordinator process) and the attempt's number; ids of different
-/// processes of a run never coincide.
-const fn offer(epoch: u32, number: u32) -> AttemptId {
+/// Builds an attempt id from the epoch (number of the coordinator process) and the number of earlier
+/// dispatches of the job by that process; ids of different processes of a run never coincide.
+const fn attempt_id(epoch: u32, number: u32) -> AttemptId {
     AttemptId(epoch << 16 | (number & 0xffff))
 }
 
 /// Returns the coordinator process (epoch, from 1) that dispatched an attempt and the number of earlier
 /// dispatches of the job by that process; `None` for a failure that the coordinator itself recorded.
-pub fn offered(attempt: AttemptId) -> Option<(u32, u32)> {
+pub fn epoch_and_number(attempt: AttemptId) -> Option<(u32, u32)> {
     let AttemptId(number) = attempt;
-    (attempt != STATED).then_some((number >> 16, number & 0xffff))
+    (attempt != COORDINATOR_ATTEMPT).then_some((number >> 16, number & 0xffff))
 }
 
 /// Leases a job to a worker and queues the order to be sent.
@@ -40,7 +40,7 @@ pub(super) fn lease(core: &mut Core, worker: WorkerId, job: JobId, now: Duration
     };
     let attempt = Attempt {
         job,
-        attempt: offer(core.options.epoch, pending.next),
+        attempt: attempt_id(core.options.epoch, pending.next),
     };
     if !pending.holders.is_empty() {
         core.counts.copies += 1;
@@ -49,7 +49,7 @@ pub(super) fn lease(core: &mut Core, worker: WorkerId, job: JobId, now: Duration
     }
     pending.next += 1;
     pending.holders.push(worker);
-    member.alone |= alone;
+    member.runs_quarantined_job |= alone;
     member.add_lease(Lease::new(attempt, deadline, now), &core.clocks);
     let order = order(attempt, deadline, &pending.job);
     core.send(worker, order);
@@ -57,7 +57,7 @@ pub(super) fn lease(core: &mut Core, worker: WorkerId, job: JobId, now: Duration
 
 /// Builds the message that orders a worker to run a job.
 pub(super) fn order(attempt: Attempt, deadline: Duration, job: &Job) -> ToWorker {
-    ToWorker::Run(Box::new(Order {
+    ToWorker::Run(Box::new(Assignment {
         attempt,
         deadline_ms: millis(deadline),
         job: job.clone(),
@@ -66,7 +66,7 @@ pub(super) fn order(attempt: Attempt, deadline: Duration, job: &Job) -> ToWorker
 
 /// Ends a worker's lease, books its slot time under the given use, and requeues the job unless another worker
 /// holds it.
-pub(super) fn release(core: &mut Core, worker: WorkerId, job: JobId, what: Use) {
+pub(super) fn release(core: &mut Core, worker: WorkerId, job: JobId, what: AttemptUse) {
     if let Some(member) = core.members.get_mut(&worker)
         && let Some(lease) = member.drop_lease(job, &core.clocks)
     {

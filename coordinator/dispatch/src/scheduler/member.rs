@@ -1,5 +1,5 @@
 //! One admitted worker: the leases held, and the use of its slot time.
-use super::slot_time::{Clocks, SlotTime, Use, micros};
+use super::slot_time::{AttemptUse, Clocks, SlotTime, micros};
 use protocol::{
     announce::Announcement,
     event::{Spent, WorkerAccount},
@@ -17,10 +17,11 @@ pub(super) struct Lease {
     /// Time at which the worker first reported that the attempt was running.
     pub(super) running: Option<Duration>,
     pub(super) deadline: Duration,
-    /// Slot time spent on the attempt, as of the worker's last settlement ([`Member::settle`]).
+    /// Slot time spent on the leased attempt until the worker's slot time was last brought up to date by
+    /// [`Member::settle`].
     pub(super) held: Duration,
     /// Whether the order was sent while the worker had an idle slot.
-    pub(super) prompt: bool,
+    pub(super) sent_to_idle_slot: bool,
 }
 
 impl Lease {
@@ -32,7 +33,7 @@ impl Lease {
             running: None,
             deadline,
             held: Duration::ZERO,
-            prompt: false,
+            sent_to_idle_slot: false,
         }
     }
 }
@@ -41,22 +42,22 @@ impl Lease {
 #[derive(Clone, Debug)]
 pub(super) struct Member {
     pub(super) announcement: Announcement,
-    pub(super) since: Duration,
-    pub(super) heard: Duration,
+    pub(super) joined_at: Duration,
+    pub(super) last_heard: Duration,
     /// Whether the worker may be given jobs: it has the case and has proved that its results agree with those
     /// of the run.
     pub(super) ready: bool,
     /// Leases in the order in which they were sent; about the first `slots` of them are running.
     pub(super) leases: Vec<Lease>,
     /// Whether the worker holds a quarantined job and gets no other job.
-    pub(super) alone: bool,
+    pub(super) runs_quarantined_job: bool,
     /// Whether the worker is drained, that is, gets no new jobs.
     pub(super) drained: bool,
     /// Attempts that the worker reports holding of jobs not (yet) submitted.
     pub(super) claims: Vec<Attempt>,
-    /// Attempts taken from the worker, and when; the worker may run them until it has received the
-    /// cancellation.
-    pub(super) taken: Vec<(Attempt, Duration)>,
+    /// Attempts withdrawn from the worker, each with the time of withdrawal; the worker may still run them
+    /// until it receives the cancellation.
+    pub(super) revoked: Vec<(Attempt, Duration)>,
     pub(super) done: u64,
     pub(super) failed: u64,
     slot_time: SlotTime,
@@ -67,14 +68,14 @@ impl Member {
     pub(super) fn new(announcement: Announcement, clocks: &Clocks, now: Duration) -> Self {
         Self {
             announcement,
-            since: now,
-            heard: now,
+            joined_at: now,
+            last_heard: now,
             ready: false,
             leases: Vec::new(),
-            alone: false,
+            runs_quarantined_job: false,
             drained: false,
             claims: Vec::new(),
-            taken: Vec::new(),
+            revoked: Vec::new(),
             done: 0,
             failed: 0,
             slot_time: SlotTime::since(clocks),
@@ -91,7 +92,7 @@ impl Member {
 
     /// Returns whether the worker may be given a job that needs no isolation.
     pub(super) const fn takes_jobs(&self) -> bool {
-        self.ready && !self.alone && !self.drained
+        self.ready && !self.runs_quarantined_job && !self.drained
     }
 
     /// Returns the number of idle slots.
@@ -102,7 +103,10 @@ impl Member {
     pub(super) fn add_lease(&mut self, lease: Lease, clocks: &Clocks) {
         self.settle(clocks);
         let prompt = self.idle() > 0;
-        self.leases.push(Lease { prompt, ..lease });
+        self.leases.push(Lease {
+            sent_to_idle_slot: prompt,
+            ..lease
+        });
     }
 
     pub(super) fn drop_lease(&mut self, job: JobId, clocks: &Clocks) -> Option<Lease> {
@@ -112,7 +116,7 @@ impl Member {
             .iter()
             .position(|lease| lease.attempt.job == job)?;
         let lease = self.leases.remove(at);
-        self.alone &= !self.leases.is_empty();
+        self.runs_quarantined_job &= !self.leases.is_empty();
         Some(lease)
     }
 
@@ -127,7 +131,7 @@ impl Member {
     /// Books the slot time since the last settlement; must be called before the number of running jobs or the
     /// readiness changes.
     pub(super) fn settle(&mut self, clocks: &Clocks) {
-        let (passed, slots) = (self.slot_time.unwritten(clocks), self.slots());
+        let (passed, slots) = (self.slot_time.unsettled(clocks), self.slots());
         self.slot_time = self.settled(clocks);
         for lease in self.leases.iter_mut().take(slots) {
             lease.held += passed;
@@ -140,10 +144,10 @@ impl Member {
     }
 
     /// Books the slot time of an ended attempt under the given use.
-    pub(super) fn attribute(&mut self, lease: &Lease, what: Use) {
+    pub(super) fn attribute(&mut self, lease: &Lease, what: AttemptUse) {
         let spent = what
-            .said()
-            .map_or(lease.held, |said| self.possible(lease, said));
+            .reported_time()
+            .map_or(lease.held, |said| self.creditable_time(lease, said));
         self.slot_time.add(what, spent);
     }
 
@@ -151,40 +155,40 @@ impl Member {
     pub(super) fn lose_leases(&mut self, clocks: &Clocks) {
         self.settle(clocks);
         for lease in &mut self.leases {
-            self.slot_time.add(Use::Lost, lease.held);
+            self.slot_time.add(AttemptUse::Lost, lease.held);
             lease.held = Duration::ZERO;
         }
     }
 
-    /// Returns the slot time reported by the worker, limited to the time available in the books of the
-    /// coordinator.
+    /// Returns the slot time that the worker reported for an ended attempt, limited to the time that the
+    /// coordinator has counted for this worker.
     ///
-    /// Orders may arrive in another order than they were sent in, so that the time was booked on another
-    /// lease; the missing time is taken from the other leases, never created.
-    fn possible(&mut self, lease: &Lease, said: Duration) -> Duration {
-        let mut found = lease.held + self.slot_time.on_the_way;
+    /// Orders may overtake each other on the network, so that part of the time was counted under another
+    /// lease; the missing time is moved from there, never created.
+    fn creditable_time(&mut self, lease: &Lease, said: Duration) -> Duration {
+        let mut found = lease.held + self.slot_time.in_transit;
         for other in &mut self.leases {
             let missing = said.saturating_sub(found).min(other.held);
             other.held -= missing;
             found += missing;
         }
         let spent = said.min(found);
-        self.slot_time.on_the_way = found.saturating_sub(spent);
+        self.slot_time.in_transit = found.saturating_sub(spent);
         spent
     }
 
     /// Returns the worker's slot time by use until now; running attempts count as useful.
     pub(super) fn spent(&self, clocks: &Clocks) -> Spent {
-        let passed = self.slot_time.unwritten(clocks);
+        let passed = self.slot_time.unsettled(clocks);
         let computing = self.leases.iter().take(self.slots());
         let computing: Duration = computing.map(|lease| lease.held + passed).sum();
-        let connected = micros(clocks.now.saturating_sub(self.since));
+        let connected = micros(clocks.now.saturating_sub(self.joined_at));
         let connected_us = connected.saturating_mul(u64::from(self.announcement.slots));
-        self.settled(clocks).stated(connected_us, computing)
+        self.settled(clocks).to_spent(connected_us, computing)
     }
 
-    /// Returns the worker's row in the slot-time account, until now.
-    pub(super) fn row(&self, worker: WorkerId, clocks: &Clocks) -> WorkerAccount {
+    /// Returns the worker's row in the slot-time account, covering its time in the run until now.
+    pub(super) fn account_row(&self, worker: WorkerId, clocks: &Clocks) -> WorkerAccount {
         WorkerAccount {
             worker,
             host: self.announcement.host.clone(),

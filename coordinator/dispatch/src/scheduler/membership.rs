@@ -1,7 +1,7 @@
 //! Membership of workers: return after a restart, leaving, loss by a broken connection or silence, and stalls
 //! of the coordinator.
 use super::{
-    admission_rules::shown,
+    admission_rules::sanitized,
     lease::requeue,
     notice::Notice,
     result,
@@ -15,35 +15,36 @@ use protocol::{
 };
 use std::{collections::BTreeSet, time::Duration};
 
-/// Returns whether all workers that may hold jobs or results of the previous coordinator process have
-/// returned, or the grace period for them is over.
-pub(super) fn is_complete(core: &mut Core, now: Duration) -> bool {
-    if core.rejoining.is_none() && !core.options.expected.is_empty() {
-        core.rejoining = Some(now + core.options.policy.rejoin_grace);
+/// Returns whether the wait after a coordinator restart is over: all workers that may hold jobs or results of
+/// the previous process have returned, or the grace period has ended.
+pub(super) fn rejoin_finished(core: &mut Core, now: Duration) -> bool {
+    if core.rejoin_until.is_none() && !core.options.expected.is_empty() {
+        core.rejoin_until = Some(now + core.options.policy.rejoin_grace);
     }
-    core.rejoining.is_none_or(|until| {
+    core.rejoin_until.is_none_or(|until| {
         let over = now >= until;
         if over {
             core.options.expected.clear();
-            core.rejoining = None;
+            core.rejoin_until = None;
         }
         over
     })
 }
 
-/// Registers the return of an expected worker; after the last one only the delivery grace period remains.
-pub(super) fn welcome(core: &mut Core, worker: WorkerId, now: Duration) {
+/// Registers the return of a worker that was expected after a coordinator restart; after the last one only
+/// the grace period for the delivery of results remains.
+pub(super) fn worker_returned(core: &mut Core, worker: WorkerId, now: Duration) {
     if core.options.expected.remove(&worker)
         && core.options.expected.is_empty()
-        && let Some(until) = core.rejoining
+        && let Some(until) = core.rejoin_until
     {
-        core.rejoining = Some(until.min(now + core.options.policy.delivery_grace));
+        core.rejoin_until = Some(until.min(now + core.options.policy.delivery_grace));
     }
 }
 
 /// Removes a worker that announced its departure.
 pub(super) fn leave(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) {
-    let reason = shown(reason);
+    let reason = sanitized(reason);
     if dismiss(core, worker, &reason, now).is_none() {
         return;
     }
@@ -54,21 +55,21 @@ pub(super) fn leave(core: &mut Core, worker: WorkerId, reason: &str, now: Durati
 
 /// Handles a connection loss reported by the transport: immediate if the worker's process ended, delayed if
 /// it only stopped responding.
-pub(super) fn gone(core: &mut Core, worker: WorkerId, now: Duration) {
+pub(super) fn connection_lost(core: &mut Core, worker: WorkerId, now: Duration) {
     let Some(member) = core.members.get(&worker) else {
         return;
     };
-    if now < core.excused {
+    if now < core.reconnect_grace_until {
         return;
     }
-    let silent = now.saturating_sub(member.heard);
+    let silent = now.saturating_sub(member.last_heard);
     let reason = if silent > core.options.policy.heartbeat_timeout / 2 {
         silence(silent)
     } else {
         "its connection was closed: the worker was killed, or its machine or the network failed"
             .to_owned()
     };
-    lose(core, worker, &reason, now);
+    declare_lost(core, worker, &reason, now);
 }
 
 fn silence(time: Duration) -> String {
@@ -80,10 +81,10 @@ fn silence(time: Duration) -> String {
 
 /// Declares a worker lost and requeues its jobs.
 ///
-/// Every job the worker held may be the cause, including those last reported as waiting, since results of the
-/// jobs before them may have been lost with the worker; so may jobs that were taken from the worker and are
-/// not yet let go. Innocent jobs are cleared by running alone.
-fn lose(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) {
+/// Every job that the worker held may have caused the loss and counts a failure: also jobs last reported as
+/// waiting, since results of earlier jobs may have been lost with the worker, and jobs withdrawn from the
+/// worker that it has not yet released. Innocent jobs are cleared by running alone.
+fn declare_lost(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) {
     let Some(member) = remove(core, worker, reason, now) else {
         return;
     };
@@ -94,7 +95,7 @@ fn lose(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) {
         jobs: member.leases.len(),
     });
     let held = member.leases.iter().map(|lease| lease.attempt.job);
-    let taken = member.taken.iter().map(|(attempt, _)| attempt.job);
+    let taken = member.revoked.iter().map(|(attempt, _)| attempt.job);
     let jobs: BTreeSet<JobId> = held.chain(taken).collect();
     let workers = core.options.policy.alone_after_losses;
     let mut suspects = Vec::new();
@@ -118,57 +119,61 @@ fn lose(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) {
 
 /// Declares workers lost that have been silent for longer than the heartbeat timeout.
 pub(super) fn check_silence(core: &mut Core, now: Duration) {
-    let (timeout, excused) = (core.options.policy.heartbeat_timeout, core.excused);
+    let (timeout, excused) = (
+        core.options.policy.heartbeat_timeout,
+        core.reconnect_grace_until,
+    );
     let silent: Vec<WorkerId> = core
         .members
         .iter()
-        .filter(|(_, member)| now.saturating_sub(member.heard.max(excused)) > timeout)
+        .filter(|(_, member)| now.saturating_sub(member.last_heard.max(excused)) > timeout)
         .map(|(id, _)| *id)
         .collect();
     for worker in silent {
-        lose(core, worker, &silence(timeout), now);
+        declare_lost(core, worker, &silence(timeout), now);
     }
 }
 
 /// Detects that the coordinator was not called for a while, so that messages are still unread, and moves all
 /// heartbeat and lease times forward by the gap.
-pub(super) fn forgive_stall(core: &mut Core, now: Duration) {
+pub(super) fn compensate_stall(core: &mut Core, now: Duration) {
     let gap = now.saturating_sub(core.last_call);
     core.last_call = now;
     if gap <= core.options.policy.stall_after || core.members.is_empty() {
         return;
     }
     for member in core.members.values_mut() {
-        member.heard = (member.heard + gap).min(now);
+        member.last_heard = (member.last_heard + gap).min(now);
         for lease in &mut member.leases {
             lease.sent = (lease.sent + gap).min(now);
             lease.running = lease.running.map(|running| (running + gap).min(now));
         }
     }
-    excuse(core, gap, now);
+    start_reconnect_grace(core, gap, now);
 }
 
-/// Excuses broken connections after a stall of the coordinator: workers that dropped their connections to it
-/// will reconnect and are not lost.
-pub(super) fn excuse(core: &mut Core, time: Duration, now: Duration) {
+/// Ignores broken connections for a grace period after a stall of the coordinator, since workers that dropped
+/// their connections during the stall will reconnect and are not lost.
+pub(super) fn start_reconnect_grace(core: &mut Core, time: Duration, now: Duration) {
     let policy = &core.options.policy;
     if time >= policy.disconnecting_stall {
-        core.excused = now + policy.reconnect_grace;
+        core.reconnect_grace_until = now + policy.reconnect_grace;
     }
     let ms = millis(time);
     core.notice(Notice::Stalled { ms });
 }
 
 /// Emits a notice, once, when jobs have waited for too long without any connected worker.
-pub(super) fn check_deserted(core: &mut Core, now: Duration) {
+pub(super) fn check_no_workers(core: &mut Core, now: Duration) {
     if !core.members.is_empty() || core.queue.is_empty() {
-        core.deserted_since = None;
-        core.told_deserted = false;
+        core.no_worker_since = None;
+        core.no_worker_notified = false;
         return;
     }
-    let since = *core.deserted_since.get_or_insert(now);
-    if !core.told_deserted && now.saturating_sub(since) >= core.options.policy.no_worker_notice {
-        core.told_deserted = true;
+    let since = *core.no_worker_since.get_or_insert(now);
+    if !core.no_worker_notified && now.saturating_sub(since) >= core.options.policy.no_worker_notice
+    {
+        core.no_worker_notified = true;
         let (jobs, refused) = (core.queue.len(), core.refused.len());
         core.notice(Notice::NoWorker { jobs, refused });
     }

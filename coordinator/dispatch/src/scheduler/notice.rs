@@ -57,7 +57,7 @@ pub enum Notice {
     NoWorker {
         /// Number of waiting jobs.
         jobs: usize,
-        /// Number of refused workers.
+        /// Number of workers that were refused admission.
         refused: usize,
     },
     /// Jobs are quarantined (run alone on a worker) because workers that held them were lost.
@@ -162,17 +162,17 @@ impl fmt::Display for Notice {
 
 /// Reason why a run cannot continue.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Stop {
+pub enum StopReason {
     /// Every job so far has failed.
     EverythingFails {
         /// Number of failed jobs.
         jobs: u32,
-        /// Last failure.
+        /// Failure of the most recent job.
         last: Failure,
     },
 }
 
-impl fmt::Display for Stop {
+impl fmt::Display for StopReason {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::EverythingFails { jobs, last } => {

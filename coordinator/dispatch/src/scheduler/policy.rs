@@ -12,7 +12,7 @@
 //!
 //! A recorded result is part of the run and never computed again; refused and misconfigured jobs are not
 //! recorded because another build or another case may succeed. If the first 8 jobs all fail, the run stops.
-use protocol::case::{Case, Repeats};
+use protocol::case::{Case, Reproducibility};
 use std::time::Duration;
 
 /// Times and limits; the defaults are measured to give no false loss on a machine with thirty
@@ -36,8 +36,8 @@ pub struct Policy {
     /// Length of a stall of the coordinator from which on workers may have dropped their connections (default
     /// 2 s: they do after 3 s of silence).
     pub disconnecting_stall: Duration,
-    /// Time allowed for reconnecting after such a stall before a worker's silence counts again (default 3 s:
-    /// workers try every 2 s).
+    /// Time allowed for reconnecting after a stall of the coordinator of at least `disconnecting_stall`,
+    /// before a worker's silence counts again (default 3 s: workers try every 2 s).
     pub reconnect_grace: Duration,
     /// Time for which jobs may wait without any worker before the user is notified (default 10 s).
     pub no_worker_notice: Duration,
@@ -97,17 +97,17 @@ impl Policy {
     /// itself and is given up only long after; a model whose results are not bitwise repeatable is never
     /// copied, since the first result counts.
     pub fn of(case: &Case) -> Self {
-        /// Largest assumed number of runs queued before a given one on a machine that can execute fewer runs
-        /// at a time than it has slots.
-        const BEFORE: f64 = 64.0;
+        /// Assumed upper limit of the number of runs that wait ahead of a given run on a machine that
+        /// executes fewer runs simultaneously than it has slots.
+        const MAX_QUEUED_RUNS: f64 = 64.0;
         let (model, mut policy) = (&case.model, Self::default());
         if let Some(own) = model.deadline_s {
-            let runs = BEFORE * case.objective.conditions().count() as f64;
+            let runs = MAX_QUEUED_RUNS * case.objective.conditions().count() as f64;
             let guard = Duration::try_from_secs_f64(runs * own).unwrap_or(Duration::MAX);
             policy.first_deadline = guard.saturating_add(Duration::from_mins(10));
             policy.least_deadline = policy.first_deadline;
         }
-        if model.repeats != Repeats::Bits {
+        if model.repeats != Reproducibility::Bits {
             policy.deadline_samples = usize::MAX;
         }
         policy

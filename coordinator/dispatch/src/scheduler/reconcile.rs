@@ -5,13 +5,13 @@ use super::{
 };
 use protocol::{
     id::WorkerId,
-    message::{Beat, ToWorker},
+    message::{Heartbeat, ToWorker},
 };
 use std::time::Duration;
 
-/// Reconciles a heartbeat with the worker's leases: cancels attempts of finished jobs, adopts claims on
-/// queued jobs and resends lost orders.
-pub(super) fn reconcile(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
+/// Reconciles the attempts in a worker's heartbeat with its leases: cancels attempts of finished jobs, lets
+/// the worker keep attempts of queued jobs, and resends lost orders.
+pub(super) fn reconcile(core: &mut Core, from: WorkerId, beat: &Heartbeat, now: Duration) {
     mark(core, from, beat, now);
     let computing = beat.running.iter().chain(&beat.waiting);
     for attempt in computing.clone() {
@@ -33,8 +33,9 @@ pub(super) fn reconcile(core: &mut Core, from: WorkerId, beat: &Beat, now: Durat
     resend(core, from, beat, now);
 }
 
-/// Marks leases that have started running, and drops taken attempts that the worker no longer holds.
-fn mark(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
+/// Marks leases as running if the heartbeat reports so, and forgets withdrawn attempts that the worker no
+/// longer holds.
+fn mark(core: &mut Core, from: WorkerId, beat: &Heartbeat, now: Duration) {
     let resend_after = core.options.policy.resend_after;
     let Some(member) = core.members.get_mut(&from) else {
         return;
@@ -45,14 +46,14 @@ fn mark(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
         }
     }
     member.claims.clear();
-    member.taken.retain(|(attempt, at)| {
+    member.revoked.retain(|(attempt, at)| {
         let mut held = beat.running.iter().chain(&beat.waiting);
         held.any(|held| held == attempt) || now.saturating_sub(*at) < resend_after
     });
 }
 
 /// Resends orders of leases that the heartbeat does not mention.
-fn resend(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
+fn resend(core: &mut Core, from: WorkerId, beat: &Heartbeat, now: Duration) {
     let resend_after = core.options.policy.resend_after;
     let Some(member) = core.members.get_mut(&from) else {
         return;

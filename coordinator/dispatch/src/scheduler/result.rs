@@ -2,9 +2,9 @@
 use super::{
     completed::Completed,
     input::Command,
-    lease::{STATED, adopt, release},
-    notice::{Notice, Stop},
-    slot_time::Use,
+    lease::{COORDINATOR_ATTEMPT, adopt, release},
+    notice::{Notice, StopReason},
+    slot_time::AttemptUse,
     state::{Core, Pending, millis},
 };
 use protocol::{
@@ -15,17 +15,20 @@ use protocol::{
 };
 use std::{collections::BTreeMap, time::Duration};
 
-/// Factor between the coordinator's own limit on an attempt and the deadline enforced by the worker; large
-/// because the worker does not count the time for which a job got no processor.
-const PATIENCE: u32 = 8;
-/// Time allowed on top of that limit for the worker to report that it ended the attempt.
+/// Ratio of the running time after which the coordinator ends an attempt itself to the deadline that the
+/// worker enforces; large because the worker does not count the time for which a job got no processor.
+const OVERDUE_FACTOR: u32 = 8;
+/// Additional time after `PATIENCE` times the deadline, before the coordinator ends an attempt, for the
+/// worker to report that it ended the attempt itself.
 const GRACE: Duration = Duration::from_secs(10);
 
 /// Handles a result or failure delivered by a worker.
 pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
     let job = done.attempt.job;
     if let Some(member) = core.members.get_mut(&from) {
-        member.taken.retain(|(attempt, _)| *attempt != done.attempt);
+        member
+            .revoked
+            .retain(|(attempt, _)| *attempt != done.attempt);
     }
     if is_duplicate(core, from, done.attempt) {
         return;
@@ -45,7 +48,7 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
         leases.any(|lease| lease.attempt == done.attempt)
     });
     let (wall_us, kind) = (done.cost.wall_us, pending.job.kind());
-    let failure = if let Some(failure) = mistaken(pending, &done) {
+    let failure = if let Some(failure) = work_mismatch(pending, &done) {
         if !held {
             // an answer to another question, of another run: forget it
             core.send(from, ToWorker::Stored(vec![done.attempt]));
@@ -69,7 +72,7 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
     }
     // a failure of an attempt that was taken away says nothing about the job
     if held {
-        release(core, from, job, Use::Failed(wall_us));
+        release(core, from, job, AttemptUse::Failed(wall_us));
         failed(core, from, job, failure, now);
     }
 }
@@ -90,9 +93,9 @@ fn is_duplicate(core: &mut Core, from: WorkerId, attempt: Attempt) -> bool {
     true
 }
 
-/// Returns a refusal if the work hash of a result differs from that of the job: the worker then decodes jobs
-/// differently from this build.
-fn mistaken(pending: &Pending, done: &Done) -> Option<Failure> {
+/// Returns a failure if a worker's result carries another work hash than the job it was sent, that is, if the
+/// worker decodes jobs differently from this build.
+fn work_mismatch(pending: &Pending, done: &Done) -> Option<Failure> {
     (pending.work != done.work).then(|| Failure::Refused {
         reason: format!(
             "the worker returned a result for work {} but was sent work {}; use the same build of \
@@ -116,22 +119,22 @@ fn accept(core: &mut Core, from: Option<WorkerId>, done: Done) {
             continue;
         };
         if Some(holder) == from {
-            if lease.prompt {
+            if lease.sent_to_idle_slot {
                 let wall = Duration::from_micros(done.cost.wall_us);
                 let fresh = lease.held.saturating_sub(wall);
                 let before = core.latency.unwrap_or(fresh);
                 core.latency = Some((before * 7 + fresh) / 8);
             }
-            member.attribute(&lease, Use::Useful(done.cost.wall_us));
+            member.attribute(&lease, AttemptUse::Useful(done.cost.wall_us));
         } else {
-            member.attribute(&lease, Use::Speculative);
+            member.attribute(&lease, AttemptUse::Speculative);
             core.send(holder, ToWorker::Cancel(lease.attempt));
         }
     }
     let waiting = from.map(|from| (from, done.attempt));
     core.storing.insert(job, waiting.into_iter().collect());
     deliver(core, job, done.cost, done.outcome.clone());
-    core.out.push(Command::Store(Box::new(Finished {
+    core.commands.push(Command::Store(Box::new(Finished {
         attempt: done.attempt,
         work: done.work,
         worker: from,
@@ -141,7 +144,7 @@ fn accept(core: &mut Core, from: Option<WorkerId>, done: Done) {
 }
 
 fn deliver(core: &mut Core, id: JobId, cost: Cost, outcome: Outcome) {
-    core.out.push(Command::Deliver(Completed {
+    core.commands.push(Command::Deliver(Completed {
         id,
         cost,
         outcome,
@@ -169,14 +172,16 @@ pub(super) fn check_overdue(core: &mut Core, now: Duration) {
     for (worker, member) in &core.members {
         for lease in &member.leases {
             let since = lease.running.map(|running| now.saturating_sub(running));
-            if since.is_some_and(|since| since > lease.deadline.saturating_mul(PATIENCE) + GRACE) {
+            if since
+                .is_some_and(|since| since > lease.deadline.saturating_mul(OVERDUE_FACTOR) + GRACE)
+            {
                 overdue.push((*worker, lease.attempt, lease.deadline));
             }
         }
     }
     for (worker, attempt, deadline) in overdue {
         core.send(worker, ToWorker::Cancel(attempt));
-        release(core, worker, attempt.job, Use::Overdue);
+        release(core, worker, attempt.job, AttemptUse::Overdue);
         let limit_ms = millis(deadline);
         let failure = Failure::deadline(limit_ms);
         failed(core, worker, attempt.job, failure, now);
@@ -224,10 +229,10 @@ fn give_up(core: &mut Core, job: JobId, failure: Failure) {
     });
     if core.counts.succeeded == 0 && core.counts.failed == core.options.policy.stop_after_failures {
         let (jobs, last) = (core.counts.failed, failure.clone());
-        core.out
-            .push(Command::Stop(Stop::EverythingFails { jobs, last }));
+        core.commands
+            .push(Command::Stop(StopReason::EverythingFails { jobs, last }));
     }
-    let (cost, attempt) = (Cost::default(), STATED);
+    let (cost, attempt) = (Cost::default(), COORDINATOR_ATTEMPT);
     match failure {
         // another build or another case may do better: not a result of the run
         Failure::Refused { .. } | Failure::Misconfigured { .. } => {

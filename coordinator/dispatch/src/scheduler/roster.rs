@@ -12,8 +12,8 @@ pub(super) fn remove(
 ) -> Option<Member> {
     let mut member = core.members.remove(&worker)?;
     member.lose_leases(&core.clocks);
-    let row = member.row(worker, &core.clocks);
-    core.counts.past.add(&row.spent);
+    let row = member.account_row(worker, &core.clocks);
+    core.counts.departed_slot_time.add(&row.spent);
     core.record_account(vec![row], now);
     let reason = reason.to_owned();
     core.record(Event::Left { worker, reason });

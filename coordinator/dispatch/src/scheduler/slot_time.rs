@@ -12,7 +12,8 @@
 use protocol::event::Spent;
 use std::time::Duration;
 
-/// Cumulative clocks of the run's barrier, starved and computing time, shared by all slots.
+/// Cumulative clocks of the run, shared by all workers' slot-time accounts: time counted as barrier or
+/// starved for idle slots, and computing time.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Clocks {
     pub(super) now: Duration,
@@ -20,13 +21,13 @@ pub(super) struct Clocks {
     pub(super) computing: Duration,
     barrier: Duration,
     starved: Duration,
-    /// State of the run since `now`.
-    doing: Doing,
+    /// State of the run since the clocks were last advanced (`now`).
+    doing: WorkState,
 }
 
 /// State of the run that determines under which kind idle time is counted.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Doing {
+pub(super) struct WorkState {
     /// Whether at least one worker holds a job.
     pub(super) computes: bool,
     /// Whether idle slots wait only for results of other slots (barrier).
@@ -34,7 +35,7 @@ pub(super) struct Doing {
 }
 
 impl Clocks {
-    /// Advances the clocks to a time, under the current state.
+    /// Advances the clocks to the time `now`, adding the elapsed time under the run's current state.
     pub(super) fn advance(&mut self, now: Duration) {
         let passed = now.saturating_sub(self.now);
         if self.doing.computes {
@@ -48,15 +49,15 @@ impl Clocks {
         self.now = self.now.max(now);
     }
 
-    /// Sets the state of the run from now on.
-    pub(super) const fn go_on(&mut self, doing: Doing) {
+    /// Sets the state of the run under which time is counted from now on.
+    pub(super) const fn set_state(&mut self, doing: WorkState) {
         self.doing = doing;
     }
 }
 
 /// Use of the slot time of an ended attempt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Use {
+pub(super) enum AttemptUse {
     /// The attempt's result became the job's result, after the given time in the slot \[us\].
     Useful(u64),
     /// The attempt failed, after the given time in the slot \[us\].
@@ -69,9 +70,9 @@ pub(super) enum Use {
     Lost,
 }
 
-impl Use {
-    /// Returns the time in the slot as reported by the worker, if it reported one.
-    pub(super) const fn said(self) -> Option<Duration> {
+impl AttemptUse {
+    /// Returns the computing time of the attempt as reported by the worker; `None` if no report exists.
+    pub(super) const fn reported_time(self) -> Option<Duration> {
         match self {
             Self::Useful(us) | Self::Failed(us) => Some(Duration::from_micros(us)),
             Self::Overdue | Self::Speculative | Self::Lost => None,
@@ -82,67 +83,67 @@ impl Use {
 /// Slot time of one worker, by use.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SlotTime {
-    /// Clocks at the last settlement.
-    seen: Clocks,
+    /// Clocks of the run up to which this account has been brought up to date.
+    settled_at: Clocks,
     useful: Duration,
     barrier: Duration,
     starved: Duration,
     speculative: Duration,
     failed: Duration,
     lost: Duration,
-    /// Time seen as computing in excess of the times reported by the worker: transit time, unless a later
-    /// result turns out to have been started in it.
-    pub(super) on_the_way: Duration,
+    /// Time between order and result in excess of the computing time reported by the worker; counts as
+    /// transit unless a later result turns out to have been started in it.
+    pub(super) in_transit: Duration,
 }
 
 impl SlotTime {
     /// Creates an empty account starting at the current clocks.
     pub(super) fn since(clocks: &Clocks) -> Self {
         Self {
-            seen: *clocks,
+            settled_at: *clocks,
             ..Self::default()
         }
     }
 
-    /// Returns the time since the last settlement.
-    pub(super) fn unwritten(&self, clocks: &Clocks) -> Duration {
-        clocks.now.saturating_sub(self.seen.now)
+    /// Returns the time that has passed since this account was last brought up to date.
+    pub(super) fn unsettled(&self, clocks: &Clocks) -> Duration {
+        clocks.now.saturating_sub(self.settled_at.now)
     }
 
-    /// Returns the account extended to the given clocks, with the number of slots idle since the last
-    /// settlement and whether the worker was ready; idle time of a worker that is not ready is starved.
+    /// Returns the account brought up to the given clocks, adding idle time of `idle` slots; for a worker
+    /// that is not `ready` all of it counts as starved.
     pub(super) fn until(mut self, clocks: &Clocks, idle: u32, ready: bool) -> Self {
-        let barrier = clocks.barrier.saturating_sub(self.seen.barrier);
-        let starved = clocks.starved.saturating_sub(self.seen.starved);
+        let barrier = clocks.barrier.saturating_sub(self.settled_at.barrier);
+        let starved = clocks.starved.saturating_sub(self.settled_at.starved);
         if ready {
             self.barrier += barrier * idle;
             self.starved += starved * idle;
         } else {
             self.starved += (barrier + starved) * idle;
         }
-        self.seen = *clocks;
+        self.settled_at = *clocks;
         self
     }
 
     /// Adds the duration of an ended attempt under its use.
-    pub(super) fn add(&mut self, what: Use, spent: Duration) {
+    pub(super) fn add(&mut self, what: AttemptUse, spent: Duration) {
         let kind = match what {
-            Use::Useful(_) => &mut self.useful,
-            Use::Failed(_) | Use::Overdue => &mut self.failed,
-            Use::Speculative => &mut self.speculative,
-            Use::Lost => &mut self.lost,
+            AttemptUse::Useful(_) => &mut self.useful,
+            AttemptUse::Failed(_) | AttemptUse::Overdue => &mut self.failed,
+            AttemptUse::Speculative => &mut self.speculative,
+            AttemptUse::Lost => &mut self.lost,
         };
         *kind += spent;
     }
 
-    /// Converts the account into journal form, with the connected time of all slots; the time of running
-    /// attempts counts as useful.
-    pub(super) fn stated(&self, connected_us: u64, computing: Duration) -> Spent {
+    /// Converts the account into its journal form; `connected_us` is the connected time of all slots, and the
+    /// time `computing` of attempts still running counts as useful.
+    pub(super) fn to_spent(self, connected_us: u64, computing: Duration) -> Spent {
         Spent {
             connected_us,
             useful_us: micros(self.useful + computing),
             barrier_us: micros(self.barrier),
-            starved_us: micros(self.starved + self.on_the_way),
+            starved_us: micros(self.starved + self.in_transit),
             speculative_us: micros(self.speculative),
             failed_us: micros(self.failed),
             lost_us: micros(self.lost),

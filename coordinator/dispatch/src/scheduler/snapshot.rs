@@ -42,13 +42,13 @@ pub struct WorkerSnapshot {
     pub host: String,
     /// Number of slots, that is, jobs computed at a time.
     pub slots: u32,
-    /// Number of jobs being computed.
+    /// Number of jobs that the worker is computing.
     pub busy: u32,
-    /// Number of results delivered.
+    /// Number of results delivered by the worker.
     pub done: u64,
-    /// Number of failed attempts.
+    /// Number of attempts that failed on the worker.
     pub failed: u64,
-    /// Slot time by use since the worker joined.
+    /// Slot time of the worker by use, since it joined.
     pub spent: Spent,
 }
 
@@ -59,7 +59,7 @@ pub struct WorkerSnapshot {
 impl Core {
     /// Returns a snapshot of the state at the given time.
     pub fn snapshot(&self, now: Duration) -> Snapshot {
-        let mut spent = self.counts.past;
+        let mut spent = self.counts.departed_slot_time;
         let mut clocks = self.clocks;
         clocks.advance(now);
         let mut workers = Vec::with_capacity(self.members.len());

@@ -7,16 +7,16 @@ use super::{
     notice::Notice,
     policy::Policy,
     slot_time::Clocks,
-    times::Times,
+    times::JobDurations,
     unclaimed_results::UnclaimedResults,
 };
 use protocol::{
-    case::Repeats,
+    case::Reproducibility,
     event::{Account, Event, Spent, WorkerAccount},
     id::{ContentHash, JobId, RunId, WorkerId},
     job::Job,
     message::{Attempt, ToWorker},
-    proof::Proof,
+    proof::ReferenceResult,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -42,9 +42,9 @@ pub struct CoreOptions {
     /// joins.
     pub model_digest: Option<String>,
     /// Repeatability of results across machines (bitwise, within a tolerance, or unknown).
-    pub repeats: Repeats,
+    pub repeats: Reproducibility,
     /// Expected result of the case's reference individual; `None` until the first worker has proved its own.
-    pub proof: Option<Proof>,
+    pub proof: Option<ReferenceResult>,
     /// Jobs whose results are in the journal.
     pub finished: JobSet,
     /// Workers that outlived the previous coordinator process and may hold jobs and results of it.
@@ -59,39 +59,42 @@ pub struct Core {
     pub(super) options: CoreOptions,
     pub(super) members: BTreeMap<WorkerId, Member>,
     pub(super) refused: BTreeSet<WorkerId>,
-    /// Drained workers, including those currently disconnected, with the way of draining.
+    /// Drained workers, including those currently disconnected, with the options of their drain.
     pub(super) drained: BTreeMap<WorkerId, Drain>,
     pub(super) jobs: BTreeMap<JobId, Pending>,
     pub(super) queue: BTreeSet<JobId>,
-    /// Pending jobs that must run alone.
+    /// Quarantined jobs: pending jobs that must run alone on a worker because workers holding them were lost.
     pub(super) suspects: BTreeSet<JobId>,
-    /// Jobs with an accepted result that is not yet stored, and the attempts to acknowledge after that.
+    /// Jobs with an accepted result not yet stored in the journal, each with the attempts to acknowledge once
+    /// it is.
     pub(super) storing: BTreeMap<JobId, Vec<(WorkerId, Attempt)>>,
     pub(super) finished: JobSet,
     /// Results of jobs that were not submitted (yet).
     pub(super) unclaimed: UnclaimedResults,
-    pub(super) times: Times,
+    pub(super) times: JobDurations,
     pub(super) counts: Counts,
     pub(super) last_call: Duration,
-    /// Time until which a broken connection is attributed to a stall of this process.
-    pub(super) excused: Duration,
+    /// Time until which broken connections are attributed to a stall of the coordinator and not counted as
+    /// losses.
+    pub(super) reconnect_grace_until: Duration,
     /// Time since which jobs have waited without any worker.
-    pub(super) deserted_since: Option<Duration>,
-    pub(super) told_deserted: bool,
+    pub(super) no_worker_since: Option<Duration>,
+    pub(super) no_worker_notified: bool,
     /// Effects that all workers must support; `None` until the first worker joins.
     pub(super) effects: Option<Vec<String>>,
     pub(super) clocks: Clocks,
-    /// Moving average of the time from an order to an idle slot until its result, less the time in the slot.
+    /// Moving average of the overhead per job: time from the order to an idle slot until the result, less the
+    /// computing time.
     pub(super) latency: Option<Duration>,
-    /// Time until which nothing is dispatched, because workers of the previous process may already hold the
-    /// jobs.
-    pub(super) rejoining: Option<Duration>,
+    /// Time until which nothing is dispatched after a coordinator restart, because returning workers may
+    /// already hold the jobs; `None` if there is no such wait.
+    pub(super) rejoin_until: Option<Duration>,
     /// Whether dispatch is paused because the journal cannot be written.
     pub(super) paused: bool,
     /// Time of the last slot-time account.
-    pub(super) accounted: Duration,
+    pub(super) last_account: Duration,
     pub(super) phase: Phase,
-    pub(super) out: Vec<Command>,
+    pub(super) commands: Vec<Command>,
 }
 
 /// Phase of the run in this process.
@@ -105,7 +108,7 @@ pub(super) enum Phase {
     Closed,
 }
 
-/// Running totals.
+/// Running totals of the run for progress reports: losses, failures, successes, repeats, copies, duplicates.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Counts {
     pub(super) lost: u32,
@@ -114,8 +117,8 @@ pub(super) struct Counts {
     pub(super) repeated: u32,
     pub(super) copies: u32,
     pub(super) duplicates: u64,
-    /// Slot time of workers that have left or were lost.
-    pub(super) past: Spent,
+    /// Slot time by use of workers that have left or were lost.
+    pub(super) departed_slot_time: Spent,
 }
 
 /// A job without an accepted result.
@@ -123,7 +126,7 @@ pub(super) struct Counts {
 pub(super) struct Pending {
     pub(super) job: Job,
     pub(super) work: ContentHash,
-    /// Number of the next attempt within this coordinator process.
+    /// Number of the job's next attempt in this coordinator process, from 0.
     pub(super) next: u32,
     /// Workers that currently hold the job.
     pub(super) holders: Vec<WorkerId>,
@@ -167,20 +170,20 @@ impl Core {
             storing: BTreeMap::new(),
             finished,
             unclaimed: UnclaimedResults::default(),
-            times: Times::default(),
+            times: JobDurations::default(),
             counts: Counts::default(),
             last_call: Duration::ZERO,
-            excused: Duration::ZERO,
-            deserted_since: None,
-            told_deserted: false,
+            reconnect_grace_until: Duration::ZERO,
+            no_worker_since: None,
+            no_worker_notified: false,
             effects: None,
             clocks: Clocks::default(),
             latency: None,
-            rejoining: None,
+            rejoin_until: None,
             paused: false,
-            accounted: Duration::ZERO,
+            last_account: Duration::ZERO,
             phase: Phase::Open,
-            out: Vec::new(),
+            commands: Vec::new(),
         }
     }
 
@@ -228,9 +231,9 @@ impl Core {
 
     /// Records the slot-time account of the connected workers.
     pub(super) fn account(&mut self, now: Duration) {
-        self.accounted = now;
+        self.last_account = now;
         let members = self.members.iter();
-        let rows = members.map(|(id, member)| member.row(*id, &self.clocks));
+        let rows = members.map(|(id, member)| member.account_row(*id, &self.clocks));
         let rows = rows.collect();
         self.record_account(rows, now);
     }
@@ -248,15 +251,15 @@ impl Core {
     }
 
     pub(super) fn record(&mut self, event: Event) {
-        self.out.push(Command::Record(event));
+        self.commands.push(Command::Record(event));
     }
 
     pub(super) fn send(&mut self, to: WorkerId, message: ToWorker) {
-        self.out.push(Command::Send { to, message });
+        self.commands.push(Command::Send { to, message });
     }
 
     pub(super) fn notice(&mut self, notice: Notice) {
-        self.out.push(Command::Notice(notice));
+        self.commands.push(Command::Notice(notice));
     }
 }
 

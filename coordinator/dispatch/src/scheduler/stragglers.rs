@@ -7,7 +7,7 @@
 use super::{
     assign::may_have,
     lease::{lease, release},
-    slot_time::Use,
+    slot_time::AttemptUse,
     state::Core,
 };
 use protocol::{
@@ -32,9 +32,9 @@ pub(super) fn steal(core: &mut Core, now: Duration) {
         };
         core.send(busy, ToWorker::Cancel(attempt));
         if let Some(member) = core.members.get_mut(&busy) {
-            member.taken.push((attempt, now));
+            member.revoked.push((attempt, now));
         }
-        release(core, busy, attempt.job, Use::Lost);
+        release(core, busy, attempt.job, AttemptUse::Lost);
         core.queue.remove(&attempt.job);
         let repeated = core.counts.repeated;
         lease(core, idle, attempt.job, now);
@@ -43,7 +43,8 @@ pub(super) fn steal(core: &mut Core, now: Duration) {
     }
 }
 
-/// Finds a job that has waited long enough at another worker and that the idle worker may run.
+/// Finds a job that has waited long enough behind running jobs of a busy worker and that the given idle
+/// worker may run.
 fn waiting(core: &Core, idle: WorkerId, now: Duration) -> Option<(WorkerId, Attempt)> {
     let after = core.options.policy.steal_after;
     let mut others = core.members.iter().filter(|(id, _)| **id != idle);
@@ -71,7 +72,7 @@ pub(super) fn copy_slow(core: &mut Core, now: Duration) {
     }
 }
 
-/// Returns the worker with the largest share of idle slots among the suitable ones.
+/// Returns the worker with the largest share of idle slots among those that satisfy a condition.
 fn most_idle(core: &Core, suits: impl Fn(WorkerId) -> bool) -> Option<WorkerId> {
     let all = core.members.iter().filter(|(id, _)| suits(**id));
     let free = all.filter(|(_, member)| member.takes_jobs());
@@ -80,7 +81,8 @@ fn most_idle(core: &Core, suits: impl Fn(WorkerId) -> bool) -> Option<WorkerId> 
         .map(|(id, _)| *id)
 }
 
-/// Returns jobs with a single holder that has run them for too long, with the holder; longest first.
+/// Returns the jobs held by a single worker that has run them for suspiciously long, with that worker;
+/// longest first.
 fn slow(core: &mut Core) -> Vec<(WorkerId, JobId)> {
     for member in core.members.values_mut() {
         member.settle(&core.clocks);

@@ -10,24 +10,25 @@ use support::quantile;
 /// Durations of finished jobs, by kind: the reduction of a horse head takes minutes, a simulation tenths of a
 /// second.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Times(BTreeMap<&'static str, Kind>);
+pub(super) struct JobDurations(BTreeMap<&'static str, KindStats>);
 
 #[derive(Clone, Debug, Default)]
-struct Kind {
+struct KindStats {
     recent: VecDeque<u64>,
     longest: Duration,
     /// 95th percentile of the duration of recent jobs.
-    usual: Option<Duration>,
+    percentile_95: Option<Duration>,
     /// Number of jobs finished since the percentile was last computed.
     since: usize,
 }
 
-impl Times {
+impl JobDurations {
     /// Number of recent jobs kept per kind.
     const KEPT: usize = 101;
-    /// Number of finished jobs after which the percentile is computed again.
+    /// Number of finished jobs of a kind after which the 95th percentile of their durations is computed
+    /// again.
     const RENEW: usize = 8;
-    /// Percentile that counts as the usual duration \[percent\].
+    /// Percentile of job durations that counts as the usual duration \[percent\].
     const USUAL: usize = 95;
 
     /// Adds the duration of a finished job.
@@ -40,18 +41,19 @@ impl Times {
         kind.longest = kind.longest.max(Duration::from_micros(wall_us));
         kind.since += 1;
         let enough = kind.recent.len() >= policy.deadline_samples;
-        if enough && (kind.usual.is_none() || kind.since >= Self::RENEW) {
+        if enough && (kind.percentile_95.is_none() || kind.since >= Self::RENEW) {
             let mut sorted: Vec<u64> = kind.recent.iter().copied().collect();
             sorted.sort_unstable();
-            kind.usual = quantile::of(&sorted, Self::USUAL).map(Duration::from_micros);
+            kind.percentile_95 = quantile::of(&sorted, Self::USUAL).map(Duration::from_micros);
             kind.since = 0;
         }
     }
 
-    /// Returns the deadline of the next attempt of a job that was overdue `overdue` times.
+    /// Returns the deadline of the next attempt at a job whose earlier attempts exceeded their deadline
+    /// `overdue` times.
     pub(super) fn deadline(&self, kind: &'static str, overdue: u32, policy: &Policy) -> Duration {
         let known = self.0.get(kind);
-        let usual = known.and_then(|kind| kind.usual.map(|usual| (usual, kind.longest)));
+        let usual = known.and_then(|kind| kind.percentile_95.map(|usual| (usual, kind.longest)));
         let first = match kind {
             OWN => policy.reduction_deadline,
             _ => policy.first_deadline,
@@ -74,7 +76,7 @@ impl Times {
         latency: Option<Duration>,
         policy: &Policy,
     ) -> bool {
-        let usual = self.0.get(kind).and_then(|kind| kind.usual);
+        let usual = self.0.get(kind).and_then(|kind| kind.percentile_95);
         let known = usual.zip(latency);
         known.is_none_or(|(usual, latency)| {
             latency.saturating_mul(100) > usual.saturating_mul(policy.prefetch_percent)
@@ -84,7 +86,7 @@ impl Times {
     /// Returns the running time after which an idle slot may take a copy of a job; `None` while durations are
     /// unknown.
     pub(super) fn copy_after(&self, kind: &'static str, policy: &Policy) -> Option<Duration> {
-        let usual = self.0.get(kind)?.usual?;
+        let usual = self.0.get(kind)?.percentile_95?;
         Some((usual.saturating_mul(policy.copy_after_percent) / 100).max(policy.least_copy_after))
     }
 }
@@ -93,8 +95,8 @@ impl Times {
 mod tests {
     use super::*;
 
-    fn after(seconds: impl IntoIterator<Item = u64>) -> Times {
-        let mut times = Times::default();
+    fn after(seconds: impl IntoIterator<Item = u64>) -> JobDurations {
+        let mut times = JobDurations::default();
         for seconds in seconds {
             times.add("score", seconds * 1_000_000, &Policy::default());
         }
@@ -104,7 +106,7 @@ mod tests {
     #[test]
     fn a_deadline_follows_the_quantile_of_its_own_kind() {
         let policy = Policy::default();
-        let none = Times::default();
+        let none = JobDurations::default();
         assert_eq!(none.deadline("score", 0, &policy), Duration::from_mins(2));
         let times = after([7, 8, 9, 10, 8]);
         assert_eq!(times.deadline("score", 0, &policy), Duration::from_secs(40));
@@ -145,7 +147,7 @@ mod tests {
             times.copy_after("score", &policy),
             Some(policy.least_copy_after)
         );
-        let mut times = Times::default();
+        let mut times = JobDurations::default();
         for _ in 0..9 {
             times.add("score", u64::MAX, &policy);
         }

@@ -9,7 +9,7 @@ use protocol::{
 };
 use std::collections::BTreeMap;
 
-/// Largest number of results held.
+/// Largest number of results held for jobs not yet submitted.
 const MOST: usize = 4096;
 /// Largest total encoded size of the results held \[bytes\]: four times the largest result possible.
 pub(super) const MOST_BYTES: usize = 64 << 20;
@@ -29,7 +29,8 @@ struct Held {
 }
 
 impl UnclaimedResults {
-    /// Keeps the first result of a job, if there is room for it.
+    /// Keeps a result that arrived before its job was submitted, if it is the first of that job and there is
+    /// room.
     pub(super) fn put(&mut self, from: WorkerId, done: Done) {
         let job = done.attempt.job;
         if self.held.len() >= MOST || self.held.contains_key(&job) {

@@ -3,24 +3,24 @@
 //! Every delay, speed, fault and computing time is drawn from a seed, so that a run of hours takes a fraction
 //! of a second and is reproducible. The tests of the core use it, and so do projections of how a search
 //! scales.
-mod happening;
+mod event;
 mod source;
 mod worker;
 
-pub use happening::Fault;
-pub use source::{Generations, Search, Source, job};
-pub use worker::{Running, Worker, cost, outcome};
+pub use event::Fault;
+pub use source::{Generations, JobSource, SimulatedSearch, job};
+pub use worker::{Running, SimulatedWorker, cost, outcome};
 
-use crate::scheduler::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, Stop};
-use happening::What;
+use crate::scheduler::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, StopReason};
+use event::ClusterEvent;
 use protocol::{
     announce::{Announcement, ModelDescriptor},
-    case::Repeats,
+    case::Reproducibility,
     event::Event,
     id::{ContentHash, JobId, RunId, WorkerId},
     job::Outcome,
     message::{Attempt, Done, FromWorker, ToWorker},
-    proof::Proof,
+    proof::ReferenceResult,
     wire,
 };
 use search::random::{Phase, Streams};
@@ -35,7 +35,7 @@ pub const MODEL: &str = "model";
 /// Hash of the case that every simulated worker holds.
 pub const CASE: ContentHash = ContentHash([7; 32]);
 /// Proof that every simulated worker computes for the reference individual.
-pub const PROOF: Proof = Proof::Bits(ContentHash([8; 32]));
+pub const PROOF: ReferenceResult = ReferenceResult::Bits(ContentHash([8; 32]));
 
 /// Builds the announcement of a simulated worker with one slot and the given model digest.
 pub fn announcement(digest: &str) -> Announcement {
@@ -57,7 +57,7 @@ pub fn announcement(digest: &str) -> Announcement {
 
 /// Configuration of a simulated cluster.
 #[derive(Clone, Copy)]
-pub struct Setting {
+pub struct ClusterSetting {
     /// Number of workers.
     pub workers: u64,
     /// Number of slots per worker.
@@ -68,7 +68,7 @@ pub struct Setting {
     pub spread: f64,
     /// Time that the coordinator spends on each result, sequentially.
     pub handling: Duration,
-    /// Number of workers per slow one, which is half as fast; 0 for no slow workers.
+    /// One in this many workers is half as fast as the others; 0 if all are equally fast.
     pub slow_one_in: u64,
     /// Longest delay of a message.
     pub delay: Duration,
@@ -80,7 +80,7 @@ pub struct Setting {
     pub killers: &'static [u64],
 }
 
-impl Setting {
+impl ClusterSetting {
     /// Returns a configuration of equally fast workers with one slot each on a good network.
     pub const fn even(workers: u64) -> Self {
         Self {
@@ -104,22 +104,22 @@ pub struct Cluster {
     pub core: Core,
     /// Current simulated time.
     pub now: Duration,
-    setting: Setting,
+    setting: ClusterSetting,
     /// Computing time by job number, in place of the lognormal distribution.
-    pub takes: Option<Box<dyn Fn(u64) -> Duration>>,
+    pub job_durations: Option<Box<dyn Fn(u64) -> Duration>>,
     /// Attempts whose results have already been charged with handling time.
     charged: BTreeSet<Attempt>,
     /// Reason why the core stopped the run, if it did.
-    stopped: Option<Stop>,
-    /// Time at which the coordinator has handled all results that have arrived.
+    stopped: Option<StopReason>,
+    /// Simulated time at which the coordinator has finished handling all results that have arrived.
     free_at: Duration,
-    events: BTreeMap<(Duration, u64), What>,
+    events: BTreeMap<(Duration, u64), ClusterEvent>,
     sequence: u64,
-    workers: BTreeMap<WorkerId, Worker>,
-    /// Outcomes of the jobs, by number.
+    workers: BTreeMap<WorkerId, SimulatedWorker>,
+    /// Outcomes of the finished jobs, by job number.
     pub results: BTreeMap<u64, Outcome>,
     /// Outcomes delivered by the core but not yet passed to the source.
-    fresh: Vec<(JobId, Outcome)>,
+    undelivered_outcomes: Vec<(JobId, Outcome)>,
     /// Slot-time accounts recorded by the core.
     pub accounts: Vec<Event>,
     /// Notices emitted by the core.
@@ -132,7 +132,7 @@ pub struct Cluster {
 
 impl Cluster {
     /// Creates a cluster whose workers are about to announce themselves.
-    pub fn new(setting: Setting) -> Self {
+    pub fn new(setting: ClusterSetting) -> Self {
         let core = Core::new(CoreOptions {
             run: RunId(1),
             epoch: 1,
@@ -140,7 +140,7 @@ impl Cluster {
             case_bytes: 1,
             model: MODEL.to_owned(),
             model_digest: None,
-            repeats: Repeats::Bits,
+            repeats: Reproducibility::Bits,
             proof: None,
             finished: JobSet::default(),
             expected: BTreeSet::new(),
@@ -150,7 +150,7 @@ impl Cluster {
             core,
             now: Duration::ZERO,
             setting,
-            takes: None,
+            job_durations: None,
             charged: BTreeSet::new(),
             stopped: None,
             free_at: Duration::ZERO,
@@ -158,7 +158,7 @@ impl Cluster {
             sequence: 0,
             workers: BTreeMap::new(),
             results: BTreeMap::new(),
-            fresh: Vec::new(),
+            undelivered_outcomes: Vec::new(),
             accounts: Vec::new(),
             notices: Vec::new(),
             computed: Duration::ZERO,
@@ -167,13 +167,13 @@ impl Cluster {
         for place in 0..setting.workers {
             cluster.start(place);
         }
-        cluster.at(Duration::ZERO, What::Tick);
+        cluster.schedule(Duration::ZERO, ClusterEvent::Tick);
         cluster
     }
 
-    /// Schedules a fault of the worker at a place.
+    /// Schedules a fault of the worker at an index; a replacement worker has the index of its predecessor.
     pub fn fault(&mut self, at: Duration, place: u64, fault: Fault) {
-        self.at(at, What::Fault(place, fault));
+        self.schedule(at, ClusterEvent::Fault(place, fault));
     }
 
     fn unit(&self, generation: u32, index: u64) -> f64 {
@@ -182,14 +182,14 @@ impl Cluster {
         streams.at(generation, Phase::Initial, index).unit()
     }
 
-    fn at(&mut self, delay: Duration, what: What) {
+    fn schedule(&mut self, delay: Duration, what: ClusterEvent) {
         self.sequence += 1;
         self.events.insert((self.now + delay, self.sequence), what);
     }
 
     /// Schedules the delivery of a message after a random delay, which may reorder messages; the message may
     /// be lost or duplicated.
-    fn send(&mut self, what: What) {
+    fn send(&mut self, what: ClusterEvent) {
         let first = self.sequence;
         if self.unit(2, first) < self.setting.loss {
             self.sequence += 1;
@@ -197,10 +197,10 @@ impl Cluster {
         }
         if self.unit(3, first) < self.setting.duplication {
             let delay = self.setting.delay.mul_f64(self.unit(1, self.sequence));
-            self.at(delay, what.clone());
+            self.schedule(delay, what.clone());
         }
         let delay = self.setting.delay.mul_f64(self.unit(1, self.sequence));
-        self.at(delay, what);
+        self.schedule(delay, what);
     }
 
     fn start(&mut self, place: u64) {
@@ -208,17 +208,20 @@ impl Cluster {
         let id = WorkerId(place + 1000 * self.sequence + 1);
         let is_slow = slow > 0 && place.is_multiple_of(slow);
         let slowness = if is_slow { 2.0 } else { 1.0 };
-        let worker = Worker::new(place, self.setting.slots, slowness);
+        let worker = SimulatedWorker::new(place, self.setting.slots, slowness);
         self.workers.insert(id, worker);
         let mut announcement = announcement("m");
         announcement.slots = u32::try_from(self.setting.slots).expect("few");
-        self.send(What::Up(id, FromWorker::Announce(Box::new(announcement))));
-        self.at(Duration::from_millis(5), What::Beat(id));
+        self.send(ClusterEvent::Up(
+            id,
+            FromWorker::Announce(Box::new(announcement)),
+        ));
+        self.schedule(Duration::from_millis(5), ClusterEvent::Beat(id));
     }
 
-    /// Returns the computing time of a job, which depends on the job alone.
+    /// Returns the computing time of a job on a worker of normal speed, which depends on the job alone.
     fn time_of(&self, job: JobId) -> Duration {
-        if let Some(takes) = &self.takes {
+        if let Some(takes) = &self.job_durations {
             return takes(job.0);
         }
         let index = usize::try_from(job.0).expect("small");
@@ -227,11 +230,12 @@ impl Cluster {
         Duration::from_secs_f64(libm::exp(sigma * stream.normal() - 0.5 * sigma * sigma))
     }
 
-    /// Runs until the source is done, up to the simulated time `limit`.
+    /// Runs the cluster until the source of jobs needs no more results, at most up to the simulated time
+    /// `limit`.
     ///
     /// # Panics
-    /// If the source is not done by then, or the core violates an invariant.
-    pub fn run(&mut self, source: &mut dyn Source, limit: Duration) {
+    /// If the source still needs results at that time, or the core violates an invariant.
+    pub fn run(&mut self, source: &mut dyn JobSource, limit: Duration) {
         self.submit(source);
         while !source.is_done() {
             let ((time, _), what) = self.events.pop_first().expect("there is always a tick");
@@ -242,10 +246,10 @@ impl Cluster {
                 self.core.snapshot(time)
             );
             self.now = time;
-            self.happen(what);
+            self.process_event(what);
             assert!(self.stopped.is_none(), "{:?}", self.stopped);
-            if !self.fresh.is_empty() {
-                for (job, outcome) in mem::take(&mut self.fresh) {
+            if !self.undelivered_outcomes.is_empty() {
+                for (job, outcome) in mem::take(&mut self.undelivered_outcomes) {
                     source.tell(job.0, &outcome);
                     let twice = self.results.insert(job.0, outcome);
                     assert_eq!(twice, None, "job {job} was delivered twice");
@@ -255,15 +259,15 @@ impl Cluster {
         }
     }
 
-    fn submit(&mut self, source: &mut dyn Source) {
+    fn submit(&mut self, source: &mut dyn JobSource) {
         for (id, job) in source.ask() {
             self.tell_core(Input::Submit { id: JobId(id), job });
         }
     }
 
-    fn happen(&mut self, what: What) {
+    fn process_event(&mut self, what: ClusterEvent) {
         match what {
-            What::Up(from, FromWorker::Done(done)) => {
+            ClusterEvent::Up(from, FromWorker::Done(done)) => {
                 // what is said again while it waits costs next to nothing
                 let busy = !self.setting.handling.is_zero();
                 if busy && !self.charged.insert(done.attempt) {
@@ -272,20 +276,20 @@ impl Cluster {
                 let message = FromWorker::Done(done);
                 self.free_at = self.free_at.max(self.now) + self.setting.handling;
                 let wait = self.free_at.saturating_sub(self.now);
-                self.at(wait, What::Heard(from, message));
+                self.schedule(wait, ClusterEvent::Heard(from, message));
             }
-            What::Up(from, message) | What::Heard(from, message) => {
-                self.tell_core(Input::Heard { from, message });
+            ClusterEvent::Up(from, message) | ClusterEvent::Heard(from, message) => {
+                self.tell_core(Input::Message { from, message });
             }
-            What::Stored(jobs) => self.tell_core(Input::Stored { jobs }),
-            What::Tick => {
+            ClusterEvent::Stored(jobs) => self.tell_core(Input::Stored { jobs }),
+            ClusterEvent::Tick => {
                 self.tell_core(Input::Tick);
-                self.at(Duration::from_millis(250), What::Tick);
+                self.schedule(Duration::from_millis(250), ClusterEvent::Tick);
             }
-            What::Fault(place, fault) => self.happen_to(place, fault),
-            What::Down(id, _) | What::End(id, _) | What::Beat(id) => {
+            ClusterEvent::Fault(place, fault) => self.apply_fault(place, fault),
+            ClusterEvent::Down(id, _) | ClusterEvent::End(id, _) | ClusterEvent::Beat(id) => {
                 match self.workers.get_mut(&id) {
-                    Some(worker) if worker.frozen => worker.held_back.push(what),
+                    Some(worker) if worker.frozen => worker.deferred_events.push(what),
                     Some(_) => self.work(id, what),
                     None => {}
                 }
@@ -293,7 +297,7 @@ impl Cluster {
         }
     }
 
-    fn happen_to(&mut self, place: u64, fault: Fault) {
+    fn apply_fault(&mut self, place: u64, fault: Fault) {
         let found = self
             .workers
             .iter()
@@ -304,61 +308,64 @@ impl Cluster {
             Fault::Freeze => worker.frozen = true,
             Fault::Thaw => {
                 worker.frozen = false;
-                for what in mem::take(&mut worker.held_back) {
-                    self.at(Duration::ZERO, what);
+                for what in mem::take(&mut worker.deferred_events) {
+                    self.schedule(Duration::ZERO, what);
                 }
             }
             Fault::Kill => {
                 let dead = self.workers.remove(&id).expect("just found");
                 // what it said last dies with it
                 self.events
-                    .retain(|_, what| !matches!(what, What::Up(from, _) | What::Heard(from, _) if *from == id));
+                    .retain(|_, what| !matches!(what, ClusterEvent::Up(from, _) | ClusterEvent::Heard(from, _) if *from == id));
                 for running in &dead.running {
                     self.computed += self.now.saturating_sub(running.begun);
                 }
-                self.tell_core(Input::Gone { worker: id });
+                self.tell_core(Input::Disconnected { worker: id });
                 self.start(place);
             }
         }
     }
 
-    fn work(&mut self, id: WorkerId, what: What) {
+    fn work(&mut self, id: WorkerId, what: ClusterEvent) {
         let now = self.now;
         let Some(worker) = self.workers.get_mut(&id) else {
             return;
         };
         match what {
-            What::Down(_, ToWorker::Run(order)) => worker.take(*order),
-            What::Down(_, ToWorker::Cancel(attempt)) => {
+            ClusterEvent::Down(_, ToWorker::Run(order)) => worker.enqueue(*order),
+            ClusterEvent::Down(_, ToWorker::Cancel(attempt)) => {
                 self.computed += worker.cancel(attempt, now);
             }
-            What::Down(_, ToWorker::Stored(attempts)) => worker.settle(attempts),
-            What::End(_, attempt) => {
+            ClusterEvent::Down(_, ToWorker::Stored(attempts)) => worker.settle(attempts),
+            ClusterEvent::End(_, attempt) => {
                 if let Some(done) = worker.finish(attempt, now) {
                     self.computed += Duration::from_micros(done.cost.wall_us);
-                    self.send(What::Up(id, FromWorker::Done(Box::new(done))));
+                    self.send(ClusterEvent::Up(id, FromWorker::Done(Box::new(done))));
                 }
             }
-            What::Beat(_) => {
+            ClusterEvent::Beat(_) => {
                 let beat = worker.beat(Some(CASE), PROOF);
                 let again: Vec<Done> = worker.outbox.values().cloned().collect();
-                self.send(What::Up(id, FromWorker::Beat(beat)));
+                self.send(ClusterEvent::Up(id, FromWorker::Beat(beat)));
                 for done in again {
-                    self.send(What::Up(id, FromWorker::Done(Box::new(done))));
+                    self.send(ClusterEvent::Up(id, FromWorker::Done(Box::new(done))));
                 }
-                self.at(Duration::from_secs(1), What::Beat(id));
+                self.schedule(Duration::from_secs(1), ClusterEvent::Beat(id));
             }
-            What::Down(_, ToWorker::Identify) => {
+            ClusterEvent::Down(_, ToWorker::Identify) => {
                 let mut announcement = announcement("m");
                 announcement.slots = u32::try_from(worker.slots).expect("few");
-                self.send(What::Up(id, FromWorker::Announce(Box::new(announcement))));
+                self.send(ClusterEvent::Up(
+                    id,
+                    FromWorker::Announce(Box::new(announcement)),
+                ));
             }
-            What::Down(..)
-            | What::Up(..)
-            | What::Heard(..)
-            | What::Tick
-            | What::Stored(_)
-            | What::Fault(..) => {}
+            ClusterEvent::Down(..)
+            | ClusterEvent::Up(..)
+            | ClusterEvent::Heard(..)
+            | ClusterEvent::Tick
+            | ClusterEvent::Stored(_)
+            | ClusterEvent::Fault(..) => {}
         }
         self.fill(id);
     }
@@ -372,10 +379,10 @@ impl Cluster {
             let (slowness, place) = (worker.slowness, worker.place);
             self.begun += 1;
             if self.setting.killers.contains(&attempt.job.0) {
-                self.at(Duration::ZERO, What::Fault(place, Fault::Kill));
+                self.schedule(Duration::ZERO, ClusterEvent::Fault(place, Fault::Kill));
             }
             let time = self.time_of(attempt.job).mul_f64(slowness);
-            self.at(time, What::End(id, attempt));
+            self.schedule(time, ClusterEvent::End(id, attempt));
         }
     }
 
@@ -383,9 +390,9 @@ impl Cluster {
         let mut storing = Vec::new();
         for command in self.core.handle(input, self.now) {
             match command {
-                Command::Send { to, message } => self.send(What::Down(to, message)),
+                Command::Send { to, message } => self.send(ClusterEvent::Down(to, message)),
                 Command::Store(finished) => storing.push(finished.job()),
-                Command::Deliver(done) => self.fresh.push((done.id, done.outcome)),
+                Command::Deliver(done) => self.undelivered_outcomes.push((done.id, done.outcome)),
                 Command::Record(event @ Event::Accounted(_)) => self.accounts.push(event),
                 Command::Record(_) => {}
                 Command::Notice(notice) => self.notices.push(notice),
@@ -393,7 +400,7 @@ impl Cluster {
             }
         }
         if !storing.is_empty() {
-            self.at(Duration::from_micros(300), What::Stored(storing));
+            self.schedule(Duration::from_micros(300), ClusterEvent::Stored(storing));
         }
     }
 

@@ -1,9 +1,9 @@
 //! Job sources of a simulated cluster: generations, or a search.
 use protocol::job::{Job, Outcome};
-use search::strategy::{Strategy, Told};
+use search::strategy::{EvaluationResult, Strategy};
 use std::collections::BTreeMap;
 
-/// Builds a job without work, identified by its number.
+/// Builds a job of kind `Nothing`, identified by its number.
 pub fn job(n: u64) -> Job {
     Job::Nothing {
         payload: n.to_le_bytes().to_vec(),
@@ -13,7 +13,7 @@ pub fn job(n: u64) -> Job {
 }
 
 /// Source of jobs for a simulated cluster.
-pub trait Source {
+pub trait JobSource {
     /// Returns jobs that can be submitted now, with their ids.
     fn ask(&mut self) -> Vec<(u64, Job)>;
     /// Passes the outcome of a job to the source.
@@ -42,7 +42,7 @@ impl Generations {
     }
 }
 
-impl Source for Generations {
+impl JobSource for Generations {
     fn ask(&mut self) -> Vec<(u64, Job)> {
         if self.open > 0 || self.left == 0 {
             return Vec::new();
@@ -64,20 +64,20 @@ impl Source for Generations {
 }
 
 /// Source that runs a search, with a function in place of the simulation.
-pub struct Search<'a> {
+pub struct SimulatedSearch<'a> {
     /// Search strategy.
     pub strategy: Box<dyn Strategy>,
     /// Objective evaluated in place of the simulation, for given genes.
-    pub tell: &'a dyn Fn(&[f64]) -> Told,
+    pub tell: &'a dyn Fn(&[f64]) -> EvaluationResult,
     /// Number of the first proposal that is not evaluated.
     pub limit: u64,
     open: BTreeMap<u64, Vec<f64>>,
     log: blake3::Hasher,
 }
 
-impl<'a> Search<'a> {
+impl<'a> SimulatedSearch<'a> {
     /// Creates a source that runs the search to its end.
-    pub fn new(strategy: Box<dyn Strategy>, tell: &'a dyn Fn(&[f64]) -> Told) -> Self {
+    pub fn new(strategy: Box<dyn Strategy>, tell: &'a dyn Fn(&[f64]) -> EvaluationResult) -> Self {
         Self {
             strategy,
             tell,
@@ -94,13 +94,14 @@ impl<'a> Search<'a> {
             for gene in &entry.genes {
                 self.log.update(&gene.to_bits().to_le_bytes());
             }
-            self.log.update(&entry.told.fitness.to_bits().to_le_bytes());
+            self.log
+                .update(&entry.result.fitness.to_bits().to_le_bytes());
         }
         self.log.finalize().to_hex().to_string()
     }
 }
 
-impl Source for Search<'_> {
+impl JobSource for SimulatedSearch<'_> {
     fn ask(&mut self) -> Vec<(u64, Job)> {
         let asked = self.strategy.ask().into_iter();
         let wanted = asked.filter(|proposal| proposal.id < self.limit);

@@ -1,10 +1,10 @@
 //! Simulated worker: jobs held, and reactions to messages.
-use super::happening::What;
+use super::event::ClusterEvent;
 use protocol::{
     id::ContentHash,
     job::{Answer, Failure, Job, Outcome},
-    message::{Attempt, Beat, Cost, Done, Order},
-    proof::Proof,
+    message::{Assignment, Attempt, Cost, Done, Heartbeat},
+    proof::ReferenceResult,
 };
 use std::{
     collections::{BTreeMap, BTreeSet, VecDeque},
@@ -20,7 +20,7 @@ pub struct Running {
 }
 
 impl Running {
-    /// Returns the duration stated in the job itself; zero for all kinds but `Nothing`.
+    /// Returns the delay that a job of kind `Nothing` requests; zero for jobs of all other kinds.
     pub fn delay(&self) -> Duration {
         match self.job {
             Job::Nothing { delay_ms, .. } => Duration::from_millis(u64::from(delay_ms)),
@@ -50,26 +50,26 @@ pub fn outcome(job: &Job) -> Outcome {
 }
 
 /// Simulated worker without computation: slots, orders and unacknowledged results.
-pub struct Worker {
-    /// Index of the place that the worker fills; a replacement worker has the same place.
+pub struct SimulatedWorker {
+    /// Index of the worker in the cluster; a replacement worker takes the index of its predecessor.
     pub place: u64,
     /// Number of slots.
     pub slots: usize,
-    /// Factor on the computing time \[1\].
+    /// Factor by which the worker's computing times exceed those of a worker of normal speed \[1\].
     pub slowness: f64,
     /// Attempts running in the slots.
     pub running: Vec<Running>,
-    waiting: VecDeque<Order>,
-    /// Results not yet acknowledged as stored.
+    waiting: VecDeque<Assignment>,
+    /// Results not yet acknowledged by the coordinator as stored.
     pub outbox: BTreeMap<Attempt, Done>,
     settled: BTreeSet<Attempt>,
     /// Whether the worker is frozen.
     pub frozen: bool,
     /// Events deferred while the worker is frozen.
-    pub(super) held_back: Vec<What>,
+    pub(super) deferred_events: Vec<ClusterEvent>,
 }
 
-impl Worker {
+impl SimulatedWorker {
     /// Creates an idle worker.
     pub const fn new(place: u64, slots: usize, slowness: f64) -> Self {
         Self {
@@ -81,12 +81,12 @@ impl Worker {
             outbox: BTreeMap::new(),
             settled: BTreeSet::new(),
             frozen: false,
-            held_back: Vec::new(),
+            deferred_events: Vec::new(),
         }
     }
 
     /// Queues an order, unless the attempt is already known.
-    pub fn take(&mut self, order: Order) {
+    pub fn enqueue(&mut self, order: Assignment) {
         let attempt = order.attempt;
         let known = self.settled.contains(&attempt)
             || self.outbox.contains_key(&attempt)
@@ -141,8 +141,8 @@ impl Worker {
     }
 
     /// Builds the worker's heartbeat, with its case and its proof.
-    pub fn beat(&self, case: Option<ContentHash>, proof: Proof) -> Beat {
-        Beat {
+    pub fn beat(&self, case: Option<ContentHash>, proof: ReferenceResult) -> Heartbeat {
+        Heartbeat {
             number: 0,
             case,
             proof: Some(proof),

@@ -1,7 +1,8 @@
-//! Result of the check of one layer.
+//! Result of checking one layer of the connection between worker and coordinator.
 use serde::Serialize;
 
-/// Layer that must be healthy for a worker to take part, in the order of checking.
+/// Layer of the setup (from case file to protocol version) that must be healthy for a worker to take part, in
+/// the order of checking.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Layer {
@@ -42,16 +43,16 @@ impl Layer {
     }
 }
 
-/// Result of checking a layer.
+/// Result of checking one layer of the setup or the connection.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Check {
     /// Checked layer.
     pub layer: Layer,
     /// Whether the layer is healthy.
     pub healthy: bool,
-    /// Observation made by the check.
+    /// Observation made by the check, as text for the user.
     pub found: String,
-    /// Remedy; empty for a healthy layer.
+    /// Remedy for the failed layer, as text for the user; empty for a healthy layer.
     pub remedy: String,
 }
 

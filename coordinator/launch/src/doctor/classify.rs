@@ -1,11 +1,11 @@
 //! Assignment of link errors to layers, with a remedy for each.
 use super::check::{Check, Layer};
-use link::{LinkError, Silence};
+use link::{ConnectFailure, LinkError};
 
-/// Returns the failed layer for a link error, with its message and the remedy.
+/// Returns the check result of the layer that failed, derived from a connection error, with a remedy.
 pub(super) fn classify(error: &LinkError) -> Check {
     let (layer, remedy) = match error {
-        error if error.is_of_time() => (
+        error if error.is_validity_error() => (
             Layer::Clock,
             "compare `date` on both machines and set the clock that is wrong; if both are right, make new \
              certificates with `horsehead keys`",
@@ -14,17 +14,17 @@ pub(super) fn classify(error: &LinkError) -> Check {
             Layer::Name,
             "check the spelling, and `getent hosts NAME` on this machine; or dial the machine's address",
         ),
-        LinkError::Silent { how, .. } => match how {
-            Silence::Closed { .. } => (
+        LinkError::NoAnswer { how, .. } => match how {
+            ConnectFailure::Closed { .. } => (
                 Layer::Port,
                 "start the coordinator with --listen, and connect to the port that it prints",
             ),
-            Silence::Unreachable { .. } => (
+            ConnectFailure::Unreachable { .. } => (
                 Layer::Route,
                 "`ip route get ADDRESS` says how this machine would go there; check the cable, the VPN and that \
                  the other machine is up",
             ),
-            Silence::Dropped { .. } | _ => (
+            ConnectFailure::Dropped { .. } | _ => (
                 Layer::Firewall,
                 "check that the coordinator runs there, and let its port through the firewalls between: UDP for \
                  quic/, TCP for tcp/",

@@ -6,28 +6,28 @@ use super::{
 };
 use link::{
     LinkError, WorkerEnd as _,
-    keys::{Keys, Role},
+    keys::{KeyRole, Keys},
     locator::{Locator, Protocol},
     zenoh::ZenohWorker,
 };
 use protocol::{
     id::RunId,
     key::Lane,
-    message::{Beat, FromWorker, ToWorker},
-    wire::{self, Kind, WireError},
+    message::{FromWorker, Heartbeat, ToWorker},
+    wire::{self, FrameKind, WireError},
 };
 use std::{path::Path, time::Duration};
 use tokio::time::timeout;
 
-/// Number of requests sent to the coordinator, one per second: the bus needs a moment to establish its
-/// subscriptions.
+/// Maximum number of heartbeats sent to the coordinator, one per second, while waiting for its reply: the
+/// message bus needs a moment to establish its subscriptions.
 const ASKED: u32 = 8;
 
 /// Checks the layers on the way to a coordinator, up to the first that fails.
 pub async fn dial(to: &Locator, tls: Option<&Path>) -> Vec<Check> {
     let mut checks = Vec::new();
     let keys = match tls
-        .map(|folder| Keys::read(folder, Role::Worker))
+        .map(|folder| Keys::read(folder, KeyRole::Worker))
         .transpose()
     {
         Ok(keys) => keys,
@@ -59,7 +59,7 @@ pub async fn dial(to: &Locator, tls: Option<&Path>) -> Vec<Check> {
     checks
 }
 
-/// Returns the layers that must be healthy, given the error with which the link failed.
+/// Returns the layers that are known to be healthy, given the error with which the connection failed.
 fn passed(error: &LinkError) -> impl Iterator<Item = Layer> {
     let answered = matches!(
         error,
@@ -81,7 +81,11 @@ fn passed(error: &LinkError) -> impl Iterator<Item = Layer> {
 /// no state.
 async fn version(link: &mut ZenohWorker, to: &Locator) -> Check {
     let run = RunId::default();
-    let Ok(question) = wire::seal(Kind::FromWorker, run, &FromWorker::Beat(Beat::default())) else {
+    let Ok(question) = wire::encode_frame(
+        FrameKind::FromWorker,
+        run,
+        &FromWorker::Beat(Heartbeat::default()),
+    ) else {
         return Check::bad(
             Layer::Version,
             "the test message cannot be encoded",
@@ -104,11 +108,11 @@ fn nobody(to: &Locator) -> Check {
     })
 }
 
-/// Checks the protocol version of a message from the coordinator.
+/// Checks that a message from the coordinator has this program's protocol version.
 fn understood(frame: &[u8]) -> Check {
     const SAME: &str = "use the same build of horsehead and horsehead-worker on every machine";
     let own = wire::VERSION;
-    match wire::unseal::<ToWorker>(Kind::ToWorker, frame) {
+    match wire::decode_frame::<ToWorker>(FrameKind::ToWorker, frame) {
         Ok((run, _)) => Check::good(Layer::Version, format!("protocol {own}, run {run}")),
         Err(WireError::Version { found }) => Check::bad(
             Layer::Version,
@@ -125,7 +129,8 @@ mod tests {
 
     #[test]
     fn a_word_of_another_version_is_told_as_such() {
-        let mut frame = wire::seal(Kind::ToWorker, RunId(3), &ToWorker::Identify).unwrap();
+        let mut frame =
+            wire::encode_frame(FrameKind::ToWorker, RunId(3), &ToWorker::Identify).unwrap();
         assert!(understood(&frame).healthy);
         // the version is the third byte of every frame, whatever comes after
         frame[2] += 1;

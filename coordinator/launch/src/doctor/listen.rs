@@ -5,7 +5,7 @@ use super::{
 };
 use link::{
     LinkError,
-    keys::{Keys, Role},
+    keys::{KeyRole, Keys},
     locator::{Locator, Protocol},
 };
 use std::{
@@ -23,7 +23,7 @@ pub fn listen(at: &Locator, tls: Option<&Path>) -> Vec<Check> {
             let locator = at.to_string();
             return vec![classify(&LinkError::NoKeys { locator })];
         }
-        (Protocol::Quic, Some(folder)) => match Keys::read(folder, Role::Coordinator) {
+        (Protocol::Quic, Some(folder)) => match Keys::read(folder, KeyRole::Coordinator) {
             Ok(keys) => {
                 let names = keys.workers().len();
                 let found = format!("{}: {names} workers may join", folder.display());

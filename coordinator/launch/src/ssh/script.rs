@@ -6,7 +6,8 @@ use super::super::{
 };
 use std::fmt::Write as _;
 
-/// Preamble of every script run on a host.
+/// Preamble of every script run on a host: strict error handling, private files, and the variable `home` with
+/// the folder of worker files.
 const HOME: &str =
     "set -eu\numask 077\nhome=${XDG_CACHE_HOME:-$HOME/.cache}/horsehead\nmkdir -p \"$home\"\n";
 
@@ -19,7 +20,7 @@ case "$(readlink "/proc/${process:-none}/exe" 2>/dev/null || true)" in
 esac
 "#;
 
-/// Script fragment that ends that process, by force after five seconds.
+/// Script fragment that ends the worker process found by `RUNNING`, by force after five seconds.
 const END: &str = r#"if [ -n "$process" ]; then
   kill "$process"
   for _ in 1 2 3 4 5; do
@@ -29,7 +30,8 @@ const END: &str = r#"if [ -n "$process" ]; then
 fi
 "#;
 
-/// Returns a script that answers "have" or "need MACHINE", and fails on hosts that cannot run a worker.
+/// Returns a script that prints "have" if the right worker program is present on the host, otherwise "need
+/// MACHINE", and fails if the host cannot run a worker.
 pub(super) fn probe(programs: &[Program]) -> String {
     let mut script = format!("{HOME}system=$(uname -sm)\ncase \"$system\" in\n");
     let mut machines = Vec::new();
@@ -96,8 +98,8 @@ mv "$part" "$home/worker-{hash}"
     )
 }
 
-/// Returns a script that starts the worker in a session of its own; a worker running with the same command
-/// line is left running, and so is one that a run finds but has not launched.
+/// Returns a script that starts the worker detached in a session of its own. It leaves a worker running that
+/// has the same command line, or that was launched by another owner.
 pub(super) fn start(order: &WorkerOptions, folder: &str, programs: &[Program]) -> String {
     let mut choice = String::from("case \"$(uname -m)\" in\n");
     for Program { machine, hash, .. } in programs {
@@ -152,8 +154,8 @@ done
     )
 }
 
-/// Returns a script that ends the workers in folders whose names end with `mark`, only those launched by
-/// `owner`; all of them if both are empty.
+/// Returns a script that ends the workers in those folders whose names end with `mark`, if launched by
+/// `owner`; all workers if both are empty.
 pub(super) fn end(mark: &str, owner: &str) -> String {
     let owner = line(&[owner.to_owned()]);
     format!(

@@ -1,24 +1,24 @@
 //! Map of abscissa against channel that shows where along a record the residual is significant.
-use super::axis::Axis;
+use super::axis::ChartAxis;
 use super::canvas::{Canvas, Pen, WIDTH, render};
 use super::panel::Panel;
 use super::rows::{self, Key};
 use crate::color::{Color, INK, SIGNED};
 use crate::document::Figure;
-use crate::number::{fixed, plain, range, unit};
-use crate::words::counted;
-use discrepancy::place::along::{AlongMap, Bins, WIDTHS, Window};
+use crate::number::{fixed, integer_or_significant, range, unit};
+use crate::words::abscissa_quantity;
+use discrepancy::localisation::window_test::{AbscissaWindow, AlongMap, Bins, WIDTHS};
 use protocol::case::Abscissa;
 
-/// Least upper end of the colour scale (standard deviations), so that noise stays pale.
+/// Smallest upper end of the colour scale (residual in standard deviations), so that noise stays pale.
 const LEAST: f64 = 5.0;
 
-/// Draws the map, with one row per entry of `channels`, in the map's order, over the abscissa and axis of the
+/// Draws the map of the residual, with one row per entry of `channels`, over the abscissa and axis of the
 /// first channel. Returns `None` for an empty map or if the channels have different abscissas.
 pub(crate) fn angle_map(
     map: &AlongMap,
     channels: &[String],
-    (abscissa, axis): (&Abscissa, &Axis),
+    (abscissa, axis): (&Abscissa, &ChartAxis),
 ) -> Option<Figure> {
     let bins = map.bins.first()?;
     let rows = map.strength.len();
@@ -30,7 +30,7 @@ pub(crate) fn angle_map(
     let height = rows::height(rows);
     let title = format!(
         "Residual over its uncertainty, by {} and channel",
-        counted(abscissa)
+        abscissa_quantity(abscissa)
     );
     let svg = render((WIDTH, height), &title, |canvas| {
         let panel = rows::panel(rows, axis.scale);
@@ -58,14 +58,15 @@ pub(crate) fn angle_map(
             "{title}: mean of the recalibrated model's residual over {} {}, in its own standard \
              deviations; what a channel shares with the noise of those above it is taken out. Framed: \
              windows that noise alone would show in fewer than one record of twenty.",
-            plain(WIDTHS[0] as f64 * bins.width),
+            integer_or_significant(WIDTHS[0] as f64 * bins.width),
             unit(&abscissa.unit)
         ),
         svg,
     })
 }
 
-/// Draws the row of one channel: a cell per bin, at the centre of the window that begins there.
+/// Draws the row of one channel: one coloured cell per bin, placed at the centre of the averaging window that
+/// begins at the bin.
 fn cells(
     canvas: &mut Canvas,
     panel: &Panel,
@@ -87,14 +88,16 @@ fn cells(
     }
 }
 
-/// Returns the colour of a deviation, given as a share of the scale to either side; neutral if not finite.
+/// Returns the colour of a signed deviation, given relative to the end of the colour scale (-1 to 1); neutral
+/// if not finite.
 fn deviation(share: f64) -> Color {
     let share = if share.is_finite() { share } else { 0.0 };
     SIGNED.at(0.5 + 0.5 * share)
 }
 
-/// Outlines a significant window; in two parts if it extends into the next period.
-fn outline(canvas: &mut Canvas, panel: &Panel, bins: &Bins, window: &Window) {
+/// Outlines a window in which the residual is significant; in two parts if the window extends into the next
+/// period.
+fn outline(canvas: &mut Canvas, panel: &Panel, bins: &Bins, window: &AbscissaWindow) {
     const INSET: f64 = 2.5;
     let pen = Pen::new(INK, 1.3);
     let top = panel.at_y(window.channel as f64) + INSET;

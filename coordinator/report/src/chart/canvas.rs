@@ -28,26 +28,26 @@ impl Pen {
 
 /// Style of a text, and the position of its anchor point.
 #[derive(Clone, Copy)]
-pub struct Lettering {
+pub struct TextStyle {
     /// Font size [px].
     size: f64,
     color: Color,
-    /// Position of the anchor along the text, as the SVG attribute `text-anchor`.
+    /// Horizontal alignment of the text to its anchor, as the SVG attribute `text-anchor`.
     along: &'static str,
     /// Offset of the base line below the anchor, relative to the font size.
-    drop: f64,
+    baseline_offset: f64,
     bold: bool,
     upwards: bool,
 }
 
-impl Lettering {
+impl TextStyle {
     /// Creates horizontal text that starts at its anchor, centred vertically.
     pub const fn new(size: f64, color: Color) -> Self {
         Self {
             size,
             color,
             along: "start",
-            drop: 0.32,
+            baseline_offset: 0.32,
             bold: false,
             upwards: false,
         }
@@ -70,14 +70,14 @@ impl Lettering {
     /// Returns the style with the text above its anchor.
     #[must_use]
     pub const fn above(mut self) -> Self {
-        self.drop = -0.2;
+        self.baseline_offset = -0.2;
         self
     }
 
     /// Returns the style with the text below its anchor.
     #[must_use]
     pub const fn below(mut self) -> Self {
-        self.drop = 0.76;
+        self.baseline_offset = 0.76;
         self
     }
 
@@ -183,7 +183,7 @@ impl Canvas {
     }
 
     /// Draws one line of text.
-    pub fn text(&mut self, at: (f64, f64), text: &str, lettering: Lettering) {
+    pub fn text(&mut self, at: (f64, f64), text: &str, lettering: TextStyle) {
         if !is_finite(at) {
             return;
         }
@@ -191,7 +191,7 @@ impl Canvas {
         let turn = lettering.upwards.then(|| format!("rotate(-90 {x} {y})"));
         let weight = lettering.bold.then_some("bold");
         self.draw(&html! {
-            text x=(x) y=(y) dy=(format!("{}em", lettering.drop)) text-anchor=(lettering.along)
+            text x=(x) y=(y) dy=(format!("{}em", lettering.baseline_offset)) text-anchor=(lettering.along)
                 font-size=(unit(lettering.size)) font-weight=[weight] fill=(lettering.color)
                 transform=[turn] { (text) }
         });

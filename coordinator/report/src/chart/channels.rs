@@ -1,16 +1,16 @@
 //! Channels of one simulation in stacked strips, in absolute values, with the measured mean and spread where
 //! recorded.
-use super::axis::Axis;
+use super::axis::ChartAxis;
 use super::strip::{Strip, curve, stack, strip};
 use crate::color::{INK, VERMILLION};
-use crate::data::Shown;
+use crate::data::SimulationView;
 use crate::document::Figure;
 use crate::number::unit;
 use crate::words::condition_name;
 use protocol::case::Channel;
 
-/// Draws all channels, one figure per abscissa name; `zero` is passed to [`Axis::of`].
-pub fn channels(of: &Shown<'_>, zero: &str) -> Vec<Figure> {
+/// Draws all channels, one figure per abscissa name; `zero` is passed to [`ChartAxis::of`].
+pub fn channels(of: &SimulationView<'_>, zero: &str) -> Vec<Figure> {
     let all = of.case.channels_of(of.condition);
     let mut kinds: Vec<&Channel> = all.map(|(_, channel)| channel).collect();
     kinds.dedup_by(|one, other| one.abscissa.name == other.abscissa.name);
@@ -23,7 +23,7 @@ pub fn channels(of: &Shown<'_>, zero: &str) -> Vec<Figure> {
             format!(
                 "Simulated curves under condition {condition}, absolute values: no curve is shifted here."
             ),
-            &Axis::of(&kind.abscissa, zero),
+            &ChartAxis::of(&kind.abscissa, zero),
             &strips(of, |channel| channel.abscissa.name == *over),
         )
     };
@@ -31,7 +31,7 @@ pub fn channels(of: &Shown<'_>, zero: &str) -> Vec<Figure> {
 }
 
 /// Builds a strip for every selected channel.
-pub fn strips(of: &Shown<'_>, wanted: impl Fn(&Channel) -> bool) -> Vec<Strip> {
+pub fn strips(of: &SimulationView<'_>, wanted: impl Fn(&Channel) -> bool) -> Vec<Strip> {
     let all = of.case.channels_of(of.condition);
     all.filter(|(_, channel)| wanted(channel))
         .map(|(_, channel)| one(channel, of.channel(channel)))

@@ -1,9 +1,9 @@
 //! Bar chart of the Bayes factors of an unknown periodic force at each joint.
-use super::canvas::{Lettering, Pen, render};
+use super::canvas::{Pen, TextStyle, render};
 use crate::color::{BAND, BLUE, GREY, INK};
 use crate::document::Figure;
 use crate::number::fixed;
-use discrepancy::place::joint::JointEvidence;
+use discrepancy::localisation::joint::JointEvidence;
 
 const WIDTH: f64 = 720.0;
 const ROW: f64 = 24.0;
@@ -19,7 +19,7 @@ pub(crate) fn joints(ranked: &[JointEvidence], equivalent: usize) -> Option<Figu
     let height = TOP + ROW * ranked.len() as f64 + 8.0;
     let title = "Where a periodic force would explain the residual";
     let svg = render((WIDTH, height), title, |canvas| {
-        let head = Lettering::new(10.5, GREY);
+        let head = TextStyle::new(10.5, GREY);
         canvas.text(
             (LEFT, 14.0),
             "log Bayes factor against no force [nats]",
@@ -29,13 +29,13 @@ pub(crate) fn joints(ranked: &[JointEvidence], equivalent: usize) -> Option<Figu
             let y = TOP + (index as f64 + 0.5) * ROW - 2.0;
             let inside = index < equivalent;
             let ink = if inside { INK } else { GREY };
-            let name = Lettering::new(11.0, ink).right();
+            let name = TextStyle::new(11.0, ink).right();
             canvas.text((LEFT - 10.0, y), &one.joint.replace('_', " "), name);
             let length = BAR * (one.log_bayes / end).clamp(0.0, 1.0);
             let color = if inside { BLUE } else { BAND };
             canvas.rectangle((LEFT, y - 7.0), (LEFT + length, y + 7.0), color);
             let value = fixed(one.log_bayes, 1);
-            canvas.text((LEFT + length + 8.0, y), &value, Lettering::new(11.0, ink));
+            canvas.text((LEFT + length + 8.0, y), &value, TextStyle::new(11.0, ink));
         }
         // one bracket around those that are not told apart
         let (x, pen) = (LEFT + BAR + 70.0, Pen::new(BLUE, 1.3));
@@ -51,7 +51,7 @@ pub(crate) fn joints(ranked: &[JointEvidence], equivalent: usize) -> Option<Figu
         canvas.text(
             (x + 8.0, 0.5 * (top + bottom)),
             said,
-            Lettering::new(11.0, BLUE),
+            TextStyle::new(11.0, BLUE),
         );
     });
     Some(Figure {

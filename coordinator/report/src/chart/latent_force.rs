@@ -1,14 +1,14 @@
 //! Unknown periodic force that would explain the residual, over one period, at the likeliest joints.
-use super::axis::Axis;
+use super::axis::ChartAxis;
 use super::strip::{curve, stack, strip};
 use crate::color::BLUE;
 use crate::document::Figure;
-use discrepancy::place::joint::JointEvidence;
+use discrepancy::localisation::joint::JointEvidence;
 use protocol::case::Abscissa;
 
 /// Largest number of joints drawn.
 const DRAWN: usize = 3;
-/// Spacing of the curve points (360 per period).
+/// Spacing of the points of a force curve, in 360ths of the period.
 const STEP: usize = 2;
 
 /// Draws the forces over one period of the abscissa at the first `equivalent`, indistinguishable joints of a
@@ -16,7 +16,7 @@ const STEP: usize = 2;
 pub(crate) fn latent_forces(
     ranked: &[JointEvidence],
     equivalent: usize,
-    (abscissa, axis): (&Abscissa, &Axis),
+    (abscissa, axis): (&Abscissa, &ChartAxis),
 ) -> Option<Figure> {
     let period = abscissa.period?;
     let phases: Vec<f64> = (0..=360).step_by(STEP).map(f64::from).collect();

@@ -1,10 +1,10 @@
 //! Main effects of an orthogonal test: the mean response at every level of every factor, side by side on one scale.
-use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
+use super::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
 use super::panel::Panel;
-use super::scale::Scale;
+use super::scale::AxisScale;
 use crate::color::{BLUE, GREY, INK};
 use crate::document::Figure;
-use study::orthogonal::{Analysis, Factor, Range, Tested};
+use study::orthogonal::{Analysis, Factor, Range, TestResult};
 
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 20.0;
@@ -14,12 +14,12 @@ const FOOT: f64 = 52.0;
 const GAP: f64 = 18.0;
 
 /// Draws the main effects of a test.
-pub(crate) fn main_effects(tested: &Tested, analysis: &Analysis) -> Figure {
+pub(crate) fn main_effects(tested: &TestResult, analysis: &Analysis) -> Figure {
     let means = analysis
         .ranges
         .iter()
         .flat_map(|own| own.means.iter().copied());
-    let y = Scale::linear(means, 6.0);
+    let y = AxisScale::linear(means, 6.0);
     let count = tested.factors.len().max(1) as f64;
     let width = (WIDTH - LEFT - RIGHT - GAP * (count - 1.0)) / count;
     let title = "Mean response at every level";
@@ -31,7 +31,7 @@ pub(crate) fn main_effects(tested: &Tested, analysis: &Analysis) -> Figure {
                 top: TOP,
                 width,
                 height: HEIGHT,
-                x: Scale::between(-0.5, factor.levels.len() as f64 - 0.5, 1.0),
+                x: AxisScale::between(-0.5, factor.levels.len() as f64 - 0.5, 1.0),
                 y,
             };
             draw(canvas, &panel, factor, range);
@@ -59,12 +59,12 @@ fn draw(canvas: &mut Canvas, panel: &Panel, factor: &Factor, range: &Range) {
     for (point, level) in points.iter().zip(&factor.levels) {
         canvas.dot(panel.at(*point), 3.0, BLUE);
         let below = (panel.at_x(point.0), panel.bottom() + 8.0);
-        canvas.text(below, level, Lettering::new(10.5, INK).centered().below());
+        canvas.text(below, level, TextStyle::new(10.5, INK).centered().below());
     }
     let middle = (panel.left + 0.5 * panel.width, panel.bottom() + 28.0);
     canvas.text(
         middle,
         &factor.name,
-        Lettering::new(10.5, GREY).centered().below(),
+        TextStyle::new(10.5, GREY).centered().below(),
     );
 }

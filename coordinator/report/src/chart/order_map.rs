@@ -1,13 +1,14 @@
 //! Map of channel against order of the period that shows which coefficients of the residual are significant.
 use super::canvas::{WIDTH, render};
 use super::rows::{self, Key};
-use super::scale::Scale;
+use super::scale::AxisScale;
 use crate::color::{Color, INK, STRENGTH};
 use crate::document::Figure;
-use crate::number::{figure, range};
-use discrepancy::place::order::OrderMap;
+use crate::number::{range, significant};
+use discrepancy::localisation::order::OrderMap;
 
-/// Least upper end of the colour scale (power ratio), so that noise stays pale.
+/// Smallest upper end of the colour scale (power of the residual over its mean under noise), so that noise
+/// stays pale.
 const LEAST: f64 = 10.0;
 
 /// Draws the map, with one row per entry of `channels`, in the map's order. Orders are multiples of the
@@ -27,9 +28,9 @@ pub(crate) fn order_map(
     let svg = render((WIDTH, height), &title, |canvas| {
         let panel = rows::panel(
             channels.len(),
-            Scale::between(0.5, orders as f64 + 0.5, 8.0),
+            AxisScale::between(0.5, orders as f64 + 0.5, 8.0),
         );
-        let high = figure(end);
+        let high = significant(end);
         let noise = "power over that of noise  1";
         let key = Key {
             before: noise,
@@ -53,7 +54,7 @@ pub(crate) fn order_map(
             let at = panel.at((peak.order as f64, peak.channel as f64 + 0.5));
             canvas.dot(at, 1.9, mark(share(peak.ratio, end)));
         }
-        let hertz = hertz.map(|hertz| format!(" (order 60 is {} Hz)", figure(60.0 * hertz)));
+        let hertz = hertz.map(|hertz| format!(" (order 60 is {} Hz)", significant(60.0 * hertz)));
         let title = format!("order of the {period}{}", hertz.unwrap_or_default());
         panel.lower_axis(canvas, true, &title);
     });
@@ -76,7 +77,7 @@ fn share(ratio: f64, end: f64) -> f64 {
     }
 }
 
-/// Returns a dot colour that contrasts with its cell.
+/// Returns the colour of a dot that marks a significant cell, in contrast to the cell's own colour.
 fn mark(share: f64) -> Color {
     if share > 0.45 {
         Color(0xff, 0xff, 0xff)

@@ -1,10 +1,10 @@
 //! Measured against simulated curves of one channel, recommended beside optimised parameters on shared
 //! scales, with the residual below (paper, Figs. 7, 9 and 10).
-use super::axis::Axis;
-use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
+use super::axis::ChartAxis;
+use super::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
 use super::panel::Panel;
 use super::points::points;
-use super::scale::Scale;
+use super::scale::AxisScale;
 use crate::color::{BAND, GREY, INK, VERMILLION};
 use crate::data::{ConditionResult, Run};
 use crate::document::Figure;
@@ -21,7 +21,7 @@ const RESIDUAL_TOP: f64 = TOP + VALUES_HEIGHT + 16.0;
 const RESIDUAL_HEIGHT: f64 = 62.0;
 const HEIGHT: f64 = RESIDUAL_TOP + RESIDUAL_HEIGHT + 42.0;
 
-/// Simulated curve and residual of one parameter set.
+/// Simulated curve and residual of one parameter set (recommended or optimised).
 struct Side {
     heading: &'static str,
     remark: String,
@@ -29,7 +29,8 @@ struct Side {
     residual: Vec<(f64, f64)>,
 }
 
-/// Returns the shift that the objective applies to a simulated curve before the comparison.
+/// Returns the constant offset by which the objective shifts a simulated curve before comparing it with the
+/// measured one; 0 unless the offset is free.
 const fn shift(offset: Offset, score: Option<&ChannelScore>) -> f64 {
     match (offset, score) {
         (Offset::Free, Some(score)) if score.offset.is_finite() => score.offset,
@@ -103,14 +104,14 @@ pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figur
         .map(|(&x, (&mean, &spread))| (x, mean - spread, mean + spread))
         .collect();
     let curves = sides.iter().flat_map(|side| &side.simulated);
-    let values = Scale::linear(
+    let values = AxisScale::linear(
         curves
             .map(|&(_, y)| y)
             .chain(band.iter().flat_map(|&(_, low, high)| [low, high])),
         5.0,
     );
     let residuals = sides.iter().flat_map(|side| &side.residual);
-    let residuals = Scale::symmetric(residuals.map(|&(_, y)| y));
+    let residuals = AxisScale::symmetric(residuals.map(|&(_, y)| y));
     let heading = words::capitalised(&channel.title);
     let title = format!("{heading}, condition {}", condition.name);
     let measured = Measured {
@@ -147,16 +148,16 @@ pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figur
 /// Measured curve with band, and the scales shared by both columns.
 struct Measured {
     mean: Vec<(f64, f64)>,
-    /// Rows of (abscissa, low, high).
+    /// Band of the measured spread as rows of (abscissa, lower, upper end).
     band: Vec<(f64, f64, f64)>,
-    values: Scale,
-    residuals: Scale,
-    axis: Axis,
+    values: AxisScale,
+    residuals: AxisScale,
+    axis: ChartAxis,
     unit: String,
 }
 
-/// Draws the column of one parameter set: curves above, residual below. Only the first column labels its
-/// scales.
+/// Draws the figure column of one parameter set: measured and simulated curves above, residual below. Only
+/// the first column labels its axes.
 fn column(canvas: &mut Canvas, measured: &Measured, side: &Side, first: bool) {
     let width = 0.5 * (WIDTH - LEFT - BETWEEN - 10.0);
     let left = if first { LEFT } else { LEFT + width + BETWEEN };
@@ -184,9 +185,9 @@ fn column(canvas: &mut Canvas, measured: &Measured, side: &Side, first: bool) {
     if side.simulated.len() < 2 {
         panel.remark(canvas, "no simulated curve: the run failed before it");
     }
-    let heading = Lettering::new(12.0, INK).bold();
+    let heading = TextStyle::new(12.0, INK).bold();
     canvas.text((left, TOP - 27.0), side.heading, heading);
-    canvas.text((left, TOP - 12.0), &side.remark, Lettering::new(10.5, GREY));
+    canvas.text((left, TOP - 12.0), &side.remark, TextStyle::new(10.5, GREY));
     let strip = Panel {
         top: RESIDUAL_TOP,
         height: RESIDUAL_HEIGHT,
@@ -209,13 +210,13 @@ fn key(canvas: &mut Canvas, title: &str, cycles: usize) {
     const LETTER: f64 = 6.4;
     const MARK: f64 = 22.0;
     let y = 12.0;
-    let heading = Lettering::new(13.0, INK).bold();
+    let heading = TextStyle::new(13.0, INK).bold();
     canvas.text((LEFT, y), title, heading);
     let measured = match cycles {
         0 | 1 => "measured, one cycle".to_owned(),
         _ => format!("measured, mean of {cycles} cycles ± one standard deviation"),
     };
-    let text = Lettering::new(10.5, INK);
+    let text = TextStyle::new(10.5, INK);
     let place = |text: &str, right: f64| right - LETTER * text.chars().count() as f64;
     let x = place("simulated", WIDTH - 10.0);
     canvas.text((x, y), "simulated", text);

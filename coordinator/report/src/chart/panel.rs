@@ -1,6 +1,6 @@
 //! Pair of axes on a canvas: places values and draws ticks, curves and bands.
-use super::canvas::{Canvas, Lettering, Pen};
-use super::scale::Scale;
+use super::canvas::{Canvas, Pen, TextStyle};
+use super::scale::AxisScale;
 use crate::color::{AXIS, Color, GREY, GUIDE, INK, ZERO};
 
 /// Length of a labelled tick [px]; unlabelled ticks are about half as long.
@@ -12,27 +12,27 @@ const DIGIT: f64 = 5.9;
 
 /// Rectangle on the canvas with a scale along each side.
 pub struct Panel {
-    /// Left edge \[px\].
+    /// Left edge of the panel \[px\].
     pub left: f64,
-    /// Upper edge \[px\].
+    /// Upper edge of the panel \[px\].
     pub top: f64,
-    /// Width \[px\].
+    /// Width of the panel \[px\].
     pub width: f64,
-    /// Height \[px\].
+    /// Height of the panel \[px\].
     pub height: f64,
     /// Horizontal scale.
-    pub x: Scale,
+    pub x: AxisScale,
     /// Vertical scale.
-    pub y: Scale,
+    pub y: AxisScale,
 }
 
 impl Panel {
-    /// Right edge \[px\].
+    /// Returns the right edge of the panel \[px\].
     pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
-    /// Lower edge \[px\].
+    /// Returns the lower edge of the panel \[px\].
     pub fn bottom(&self) -> f64 {
         self.top + self.height
     }
@@ -74,7 +74,7 @@ impl Panel {
             let length = tick_length(&tick.label);
             canvas.line(&[(self.left - length, y), (self.left, y)], pen);
             if labels && !tick.label.is_empty() {
-                let lettering = Lettering::new(LABEL, INK).right();
+                let lettering = TextStyle::new(LABEL, INK).right();
                 canvas.text((self.left - TICK - 3.0, y), &tick.label, lettering);
             }
         }
@@ -82,7 +82,7 @@ impl Panel {
             return;
         }
         let longest = ticks.iter().map(|tick| tick.label.chars().count()).max();
-        let lettering = Lettering::new(LABEL, GREY).centered().above();
+        let lettering = TextStyle::new(LABEL, GREY).centered().above();
         canvas.text(
             (
                 self.left - title_distance(longest.unwrap_or(0)),
@@ -103,14 +103,14 @@ impl Panel {
             let length = tick_length(&tick.label);
             canvas.line(&[(x, y), (x, y + length)], pen);
             if labels && !tick.label.is_empty() {
-                let lettering = Lettering::new(LABEL, INK).centered().below();
+                let lettering = TextStyle::new(LABEL, INK).centered().below();
                 canvas.text((x, y + TICK + 3.0), &tick.label, lettering);
             }
         }
         if title.is_empty() {
             return;
         }
-        let lettering = Lettering::new(LABEL, GREY).centered().below();
+        let lettering = TextStyle::new(LABEL, GREY).centered().below();
         canvas.text(
             (self.left + 0.5 * self.width, y + TICK + 18.0),
             title,
@@ -135,7 +135,7 @@ impl Panel {
 
     /// Writes a remark in the middle of the panel.
     pub fn remark(&self, canvas: &mut Canvas, text: &str) {
-        let lettering = Lettering::new(11.5, GREY).centered();
+        let lettering = TextStyle::new(11.5, GREY).centered();
         canvas.text(
             (self.left + 0.5 * self.width, self.top + 0.5 * self.height),
             text,
@@ -158,8 +158,8 @@ const fn tick_length(label: &str) -> f64 {
     if label.is_empty() { 0.55 * TICK } else { TICK }
 }
 
-/// Returns heights of labels close to `wanted` \[px\] and at least `gap` apart, between `low` and `high`, in
-/// the order of the input.
+/// Returns vertical label positions close to those in `wanted` and at least `gap` apart, between `low` and
+/// `high` \[px\], in the order of the input.
 pub fn spread(wanted: &[f64], gap: f64, low: f64, high: f64) -> Vec<f64> {
     let mut order: Vec<usize> = (0..wanted.len()).collect();
     order.sort_by(|&a, &b| wanted[a].total_cmp(&wanted[b]));

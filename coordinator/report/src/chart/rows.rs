@@ -1,7 +1,7 @@
 //! Layout shared by maps with a row per channel: frame, row names, colour scale.
-use super::canvas::{Canvas, Lettering, WIDTH};
+use super::canvas::{Canvas, TextStyle, WIDTH};
 use super::panel::Panel;
-use super::scale::Scale;
+use super::scale::AxisScale;
 use crate::color::{GREY, INK, Ramp};
 
 const LEFT: f64 = 104.0;
@@ -17,27 +17,28 @@ pub(super) fn height(rows: usize) -> f64 {
     TOP + ROW * rows as f64 + FOOT
 }
 
-/// Returns the frame of a map with this many rows; row `k` lies between `k` and `k + 1`.
-pub(super) fn panel(rows: usize, x: Scale) -> Panel {
+/// Returns the panel of a map with this many rows; row `k` lies between `k` and `k + 1` on its vertical
+/// scale.
+pub(super) fn panel(rows: usize, x: AxisScale) -> Panel {
     Panel {
         left: LEFT,
         top: TOP,
         width: WIDTH - LEFT - RIGHT,
         height: ROW * rows as f64,
         x,
-        y: Scale::between(rows as f64, 0.0, 1.0),
+        y: AxisScale::between(rows as f64, 0.0, 1.0),
     }
 }
 
 /// Draws the names of the rows.
 pub(super) fn names(canvas: &mut Canvas, panel: &Panel, channels: &[String]) {
-    let lettering = Lettering::new(11.0, INK).right();
+    let lettering = TextStyle::new(11.0, INK).right();
     for (row, name) in channels.iter().enumerate() {
         canvas.text((LEFT - 10.0, panel.at_y(row as f64 + 0.5)), name, lettering);
     }
 }
 
-/// Labels of a colour scale.
+/// Labels to the left and right of a map's colour scale.
 pub(super) struct Key<'a> {
     /// Label to the left of the scale.
     pub before: &'a str,
@@ -61,7 +62,7 @@ pub(super) fn key(canvas: &mut Canvas, ramp: &Ramp, key: &Key<'_>) {
             ramp.at((step as f64 + 0.5) / STEPS as f64),
         );
     }
-    let text = Lettering::new(10.5, GREY);
+    let text = TextStyle::new(10.5, GREY);
     canvas.text((left - 8.0, y), key.before, text.right());
     canvas.text((left + BAR + 8.0, y), key.behind, text);
 }

@@ -21,7 +21,7 @@ enum Spacing {
 
 /// Range and spacing of one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scale {
+pub struct AxisScale {
     low: f64,
     high: f64,
     spacing: Spacing,
@@ -38,7 +38,7 @@ fn round_step(span: f64, parts: f64) -> f64 {
         .unwrap_or(10.0 * power)
 }
 
-impl Scale {
+impl AxisScale {
     /// Creates the scale of one turn: 0 to 360 degrees, a label every 60, a tick every 30.
     pub const fn turn() -> Self {
         Self {
@@ -219,9 +219,9 @@ fn power_label(digit: i32, exponent: i32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::Scale;
+    use super::AxisScale;
 
-    fn labels(scale: Scale) -> Vec<String> {
+    fn labels(scale: AxisScale) -> Vec<String> {
         let ticks = scale.ticks().into_iter();
         ticks
             .map(|tick| tick.label)
@@ -232,17 +232,17 @@ mod tests {
     #[test]
     fn symmetric_scales_have_at_least_three_ticks() {
         assert_eq!(
-            labels(Scale::symmetric([-0.9, 0.2])),
+            labels(AxisScale::symmetric([-0.9, 0.2])),
             ["\u{2212}0.5", "0.0", "0.5"]
         );
-        assert_eq!(labels(Scale::symmetric([1.0])), ["\u{2212}1", "0", "1"]);
-        assert_eq!(labels(Scale::symmetric([4.1])).len(), 5);
-        assert_eq!(labels(Scale::symmetric([])).len(), 3);
+        assert_eq!(labels(AxisScale::symmetric([1.0])), ["\u{2212}1", "0", "1"]);
+        assert_eq!(labels(AxisScale::symmetric([4.1])).len(), 5);
+        assert_eq!(labels(AxisScale::symmetric([])).len(), 3);
     }
 
     #[test]
     fn linear_ticks_are_round_and_cover_the_values() {
-        let scale = Scale::linear([-12.4, 37.0], 5.0);
+        let scale = AxisScale::linear([-12.4, 37.0], 5.0);
         assert_eq!(labels(scale), ["−10", "0", "10", "20", "30"]);
         assert!(scale.share(-12.4) > 0.0 && scale.share(37.0) < 1.0);
     }
@@ -250,25 +250,28 @@ mod tests {
     #[test]
     fn degenerate_values_still_make_an_axis() {
         for values in [vec![], vec![3.0], vec![f64::NAN, 0.0], vec![-7.0, -7.0]] {
-            let (low, high) = Scale::linear(values.clone(), 4.0).ends();
+            let (low, high) = AxisScale::linear(values.clone(), 4.0).ends();
             assert!(low.is_finite() && low < high, "{values:?}");
-            let (low, high) = Scale::logarithmic(values.clone()).ends();
+            let (low, high) = AxisScale::logarithmic(values.clone()).ends();
             assert!(low > 0.0 && low < high, "{values:?}");
         }
     }
 
     #[test]
     fn logarithmic_ticks_are_decades() {
-        assert_eq!(labels(Scale::logarithmic([0.6, 700.0])), ["1", "10", "100"]);
-        assert_eq!(labels(Scale::logarithmic([3e7, 2e9])), ["10⁸", "10⁹"]);
-        assert!(Scale::logarithmic([1.0, 10.0]).share(-1.0).is_nan());
+        assert_eq!(
+            labels(AxisScale::logarithmic([0.6, 700.0])),
+            ["1", "10", "100"]
+        );
+        assert_eq!(labels(AxisScale::logarithmic([3e7, 2e9])), ["10⁸", "10⁹"]);
+        assert!(AxisScale::logarithmic([1.0, 10.0]).share(-1.0).is_nan());
     }
 
     #[test]
     fn a_turn_has_a_tick_every_30_and_a_label_every_60_degrees() {
-        assert_eq!(Scale::turn().ticks().len(), 13);
+        assert_eq!(AxisScale::turn().ticks().len(), 13);
         assert_eq!(
-            labels(Scale::turn()),
+            labels(AxisScale::turn()),
             ["0", "60", "120", "180", "240", "300", "360"]
         );
     }

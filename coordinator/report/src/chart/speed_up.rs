@@ -1,11 +1,11 @@
 //! Speed-up of searches over the number of slots: one curve per search, beside the ideal line.
-use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
+use super::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
 use super::panel::Panel;
-use super::scale::Scale;
+use super::scale::AxisScale;
 use crate::color::{BLUE, Color, GREEN, GREY, PURPLE, VERMILLION};
 use crate::document::Figure;
 use std::collections::BTreeMap;
-use study::scaling::Row;
+use study::scaling::ScalingRow;
 
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 210.0;
@@ -15,7 +15,7 @@ const FOOT: f64 = 52.0;
 const COLORS: [Color; 4] = [BLUE, VERMILLION, GREEN, PURPLE];
 
 /// Draws the speed-up of searches over the number of slots.
-pub(crate) fn speed_up(rows: &[Row]) -> Figure {
+pub(crate) fn speed_up(rows: &[ScalingRow]) -> Figure {
     let mut curves: BTreeMap<String, Vec<(f64, f64)>> = BTreeMap::new();
     for row in rows {
         let name = format!("{} {}, {}", row.preset, row.population, row.how.as_str());
@@ -27,8 +27,8 @@ pub(crate) fn speed_up(rows: &[Row]) -> Figure {
         top: TOP,
         width: WIDTH - LEFT - RIGHT,
         height: HEIGHT,
-        x: Scale::logarithmic(rows.iter().map(|row| row.slots as f64)),
-        y: Scale::logarithmic(rows.iter().flat_map(|row| [row.slots as f64, row.speed_up])),
+        x: AxisScale::logarithmic(rows.iter().map(|row| row.slots as f64)),
+        y: AxisScale::logarithmic(rows.iter().flat_map(|row| [row.slots as f64, row.speed_up])),
     };
     let title = "Speed-up over the slots";
     let svg = render((WIDTH, TOP + HEIGHT + FOOT), title, |canvas| {
@@ -60,5 +60,5 @@ fn draw(canvas: &mut Canvas, panel: &Panel, (index, name): (usize, &str), curve:
         canvas.dot(panel.at(*point), 3.0, color);
     }
     let beside = (panel.right() + 12.0, TOP + 12.0 + 16.0 * index as f64);
-    canvas.text(beside, name, Lettering::new(10.5, color));
+    canvas.text(beside, name, TextStyle::new(10.5, color));
 }

@@ -1,10 +1,10 @@
 //! Strips of curves over one shared abscissa, stacked, with labels at the right ends of the curves.
 //! Independent of the quantities drawn.
-use super::axis::Axis;
-use super::canvas::{Lettering, Pen, WIDTH, render};
+use super::axis::ChartAxis;
+use super::canvas::{Pen, TextStyle, WIDTH, render};
 use super::panel::{Panel, spread};
 use super::points::points;
-use super::scale::Scale;
+use super::scale::AxisScale;
 use crate::color::{BAND, Color};
 use crate::document::Figure;
 
@@ -15,7 +15,7 @@ const GAP: f64 = 16.0;
 const FOOT: f64 = 44.0;
 
 /// Curve with a label at its right end.
-pub struct Curve {
+pub struct StripCurve {
     label: String,
     color: Color,
     points: Vec<(f64, f64)>,
@@ -25,14 +25,14 @@ pub struct Curve {
 pub struct Strip {
     /// Title of the vertical axis, with the unit.
     pub title: String,
-    /// Height \[px\].
+    /// Height of the strip \[px\].
     pub height: f64,
-    /// Curves, drawn in this order.
-    pub curves: Vec<Curve>,
-    /// Rows of (abscissa, low, high) behind the curves.
+    /// Curves of the strip, in drawing order.
+    pub curves: Vec<StripCurve>,
+    /// Band behind the curves, as rows of (abscissa, lower, upper end).
     pub band: Vec<(f64, f64, f64)>,
-    /// Vertical scale, if not derived from the curves.
-    pub scale: Option<Scale>,
+    /// Vertical scale of the strip; `None` to derive it from the curves.
+    pub scale: Option<AxisScale>,
 }
 
 /// Builds a curve with its values multiplied by a factor.
@@ -42,8 +42,8 @@ pub fn curve(
     at: &[f64],
     values: &[f64],
     factor: f64,
-) -> Curve {
-    Curve {
+) -> StripCurve {
+    StripCurve {
         label: label.into(),
         color,
         points: points(at, values)
@@ -54,7 +54,7 @@ pub fn curve(
 }
 
 /// Builds a strip without a band.
-pub fn strip(title: impl Into<String>, height: f64, curves: Vec<Curve>) -> Strip {
+pub fn strip(title: impl Into<String>, height: f64, curves: Vec<StripCurve>) -> Strip {
     Strip {
         title: title.into(),
         height,
@@ -70,8 +70,8 @@ fn height(strips: &[Strip]) -> f64 {
     TOP + heights - GAP + FOOT
 }
 
-/// Returns the left, right, upper and lower ends of the axis as shares of the figure's width and height, used
-/// to place a cursor.
+/// Returns the left, right, upper and lower ends of the plot area as shares of the figure's width and height,
+/// for placing a cursor over it.
 pub fn span(strips: &[Strip]) -> [f64; 4] {
     let height = height(strips);
     [
@@ -87,7 +87,7 @@ pub fn stack(
     name: impl Into<String>,
     title: &str,
     caption: String,
-    axis: &Axis,
+    axis: &ChartAxis,
     strips: &[Strip],
 ) -> Figure {
     let width = WIDTH - LEFT - RIGHT;
@@ -103,7 +103,7 @@ pub fn stack(
                 height: strip.height,
                 x: axis.scale,
                 y: strip.scale.unwrap_or_else(|| {
-                    Scale::linear(
+                    AxisScale::linear(
                         curves.map(|&(_, y)| y).chain(band),
                         (strip.height / 26.0).max(2.0),
                     )
@@ -124,7 +124,7 @@ pub fn stack(
                 .collect();
             let places = spread(&ends, 13.0, top, panel.bottom());
             for (curve, y) in strip.curves.iter().zip(places) {
-                let lettering = Lettering::new(11.0, curve.color);
+                let lettering = TextStyle::new(11.0, curve.color);
                 canvas.text((panel.right() + 7.0, y), &curve.label, lettering);
             }
             if strip.curves.iter().all(|curve| curve.points.len() < 2) {

@@ -1,9 +1,9 @@
 //! Data behind the figures and tables of a diagnosis, as CSV.
 //!
 //! An empty field is a missing value; numbers are written with all their digits.
+use super::condition_curves::condition_curves;
 use super::judgement::{judge, ranked};
-use super::shown::shown;
-use super::subject::Subject;
+use super::subject::DiagnosisInput;
 use crate::number::field;
 use std::io::Write;
 
@@ -23,10 +23,10 @@ const CURVES: [&str; 9] = [
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.
-pub(super) fn curves(to: impl Write, subject: &Subject<'_>) -> Result<(), csv::Error> {
+pub(super) fn curves(to: impl Write, subject: &DiagnosisInput<'_>) -> Result<(), csv::Error> {
     let mut writer = csv::Writer::from_writer(to);
     writer.write_record(CURVES)?;
-    for shown in shown(subject) {
+    for shown in condition_curves(subject) {
         for c in 0..shown.record.channels.len() {
             let Some(of) = shown.channel(c) else {
                 continue;
@@ -68,7 +68,7 @@ const SUSPECTS: [&str; 11] = [
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.
-pub(super) fn suspects(to: impl Write, subject: &Subject<'_>) -> Result<(), csv::Error> {
+pub(super) fn suspects(to: impl Write, subject: &DiagnosisInput<'_>) -> Result<(), csv::Error> {
     let mut writer = csv::Writer::from_writer(to);
     writer.write_record(SUSPECTS)?;
     for (number, round) in (1..).zip(&subject.diagnosis().rounds) {

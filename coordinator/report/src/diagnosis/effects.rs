@@ -1,5 +1,5 @@
 //! Effects found by a diagnosis, as entries of a case file.
-use super::subject::Subject;
+use super::subject::DiagnosisInput;
 use case::{CaseEffect, CaseParameter, Provenance, write_effects};
 use discrepancy::diagnose::Estimate;
 use discrepancy::model::bounds;
@@ -7,14 +7,14 @@ use protocol::announce::ParameterDescriptor;
 
 /// Returns the `[[effects]]` tables of the added effects for a case file, with intervals and provenance;
 /// `None` if no effect was added.
-pub fn effects_toml(subject: &Subject<'_>) -> Option<String> {
+pub fn effects_toml(subject: &DiagnosisInput<'_>) -> Option<String> {
     let effects = effects(subject);
     (!effects.is_empty()).then(|| write_effects(&effects))
 }
 
 /// Returns the added effects with intervals and provenance; effects that switch on an unknown of the case are
 /// excluded (see [`starts`]).
-pub fn effects(subject: &Subject<'_>) -> Vec<CaseEffect> {
+pub fn effects(subject: &DiagnosisInput<'_>) -> Vec<CaseEffect> {
     let diagnosis = subject.diagnosis();
     let found = (1..).zip(&diagnosis.rounds).filter_map(|(number, round)| {
         let id = round.added.as_ref()?;
@@ -27,7 +27,7 @@ pub fn effects(subject: &Subject<'_>) -> Vec<CaseEffect> {
 
 /// Returns the unknowns of the case that the diagnosis switched on, with their start values for a
 /// calibration.
-pub fn starts(subject: &Subject<'_>) -> Vec<(String, f64)> {
+pub fn starts(subject: &DiagnosisInput<'_>) -> Vec<(String, f64)> {
     let found = subject.diagnosis().effects.iter();
     let each = found.flat_map(|one| one.unknowns.iter().zip(&one.parameters));
     let named = each.filter_map(|(position, parameter)| {
@@ -37,7 +37,7 @@ pub fn starts(subject: &Subject<'_>) -> Vec<(String, f64)> {
     named.collect()
 }
 
-fn entry(subject: &Subject<'_>, found: &Estimate, round: u32, set: &[String]) -> CaseEffect {
+fn entry(subject: &DiagnosisInput<'_>, found: &Estimate, round: u32, set: &[String]) -> CaseEffect {
     let descriptor = subject.library.iter().find(|effect| effect.id == found.id);
     let parameters = found.parameters.iter().map(|own| {
         let (value, [low, high]) = (own.value, own.interval);
@@ -71,14 +71,14 @@ fn entry(subject: &Subject<'_>, found: &Estimate, round: u32, set: &[String]) ->
     }
 }
 
-/// Half-width of the calibration's search interval over the half-width of the 95 % interval. The search
-/// extends at least by `SHARE` of the distance from the absent value, since the 95 % interval holds only for
-/// the channels and discretisation of the diagnosis.
+/// Ratio of the half-width of the calibration's search interval to that of the parameter's 95 % interval. The
+/// search interval extends at least by `SHARE` of the distance to the parameter's value without the effect,
+/// since the 95 % interval holds only for the channels and discretisation of the diagnosis.
 const REACH: f64 = 5.0;
 const SHARE: f64 = 0.25;
 
-/// Returns the interval in which a calibration searches a parameter; `None` if the bounds leave no room.
-/// Called only for parameters whose size the records determine; others are left as they are.
+/// Returns the interval in which a calibration searches an effect's parameter; `None` if the bounds leave no
+/// room. Called only for parameters whose size the records determine.
 fn search(value: f64, [low, high]: [f64; 2], of: &ParameterDescriptor) -> Option<[f64; 2]> {
     let half = (high - value).max(value - low);
     let reach = (REACH * half).max(SHARE * (value - of.absent).abs());

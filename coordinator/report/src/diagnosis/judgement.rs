@@ -1,33 +1,34 @@
 //! Judgement of every candidate effect in a round, with the reason in one sentence.
 use super::words::{equals, nats, p_value};
-use discrepancy::cause::refit::Refitted;
-use discrepancy::cause::suspect::Suspect;
 use discrepancy::diagnose::Round;
+use discrepancy::hypothesis::candidate::CandidateEffect;
+use discrepancy::hypothesis::refit::Refitted;
 use discrepancy::linear::score::{chi_squared_tail, family_wise};
-use discrepancy::thresholds::SET;
+use discrepancy::thresholds::AMBIGUITY_MARGIN;
 use protocol::announce::Sign;
 
-/// Share absorbed by recalibration above which an effect counts as hidden.
+/// Share of an effect's signature absorbed by recalibration above which the effect counts as hidden.
 const HIDDEN: f64 = 0.999;
 /// Judgement of a candidate effect.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Judgement {
-    /// Tail probability of the test statistic over the round's dispersion, corrected for trying several
-    /// shapes; `None` without a test.
+    /// Tail probability of the effect's test statistic divided by the round's dispersion, corrected for the
+    /// number of shapes tried; `None` without a test.
     pub p_value: Option<f64>,
-    /// Gain in log evidence of the refit over the model without the effect, over the dispersion \[nats\].
+    /// Gain in log evidence of the refitted model with the effect over the model without it, divided by the
+    /// round's dispersion \[nats\].
     pub gain: Option<f64>,
-    /// Whether the effect is in the model or in its ambiguity set.
+    /// Whether the effect was added to the model or belongs to the ambiguity set of the added one.
     pub kept: bool,
-    /// Reason, in words.
+    /// Reason why the effect was kept or dropped, in words.
     pub why: String,
 }
 
 /// Returns a round's candidate effects with their judgements: kept effects first, then by evidence, then by
 /// the test.
-pub(super) fn ranked(round: &Round) -> Vec<(&Suspect, Judgement)> {
-    let mut all: Vec<(&Suspect, Judgement)> = round
-        .suspects
+pub(super) fn ranked(round: &Round) -> Vec<(&CandidateEffect, Judgement)> {
+    let mut all: Vec<(&CandidateEffect, Judgement)> = round
+        .candidates
         .iter()
         .map(|suspect| (suspect, judge(round, suspect)))
         .collect();
@@ -47,9 +48,9 @@ pub(super) fn ranked(round: &Round) -> Vec<(&Suspect, Judgement)> {
     all
 }
 
-/// Returns the tail probability of a candidate's test statistic over the round's dispersion, corrected for
-/// several tries.
-pub(super) fn tempered(round: &Round, suspect: &Suspect) -> Option<f64> {
+/// Returns the tail probability of a candidate's test statistic divided by the round's dispersion, corrected
+/// for the number of tries.
+pub(super) fn dispersed_p_value(round: &Round, suspect: &CandidateEffect) -> Option<f64> {
     let score = suspect.score.as_ref()?;
     if suspect.statistic() > 0.0 {
         let scaled = score.statistic / round.dispersion;
@@ -63,17 +64,17 @@ pub(super) fn tempered(round: &Round, suspect: &Suspect) -> Option<f64> {
 }
 
 /// Returns the refit of a candidate effect, if there is one.
-fn refit<'a>(round: &'a Round, suspect: &Suspect) -> Option<&'a Refitted> {
+fn refit<'a>(round: &'a Round, suspect: &CandidateEffect) -> Option<&'a Refitted> {
     let mut refits = round.refits.iter();
     refits.find(|refit| refit.id == suspect.effect.id)
 }
 
 /// Judges one candidate effect of a round.
-pub(super) fn judge(round: &Round, suspect: &Suspect) -> Judgement {
+pub(super) fn judge(round: &Round, suspect: &CandidateEffect) -> Judgement {
     let scale = round.dispersion;
     let refit = refit(round, suspect);
     Judgement {
-        p_value: tempered(round, suspect),
+        p_value: dispersed_p_value(round, suspect),
         gain: refit.map(|refit| (refit.log_evidence - round.null_evidence) / scale),
         kept: round.set.contains(&suspect.effect.id),
         why: match refit {
@@ -107,7 +108,7 @@ fn after_refit(round: &Round, own: &Refitted, scale: f64) -> String {
     }
     if round.set.contains(&own.id) {
         return format!(
-            "kept in the ambiguity set: {} nats behind {} on what was fitted, and with what took no part less than {SET:.0} behind the best",
+            "kept in the ambiguity set: {} nats behind {} on what was fitted, and with what took no part less than {AMBIGUITY_MARGIN:.0} behind the best",
             nats(behind),
             best.id
         );
@@ -120,7 +121,7 @@ fn after_refit(round: &Round, own: &Refitted, scale: f64) -> String {
 }
 
 /// Returns why a candidate effect was not refitted.
-fn before_refit(round: &Round, suspect: &Suspect) -> String {
+fn before_refit(round: &Round, suspect: &CandidateEffect) -> String {
     let Some(score) = &suspect.score else {
         return "could not be simulated here: nothing is said about it".to_owned();
     };
@@ -148,11 +149,11 @@ fn before_refit(round: &Round, suspect: &Suspect) -> String {
     }
     // the tests decide who is refitted: whoever was likelier than one that was, was due
     let own = suspect.p_value();
-    let least = |other: &&Suspect| refit(round, other).is_some() && other.p_value() > own;
-    if round.suspects.iter().filter(least).count() > 0 {
+    let least = |other: &&CandidateEffect| refit(round, other).is_some() && other.p_value() > own;
+    if round.candidates.iter().filter(least).count() > 0 {
         return "dropped: its refit could not be simulated".to_owned();
     }
-    let p = tempered(round, suspect).unwrap_or(1.0);
+    let p = dispersed_p_value(round, suspect).unwrap_or(1.0);
     if p > 0.01 {
         format!("dropped: not significant (p {})", equals(&p_value(p)))
     } else {

@@ -2,16 +2,16 @@
 //! the added effects with their validation and certainty, and the provenance.
 //!
 //! All numbers are those of the diagnosis; only the paper's two error measures are computed here.
+mod condition_curves;
 mod csv;
 mod effects;
 mod judgement;
 mod section;
-mod shown;
 mod subject;
 mod table;
 mod words;
 mod write;
 
 pub use effects::{effects, effects_toml, starts};
-pub use subject::Subject;
+pub use subject::DiagnosisInput;
 pub use write::{report, write};

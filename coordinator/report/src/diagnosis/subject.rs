@@ -4,11 +4,11 @@ use discrepancy::diagnose::{Diagnosis, Estimate};
 use discrepancy::record::Record;
 use protocol::announce::{EffectDescriptor, ParameterDescriptor};
 use protocol::case::Case;
-use study::Diagnosed;
+use study::DiagnosisResult;
 
 /// Finished diagnosis with all data that its report refers to.
 #[derive(Clone, Debug)]
-pub struct Subject<'a> {
+pub struct DiagnosisInput<'a> {
     /// Case that was diagnosed.
     pub case: &'a Case,
     /// Measured records of the case, cycle by cycle.
@@ -16,7 +16,7 @@ pub struct Subject<'a> {
     /// Candidate effects that were considered, including generic forces without a physical cause.
     pub library: &'a [EffectDescriptor],
     /// Result of the diagnosis, with the cost of each stage.
-    pub diagnosed: &'a Diagnosed,
+    pub diagnosed: &'a DiagnosisResult,
     /// Provenance of the diagnosis (run, program, digest).
     pub origin: Origin,
     /// Remarks about the case and its records.
@@ -25,7 +25,7 @@ pub struct Subject<'a> {
     pub wall_s: f64,
 }
 
-impl<'a> Subject<'a> {
+impl<'a> DiagnosisInput<'a> {
     /// Returns the diagnosis without its cost accounts.
     pub(super) const fn diagnosis(&self) -> &'a Diagnosis {
         &self.diagnosed.diagnosis
@@ -42,12 +42,12 @@ impl<'a> Subject<'a> {
         self.record(self.case.objective.condition)
     }
 
-    /// Returns the workers' description of an effect.
+    /// Returns the description that workers give of an effect.
     pub(super) fn effect(&self, id: &str) -> Option<&'a EffectDescriptor> {
         self.library.iter().find(|effect| effect.id == id)
     }
 
-    /// Returns the workers' description of a parameter of an effect.
+    /// Returns the description that workers give of a parameter of an effect.
     pub(super) fn parameter(&self, id: &str, name: &str) -> Option<&'a ParameterDescriptor> {
         let mut parameters = self.effect(id)?.parameters.iter();
         parameters.find(|parameter| parameter.name == name)

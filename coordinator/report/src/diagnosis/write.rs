@@ -1,6 +1,6 @@
 //! Assembly of the diagnosis report, and its output folder.
 use super::section::SECTIONS;
-use super::subject::Subject;
+use super::subject::DiagnosisInput;
 use super::{csv, words};
 use crate::ReportError;
 use crate::document::Report;
@@ -8,7 +8,7 @@ use crate::folder::{stream, write_report};
 use std::path::{Path, PathBuf};
 
 /// Builds the report of a diagnosis.
-pub fn report(subject: &Subject<'_>) -> Report {
+pub fn report(subject: &DiagnosisInput<'_>) -> Report {
     let title = format!("Diagnosis of {}", subject.case.name);
     let sections = SECTIONS.iter().map(|section| section(subject));
     Report {
@@ -22,7 +22,7 @@ pub fn report(subject: &Subject<'_>) -> Report {
 ///
 /// # Errors
 /// [`ReportError`] when a file cannot be written.
-pub fn write(folder: &Path, subject: &Subject<'_>) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write(folder: &Path, subject: &DiagnosisInput<'_>) -> Result<Vec<PathBuf>, ReportError> {
     let mut written = write_report(folder, &report(subject))?;
     written.push(stream(folder, "curves.csv", |file| {
         csv::curves(file, subject)

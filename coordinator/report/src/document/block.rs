@@ -15,7 +15,7 @@ pub struct Report {
     /// Sections with content, in reading order.
     pub sections: Vec<Section>,
     /// Titles of the sections that were omitted because they have no blocks.
-    pub silent: Vec<&'static str>,
+    pub omitted: Vec<&'static str>,
 }
 
 /// Section of a report.
@@ -42,7 +42,7 @@ pub enum Block {
     List(Vec<String>),
     /// Warning, one paragraph per item.
     Warning(Vec<String>),
-    /// List of names with values.
+    /// List of quantities with their values.
     Facts(Vec<Fact>),
     /// Code listing, e.g. lines of a file.
     Code(String),
@@ -56,7 +56,7 @@ pub enum Block {
     Folded(&'static str, Vec<Self>),
 }
 
-/// Name with its value.
+/// Name of a quantity with its value as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fact {
     /// Name of the quantity.
@@ -97,7 +97,7 @@ impl Report {
             run: run.to_owned(),
             outcome: "",
             sections,
-            silent: silent.into_iter().map(|section| section.title).collect(),
+            omitted: silent.into_iter().map(|section| section.title).collect(),
         }
     }
 

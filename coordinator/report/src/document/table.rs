@@ -52,13 +52,13 @@ impl Table {
 
     /// Returns the table with notes appended.
     #[must_use]
-    pub fn noted(mut self, notes: impl IntoIterator<Item = impl Into<String>>) -> Self {
+    pub fn with_notes(mut self, notes: impl IntoIterator<Item = impl Into<String>>) -> Self {
         self.notes.extend(notes.into_iter().map(Into::into));
         self
     }
 
     /// Returns the table, or `None` if it has no rows.
-    pub(crate) fn unless_empty(self) -> Option<Self> {
+    pub(crate) fn non_empty(self) -> Option<Self> {
         (!self.rows.is_empty()).then_some(self)
     }
 

@@ -62,7 +62,7 @@ fn one(block: &Block, styled: bool) -> String {
     }
 }
 
-/// Prefixes each line with a mark.
+/// Prefixes each line with the given mark, such as a bullet.
 fn items(lines: &[String], mark: &str) -> String {
     let lines = lines.iter().map(|line| [mark, line, "\n"].concat());
     lines.collect()

@@ -1,14 +1,14 @@
 //! Figures of an identification: likelihood profiles of the unknowns and prediction bands.
-use super::subject::Subject;
-use crate::chart::canvas::{Canvas, Lettering, Pen, WIDTH, render};
+use super::subject::IdentificationInput;
+use crate::chart::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
 use crate::chart::panel::Panel;
-use crate::chart::scale::Scale;
+use crate::chart::scale::AxisScale;
 use crate::chart::strip::{Strip, curve, stack, strip};
 use crate::color::{AXIS, BAND, INK, VERMILLION};
 use crate::document::Figure;
 use crate::kind;
-use crate::number::{figure, unit};
-use crate::words::{condition_name, headed};
+use crate::number::{significant, unit};
+use crate::words::{condition_name, with_unit};
 use discrepancy::identify::UnknownEstimate;
 use protocol::case;
 
@@ -23,7 +23,7 @@ const RISE: f64 = 3.84;
 const HIGHEST: f64 = 8.0;
 
 /// Draws one small panel per unknown: the rise of `-2 ln L` over its value, between its bounds.
-pub(super) fn profiles(subject: &Subject<'_>) -> Figure {
+pub(super) fn profiles(subject: &IdentificationInput<'_>) -> Figure {
     let all = &subject.identified.unknowns;
     let rows = all.len().div_ceil(COLUMNS).max(1);
     let width = (WIDTH - LEFT - 12.0 - BETWEEN * (COLUMNS - 1) as f64) / COLUMNS as f64;
@@ -40,10 +40,10 @@ pub(super) fn profiles(subject: &Subject<'_>) -> Figure {
                 width,
                 height: PLOT,
                 x: match unknown.scale {
-                    case::Scale::Logarithmic => Scale::logarithmic(bounds),
-                    case::Scale::Linear => Scale::linear(bounds, 3.0),
+                    case::Scale::Logarithmic => AxisScale::logarithmic(bounds),
+                    case::Scale::Linear => AxisScale::linear(bounds, 3.0),
                 },
-                y: Scale::between(0.0, HIGHEST, 4.0),
+                y: AxisScale::between(0.0, HIGHEST, 4.0),
             };
             one(canvas, &panel, own, index.is_multiple_of(COLUMNS));
         }
@@ -76,16 +76,20 @@ fn one(canvas: &mut Canvas, panel: &Panel, own: &UnknownEstimate, first: bool) {
         canvas.dot(panel.at(*point), 1.4, INK);
     }
     canvas.dot(panel.at((own.value, 0.0)), 3.5, VERMILLION);
-    let name = Lettering::new(11.5, INK).bold().above();
+    let name = TextStyle::new(11.5, INK).bold().above();
     canvas.text((panel.left, panel.top - 5.0), &own.name, name);
-    let text = Lettering::new(10.5, VERMILLION).right().above();
-    canvas.text((panel.right(), panel.top - 5.0), &figure(own.value), text);
+    let text = TextStyle::new(10.5, VERMILLION).right().above();
+    canvas.text(
+        (panel.right(), panel.top - 5.0),
+        &significant(own.value),
+        text,
+    );
     panel.left_axis(canvas, first, if first { "rise" } else { "" });
     panel.lower_axis(canvas, true, &unit(&own.unit));
 }
 
 /// Draws the prediction bands of all channels, one figure per condition and abscissa.
-pub(super) fn bands(subject: &Subject<'_>) -> Vec<Figure> {
+pub(super) fn bands(subject: &IdentificationInput<'_>) -> Vec<Figure> {
     let case = subject.case;
     let figures = subject.identified.bands.iter().flat_map(|band| {
         let condition = condition_name(case, band.condition);
@@ -104,7 +108,7 @@ pub(super) fn bands(subject: &Subject<'_>) -> Vec<Figure> {
                 let likeliest = curve("", VERMILLION, points, &values.likeliest, 1.0);
                 Strip {
                     band: rows.map(|(x, (low, high))| (*x, *low, *high)).collect(),
-                    ..strip(headed(&channel.title, &channel.unit), 96.0, vec![likeliest])
+                    ..strip(with_unit(&channel.title, &channel.unit), 96.0, vec![likeliest])
                 }
             });
             let strips: Vec<Strip> = strips.collect();

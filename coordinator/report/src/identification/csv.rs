@@ -1,5 +1,5 @@
 //! CSV files with the data behind the figures of an identification. Numbers have full precision.
-use super::subject::Subject;
+use super::subject::IdentificationInput;
 use crate::number::field;
 use crate::words::condition_name;
 use std::io::Write;
@@ -8,7 +8,10 @@ use std::io::Write;
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.
-pub(super) fn profiles(to: impl Write, subject: &Subject<'_>) -> Result<(), csv::Error> {
+pub(super) fn profiles(
+    to: impl Write,
+    subject: &IdentificationInput<'_>,
+) -> Result<(), csv::Error> {
     let mut writer = csv::Writer::from_writer(to);
     writer.write_record(["unknown", "unit", "value", "rise"])?;
     for own in &subject.identified.unknowns {
@@ -25,7 +28,7 @@ pub(super) fn profiles(to: impl Write, subject: &Subject<'_>) -> Result<(), csv:
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.
-pub(super) fn bands(to: impl Write, subject: &Subject<'_>) -> Result<(), csv::Error> {
+pub(super) fn bands(to: impl Write, subject: &IdentificationInput<'_>) -> Result<(), csv::Error> {
     let mut writer = csv::Writer::from_writer(to);
     writer.write_record([
         "condition",

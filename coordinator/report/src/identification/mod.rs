@@ -10,5 +10,5 @@ mod table;
 mod words;
 mod write;
 
-pub use subject::Subject;
+pub use subject::IdentificationInput;
 pub use write::{report, write};

@@ -1,5 +1,5 @@
 //! Sections of the identification report, in page order.
-use super::subject::Subject;
+use super::subject::IdentificationInput;
 use crate::document::{Block, Fact, Section, figures, tables};
 use crate::identification::{chart, table, words};
 use crate::number::duration;
@@ -7,10 +7,10 @@ use crate::section::origin as shared;
 use crate::words::SYNTHETIC;
 
 /// All sections of the identification report, in page order.
-pub(super) const SECTIONS: &[fn(&Subject<'_>) -> Section] =
-    &[seen, apart, prediction, further, origin];
+pub(super) const SECTIONS: &[fn(&IdentificationInput<'_>) -> Section] =
+    &[seen, directions, prediction, proposals, origin];
 
-fn seen(subject: &Subject<'_>) -> Section {
+fn seen(subject: &IdentificationInput<'_>) -> Section {
     let mut blocks = vec![
         Block::Lead(words::lead(subject)),
         Block::List(words::grounds(subject)),
@@ -32,7 +32,7 @@ fn seen(subject: &Subject<'_>) -> Section {
     }
 }
 
-fn apart(subject: &Subject<'_>) -> Section {
+fn directions(subject: &IdentificationInput<'_>) -> Section {
     Section {
         id: "apart",
         title: "Directions that the record determines",
@@ -40,7 +40,7 @@ fn apart(subject: &Subject<'_>) -> Section {
     }
 }
 
-fn prediction(subject: &Subject<'_>) -> Section {
+fn prediction(subject: &IdentificationInput<'_>) -> Section {
     let mut blocks = tables(table::prediction(subject));
     blocks.extend(figures(chart::bands(subject)));
     Section {
@@ -50,7 +50,7 @@ fn prediction(subject: &Subject<'_>) -> Section {
     }
 }
 
-fn further(subject: &Subject<'_>) -> Section {
+fn proposals(subject: &IdentificationInput<'_>) -> Section {
     Section {
         id: "further",
         title: "Proposed further measurements",
@@ -58,7 +58,7 @@ fn further(subject: &Subject<'_>) -> Section {
     }
 }
 
-fn origin(subject: &Subject<'_>) -> Section {
+fn origin(subject: &IdentificationInput<'_>) -> Section {
     let mut facts = shared::facts(&subject.origin, subject.case);
     facts.push(Fact::new("wall time", duration(subject.wall_s)));
     shared::section(vec![Block::Facts(facts)])

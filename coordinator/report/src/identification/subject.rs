@@ -1,15 +1,15 @@
 //! Input data of an identification report.
 use crate::data::Origin;
-use discrepancy::identify::Identified;
+use discrepancy::identify::IdentificationResult;
 use protocol::case::{Case, Unknown};
 
 /// Finished identification with all data that its report refers to.
 #[derive(Clone, Debug)]
-pub struct Subject<'a> {
+pub struct IdentificationInput<'a> {
     /// Case that was identified.
     pub case: &'a Case,
     /// Result of the identification.
-    pub identified: &'a Identified,
+    pub identified: &'a IdentificationResult,
     /// Provenance of the identification (run, program, digest).
     pub origin: Origin,
     /// Remarks about the case and its records.
@@ -18,7 +18,7 @@ pub struct Subject<'a> {
     pub wall_s: f64,
 }
 
-impl<'a> Subject<'a> {
+impl<'a> IdentificationInput<'a> {
     /// Returns an unknown of the case by its name.
     pub(super) fn unknown(&self, name: &str) -> Option<&'a Unknown> {
         self.case

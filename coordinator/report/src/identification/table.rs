@@ -1,19 +1,20 @@
 //! Tables of an identification report.
-use super::subject::Subject;
+use super::subject::IdentificationInput;
 use super::words::open_ends;
 use crate::document::{Row, Table};
-use crate::number::{NONE, figure, fixed, quantity};
-use crate::words::{condition_name, seen};
-use discrepancy::identify::{Direction, Further};
+use crate::number::{MISSING, fixed, quantity, significant};
+use crate::words::{condition_name, interval_cell};
+use discrepancy::identify::{Direction, FurtherMeasurement};
 
-/// Builds the table of the unknowns: value, 95 % interval, open ends and correlated unknowns.
-pub(super) fn unknowns(subject: &Subject<'_>) -> Table {
+/// Builds the table of the unknowns: value, 95 % interval, sides on which the interval is open, and
+/// correlated unknowns.
+pub(super) fn unknowns(subject: &IdentificationInput<'_>) -> Table {
     let rows = subject.identified.unknowns.iter().map(|own| {
         let trades = own.correlated.iter().take(3);
         let trades = trades.map(|(name, c)| format!("{name} ({})", fixed(*c, 2)));
         let cells = [
             quantity(own.value, &own.unit),
-            seen(own),
+            interval_cell(own),
             open_ends(own),
             trades.collect::<Vec<_>>().join(", "),
         ];
@@ -27,7 +28,7 @@ pub(super) fn unknowns(subject: &Subject<'_>) -> Table {
         ["", "likeliest", "95 % interval", "open ends", "trades off with"],
         rows.collect(),
     )
-    .noted([
+    .with_notes([
         "An end is where -2 ln L, all else refitted, has risen by what a 95 % interval asks for at this dispersion (drawn as 3.84). An end where \
          simulations fail is one of the model, not of the record.",
         "The value of an unknown that the record does not determine is arbitrary: it is where the fit stopped.",
@@ -35,15 +36,15 @@ pub(super) fn unknowns(subject: &Subject<'_>) -> Table {
 }
 
 /// Builds the table of the parameter directions with their standard deviations, best determined first.
-pub(super) fn directions(subject: &Subject<'_>) -> Option<Table> {
+pub(super) fn directions(subject: &IdentificationInput<'_>) -> Option<Table> {
     let row = |direction: &Direction| {
         let parts = direction.parts.iter();
         let parts = parts.map(|own| format!("{} {}", fixed(own.part, 2), own.name));
         let deviation = direction.sd_decades;
         let deviation = if deviation.is_finite() {
-            figure(deviation)
+            significant(deviation)
         } else {
-            NONE.to_owned()
+            MISSING.to_owned()
         };
         let cells = [deviation, parts.collect::<Vec<_>>().join(", ")];
         Row::new(direction.words.as_str(), cells)
@@ -53,15 +54,15 @@ pub(super) fn directions(subject: &Subject<'_>) -> Option<Table> {
         ["", "standard deviation [decade]", "parts"],
         subject.identified.directions.iter().map(row).collect(),
     )
-    .noted([
+    .with_notes([
         "Eigenvectors of the record's own information at the fit, the instruments' errors taken out: each is \
          seen independently of the others. Of unknowns on linear scales half the interval stands for a decade.",
     ])
-    .unless_empty()
+    .non_empty()
 }
 
 /// Builds the table of the half widths of the prediction bands.
-pub(super) fn prediction(subject: &Subject<'_>) -> Option<Table> {
+pub(super) fn prediction(subject: &IdentificationInput<'_>) -> Option<Table> {
     let case = subject.case;
     let mut rows = Vec::new();
     for band in &subject.identified.bands {
@@ -80,22 +81,23 @@ pub(super) fn prediction(subject: &Subject<'_>) -> Option<Table> {
         ["", "mean", "widest"],
         rows,
     )
-    .noted([
+    .with_notes([
         "Of the simulated curve: noise and zeros of instruments are not in it. A band spans the linear one, each \
          unknown within its interval, and the outermost points of the profiles.",
     ])
-    .unless_empty()
+    .non_empty()
 }
 
-/// Builds the table of further measurements and the standard deviations that they would reduce.
-pub(super) fn further(subject: &Subject<'_>) -> Option<Table> {
-    let row = |one: &Further| {
+/// Builds the table of possible further measurements, with the standard deviations of unknowns that each
+/// would reduce.
+pub(super) fn further(subject: &IdentificationInput<'_>) -> Option<Table> {
+    let row = |one: &FurtherMeasurement| {
         let pins = one.pins.iter().map(|pin| {
             format!(
                 "{} from {} to {}",
                 pin.name,
-                figure(pin.sd_now),
-                figure(pin.sd_then)
+                significant(pin.sd_now),
+                significant(pin.sd_then)
             )
         });
         Row::new(
@@ -108,9 +110,9 @@ pub(super) fn further(subject: &Subject<'_>) -> Option<Table> {
         ["", "standard deviation [decade]"],
         subject.identified.further.iter().map(row).collect(),
     )
-    .noted([
+    .with_notes([
         "Linearised at the fit; only standard deviations that would at least be halved are listed. A channel that was never \
          recorded is assigned the noise of a recorded channel with the same unit.",
     ])
-    .unless_empty()
+    .non_empty()
 }

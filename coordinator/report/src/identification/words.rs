@@ -1,20 +1,24 @@
 //! Sentences of an identification report.
-use super::subject::Subject;
+use super::subject::IdentificationInput;
 use crate::number::fixed;
-use crate::words::listed;
-use discrepancy::identify::{End, Seen, UnknownEstimate};
-use discrepancy::record::noise::Known;
+use crate::words::join_words;
+use discrepancy::identify::{Determination, IntervalEnd, UnknownEstimate};
+use discrepancy::record::noise::NoiseSource;
 
 /// Returns the summary sentence: number of unknowns determined, and names of those that are not.
-pub(super) fn lead(subject: &Subject<'_>) -> String {
+pub(super) fn lead(subject: &IdentificationInput<'_>) -> String {
     let all = &subject.identified.unknowns;
-    let named = |wanted: Seen| -> Vec<String> {
+    let named = |wanted: Determination| -> Vec<String> {
         let own = all.iter().filter(|own| own.seen == wanted);
         own.map(|own| own.name.clone()).collect()
     };
-    let both = named(Seen::Both);
-    let sides = [named(Seen::LowerBound), named(Seen::UpperBound)].concat();
-    let blind = named(Seen::NotSeen);
+    let both = named(Determination::Both);
+    let sides = [
+        named(Determination::LowerBound),
+        named(Determination::UpperBound),
+    ]
+    .concat();
+    let blind = named(Determination::NotSeen);
     let mut words = format!(
         "This record sees {} of {} unknowns from both sides",
         both.len(),
@@ -22,13 +26,16 @@ pub(super) fn lead(subject: &Subject<'_>) -> String {
     );
     let mut more = Vec::new();
     if !both.is_empty() {
-        words.extend([": ", &listed(&both, "and")]);
+        words.extend([": ", &join_words(&both, "and")]);
     }
     if !sides.is_empty() {
-        more.push(format!("of {} it gives one bound", listed(&sides, "and")));
+        more.push(format!(
+            "of {} it gives one bound",
+            join_words(&sides, "and")
+        ));
     }
     if !blind.is_empty() {
-        more.push(format!("it does not see {}", listed(&blind, "and")));
+        more.push(format!("it does not see {}", join_words(&blind, "and")));
     }
     if !more.is_empty() {
         words.extend(["; ", &more.join(", ")]);
@@ -39,7 +46,7 @@ pub(super) fn lead(subject: &Subject<'_>) -> String {
 
 /// Lists the sentences on noise and residual, including the advice to diagnose first where the residual
 /// exceeds the noise.
-pub(super) fn grounds(subject: &Subject<'_>) -> Vec<String> {
+pub(super) fn grounds(subject: &IdentificationInput<'_>) -> Vec<String> {
     let identified = subject.identified;
     let left = format!(
         "The fit leaves {} times the noise",
@@ -54,12 +61,12 @@ pub(super) fn grounds(subject: &Subject<'_>) -> Vec<String> {
         )
     }];
     let noise = match identified.noise {
-        Known::Seen => None,
-        Known::Stated => Some(
+        NoiseSource::Measured => None,
+        NoiseSource::Stated => Some(
             "The noise is stated: there was one cycle, so intervals are as good as that statement, or as what is left \
              where that is more.",
         ),
-        Known::Guessed => Some(
+        NoiseSource::Estimated => Some(
             "The noise is neither seen nor stated: intervals take it from what the fit leaves.",
         ),
     };
@@ -71,10 +78,10 @@ pub(super) fn grounds(subject: &Subject<'_>) -> Vec<String> {
 pub(super) fn open_ends(own: &UnknownEstimate) -> String {
     let sides = ["below", "above"].into_iter().zip(own.ends);
     let said = sides.filter_map(|(side, end)| match end {
-        End::Rises => None,
-        End::Bound => Some(format!("open {side} to the bound")),
-        End::Fails => Some(format!("simulations fail {side}")),
-        End::GivenUp => Some(format!("profile abandoned {side}")),
+        IntervalEnd::Rises => None,
+        IntervalEnd::Bound => Some(format!("open {side} to the bound")),
+        IntervalEnd::Fails => Some(format!("simulations fail {side}")),
+        IntervalEnd::GivenUp => Some(format!("profile abandoned {side}")),
     });
     said.collect::<Vec<_>>().join(", ")
 }

@@ -1,14 +1,14 @@
 //! Assembly of the identification report, and its output folder.
 use super::csv;
 use super::section::SECTIONS;
-use super::subject::Subject;
+use super::subject::IdentificationInput;
 use crate::ReportError;
 use crate::document::Report;
 use crate::folder::{stream, write_report};
 use std::path::{Path, PathBuf};
 
 /// Builds the report of an identification.
-pub fn report(subject: &Subject<'_>) -> Report {
+pub fn report(subject: &IdentificationInput<'_>) -> Report {
     let title = format!("Identification of {}", subject.case.name);
     let sections = SECTIONS.iter().map(|section| section(subject));
     Report::new(title, &subject.origin.run, sections)
@@ -19,7 +19,10 @@ pub fn report(subject: &Subject<'_>) -> Report {
 ///
 /// # Errors
 /// [`ReportError`] when a file cannot be written.
-pub fn write(folder: &Path, subject: &Subject<'_>) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write(
+    folder: &Path,
+    subject: &IdentificationInput<'_>,
+) -> Result<Vec<PathBuf>, ReportError> {
     let mut written = write_report(folder, &report(subject))?;
     written.push(stream(folder, "profiles.csv", |file| {
         csv::profiles(file, subject)

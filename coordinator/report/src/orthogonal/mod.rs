@@ -7,5 +7,5 @@ mod subject;
 mod write;
 
 pub use section::runs;
-pub use subject::Subject;
+pub use subject::SweepInput;
 pub use write::{report, write};

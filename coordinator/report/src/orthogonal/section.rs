@@ -1,18 +1,18 @@
 //! Sections of the report of an orthogonal-array test.
-use super::subject::Subject;
+use super::subject::SweepInput;
 use crate::chart::main_effects;
 use crate::document::{Block, Row, Section, Table};
-use crate::number::{NONE, count, figure, fixed};
+use crate::number::{MISSING, count, fixed, significant};
 use crate::section::origin;
-use crate::words::{listed, objective_heading};
+use crate::words::{join_words, objective_heading};
 use protocol::case::Case;
-use study::orthogonal::{Analysis, Factor, Source, Tested, Tried};
+use study::orthogonal::{Analysis, Factor, TestResult, TrialRun, VarianceSource};
 
 /// Significance level: a factor with a larger p-value is not significant.
 const LIKELY: f64 = 0.05;
 
 /// Builds all sections, in page order.
-pub(super) fn all(subject: &Subject<'_>) -> Vec<Section> {
+pub(super) fn all(subject: &SweepInput<'_>) -> Vec<Section> {
     vec![
         summary(subject.tested),
         effects(subject.tested),
@@ -24,13 +24,13 @@ pub(super) fn all(subject: &Subject<'_>) -> Vec<Section> {
     ]
 }
 
-fn summary(tested: &Tested) -> Section {
+fn summary(tested: &TestResult) -> Section {
     let mut blocks = Vec::new();
     if let Some((analysis, confirmed)) = tested.analysis.as_ref().zip(tested.confirmation.as_ref())
     {
         blocks.push(Block::Lead(format!(
             "Best levels: {}.",
-            at(&tested.factors, &confirmed.levels)
+            level_names(&tested.factors, &confirmed.levels)
         )));
         blocks.push(Block::Text(format!(
             "Together they were expected to reach an objective of 10^{}; with seeds of their own they reached \
@@ -38,9 +38,9 @@ fn summary(tested: &Tested) -> Section {
             fixed(confirmed.predicted, 3),
             confirmed
                 .obtained()
-                .map_or_else(|| NONE.to_owned(), |obtained| fixed(obtained, 3))
+                .map_or_else(|| MISSING.to_owned(), |obtained| fixed(obtained, 3))
         )));
-        blocks.push(Block::Text(chance(tested, analysis)));
+        blocks.push(Block::Text(significance(tested, analysis)));
     } else {
         blocks.push(Block::Lead(
             "Some runs found no complete simulation: there is nothing to compare.".to_owned(),
@@ -59,27 +59,30 @@ fn summary(tested: &Tested) -> Section {
 }
 
 /// States which factors are significant.
-fn chance(tested: &Tested, analysis: &Analysis) -> String {
+fn significance(tested: &TestResult, analysis: &Analysis) -> String {
     let Some(anova) = &analysis.anova else {
         return "The design is saturated: no degree of freedom is left for the error, so nothing can be told from \
                 chance. More seeds, or fewer factors, leave some."
             .to_owned();
     };
     let telling = anova.terms.iter().filter_map(|term| match term.source {
-        Source::Factor(number) if term.p.is_some_and(|p| p < LIKELY) => {
+        VarianceSource::Factor(number) if term.p.is_some_and(|p| p < LIKELY) => {
             Some(tested.factors[number].name.clone())
         }
-        Source::Factor(_) | Source::Block | Source::Error => None,
+        VarianceSource::Factor(_) | VarianceSource::Block | VarianceSource::Error => None,
     });
     let telling: Vec<String> = telling.collect();
     if telling.is_empty() {
         "No factor is significant: chance alone makes ranges as large (p of every factor is 0.05 or more).".to_owned()
     } else {
-        format!("Significant (p below 0.05): {}.", listed(&telling, "and"))
+        format!(
+            "Significant (p below 0.05): {}.",
+            join_words(&telling, "and")
+        )
     }
 }
 
-fn effects(tested: &Tested) -> Section {
+fn effects(tested: &TestResult) -> Section {
     let mut blocks = Vec::new();
     if let Some(analysis) = &tested.analysis {
         blocks.push(Block::Table(ranges(tested, analysis)));
@@ -93,7 +96,7 @@ fn effects(tested: &Tested) -> Section {
     }
 }
 
-fn ranges(tested: &Tested, analysis: &Analysis) -> Table {
+fn ranges(tested: &TestResult, analysis: &Analysis) -> Table {
     let all = tested.factors.iter().zip(&analysis.ranges);
     let rows = all.flat_map(|(factor, own)| {
         let title = format!("{}: range {}", factor.name, fixed(own.range, 4));
@@ -102,7 +105,11 @@ fn ranges(tested: &Tested, analysis: &Analysis) -> Table {
             let best = if index == own.best { "best" } else { "" };
             Row::new(
                 level,
-                [fixed(*mean, 4), figure(10_f64.powf(*mean)), best.to_owned()],
+                [
+                    fixed(*mean, 4),
+                    significant(10_f64.powf(*mean)),
+                    best.to_owned(),
+                ],
             )
         };
         std::iter::once(Row::group(title)).chain(levels.map(level))
@@ -112,22 +119,22 @@ fn ranges(tested: &Tested, analysis: &Analysis) -> Table {
         ["level", "mean response", "as an objective", ""],
         rows.collect(),
     )
-    .noted(["The response is log10 of the best objective of a search at its budget; the smaller the better."])
+    .with_notes(["The response is log10 of the best objective of a search at its budget; the smaller the better."])
 }
 
-fn variance(tested: &Tested, analysis: &Analysis) -> Option<Table> {
+fn variance(tested: &TestResult, analysis: &Analysis) -> Option<Table> {
     let anova = analysis.anova.as_ref()?;
     let rows = anova.terms.iter().map(|term| {
         let name = match term.source {
-            Source::Factor(number) => tested.factors[number].name.as_str(),
-            Source::Block => "seed (blocks)",
-            Source::Error => "error",
+            VarianceSource::Factor(number) => tested.factors[number].name.as_str(),
+            VarianceSource::Block => "seed (blocks)",
+            VarianceSource::Error => "error",
         };
-        let known = |value: Option<f64>| value.map_or_else(|| NONE.to_owned(), figure);
+        let known = |value: Option<f64>| value.map_or_else(|| MISSING.to_owned(), significant);
         let cells = [
-            figure(term.squares),
+            significant(term.squares),
             term.freedom.to_string(),
-            figure(term.mean_square()),
+            significant(term.mean_square()),
             known(term.f),
             known(term.p),
         ];
@@ -145,20 +152,20 @@ fn variance(tested: &Tested, analysis: &Analysis) -> Option<Table> {
         ],
         rows.collect(),
     );
-    Some(table.noted([
+    Some(table.with_notes([
         "Blocks are taken out of the error. p is how often chance alone makes F as large.",
     ]))
 }
 
 /// Builds the table of all runs with their factor levels.
-pub fn runs(case: &Case, factors: &[Factor], tried: &[Tried]) -> Table {
+pub fn runs(case: &Case, factors: &[Factor], tried: &[TrialRun]) -> Table {
     let heading = format!("best {}", objective_heading(case));
-    let row = |run: &Tried| {
+    let row = |run: &TrialRun| {
         Row::new(
-            at(factors, &run.levels),
+            level_names(factors, &run.levels),
             [
                 run.seed.to_string(),
-                figure(run.objective.unwrap_or(f64::NAN)),
+                significant(run.objective.unwrap_or(f64::NAN)),
                 count(run.evaluations),
             ],
         )
@@ -171,8 +178,8 @@ pub fn runs(case: &Case, factors: &[Factor], tried: &[Tried]) -> Table {
     )
 }
 
-fn all_runs(subject: &Subject<'_>) -> Section {
-    let Tested {
+fn all_runs(subject: &SweepInput<'_>) -> Section {
+    let TestResult {
         factors,
         runs: tried,
         ..
@@ -191,8 +198,8 @@ fn all_runs(subject: &Subject<'_>) -> Section {
     }
 }
 
-/// Lists the factors with their levels as text.
-fn at(factors: &[Factor], levels: &[usize]) -> String {
+/// Lists the factors of the test with the given levels, as text.
+fn level_names(factors: &[Factor], levels: &[usize]) -> String {
     let one =
         |(factor, level): (&Factor, &usize)| format!("{} {}", factor.name, factor.levels[*level]);
     let words: Vec<String> = factors.iter().zip(levels).map(one).collect();

@@ -1,12 +1,12 @@
 //! Assembly of the orthogonal-array test report, and its output folder.
 use super::section;
-use super::subject::Subject;
+use super::subject::SweepInput;
 use crate::document::Report;
 use crate::folder::{ReportError, write_report};
 use std::path::{Path, PathBuf};
 
 /// Builds the report of an orthogonal-array test.
-pub fn report(subject: &Subject<'_>) -> Report {
+pub fn report(subject: &SweepInput<'_>) -> Report {
     let title = format!("Orthogonal test of a search on {}", subject.case.name);
     Report::new(title, &subject.origin.run, section::all(subject))
 }
@@ -16,6 +16,6 @@ pub fn report(subject: &Subject<'_>) -> Report {
 ///
 /// # Errors
 /// [`ReportError`] when a file cannot be written.
-pub fn write(folder: &Path, subject: &Subject<'_>) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write(folder: &Path, subject: &SweepInput<'_>) -> Result<Vec<PathBuf>, ReportError> {
     write_report(folder, &report(subject))
 }

@@ -1,7 +1,7 @@
 //! Dynamometer card: load at the suspension point over its simulated position.
-use crate::chart::canvas::{Lettering, Pen, render};
+use crate::chart::canvas::{Pen, TextStyle, render};
 use crate::chart::panel::Panel;
-use crate::chart::scale::Scale;
+use crate::chart::scale::AxisScale;
 use crate::color::{GREY, INK, VERMILLION};
 use crate::document::Figure;
 use crate::words::condition_name;
@@ -44,8 +44,8 @@ pub(super) fn card(
         top: 16.0,
         width: SIZE.0 - 62.0 - 24.0,
         height: SIZE.1 - 16.0 - 46.0,
-        x: Scale::linear(rows.iter().map(|row| row.1), 6.0),
-        y: Scale::linear(rows.iter().map(|row| row.2), 5.0),
+        x: AxisScale::linear(rows.iter().map(|row| row.1), 6.0),
+        y: AxisScale::linear(rows.iter().map(|row| row.2), 5.0),
     };
     let svg = render(SIZE, &title, |canvas| {
         panel.guides(canvas);
@@ -68,7 +68,7 @@ pub(super) fn card(
             // outside the loop, away from its middle
             let (dx, dy) = (x - middle.0, y - middle.1);
             let away = 15.0 / dx.hypot(dy).max(1.0);
-            let lettering = Lettering::new(10.0, GREY).centered();
+            let lettering = TextStyle::new(10.0, GREY).centered();
             let at = (x + away * dx, y + away * dy);
             canvas.text(at, &format!("{mark:.0}°"), lettering);
         }

@@ -1,12 +1,12 @@
 //! Map of the contact between back rope and head: force per length over crank angle and position on the arc.
 use super::revolution;
-use crate::chart::canvas::{Canvas, Lettering, WIDTH, render};
+use crate::chart::canvas::{Canvas, TextStyle, WIDTH, render};
 use crate::chart::panel::Panel;
 use crate::chart::points::thinned;
-use crate::chart::scale::Scale;
+use crate::chart::scale::AxisScale;
 use crate::color::{GREY, INK, STRENGTH};
 use crate::document::Figure;
-use protocol::pumping_unit::{Machine, Motion, Simulation};
+use protocol::pumping_unit::{Machine, MachineSnapshot, Simulation};
 use support::quantile;
 
 const HEIGHT: f64 = 330.0;
@@ -17,7 +17,7 @@ const COLUMNS: usize = 91;
 const OVERLAP: f64 = 0.5;
 
 /// Computes the angle of a point on the back head's arc, in the beam frame \[deg\].
-fn arc_deg(machine: &Machine, motion: &Motion, point: [f32; 2]) -> f64 {
+fn arc_deg(machine: &Machine, motion: &MachineSnapshot, point: [f32; 2]) -> f64 {
     let beam = f64::from(motion.beam_deg).to_radians();
     let (sin, cos) = beam.sin_cos();
     let (x, y) = (f64::from(point[0]), f64::from(point[1]));
@@ -28,11 +28,11 @@ fn arc_deg(machine: &Machine, motion: &Motion, point: [f32; 2]) -> f64 {
     dy.atan2(dx).to_degrees().rem_euclid(360.0)
 }
 
-/// Cylinder in contact at one snapshot.
+/// Cell of the contact map: a rope cylinder in contact with the head in one snapshot.
 struct Cell {
     /// Crank angles at the edges of the cell \[deg\].
     turn_deg: (f64, f64),
-    /// Position on the arc \[deg\].
+    /// Angular position of the cylinder on the head's arc \[deg\].
     psi_deg: f64,
     /// Contact force per length of rope [kN/m].
     force: f64,
@@ -40,7 +40,7 @@ struct Cell {
 
 /// Collects the cylinders in contact, snapshot by snapshot.
 fn cells(machine: &Machine, simulation: &Simulation) -> Vec<Cell> {
-    let snapshots: Vec<&Motion> = simulation.motion.iter().collect();
+    let snapshots: Vec<&MachineSnapshot> = simulation.motion.iter().collect();
     let snapshots = thinned(&snapshots, COLUMNS);
     let mut cells = Vec::new();
     for (index, motion) in snapshots.iter().enumerate() {
@@ -89,7 +89,7 @@ pub(super) fn contact(machine: &Machine, simulation: &Simulation) -> Option<Figu
         width: WIDTH - 62.0 - 110.0,
         height: HEIGHT - 14.0 - 46.0,
         x: axis.scale,
-        y: Scale::linear(angles, 6.0),
+        y: AxisScale::linear(angles, 6.0),
     };
     let title = "Contact of the back rope on its head";
     let svg = render((WIDTH, HEIGHT), title, |canvas| {
@@ -126,8 +126,8 @@ fn ramp(canvas: &mut Canvas, panel: &Panel, top: f64) {
         width: 12.0,
         top: panel.top + 24.0,
         height: panel.height - 24.0,
-        x: Scale::between(0.0, 1.0, 1.0),
-        y: Scale::between(0.0, top, 5.0),
+        x: AxisScale::between(0.0, 1.0, 1.0),
+        y: AxisScale::between(0.0, top, 5.0),
     };
     let step = 1.0 / f64::from(STEPS);
     for index in 0..STEPS {
@@ -139,9 +139,9 @@ fn ramp(canvas: &mut Canvas, panel: &Panel, top: f64) {
             STRENGTH.at(share),
         );
     }
-    let head = Lettering::new(10.5, GREY);
+    let head = TextStyle::new(10.5, GREY);
     canvas.text((bar.left - 4.0, panel.top + 8.0), "kN per metre", head);
-    let label = Lettering::new(10.5, INK);
+    let label = TextStyle::new(10.5, INK);
     for tick in bar.y.ticks() {
         canvas.text(
             (bar.right() + 5.0, bar.at_y(tick.value)),

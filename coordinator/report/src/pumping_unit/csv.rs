@@ -1,7 +1,7 @@
 //! CSV files with the data behind the figures; units are part of the column names.
 //!
 //! An empty field is a missing value; numbers have full precision.
-use crate::data::Shown;
+use crate::data::SimulationView;
 use crate::number::field;
 use crate::words::condition_name;
 use protocol::{
@@ -53,7 +53,7 @@ fn head(modes: usize) -> impl Iterator<Item = String> {
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.
-pub fn curves(to: impl Write, runs: &[(&str, Shown<'_>)]) -> Result<(), csv::Error> {
+pub fn curves(to: impl Write, runs: &[(&str, SimulationView<'_>)]) -> Result<(), csv::Error> {
     let mut writer = csv::Writer::from_writer(to);
     let modes = runs.first().map_or(0, |(_, first)| modes(first.case));
     writer.write_record(head(modes))?;
@@ -66,11 +66,11 @@ pub fn curves(to: impl Write, runs: &[(&str, Shown<'_>)]) -> Result<(), csv::Err
 fn rows(
     (writer, modes): (&mut csv::Writer<impl Write>, usize),
     parameters: &str,
-    &Shown {
+    &SimulationView {
         case,
         condition,
         curves,
-    }: &Shown<'_>,
+    }: &SimulationView<'_>,
 ) -> Result<(), csv::Error> {
     let Ok(simulation) = Simulation::of(curves) else {
         return Ok(());

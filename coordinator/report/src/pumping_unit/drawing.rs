@@ -1,8 +1,8 @@
-//! Report content of the pumping unit, as an implementation of [`Drawing`].
+//! Report content of the pumping unit, as an implementation of [`ModelReport`].
 use super::{animation, card::card, contact::contact, csv, revolution, single};
-use crate::data::{Shown, SingleRun};
+use crate::data::{SimulationView, SingleRun};
 use crate::document::{Block, Figure, Section, Table};
-use crate::drawing::Drawing;
+use crate::drawing::ModelReport;
 use crate::folder::{ReportError, stream};
 use maud::html;
 use protocol::case::{Case, Unknown};
@@ -10,14 +10,14 @@ use protocol::pumping_unit::{Coefficient, Machine, Simulation};
 use std::path::{Path, PathBuf};
 
 /// Report content of the pumping-unit model.
-pub struct Dhh;
+pub struct PumpingUnitReport;
 
-impl Drawing for Dhh {
-    fn channels(&self, of: &Shown<'_>) -> Vec<Figure> {
+impl ModelReport for PumpingUnitReport {
+    fn channels(&self, of: &SimulationView<'_>) -> Vec<Figure> {
         vec![revolution::gauges(of)]
     }
 
-    fn figures(&self, of: &Shown<'_>) -> Vec<Figure> {
+    fn figures(&self, of: &SimulationView<'_>) -> Vec<Figure> {
         let (Ok(unit), Ok(drawn)) = (Machine::of(of.case), Simulation::of(of.curves)) else {
             return Vec::new();
         };
@@ -29,7 +29,7 @@ impl Drawing for Dhh {
         figures
     }
 
-    fn sections(&self, whose: &str, of: Option<&Shown<'_>>) -> Vec<Section> {
+    fn sections(&self, whose: &str, of: Option<&SimulationView<'_>>) -> Vec<Section> {
         let moving = of.and_then(|of| {
             let machine =
                 animation::machine(of.case, of.condition, &Simulation::of(of.curves).ok()?)?;
@@ -75,7 +75,7 @@ impl Drawing for Dhh {
     fn files(
         &self,
         folder: &Path,
-        runs: &[(&str, Shown<'_>)],
+        runs: &[(&str, SimulationView<'_>)],
     ) -> Result<Vec<PathBuf>, ReportError> {
         let mut written = vec![stream(folder, "curves.csv", |file| {
             csv::curves(file, runs)

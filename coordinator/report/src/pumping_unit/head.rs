@@ -2,22 +2,23 @@
 //! modes alone.
 use super::name::mode_family;
 use crate::document::{Row, Table};
-use crate::number::{NONE, fixed, percent};
+use crate::number::{MISSING, fixed, percent};
 use case::pumping_unit::HeadComparison;
 use protocol::pumping_unit::TwinHead;
-use protocol::pumping_unit::{LeftOutMode, ReducedHead};
+use protocol::pumping_unit::{OmittedMode, ReducedHead};
 
-/// Table note that defines the coupling of a mode.
+/// Note below the table of modes that defines the coupling of a mode: the largest share of the static energy
+/// under a load pattern.
 const COUPLING: &str = "Coupling: largest share of the static energy under a load pattern that the \
      mode holds. Patterns: the rope at its shortest, middle and longest wrap of the turn, and the \
      beam's accelerations along x, along y and about the pivot. Those that couple most are taken.";
 
-/// Builds the table of the kept modes, each with the most similar mode of the case's table, and of the modes
-/// left out below the highest kept mode.
+/// Builds the table of the reduced head's kept modes, each with the most similar mode of the case's mode
+/// table, and of the modes left out below the highest kept mode.
 pub fn head_modes(head: &ReducedHead, comparison: &HeadComparison) -> Table {
     let row = |label: String, family, hz, table: Option<(f64, f64)>, coupling: f64| {
         let of_table = table.map_or_else(
-            || [NONE, NONE, NONE].map(str::to_owned),
+            || [MISSING, MISSING, MISSING].map(str::to_owned),
             |(table_hz, mac)| {
                 let difference = 100.0 * (hz / table_hz - 1.0);
                 [fixed(table_hz, 2), fixed(difference, 2), fixed(mac, 4)]
@@ -28,7 +29,7 @@ pub fn head_modes(head: &ReducedHead, comparison: &HeadComparison) -> Table {
         let cells = of_mode.into_iter().chain(of_table);
         Row::new(
             label,
-            cells.chain([coupling.unwrap_or_else(|| NONE.to_owned())]),
+            cells.chain([coupling.unwrap_or_else(|| MISSING.to_owned())]),
         )
     };
     let kept = (1..).zip(head.modes.iter().zip(&comparison.modes));
@@ -60,13 +61,13 @@ pub fn head_modes(head: &ReducedHead, comparison: &HeadComparison) -> Table {
         ],
         kept.chain(beside).collect(),
     )
-    .noted(mode_notes(head, comparison, above))
+    .with_notes(mode_notes(head, comparison, above))
 }
 
 fn mode_notes(
     head: &ReducedHead,
     comparison: &HeadComparison,
-    above: &[LeftOutMode],
+    above: &[OmittedMode],
 ) -> Vec<String> {
     let mut notes = vec![format!(
         "MAC: modal assurance criterion of the shapes along the rope arc. Mass {} kg; {} unknown \
@@ -100,7 +101,7 @@ fn mode_notes(
 }
 
 /// Returns the left-out modes below and above the highest kept mode.
-fn left_out(head: &ReducedHead) -> (&[LeftOutMode], &[LeftOutMode]) {
+fn left_out(head: &ReducedHead) -> (&[OmittedMode], &[OmittedMode]) {
     let highest = head.modes.last().map_or(0.0, |mode| mode.frequency_hz);
     let below = head
         .left_out
@@ -108,8 +109,8 @@ fn left_out(head: &ReducedHead) -> (&[LeftOutMode], &[LeftOutMode]) {
     head.left_out.split_at(below)
 }
 
-/// Builds the table of the modes that a pair of ropes excites by unequal tension: largest displacement of the
-/// rope at +z over the whole arc, and gauge stresses.
+/// Builds the table of the modes of the back head that a pair of ropes excites by unequal tension: largest
+/// displacement over the arc of the rope at +z, and gauge stresses.
 pub fn head_pair(tables: &TwinHead, offset_m: f64) -> Table {
     let most = |curve: &[f64]| curve.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let rows = (0..tables.frequencies_hz.len()).map(|k| {
@@ -136,13 +137,14 @@ pub fn head_pair(tables: &TwinHead, offset_m: f64) -> Table {
         head,
         rows.collect(),
     )
-    .noted([
+    .with_notes([
         "Largest displacement of the rope at +z (mm) and gauge stress (GPa) per unit modal \
              coordinate (kg^1/2 m).",
     ])
 }
 
-/// Builds the table of the modal truncation error in gauge stress over a quasi-static revolution.
+/// Builds the table of the error in gauge stress caused by truncating the head's modes, over a quasi-static
+/// revolution.
 pub fn head_statics(comparison: &HeadComparison, condition: &str, modes: usize) -> Table {
     let ranges = &comparison.half_ranges;
     let rows = (0..4).map(|gauge| {
@@ -167,7 +169,7 @@ pub fn head_statics(comparison: &HeadComparison, condition: &str, modes: usize) 
         ],
         rows.collect(),
     )
-    .noted([
+    .with_notes([
         "Exact: influence lines (mode acceleration). Lines differ: largest difference of the \
              influence lines over their largest value."
             .to_owned(),

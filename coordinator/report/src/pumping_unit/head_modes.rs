@@ -4,7 +4,7 @@
 //! Only the deflection along the arc is drawn, as it acts on the rope; whole fields are exported for
 //! `ParaView`.
 use super::name::mode_family;
-use crate::chart::canvas::{Canvas, Lettering, Pen, WIDTH, render};
+use crate::chart::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
 use crate::color::{BLUE, GREY, GUIDE, INK, VERMILLION};
 use crate::document::Figure;
 use crate::folder::{ReportError, svg_name, write};
@@ -20,7 +20,8 @@ const MARGIN: f64 = 12.0;
 const LABEL: f64 = 22.0;
 /// Drawn size of the largest deflection, as a share of the head's larger side.
 const DEFLECTION: f64 = 0.09;
-/// Threshold of inert modes: largest deflection of the arc relative to that of the most mobile mode.
+/// Threshold below which a mode counts as inert: its largest arc deflection relative to that of the mode that
+/// moves the arc most.
 const INERT: f64 = 1e-6;
 /// Number of horizontal layers used to extract the outline; coarser than a mesh.
 const LAYERS: usize = 40;
@@ -34,11 +35,11 @@ pub struct HeadPicture<'a> {
     pub radius_m: f64,
     /// Positions of the mesh's nodes \[m\].
     pub nodes_m: &'a [[f64; 3]],
-    /// Nodes of each held pin hole.
+    /// Indices of the mesh nodes of each pin hole at which the head is held.
     pub pins: [&'a [usize]; 2],
     /// Strain gauges.
     pub gauges: &'a [HeadGauge],
-    /// Stations of the modes along the arc \[deg\].
+    /// Angles on the rope arc at which the mode shapes are given \[deg\].
     pub arc_deg: &'a [f64],
     /// Modes to draw.
     pub modes: &'a [HeadMode],
@@ -127,9 +128,9 @@ fn outline(picture: &HeadPicture<'_>) -> Vec<(f64, f64)> {
     forth.chain([highest]).chain(back).collect()
 }
 
-/// Section of the plane shown in every panel.
+/// Section of the head's plane that every panel shows, and its scale.
 struct Frame {
-    /// Upper left corner \[m\].
+    /// Upper left corner of the shown section \[m\].
     corner: (f64, f64),
     /// Drawn size of the largest deflection of each mode \[m\].
     deflection: f64,
@@ -170,7 +171,7 @@ impl Frame {
     }
 }
 
-/// Drawing context of one panel.
+/// Drawing context of one mode's panel: canvas, scale and position.
 struct Sheet<'a> {
     canvas: &'a mut Canvas,
     frame: &'a Frame,
@@ -205,7 +206,7 @@ impl Sheet<'_> {
             let [x, y, _] = gauge.position_m;
             let place = self.at((x, y));
             self.canvas.dot(place, 1.8, BLUE);
-            let lettering = Lettering::new(9.0, BLUE).above();
+            let lettering = TextStyle::new(9.0, BLUE).above();
             self.canvas
                 .text((place.0 + 3.0, place.1), &number.to_string(), lettering);
         }
@@ -221,7 +222,7 @@ impl Sheet<'_> {
         let hz = fixed(mode.frequency_hz, 1);
         let still = if moves { "" } else { ", arc at rest" };
         let label = format!("{number}: {hz} Hz, {}{still}", mode_family(mode.family));
-        let lettering = Lettering::new(11.5, INK);
+        let lettering = TextStyle::new(11.5, INK);
         self.canvas
             .text((self.left, self.top - 0.5 * LABEL), &label, lettering);
         if !moves {

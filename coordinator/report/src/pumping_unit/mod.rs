@@ -14,7 +14,7 @@ mod revolution;
 mod single;
 pub mod vtu;
 
-pub use drawing::Dhh;
+pub use drawing::PumpingUnitReport;
 pub use head::{head_modes as head_mode_table, head_pair, head_statics};
 pub use head_modes::{HeadPicture, write_head_modes};
 pub use name::{integrator_name, mode_family};

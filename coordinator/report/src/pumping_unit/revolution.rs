@@ -1,10 +1,10 @@
 //! Figures of one simulation over the crank angle: gauges, rope tensions, motion of the suspension point,
 //! crank torque.
-use crate::chart::scale::Scale;
-use crate::chart::strip::{Curve, curve, span, stack, strip};
-use crate::chart::{Axis, strips};
+use crate::chart::scale::AxisScale;
+use crate::chart::strip::{StripCurve, curve, span, stack, strip};
+use crate::chart::{ChartAxis, strips};
 use crate::color::{BLUE, GREEN, INK, PURPLE, VERMILLION};
-use crate::data::Shown;
+use crate::data::SimulationView;
 use crate::document::Figure;
 use crate::words::condition_name;
 use protocol::case::Case;
@@ -14,15 +14,15 @@ use protocol::pumping_unit::{Sensor, Simulation};
 pub(super) const ZERO: &str = " from bottom dead centre";
 
 /// Returns the axis of all curves: one revolution of the crank.
-pub(super) fn axis() -> Axis {
-    Axis {
-        scale: Scale::turn(),
+pub(super) fn axis() -> ChartAxis {
+    ChartAxis {
+        scale: AxisScale::turn(),
         title: format!("crank angle{ZERO} [deg]"),
     }
 }
 
 /// Draws the stress at all four gauges, with the measured mean and its spread where there is a record.
-pub(super) fn gauges(of: &Shown<'_>) -> Figure {
+pub(super) fn gauges(of: &SimulationView<'_>) -> Figure {
     let name = condition_name(of.case, of.condition);
     stack(
         format!("gauges_{name}"),
@@ -37,7 +37,7 @@ pub(super) fn gauges(of: &Shown<'_>) -> Figure {
 }
 
 /// Returns the tension curves of both ropes \[kN\].
-fn tensions(simulation: &Simulation) -> Vec<Curve> {
+fn tensions(simulation: &Simulation) -> Vec<StripCurve> {
     let turn = &simulation.turn_deg;
     let (back, front) = (
         &simulation.back_rope_tension_n,
@@ -129,8 +129,8 @@ pub(super) fn torque(simulation: &Simulation) -> Figure {
     )
 }
 
-/// Draws the curves next to the animated machine, and returns the extent of their crank axis: left, right,
-/// upper and lower end as shares of the figure's width and height.
+/// Draws the curves shown next to the animated machine, and returns the extent of their plot area: left,
+/// right, upper and lower end as shares of the figure's width and height.
 pub(super) fn player(case: &Case, simulation: &Simulation) -> (Figure, [f64; 4]) {
     let turn = &simulation.turn_deg;
     let colors = [VERMILLION, INK, GREEN, PURPLE];

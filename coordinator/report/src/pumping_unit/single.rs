@@ -1,8 +1,8 @@
 //! Tables of one simulation of the machine.
 use crate::data::SingleRun;
 use crate::document::{Row, Table};
-use crate::number::{NONE, figure, fixed, range};
-use crate::table::{self, agreement, one, range_row, sums, work};
+use crate::number::{MISSING, fixed, range, significant};
+use crate::table::{self, agreement, range_row, value_row, value_table, work};
 use protocol::pumping_unit::{Energy, Simulation};
 
 /// Builds the table with the verdict of a simulation and the range of every curve.
@@ -50,12 +50,12 @@ pub fn simulation(run: &SingleRun, simulation: &Simulation) -> Table {
 pub fn balance(run: &SingleRun, simulation: &Simulation) -> Table {
     let mut rows = Vec::new();
     let stroke = range(simulation.suspension_m.iter().copied())
-        .map_or_else(|| NONE.to_owned(), |(low, high)| fixed(high - low, 3));
-    rows.push(one("stroke", "m", stroke));
+        .map_or_else(|| MISSING.to_owned(), |(low, high)| fixed(high - low, 3));
+    rows.push(value_row("stroke", "m", stroke));
     rows.extend(agreement(run));
     rows.extend(energy(&simulation.energy));
     rows.extend(work(&simulation.counters, simulation.wall_s));
-    sums("Stroke, agreement, energy and work", rows).noted([
+    value_table("Stroke, agreement, energy and work", rows).with_notes([
         "Error of the balance: what it leaves over, relative to the larger of input and \
              output work.",
     ])
@@ -65,10 +65,14 @@ fn energy(energy: &Energy) -> Vec<Row> {
     let joules = |value: f64| fixed(1e-3 * value, 2);
     vec![
         Row::group("Energy of the revolution"),
-        one("work of the crank pin", "kJ", joules(energy.input_j)),
-        one("work on the load", "kJ", joules(energy.output_j)),
-        one("dissipated", "kJ", joules(energy.dissipated_j)),
-        one("stored", "kJ", joules(energy.stored_j)),
-        one("error of the balance", "", figure(energy.relative_error)),
+        value_row("work of the crank pin", "kJ", joules(energy.input_j)),
+        value_row("work on the load", "kJ", joules(energy.output_j)),
+        value_row("dissipated", "kJ", joules(energy.dissipated_j)),
+        value_row("stored", "kJ", joules(energy.stored_j)),
+        value_row(
+            "error of the balance",
+            "",
+            significant(energy.relative_error),
+        ),
     ]
 }

@@ -6,24 +6,24 @@ use super::chart::speed_up;
 use super::data::Origin;
 use super::document::{Block, Fact, Report, Row as Cells, Section, Table};
 use super::folder::{ReportError, write_report};
-use super::number::{count, duration, figure, fixed, percent};
+use super::number::{count, duration, fixed, percent, significant};
 use super::section::origin;
 use protocol::case::Case;
 use std::path::{Path, PathBuf};
-use study::scaling::{How, Row, Scaled};
+use study::scaling::{ScalingResult, ScalingRow, SlotMode};
 
 /// Input data of a scaling report.
-pub struct Subject<'a> {
+pub struct ScalingInput<'a> {
     /// Case that was searched.
     pub case: &'a Case,
     /// Measured and projected rows, with overheads and assumptions.
-    pub scaled: &'a Scaled,
+    pub scaled: &'a ScalingResult,
     /// Provenance of the measurement (run, program, digest).
     pub origin: Origin,
 }
 
 /// Builds the report on scaling.
-pub fn report(subject: &Subject<'_>) -> Report {
+pub fn report(subject: &ScalingInput<'_>) -> Report {
     let title = format!("How searches on {} scale", subject.case.name);
     let facts = origin::facts(&subject.origin, subject.case);
     let sections = vec![
@@ -39,11 +39,11 @@ pub fn report(subject: &Subject<'_>) -> Report {
 ///
 /// # Errors
 /// [`ReportError`] when a file cannot be written.
-pub fn write(folder: &Path, subject: &Subject<'_>) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write(folder: &Path, subject: &ScalingInput<'_>) -> Result<Vec<PathBuf>, ReportError> {
     write_report(folder, &report(subject))
 }
 
-fn rows(scaled: &Scaled) -> Section {
+fn rows(scaled: &ScalingResult) -> Section {
     Section {
         id: "scaling",
         title: "Speed-up and slot time",
@@ -55,12 +55,13 @@ fn rows(scaled: &Scaled) -> Section {
     }
 }
 
-/// Builds table rows, grouped by whether slots computed, slept or were simulated.
-fn grouped(scaled: &Scaled, cells: impl Fn(&Row) -> Vec<String>) -> Vec<Cells> {
+/// Builds the rows of a scaling table, grouped by how jobs ran: computed, replaced by sleeping, or simulated
+/// on a simulated clock.
+fn grouped(scaled: &ScalingResult, cells: impl Fn(&ScalingRow) -> Vec<String>) -> Vec<Cells> {
     let groups = [
-        (How::Computed, "computed: the case, on this machine"),
-        (How::Slept, "slept: sessions over TCP on this machine"),
-        (How::Projected, "projected: on a simulated clock"),
+        (SlotMode::Computed, "computed: the case, on this machine"),
+        (SlotMode::Slept, "slept: sessions over TCP on this machine"),
+        (SlotMode::Projected, "projected: on a simulated clock"),
     ];
     let mut rows = Vec::new();
     for (how, title) in groups {
@@ -78,12 +79,12 @@ fn grouped(scaled: &Scaled, cells: impl Fn(&Row) -> Vec<String>) -> Vec<Cells> {
     rows
 }
 
-fn speeds(scaled: &Scaled) -> Table {
-    let cells = |row: &Row| {
+fn speeds(scaled: &ScalingResult) -> Table {
+    let cells = |row: &ScalingRow| {
         vec![
             count(row.evaluations),
             duration(row.wall_s),
-            figure(row.speed_up),
+            significant(row.speed_up),
             fixed(row.efficiency, 3),
             fixed(row.coordinator_us_per_result, 0),
             percent(row.coordinator_share),
@@ -99,14 +100,14 @@ fn speeds(scaled: &Scaled) -> Table {
         "coordinator (us a result)",
         "coordinator's share",
     ];
-    Table::new("Speed-up", head, grouped(scaled, cells)).noted([
+    Table::new("Speed-up", head, grouped(scaled, cells)).with_notes([
         "Speed-up is what one slot alone computes for as many evaluations, over the wall time; efficiency is that \
          over the slots. The coordinator's share is its processor time over the wall time.",
     ])
 }
 
-fn shares(scaled: &Scaled) -> Table {
-    let cells = |row: &Row| {
+fn shares(scaled: &ScalingResult) -> Table {
+    let cells = |row: &ScalingRow| {
         let shares = row.shares;
         let all = [
             shares.useful,
@@ -126,24 +127,24 @@ fn shares(scaled: &Scaled) -> Table {
         "speculative",
         "failed or lost",
     ];
-    Table::new("Where slot time went", head, grouped(scaled, cells)).noted([
+    Table::new("Where slot time went", head, grouped(scaled, cells)).with_notes([
         "Barrier: slots waited for results that others computed. Starved: they waited for the next order. \
          Speculative: they computed what another slot brought first.",
     ])
 }
 
-fn assumptions(scaled: &Scaled) -> Section {
+fn assumptions(scaled: &ScalingResult) -> Section {
     let own = &scaled.overheads;
     let facts = vec![
         Fact::new(
             "a simulation in one slot",
-            format!("{} s", figure(own.simulation_s)),
+            format!("{} s", significant(own.simulation_s)),
         ),
         Fact::new(
             "half of them took at most",
             format!(
                 "{} s",
-                figure(
+                significant(
                     own.simulation_quantiles_s
                         .get(10)
                         .copied()

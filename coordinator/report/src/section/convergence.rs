@@ -1,11 +1,11 @@
 //! Report section on the convergence of the search.
-use crate::chart::canvas::{Canvas, Lettering, Pen, WIDTH, render};
+use crate::chart::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
 use crate::chart::panel::{Panel, spread};
-use crate::chart::scale::Scale;
+use crate::chart::scale::AxisScale;
 use crate::color::{BAND, GREY, INK, VERMILLION};
 use crate::data::{Calibration, HistoryPoint};
 use crate::document::{Figure, Section, figures};
-use crate::number::{count, figure, percent};
+use crate::number::{count, percent, significant};
 use crate::words;
 use crate::words::objective_heading;
 use support::quantile;
@@ -110,8 +110,8 @@ pub(crate) fn chart(
         top: TOP,
         width: WIDTH - LEFT - RIGHT,
         height: MAIN,
-        x: Scale::between(0.0, history.len().max(1) as f64, 8.0),
-        y: Scale::logarithmic(
+        x: AxisScale::between(0.0, history.len().max(1) as f64, 8.0),
+        y: AxisScale::logarithmic(
             quantiles
                 .chain(best.iter().map(|&(_, f)| f))
                 .chain(recommended),
@@ -120,7 +120,7 @@ pub(crate) fn chart(
     let strip = Panel {
         top: STRIP_TOP,
         height: STRIP,
-        y: Scale::between(0.0, 100.0, 2.0),
+        y: AxisScale::between(0.0, 100.0, 2.0),
         ..panel
     };
     let title = "Convergence of the population";
@@ -149,7 +149,7 @@ pub(crate) fn chart(
         canvas.text(
             (strip.right() + 7.0, strip.top + 0.5 * STRIP),
             &text,
-            Lettering::new(11.0, GREY),
+            TextStyle::new(11.0, GREY),
         );
     });
     Figure {
@@ -190,7 +190,7 @@ fn labels(
 ) {
     let mut labels = Vec::new();
     if let Some(&(_, value)) = best.last() {
-        labels.push((value, format!("best {}", figure(value)), VERMILLION));
+        labels.push((value, format!("best {}", significant(value)), VERMILLION));
     }
     if let Some([_, value, _]) = generations.iter().rev().find_map(|g| g.quantiles) {
         labels.push((value, "median".to_owned(), INK));
@@ -199,12 +199,12 @@ fn labels(
         let y = panel.at_y(value);
         let pen = Pen::new(GREY, 0.8);
         canvas.dashed((panel.left, y), (panel.right(), y), pen);
-        labels.push((value, format!("recommended {}", figure(value)), GREY));
+        labels.push((value, format!("recommended {}", significant(value)), GREY));
     }
     let wanted: Vec<_> = labels.iter().map(|label| panel.at_y(label.0)).collect();
     let places = spread(&wanted, 13.0, panel.top, panel.bottom());
     for ((_, text, color), y) in labels.iter().zip(places) {
-        let lettering = Lettering::new(11.0, *color);
+        let lettering = TextStyle::new(11.0, *color);
         canvas.text((panel.right() + 7.0, y), text, lettering);
     }
 }

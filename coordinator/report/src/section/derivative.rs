@@ -1,11 +1,11 @@
 //! Report section on the derivatives of the curves with respect to the unknowns: table and figures.
-use crate::chart::Axis;
-use crate::chart::strip::{Curve, Strip, curve, stack, strip};
+use crate::chart::ChartAxis;
+use crate::chart::strip::{Strip, StripCurve, curve, stack, strip};
 use crate::color::{BLUE, GREEN, INK, PURPLE, VERMILLION};
 use crate::data::SingleRun;
 use crate::document::{Block, Figure, Row, Section, Table, figures};
 use crate::kind;
-use crate::number::{figure, unit};
+use crate::number::{significant, unit};
 use crate::words::condition_name;
 use protocol::case::Channel;
 use protocol::job::{Derivative, Per};
@@ -42,11 +42,11 @@ pub fn derivatives(run: &SingleRun) -> Option<Table> {
     }
     let head = ["", "channel", "unit", "root mean square", "largest"];
     let table = Table::new("Derivatives of the curves", head, rows);
-    let table = table.noted([
+    let table = table.with_notes([
         "Exact for the curves as they were computed. Per decade of an unknown on a logarithmic scale, per \
          its unit elsewhere.",
     ]);
-    table.unless_empty()
+    table.non_empty()
 }
 
 fn row(name: &str, channel: &Channel, per: &Per, values: &[f32]) -> Row {
@@ -55,7 +55,12 @@ fn row(name: &str, channel: &Channel, per: &Per, values: &[f32]) -> Row {
     let rms = (square / values.len().max(1) as f64).sqrt();
     let largest = values.clone().fold(0.0, |most: f64, y| most.max(y.abs()));
     let unit = format!("{} per {per}", unit(&channel.unit));
-    let cells = [channel.title.clone(), unit, figure(rms), figure(largest)];
+    let cells = [
+        channel.title.clone(),
+        unit,
+        significant(rms),
+        significant(largest),
+    ];
     Row::new(name, cells)
 }
 
@@ -81,7 +86,7 @@ pub(crate) fn charts(run: &SingleRun, zero: &str) -> Vec<Figure> {
                     "By how much the curves under condition {condition} change, to first order, when each \
                      of these grows alone."
                 ),
-                &Axis::of(&kind.abscissa, zero),
+                &ChartAxis::of(&kind.abscissa, zero),
                 &strips,
             )
         })
@@ -102,7 +107,7 @@ fn strips(run: &SingleRun, channels: &[&Channel], kind: &Channel) -> Vec<Strip> 
             channel.unit == kind.unit && channel.abscissa == kind.abscissa && !values.is_empty()
         });
         let drawn = own.zip(COLORS.iter().cycle());
-        let drawn: Vec<Curve> = drawn
+        let drawn: Vec<StripCurve> = drawn
             .map(|((channel, values), color)| {
                 let values: Vec<f64> = values.iter().map(|y| f64::from(*y)).collect();
                 let points = &channel.abscissa.points;

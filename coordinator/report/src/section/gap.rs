@@ -1,9 +1,9 @@
 //! Report section on the remaining gap between simulation and measurement, by channel.
 use crate::data::{Calibration, ConditionResult};
 use crate::document::{Row, Section, Table, tables};
-use crate::number::{NONE, figure, fixed, percent, quantity};
+use crate::number::{MISSING, fixed, percent, quantity, significant};
 use crate::words::condition_name;
-use discrepancy::proof::gap::{Gap, SECTORS};
+use discrepancy::validation::gap::{Gap, SECTORS};
 use protocol::case::{Abscissa, Case};
 
 pub(super) fn calibration(calibration: &Calibration) -> Section {
@@ -53,7 +53,7 @@ fn gap(case: &Case, result: &ConditionResult) -> Option<Table> {
             "times the noise",
             "worst sector",
             "worst band of orders",
-        ], rows).noted([
+        ], rows).with_notes([
             "Times the noise: root mean square of the residual over that of the noise of the averaged record. \
              Gap: mean squared residual above the noise of the averaged record, over the variance of \
              the measured curve; means removed. A gap that stays far above the noise after a fit is a \
@@ -66,18 +66,18 @@ fn sector(along: &Abscissa, gap: &Gap) -> String {
     let (number, share) = gap.worst_sector();
     let (first, last) = match along.points.as_slice() {
         [first, .., last] => (*first, *last),
-        _ => return NONE.to_owned(),
+        _ => return MISSING.to_owned(),
     };
     let width = along.period.unwrap_or(last - first) / SECTORS as f64;
     let begin = first + number as f64 * width;
-    let (begin, end) = (figure(begin), quantity(begin + width, &along.unit));
+    let (begin, end) = (significant(begin), quantity(begin + width, &along.unit));
     format!("{begin} to {end}: {}", percent(share))
 }
 
 /// Describes the band of orders with the largest share of a periodic channel's residual.
 fn band(along: &Abscissa, gap: &Gap) -> String {
     if along.period.is_none() {
-        return NONE.to_owned();
+        return MISSING.to_owned();
     }
     let (orders, share) = gap.worst_band();
     let orders = match *orders.end() {

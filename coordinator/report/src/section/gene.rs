@@ -1,12 +1,12 @@
 //! Report section with the objective over each gene, between the gene's bounds.
-use crate::chart::canvas::{Canvas, Lettering, Pen, WIDTH, render};
+use crate::chart::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
 use crate::chart::panel::Panel;
 use crate::chart::points::thinned;
-use crate::chart::scale::Scale;
+use crate::chart::scale::AxisScale;
 use crate::color::{AXIS, Color, GREY, INK, VERMILLION};
 use crate::data::Calibration;
 use crate::document::{Figure, Section, figures};
-use crate::number::{figure, unit};
+use crate::number::{significant, unit};
 use crate::words::objective_heading;
 use protocol::case;
 
@@ -57,7 +57,7 @@ pub fn genes(calibration: &Calibration) -> Figure {
     let genes = &calibration.case.unknowns;
     let chosen = selection(calibration);
     let complete = calibration.history.iter().filter(|point| point.complete);
-    let fitness = Scale::logarithmic(complete.map(|point| point.fitness));
+    let fitness = AxisScale::logarithmic(complete.map(|point| point.fitness));
     let rows = genes.len().div_ceil(COLUMNS).max(1);
     let height = TOP + rows as f64 * ROW;
     let width = (WIDTH - LEFT - 12.0 - BETWEEN * (COLUMNS - 1) as f64) / COLUMNS as f64;
@@ -71,8 +71,8 @@ pub fn genes(calibration: &Calibration) -> Figure {
                 width,
                 height: PLOT,
                 x: match gene.scale {
-                    case::Scale::Logarithmic => Scale::logarithmic([gene.lower, gene.upper]),
-                    case::Scale::Linear => Scale::linear([gene.lower, gene.upper], 3.0),
+                    case::Scale::Logarithmic => AxisScale::logarithmic([gene.lower, gene.upper]),
+                    case::Scale::Linear => AxisScale::linear([gene.lower, gene.upper], 3.0),
                 },
                 y: fitness,
             };
@@ -148,14 +148,14 @@ fn small(
             canvas.dot(at, 4.0, VERMILLION);
         }
     }
-    let name = Lettering::new(11.5, INK).bold().above();
+    let name = TextStyle::new(11.5, INK).bold().above();
     let (heading, about) = match gene.of_effect() {
         Some((effect, parameter)) => (parameter, effect),
         None => (gene.name.as_str(), gene.title.as_str()),
     };
     canvas.text((panel.left, panel.top - 7.0), heading, name);
-    let right = Lettering::new(10.5, VERMILLION).right().above();
-    let text = best.map_or_else(String::new, figure);
+    let right = TextStyle::new(10.5, VERMILLION).right().above();
+    let text = best.map_or_else(String::new, significant);
     canvas.text((panel.right(), panel.top - 7.0), &text, right);
     let first = index.is_multiple_of(COLUMNS);
     let objective = objective_heading(&calibration.case);
@@ -167,7 +167,7 @@ fn small(
 /// Draws the legend above the panels.
 fn key(canvas: &mut Canvas) {
     let y = 14.0;
-    let text = Lettering::new(10.5, INK);
+    let text = TextStyle::new(10.5, INK);
     let mut x = LEFT;
     canvas.dot((x + 4.0, y), 1.8, CLOUD);
     canvas.text((x + 13.0, y), "evaluated individual", text);

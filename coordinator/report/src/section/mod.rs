@@ -1,4 +1,4 @@
-//! Sections of the reports of a calibration and of a simulation: one file each, one line in the list.
+//! Sections of the reports of a calibration and of a simulation: one file each, listed once in this module.
 //!
 //! A section turns data into blocks, or returns no blocks where there are no data for it. A section depends
 //! neither on its position, nor on other sections, nor on the output format.

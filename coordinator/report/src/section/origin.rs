@@ -1,8 +1,8 @@
 //! Report section on provenance: everything needed to reproduce a result and to compare it.
 use crate::data::{Calibration, Origin, SingleRun};
 use crate::document::{Block, Fact, Section};
-use crate::number::{NONE, count, duration};
-use crate::words::{calibrated, listed};
+use crate::number::{MISSING, count, duration};
+use crate::words::{calibrated, join_words};
 use protocol::case::{Case, Channel};
 use protocol::job::Curves;
 
@@ -13,7 +13,10 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
         Fact::new("objective", objective(&calibration.case)),
         Fact::new(
             "optimum",
-            optimum.map_or_else(|| NONE.to_owned(), |id| format!("individual {}", count(id))),
+            optimum.map_or_else(
+                || MISSING.to_owned(),
+                |id| format!("individual {}", count(id)),
+            ),
         ),
         Fact::new("wall time", duration(calibration.wall_s)),
         Fact::code("digest of the evaluation log", &calibration.origin.digest),
@@ -76,7 +79,7 @@ fn objective(case: &Case) -> String {
     } else if summed.clone().all(Channel::is_absolute) {
         "fixed: absolute values are compared".to_owned()
     } else {
-        let fixed = listed(&fixed, "and");
+        let fixed = join_words(&fixed, "and");
         format!("fixed for {fixed}, free for the others: their mean difference is removed first")
     };
     let conditions = match case.objective.others.len() {
@@ -88,11 +91,11 @@ fn objective(case: &Case) -> String {
 
 /// Describes the integrator's work and the wall time of one simulation.
 fn work(curves: &Curves) -> Block {
-    let counters = curves.counters.named();
+    let counters = curves.counters.labelled();
     let counted = counters.map(|(_, what, number)| format!("{} {what}", count(number)));
     Block::Text(format!(
         "One simulation with these parameters took {}, in {} on its worker.",
-        listed(&counted, "and"),
+        join_words(&counted, "and"),
         duration(curves.wall_s)
     ))
 }

@@ -1,7 +1,7 @@
 //! Report section on the simulations with the largest processor time, and how they ended.
 use crate::data::{Calibration, HistoryPoint};
 use crate::document::{Block, Row, Section, Table};
-use crate::number::{count, duration, figure, fixed};
+use crate::number::{count, duration, fixed, significant};
 use crate::words::objective_heading;
 use dispatch::account::JobCost;
 
@@ -31,7 +31,9 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
         ],
         rows.map(|(point, cost)| row(point, *cost)).collect(),
     );
-    let table = table.unless_empty().map(|table| table.noted(note(&times)));
+    let table = table
+        .non_empty()
+        .map(|table| table.with_notes(note(&times)));
     Section {
         id: "slowest",
         title: "Where the time went",
@@ -48,7 +50,7 @@ fn row(point: &HistoryPoint, cost: JobCost) -> Row {
             duration(cost.processor_s),
             duration(cost.wall_s),
             count(cost.newton_iterations),
-            figure(if point.complete {
+            significant(if point.complete {
                 point.fitness
             } else {
                 f64::NAN
@@ -58,7 +60,7 @@ fn row(point: &HistoryPoint, cost: JobCost) -> Row {
     )
 }
 
-/// Compares the slowest simulation with the median; `times` are in ascending order.
+/// Compares the processor time of the slowest simulation with the median; `times` are in ascending order.
 fn note(times: &[f64]) -> Option<String> {
     let median = *times.get(times.len() / 2)?;
     let (all, longest) = (times.iter().sum::<f64>(), *times.last()?);

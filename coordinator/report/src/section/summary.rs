@@ -1,12 +1,12 @@
 //! Report section with the outcome in words: change of the error by condition and channel.
 use crate::data::{Calibration, SingleRun};
 use crate::document::{Block, Section};
-use crate::number::{count, duration, figure};
+use crate::number::{count, duration, significant};
 use crate::words;
 
 pub(super) fn calibration(calibration: &Calibration) -> Section {
     let mut blocks = vec![Block::Lead(words::headline(calibration))];
-    blocks.extend(words::structure(calibration).map(|said| Block::Warning(vec![said])));
+    blocks.extend(words::model_error(calibration).map(|said| Block::Warning(vec![said])));
     if calibration.origin.synthetic {
         blocks.push(Block::Text(words::SYNTHETIC.to_owned()));
     }
@@ -66,7 +66,10 @@ pub(super) fn simulation(run: &SingleRun) -> Section {
             "There is no score: no record, or no complete run.".to_owned()
         } else {
             let unit = words::square_after(run.case.objective_unit());
-            format!("The objective is {}{unit}.", figure(evaluation.fitness))
+            format!(
+                "The objective is {}{unit}.",
+                significant(evaluation.fitness)
+            )
         }));
     }
     section(blocks)

@@ -1,9 +1,9 @@
 //! Report section on the utilisation of the workers: tables and figure.
-use crate::chart::canvas::{Lettering, render};
+use crate::chart::canvas::{TextStyle, render};
 use crate::color::{BAND, BLUE, GREY, INK};
 use crate::data::{Calibration, WorkerUse};
 use crate::document::{Block, Figure, Row, Section, Table, figures};
-use crate::number::{NONE, count, duration, percent};
+use crate::number::{MISSING, count, duration, percent};
 use dispatch::account;
 use dispatch::account::RunAccount;
 use protocol::event::Spent;
@@ -36,7 +36,9 @@ pub(crate) fn workers(workers: &[WorkerUse]) -> Table {
                 count(worker.done),
                 count(worker.failed),
                 duration(worker.busy_s),
-                worker.busy_share().map_or_else(|| NONE.to_owned(), percent),
+                worker
+                    .busy_share()
+                    .map_or_else(|| MISSING.to_owned(), percent),
             ],
         )
     });
@@ -53,7 +55,7 @@ pub(crate) fn workers(workers: &[WorkerUse]) -> Table {
         ],
         rows.collect(),
     )
-    .noted(["Busy: time spent on accepted results over slots times the time attached."])
+    .with_notes(["Busy: time spent on accepted results over slots times the time attached."])
 }
 
 /// Builds the table of slot time by use: useful, waiting, speculative, failed and lost.
@@ -82,7 +84,7 @@ pub fn slot_time(spent: &Spent) -> Table {
         ["use", "time", "share", "what it was"],
         rows.into(),
     )
-    .noted([format!(
+    .with_notes([format!(
         "Slots were connected for {} in all.",
         duration(spent.connected_us as f64 / 1e6)
     )])
@@ -163,21 +165,21 @@ pub(crate) fn chart(workers: &[WorkerUse]) -> Option<Figure> {
     let height = TOP + ROW * shown.len() as f64 + 8.0;
     let title = "Use of the workers";
     let svg = render((WIDTH, height), title, |canvas| {
-        let head = Lettering::new(10.5, GREY);
+        let head = TextStyle::new(10.5, GREY);
         canvas.text((LEFT, 14.0), "slot time spent on results", head);
         let right = head.right();
         canvas.text((WIDTH - 60.0, 14.0), "jobs done", right);
         for (index, worker) in shown.iter().enumerate() {
             let y = TOP + (index as f64 + 0.5) * ROW - 2.0;
-            let name = Lettering::new(11.0, INK).right();
+            let name = TextStyle::new(11.0, INK).right();
             canvas.text((LEFT - 10.0, y), &worker.name, name);
             canvas.rectangle((LEFT, y - 6.0), (LEFT + BAR, y + 6.0), BAND);
             let share = worker.busy_share();
             let filled = BAR * share.unwrap_or(0.0).clamp(0.0, 1.0);
             canvas.rectangle((LEFT, y - 6.0), (LEFT + filled, y + 6.0), BLUE);
             let text = share.map_or_else(|| "not known".to_owned(), percent);
-            canvas.text((LEFT + BAR + 8.0, y), &text, Lettering::new(11.0, INK));
-            let done = Lettering::new(11.0, INK).right();
+            canvas.text((LEFT + BAR + 8.0, y), &text, TextStyle::new(11.0, INK));
+            let done = TextStyle::new(11.0, INK).right();
             canvas.text((WIDTH - 60.0, y), &count(worker.done), done);
         }
     });

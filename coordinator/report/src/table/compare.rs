@@ -2,7 +2,7 @@
 use crate::data::{Calibration, ConditionResult};
 use crate::document::{Row, Table};
 use crate::kind;
-use crate::number::{NONE, figure, fixed, percent, ratio, squared, unit};
+use crate::number::{MISSING, fixed, percent, ratio, significant, squared, unit};
 use crate::words::{self, condition_name};
 use protocol::case::Case;
 use protocol::job::{ChannelScore, Verdict};
@@ -15,7 +15,7 @@ const DEFINITIONS: [&str; 3] = [
     "Offset: measured minus simulated mean; sensors have no absolute zero.",
 ];
 
-/// Returns the indices of the scored channels in the case, channels of the objective first.
+/// Returns the indices of the case's channels with a score, channels of the objective first.
 fn scored(case: &Case, result: &ConditionResult) -> Vec<usize> {
     let measured = case.measured(result.condition);
     let mut scored: Vec<usize> = measured.map(|(at, ..)| at).collect();
@@ -39,14 +39,14 @@ const MEASURES: [Measure; 6] = [
         title: "Mean squared error",
         unit: |unit| squared(Some(unit)),
         of: |score| score.mse,
-        write: figure,
+        write: significant,
         has_ratio: true,
     },
     Measure {
         title: "MSE, absolute (offset not removed)",
         unit: |unit| squared(Some(unit)),
         of: |score| score.mse_fixed_offset,
-        write: figure,
+        write: significant,
         has_ratio: true,
     },
     Measure {
@@ -89,9 +89,9 @@ impl Measure {
         let share = match (before, after) {
             _ if !self.has_ratio => String::new(),
             (Some(before), Some(after)) if before > 0.0 && after >= 0.0 => ratio(after, before),
-            _ => NONE.to_owned(),
+            _ => MISSING.to_owned(),
         };
-        let write = |value: Option<f64>| value.map_or_else(|| NONE.to_owned(), self.write);
+        let write = |value: Option<f64>| value.map_or_else(|| MISSING.to_owned(), self.write);
         let calibrated = case.objective.holds(result.condition);
         let role = if words::is_fitted(case, channel) || !calibrated {
             ""
@@ -115,7 +115,7 @@ fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
         let complete = run.evaluation.verdict == Verdict::Complete;
         complete.then_some(run.evaluation.fitness)
     });
-    let write = |value: Option<f64>| value.map_or_else(|| "failed".to_owned(), figure);
+    let write = |value: Option<f64>| value.map_or_else(|| "failed".to_owned(), significant);
     let share = before
         .zip(after)
         .map(|(before, after)| ratio(after, before));
@@ -123,7 +123,7 @@ fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
         squared(case.objective_unit()),
         write(before),
         write(after),
-        share.unwrap_or_else(|| NONE.to_owned()),
+        share.unwrap_or_else(|| MISSING.to_owned()),
     ];
     let objective = match case.objective.others.len() {
         0 => "Objective".to_owned(),
@@ -168,20 +168,23 @@ fn gene_rows(calibration: &Calibration) -> Vec<Row> {
         let value = |genes: &[f64]| genes.get(index).copied().unwrap_or(f64::NAN);
         let before = value(&calibration.recommended.genes);
         let after = value(&calibration.optimised.genes);
-        let mut optimised = figure(after);
+        let mut optimised = significant(after);
         if words::at_bound(gene, after).is_some() {
             optimised.push_str(" *");
         }
-        let said = calibration.seen.iter().find(|own| own.name == gene.name);
+        let said = calibration
+            .identifiability
+            .iter()
+            .find(|own| own.name == gene.name);
         let cells = [
             unit(&gene.unit),
-            figure(before),
+            significant(before),
             optimised,
             ratio(after, before),
         ];
         rows.push(Row::of(
             gene,
-            cells.into_iter().chain(said.map(words::seen)),
+            cells.into_iter().chain(said.map(words::interval_cell)),
         ));
     }
     rows
@@ -203,8 +206,8 @@ pub fn table_3(calibration: &Calibration) -> Table {
         .collect();
     let marked =
         (!bounds.is_empty()).then(|| format!("* at a bound of the search: {}.", bounds.join(", ")));
-    let mut table = Table::new(title, HEAD, gene_rows(calibration)).noted(marked);
-    if !calibration.seen.is_empty() {
+    let mut table = Table::new(title, HEAD, gene_rows(calibration)).with_notes(marked);
+    if !calibration.identifiability.is_empty() {
         table.head.push("what the record says, 95 %".to_owned());
         let of = match case.objective.others.len() {
             0 => "the record".to_owned(),
@@ -213,20 +216,21 @@ pub fn table_3(calibration: &Calibration) -> Table {
                 condition_name(case, case.objective.condition)
             ),
         };
-        table = table.noted([format!(
+        table = table.with_notes([format!(
             "What the record says: what {of} does, to first order at the optimum, under its own noise, widened \
              by what is left; `horsehead identify RUN` says it with profiles."
         )]);
     }
-    table = table.noted(DEFINITIONS);
+    table = table.with_notes(DEFINITIONS);
     if let Some(result) = calibration.calibrated() {
         table.rows.extend(agreement(case, result));
-        table = table.noted(remarks(case, result));
+        table = table.with_notes(remarks(case, result));
     }
     table
 }
 
-/// Builds the paper's Table 4: agreement under one condition, with unchanged parameters.
+/// Builds the paper's Table 4: agreement under another condition, with the parameters of the calibration
+/// unchanged.
 pub fn table_4(case: &Case, result: &ConditionResult) -> Table {
     let role = if !case.objective.holds(result.condition) {
         "which took no part in the fit"
@@ -238,8 +242,8 @@ pub fn table_4(case: &Case, result: &ConditionResult) -> Table {
     let name = condition_name(case, result.condition);
     let title = format!("The same parameters under condition {name}, {role}");
     Table::new(title, HEAD, agreement(case, result))
-        .noted(DEFINITIONS)
-        .noted(remarks(case, result))
+        .with_notes(DEFINITIONS)
+        .with_notes(remarks(case, result))
 }
 
 /// Lists remarks on channels whose absolute error rose behind a free offset, and on failed runs.

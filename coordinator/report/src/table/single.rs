@@ -1,27 +1,27 @@
 //! Tables of one simulation, for models of any kind.
-use crate::data::{Shown, SingleRun};
+use crate::data::{SimulationView, SingleRun};
 use crate::document::{Row, Table};
-use crate::number::{NONE, count, duration, figure, fixed, percent, range, squared, unit};
+use crate::number::{MISSING, count, duration, fixed, percent, range, significant, squared, unit};
 use crate::words::{channel_title, condition_name, verdict};
 use protocol::case::Channel;
 use protocol::job::Counters;
 
 /// Creates a row with a unit and one value.
-pub fn one(label: &str, unit: &str, value: String) -> Row {
+pub fn value_row(label: &str, unit: &str, value: String) -> Row {
     Row::new(label, [unit.to_owned(), value])
 }
 
 /// Creates a row with the range of a curve scaled by `factor`: smallest value, largest value, half range.
 pub fn range_row(label: &str, values: &[f64], factor: f64, unit: &str) -> Row {
     let ends = range(values.iter().map(|value| factor * value));
-    let cells = ends.map_or([NONE; 3].map(str::to_owned), |(low, high)| {
+    let cells = ends.map_or([MISSING; 3].map(str::to_owned), |(low, high)| {
         [low, high, 0.5 * (high - low)].map(|value| fixed(value, 2))
     });
     Row::new(label, std::iter::once(unit.to_owned()).chain(cells))
 }
 
 /// Builds one row with the range of each channel.
-pub fn ranges(of: &Shown<'_>) -> Vec<Row> {
+pub fn ranges(of: &SimulationView<'_>) -> Vec<Row> {
     let channels = of.case.channels_of(of.condition);
     let row = |(_, channel): (usize, &Channel)| {
         let unit = unit(&channel.unit);
@@ -43,7 +43,7 @@ pub fn simulation(run: &SingleRun, ranges: Vec<Row>) -> Table {
 }
 
 /// Builds a table of rows with one value each.
-pub fn sums(title: &str, rows: Vec<Row>) -> Table {
+pub fn value_table(title: &str, rows: Vec<Row>) -> Table {
     Table::new(title, ["", "unit", "value"], rows)
 }
 
@@ -57,26 +57,26 @@ pub fn agreement(run: &SingleRun) -> Vec<Row> {
     let unit = squared(run.case.objective_unit());
     let mut rows = vec![
         Row::group("Against the record"),
-        one("objective", &unit, figure(evaluation.fitness)),
+        value_row("objective", &unit, significant(evaluation.fitness)),
     ];
     for score in &evaluation.channels {
         let channel = run.case.channels.get(score.channel);
         let title = channel_title(&run.case, score.channel);
         let unit = squared(channel.map(|channel| channel.unit.as_str()));
         let error = format!("{title}: mean squared error");
-        rows.push(one(&error, &unit, figure(score.mse)));
+        rows.push(value_row(&error, &unit, significant(score.mse)));
         let error = format!("{title}: relative error");
-        rows.push(one(&error, "", percent(score.relative_error)));
+        rows.push(value_row(&error, "", percent(score.relative_error)));
     }
     rows
 }
 
 /// Builds the rows of the integrator's counters and the wall time.
 pub fn work(counters: &Counters, wall_s: f64) -> Vec<Row> {
-    let counted = counters.named().into_iter();
+    let counted = counters.labelled().into_iter();
     let mut rows = vec![Row::group("Work of the integrator")];
-    rows.extend(counted.map(|(_, what, number)| one(what, "", count(number))));
-    rows.push(one("wall time", "", duration(wall_s)));
+    rows.extend(counted.map(|(_, what, number)| value_row(what, "", count(number))));
+    rows.push(value_row("wall time", "", duration(wall_s)));
     rows
 }
 
@@ -88,7 +88,14 @@ pub(crate) fn genes(run: &SingleRun) -> Table {
         ["", "unit", "value", "recommended"],
         genes
             .map(|(gene, &value)| {
-                Row::of(gene, [unit(&gene.unit), figure(value), figure(gene.start)])
+                Row::of(
+                    gene,
+                    [
+                        unit(&gene.unit),
+                        significant(value),
+                        significant(gene.start),
+                    ],
+                )
             })
             .collect(),
     )

@@ -1,10 +1,10 @@
 //! Sentences about a calibration: change of the objective, channels that got worse, warnings.
 use super::change::change;
-use super::ending::verdict;
 use super::gene::{at_bound, bound};
-use super::name::{calibrated, capitalised, channel_title, condition_name, is_fitted, listed};
+use super::name::{calibrated, capitalised, channel_title, condition_name, is_fitted, join_words};
+use super::outcome::verdict;
 use crate::data::{Calibration, ConditionResult};
-use crate::number::{figure, fixed, percent, quantity, ratio, squared};
+use crate::number::{fixed, percent, quantity, ratio, significant, squared};
 use protocol::case::{Case, Scale, Term};
 use protocol::job::{ChannelScore, Verdict};
 
@@ -32,7 +32,7 @@ pub(crate) fn headline(calibration: &Calibration) -> String {
         (failed @ Verdict::Failed { .. }, Verdict::Complete) => format!(
             "With the optimised parameters, {what} is {}{unit} under {name}. With the \
              recommended ones the simulation {}, so there is no error to compare with.",
-            figure(after),
+            significant(after),
             verdict(&failed)
         ),
         (Verdict::Complete, Verdict::Complete) if after < before => format!(
@@ -65,7 +65,7 @@ fn square_of(case: &Case, channel: usize) -> String {
     )
 }
 
-/// Describes the objective in words.
+/// Describes the objective in words, such as the sum of the mean squared errors of its channels.
 fn objective(case: &Case) -> String {
     let terms = &case.objective.terms;
     let title = |term: &Term| {
@@ -111,7 +111,7 @@ pub(crate) fn channels(case: &Case, result: &ConditionResult) -> Vec<String> {
             None => format!(
                 "{title}{role}: mean squared error {}{unit}, relative error {}; no complete run \
                  with the recommended parameters to compare with.",
-                figure(new.mse),
+                significant(new.mse),
                 percent(new.relative_error),
             ),
         }
@@ -150,7 +150,7 @@ pub(crate) fn absolute_worse(case: &Case, result: &ConditionResult) -> Option<St
 /// Largest ratio of residual to noise at which a fit counts as free of model error: calibrations against
 /// records of the shipped machine without a hidden effect leave 1.1 to 1.3 times the noise, those against the
 /// shipped record 4.9 to 6.0 times.
-const NOISE: f64 = 1.5;
+const NOISE_RATIO_LIMIT: f64 = 1.5;
 
 /// Ratio of an unknown to its recommended value, or its inverse, above which the unknown is reported as far
 /// off.
@@ -158,18 +158,18 @@ const FAR: f64 = 30.0;
 
 /// Describes a residual above the noise, the unknowns that may compensate for it, and the command that finds
 /// the cause; `None` where the residual is at noise level or the noise is unknown.
-pub(crate) fn structure(calibration: &Calibration) -> Option<String> {
+pub(crate) fn model_error(calibration: &Calibration) -> Option<String> {
     let case = &calibration.case;
     let fitted = calibration.conditions.iter();
     let fitted = fitted.filter(|result| case.objective.holds(result.condition));
     let left = fitted.flat_map(|result| result.optimised.gaps(case, result.condition));
     let left = left.filter_map(|(channel, gap)| Some((channel, gap.over_noise()?)));
     let (channel, most) = left.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    if most < NOISE {
+    if most < NOISE_RATIO_LIMIT {
         return None;
     }
     let seen = |name: &str| {
-        let mut said = calibration.seen.iter();
+        let mut said = calibration.identifiability.iter();
         said.any(|own| own.name == name && matches!(own.interval, [Some(_), Some(_)]))
     };
     let unknowns = case.unknowns.iter().zip(&calibration.optimised.genes);
@@ -184,7 +184,7 @@ pub(crate) fn structure(calibration: &Calibration) -> Option<String> {
     let far = if far.is_empty() {
         String::new()
     } else {
-        let all = listed(&far, "and");
+        let all = join_words(&far, "and");
         format!(
             " Unknowns far from their recommended values may compensate for it: {all} of the recommended value."
         )

@@ -1,5 +1,5 @@
 //! Sentences about the change of a value.
-use crate::number::{figure, percent};
+use crate::number::{percent, significant};
 
 /// Describes the change of a value, as "fell from 6.8 to 0.75 (−89 %)".
 pub(crate) fn change(from: f64, to: f64, suffix: &str) -> String {
@@ -8,7 +8,7 @@ pub(crate) fn change(from: f64, to: f64, suffix: &str) -> String {
     } else if to > from {
         "rose"
     } else {
-        return format!("stayed at {}{suffix}", figure(from));
+        return format!("stayed at {}{suffix}", significant(from));
     };
     let share = to / from - 1.0;
     let share = if !share.is_finite() || from <= 0.0 {
@@ -17,12 +17,12 @@ pub(crate) fn change(from: f64, to: f64, suffix: &str) -> String {
         let sign = if share > 0.0 { "+" } else { "" };
         format!(" ({sign}{})", percent(share))
     } else {
-        format!(" ({} times)", figure(to / from))
+        format!(" ({} times)", significant(to / from))
     };
     format!(
         "{verb} from {} to {}{suffix}{share}",
-        figure(from),
-        figure(to)
+        significant(from),
+        significant(to)
     )
 }
 

@@ -29,8 +29,8 @@ pub(crate) fn at_bound(gene: &Unknown, value: f64) -> Option<&'static str> {
     }
 }
 
-/// Formats the interval of an unknown as a table cell.
-pub(crate) fn seen(own: &UnknownEstimate) -> String {
+/// Formats the interval that the record determines for an unknown, as a table cell.
+pub(crate) fn interval_cell(own: &UnknownEstimate) -> String {
     let of = |x: f64| quantity(x, &own.unit);
     match own.interval {
         [Some(low), Some(high)] => format!("{} to {}", of(low), of(high)),

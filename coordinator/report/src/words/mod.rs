@@ -1,23 +1,23 @@
-//! Results in words: changes, their sizes, and deteriorations.
+//! Sentences and phrases on results: changes, their sizes, and deteriorations.
 //!
 //! States only what the data show; every sentence can be read on its own.
 mod calibration;
 mod change;
 pub mod command;
-mod ending;
 mod gene;
 mod name;
+mod outcome;
 
 pub(super) use calibration::{
-    absolute_worse, channels, complete_objective, headline, square_after, structure, warnings,
+    absolute_worse, channels, complete_objective, headline, model_error, square_after, warnings,
 };
-pub use ending::{failure, verdict};
-pub(super) use gene::{at_bound, bound, seen};
+pub(super) use gene::{at_bound, bound, interval_cell};
 pub use name::condition_name;
 pub(super) use name::{
-    calibrated, capitalised, channel_title, counted, headed, is_fitted, listed, lower,
-    objective_heading,
+    abscissa_quantity, calibrated, capitalised, channel_title, is_fitted, join_words, lower,
+    objective_heading, with_unit,
 };
+pub use outcome::{failure, verdict};
 
 /// Notice for cases whose records are synthetic.
 pub(super) const SYNTHETIC: &str = "The records of this case are synthetic: they were \

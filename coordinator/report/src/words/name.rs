@@ -18,7 +18,7 @@ pub(crate) fn calibrated(case: &Case) -> String {
     } else {
         "conditions"
     };
-    format!("{noun} {}", listed(&names, "and"))
+    format!("{noun} {}", join_words(&names, "and"))
 }
 
 /// Returns the title of a channel; its number if the case lacks it.
@@ -28,14 +28,14 @@ pub(crate) fn channel_title(case: &Case, channel: usize) -> String {
         .map_or_else(|| format!("#{channel}"), |found| found.title.clone())
 }
 
-/// Names the quantity along an abscissa, such as an angle or the time.
-pub(crate) fn counted(abscissa: &Abscissa) -> String {
+/// Returns the display name of the quantity along an abscissa, such as an angle or the time.
+pub(crate) fn abscissa_quantity(abscissa: &Abscissa) -> String {
     let angle = if abscissa.unit == "deg" { " angle" } else { "" };
     format!("{}{angle}", abscissa.name)
 }
 
 /// Formats a quantity followed by its unit in brackets, if it has one.
-pub(crate) fn headed(what: &str, unit: &str) -> String {
+pub(crate) fn with_unit(what: &str, unit: &str) -> String {
     match unit {
         "" => what.to_owned(),
         _ => format!("{what} [{unit}]"),
@@ -44,7 +44,7 @@ pub(crate) fn headed(what: &str, unit: &str) -> String {
 
 /// Returns the heading of the objective for axes and columns, with its unit.
 pub(crate) fn objective_heading(case: &Case) -> String {
-    headed("objective", &squared(case.objective_unit()))
+    with_unit("objective", &squared(case.objective_unit()))
 }
 
 /// Returns whether a channel is part of the objective.
@@ -54,7 +54,7 @@ pub(crate) fn is_fitted(case: &Case, channel: usize) -> bool {
 }
 
 /// Joins items for a sentence, as `a, b and c` with `last` = "and".
-pub(crate) fn listed(items: &[String], last: &str) -> String {
+pub(crate) fn join_words(items: &[String], last: &str) -> String {
     match items {
         [] => String::new(),
         [one] => one.clone(),

@@ -1,5 +1,5 @@
 //! Tests of the diagnosis report for every verdict: completeness, well-formedness and correct statements.
-use crate::suspicion::{self, Made};
+use crate::suspicion::{self, SampleDiagnosis};
 use crate::{check_page, names, words};
 use case::CaseEffect;
 use discrepancy::verdict::Verdict;
@@ -16,13 +16,13 @@ const ALL: [Verdict; 5] = [
     Verdict::Unresolved,
 ];
 
-fn page(made: &Made) -> String {
+fn page(made: &SampleDiagnosis) -> String {
     let page = report::page(&diagnosis::report(&made.subject()));
     check_page(&page);
     page
 }
 
-fn text(subject: &diagnosis::Subject<'_>) -> String {
+fn text(subject: &diagnosis::DiagnosisInput<'_>) -> String {
     report::text(&diagnosis::report(subject), false)
 }
 
@@ -140,8 +140,8 @@ fn every_suspect_is_told_why_it_was_kept_or_dropped() {
     }
 }
 
-/// Checks that a parameter that would have to vary along the revolution is listed with its values before the
-/// answer, and that none is listed after it.
+/// Checks that a parameter that would have to vary along the revolution is listed with its values for the
+/// model without the added effects, and that none is listed for the model with them.
 #[test]
 fn parameters_that_would_have_to_wander_are_shown_with_their_values() {
     let made = suspicion::diagnosis(Verdict::Named);

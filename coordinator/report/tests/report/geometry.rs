@@ -1,8 +1,8 @@
 //! Closed-form kinematics of a double-horse-head unit with inextensible ropes on rigid arcs, for realistic
 //! report samples without a simulation.
-use protocol::pumping_unit::{Machine, Motion};
+use protocol::pumping_unit::{Machine, MachineSnapshot};
 
-/// Length of rod and rope along the path, from the crank pin to the anchor \[m\].
+/// Length of rod and back rope along their path, from the crank pin to the rope's anchor on the head \[m\].
 const PATH_M: f64 = 6.476;
 /// Length of the front rope \[m\].
 const FRONT_ROPE_M: f64 = 5.70;
@@ -14,11 +14,12 @@ pub(crate) struct Pose {
     pub turn_deg: f64,
     pub pin: [f64; 2],
     pub beam_rad: f64,
-    /// Direction of the contact normal at the point where the rope leaves the arc, ground frame \[rad\].
+    /// Direction of the contact normal at the point where the back rope leaves the head's arc, ground frame
+    /// \[rad\].
     pub normal_rad: f64,
-    /// Distance of the straight rope's line from the pivot \[m\].
+    /// Lever arm of the straight part of the back rope about the beam's pivot \[m\].
     pub arm_m: f64,
-    /// Length of the straight rope between crossbeam and arc \[m\].
+    /// Length of the straight part of the back rope between crossbeam and arc \[m\].
     pub free_m: f64,
 }
 
@@ -79,7 +80,7 @@ fn solve(machine: &Machine, turn_deg: f64, start: [f64; 2]) -> Pose {
     }
 }
 
-/// Returns `count` equally spaced poses over one revolution, without the closing one.
+/// Returns `count` equally spaced poses over one revolution, without repeating the first one at the end.
 pub(crate) fn revolution(machine: &Machine, count: usize) -> Vec<Pose> {
     let mut guess = [(-31.8_f64).to_radians(), 176.8_f64.to_radians()];
     (0..count)
@@ -111,7 +112,12 @@ fn short([x, y]: [f64; 2]) -> [f32; 2] {
     clippy::cast_possible_truncation,
     reason = "snapshots are stored short"
 )]
-pub(crate) fn snapshot(machine: &Machine, pose: &Pose, back_n: f64, front_n: f64) -> Motion {
+pub(crate) fn snapshot(
+    machine: &Machine,
+    pose: &Pose,
+    back_n: f64,
+    front_n: f64,
+) -> MachineSnapshot {
     let head = &machine.back_head;
     let (sin, cos) = pose.beam_rad.sin_cos();
     let center = [
@@ -121,7 +127,7 @@ pub(crate) fn snapshot(machine: &Machine, pose: &Pose, back_n: f64, front_n: f64
     let t = [-pose.normal_rad.sin(), pose.normal_rad.cos()];
     let length = machine.ropes.cylinder_length_m;
     let on_line = |s: f64| [pose.pin[0] - t[0] * s, pose.pin[1] - t[1] * s];
-    let mut motion = Motion {
+    let mut motion = MachineSnapshot {
         turn_deg: pose.turn_deg,
         crank_pin_m: short(pose.pin),
         beam_deg: pose.beam_rad.to_degrees() as f32,

@@ -172,7 +172,7 @@ fn a_calibration_is_written_with_its_data() {
     let page = std::fs::read_to_string(&written[0]).unwrap();
     check_page(&page);
     let whole = report::calibration(&calibration);
-    assert_eq!(whole.silent, [""; 0], "every section has something to say");
+    assert_eq!(whole.omitted, [""; 0], "every section has something to say");
     for section in &whole.sections {
         assert!(page.contains(&format!("<section id=\"{}\">", section.id)));
     }
@@ -268,7 +268,8 @@ fn both_columns_of_an_overlay_share_their_scales() {
     }
 }
 
-/// Returns the points of every curve longer than 100 points with a given pen, in drawing order.
+/// Returns the points of every SVG curve longer than 100 points with the given stroke colour and width, in
+/// drawing order.
 fn curves(svg: &str, stroke: &str, width: &str) -> Vec<Vec<(i64, i64)>> {
     let document = Document::parse(svg).expect("well-formed SVG");
     let with_pen = document.descendants().filter(|node| {

@@ -1,6 +1,6 @@
 //! Tests of the CSV files with the data behind the figures.
 use super::{sample, with_failed_recommended};
-use protocol::pumping_unit::{Motion, Simulation};
+use protocol::pumping_unit::{MachineSnapshot, Simulation};
 use report::pumping_unit::csv;
 
 #[test]
@@ -45,7 +45,7 @@ fn ropes_are_written_cylinder_by_cylinder() {
     csv::ropes(&mut bytes, &simulation).unwrap();
     let mut reader = ::csv::Reader::from_reader(bytes.as_slice());
     let rows: Vec<_> = reader.records().map(Result::unwrap).collect();
-    let cylinders = |motion: &Motion| motion.back_rope_m.len() + motion.front_rope_m.len();
+    let cylinders = |motion: &MachineSnapshot| motion.back_rope_m.len() + motion.front_rope_m.len();
     let expected: usize = simulation.motion.iter().map(cylinders).sum();
     assert!(expected > 0, "the sample has snapshots");
     assert_eq!(rows.len(), expected);

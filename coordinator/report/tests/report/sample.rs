@@ -539,7 +539,7 @@ pub(crate) fn calibration(evaluations: usize) -> Calibration {
     conditions[1].optimised.evaluation.channels[3].mse =
         1.2 * conditions[1].recommended.evaluation.channels[3].mse;
     Calibration {
-        seen: Vec::new(),
+        identifiability: Vec::new(),
         origin: origin(),
         recommended: Individual {
             id: None,

@@ -1,52 +1,53 @@
 //! Synthesised diagnosis: fits of a linear model, candidate effects with tests, and the maps of the residual.
 use crate::sample;
-use discrepancy::cause::refit::Refitted;
-use discrepancy::cause::suspect::Suspect;
+use discrepancy::baseline::discretisation_check::Preflight;
 use discrepancy::diagnose::{
-    Absorbed, Diagnosis, Estimate, Force, Limit, LookAlikes, NeverExact, ParameterEstimate, Round,
+    Absorbed, Diagnosis, Estimate, ForceEstimate, IndistinguishablePair, Limit, NuisanceEstimate,
+    ParameterEstimate, Round,
 };
-use discrepancy::ground::preflight::Preflight;
+use discrepancy::hypothesis::candidate::CandidateEffect;
+use discrepancy::hypothesis::refit::Refitted;
 use discrepancy::laboratory::Stage;
 use discrepancy::linear::score::Score;
+use discrepancy::localisation::parameter_drift::{ParameterDrift, ParameterShift, RecordPart};
+use discrepancy::localisation::summary::Localisation;
+use discrepancy::localisation::{joint, order, window_test};
 use discrepancy::model::Fit;
-use discrepancy::model::Model;
-use discrepancy::place::wander::{Part, Shift, Wander};
-use discrepancy::place::whereabouts::Where;
-use discrepancy::place::{along, joint, order};
-use discrepancy::proof::closed::closed;
-use discrepancy::proof::compare::{Portion, Row};
-use discrepancy::proof::predictive::Prediction;
-use discrepancy::record::noise::Known;
+use discrepancy::model::FittedModel;
+use discrepancy::record::noise::NoiseSource;
 use discrepancy::record::{Curves, Record, Recorded, Stated};
+use discrepancy::validation::compare::{DataRole, GapRow};
+use discrepancy::validation::gap_closure::gap_closure;
+use discrepancy::validation::predictive::Prediction;
 use discrepancy::verdict::Verdict;
 use nalgebra::{DMatrix, DVector};
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
 use protocol::case::Case;
 use protocol::pumping_unit::Sensor;
 use report::Origin;
-use report::diagnosis::Subject;
-use search::least_squares::{LeastSquares, Settings};
+use report::diagnosis::DiagnosisInput;
+use search::least_squares::{LeastSquares, LeastSquaresSettings};
 use search::space::Space;
 use std::time::Duration;
-use study::{Diagnosed, StageCost};
+use study::{DiagnosisResult, StageCost};
 
 /// Number of whitened entries of the synthetic residual.
 const ENTRIES: usize = 40;
 /// Number of crank-angle grid points.
 const GRID: usize = 360;
 
-/// Owned data that a [`Subject`] borrows.
-pub(crate) struct Made {
+/// Owned sample data from which a [`Subject`] is made, which borrows them.
+pub(crate) struct SampleDiagnosis {
     pub(crate) case: Case,
     pub(crate) records: Vec<Record>,
     pub(crate) library: Vec<EffectDescriptor>,
-    pub(crate) diagnosed: Diagnosed,
+    pub(crate) diagnosed: DiagnosisResult,
     pub(crate) notes: Vec<String>,
 }
 
-impl Made {
-    pub(crate) fn subject(&self) -> Subject<'_> {
-        Subject {
+impl SampleDiagnosis {
+    pub(crate) fn subject(&self) -> DiagnosisInput<'_> {
+        DiagnosisInput {
             case: &self.case,
             records: &self.records,
             library: &self.library,
@@ -138,7 +139,7 @@ fn library() -> Vec<EffectDescriptor> {
 /// as unknowns; `size` scales the constant part of the residual.
 fn fit(case: &Case, added: &[&EffectDescriptor], size: f64, curves: Curves) -> Fit {
     let space = Space::new(&case.unknowns).expect("the sample's genes are sound");
-    let mut model = Model::plain(space);
+    let mut model = FittedModel::plain(space);
     model.added.extend(added.iter().copied().cloned());
     let variables = model.variables(&[]);
     let residual = |x: &[f64]| {
@@ -150,7 +151,7 @@ fn fit(case: &Case, added: &[&EffectDescriptor], size: f64, curves: Curves) -> F
             size * (i as f64 * 1.3).cos() / (ENTRIES as f64).sqrt() - linear.sum::<f64>()
         })
     };
-    let mut search = LeastSquares::new(variables, Settings::default());
+    let mut search = LeastSquares::new(variables, LeastSquaresSettings::default());
     loop {
         let plan = search.plan();
         if plan.is_empty() {
@@ -219,21 +220,21 @@ fn record(condition: usize, cycles: usize) -> Record {
     }
 }
 
-fn rows(records: &[Record], after: f64) -> Vec<Row> {
+fn rows(records: &[Record], after: f64) -> Vec<GapRow> {
     let split = records[0].split();
     let mut all = vec![
-        (split.fitted, Portion::Fitted),
-        (split.cycles, Portion::Cycles),
+        (split.fitted, DataRole::Fitted),
+        (split.cycles, DataRole::Cycles),
     ];
     let others = records[1..].iter().cloned();
-    all.extend(others.map(|record| (record, Portion::Condition)));
+    all.extend(others.map(|record| (record, DataRole::Condition)));
     all.retain(|(record, _)| !record.cycles.is_empty());
     all.into_iter()
-        .map(|(record, part)| Row {
+        .map(|(record, part)| GapRow {
             condition: record.condition,
             part,
             held_out: false,
-            closed: closed(&record, &record.cycles, &curves(1.0), &curves(after)),
+            closed: gap_closure(&record, &record.cycles, &curves(1.0), &curves(after)),
             before: curves(1.0),
             after: curves(after),
         })
@@ -242,9 +243,14 @@ fn rows(records: &[Record], after: f64) -> Vec<Row> {
 
 /// Builds a candidate effect with the given p-value; a p-value of NaN stands for an effect that could not be
 /// simulated.
-fn suspect(effect: &EffectDescriptor, statistic: f64, p_value: f64, absorbed: f64) -> Suspect {
+fn suspect(
+    effect: &EffectDescriptor,
+    statistic: f64,
+    p_value: f64,
+    absorbed: f64,
+) -> CandidateEffect {
     let able = p_value.is_finite();
-    Suspect {
+    CandidateEffect {
         rungs: Vec::new(),
         linear: true,
         effect: effect.clone(),
@@ -292,7 +298,7 @@ fn round(case: &Case, library: &[EffectDescriptor]) -> Round {
     Round {
         ranked: 1,
         together: false,
-        suspects,
+        candidates: suspects,
         generics,
         refits: vec![
             refit(0, 6.0, -80.0),
@@ -308,21 +314,21 @@ fn round(case: &Case, library: &[EffectDescriptor]) -> Round {
     }
 }
 
-/// Bins of one revolution.
-const TURN: along::Bins = along::Bins {
+/// Bins of one revolution for the synthetic map of the residual along the crank angle.
+const TURN: window_test::Bins = window_test::Bins {
     from: 0.0,
     width: 3.0,
-    count: along::BINS,
-    around: true,
+    count: window_test::BINS,
+    is_periodic: true,
 };
 
-fn whereabouts() -> Where {
+fn whereabouts() -> Localisation {
     let strength = |c: usize| -> Vec<f64> {
-        (0..along::BINS)
+        (0..window_test::BINS)
             .map(|b| 9.0 * ((b + 9 * c) as f64 * 0.1).sin())
             .collect()
     };
-    let window = |channel, from: f64, to: f64, strength| along::Window {
+    let window = |channel, from: f64, to: f64, strength| window_test::AbscissaWindow {
         channel,
         from,
         to,
@@ -344,8 +350,8 @@ fn whereabouts() -> Where {
         }],
         unit: "N".to_owned(),
     };
-    Where {
-        along: along::AlongMap {
+    Localisation {
+        along: window_test::AlongMap {
             bins: vec![TURN; CHANNELS.len()],
             strength: (0..CHANNELS.len()).map(strength).collect(),
             windows: vec![window(0, 30.0, 93.0, 12.1), window(1, 345.0, 378.0, -9.0)],
@@ -422,14 +428,14 @@ fn accounts() -> Vec<(Stage, StageCost)> {
     };
     vec![
         (Stage::Recalibrate, account(120, 0, 60)),
-        (Stage::What, account(90, 2, 40)),
+        (Stage::Test, account(90, 2, 40)),
         (Stage::Refit, account(310, 5, 150)),
     ]
 }
 
 /// Builds the estimate of a gauge gain error within its assumed tolerance.
-fn reads_high() -> NeverExact {
-    NeverExact {
+fn reads_high() -> NuisanceEstimate {
+    NuisanceEstimate {
         id: "gauge_gain".to_owned(),
         parameter: "gain_2".to_owned(),
         value: 0.006,
@@ -441,18 +447,18 @@ fn reads_high() -> NeverExact {
     }
 }
 
-/// Returns the predictive scores of an answer; empty if no effect was added.
+/// Returns the sample's scores of predicted held-out data; empty if no effect was added.
 fn predicted(added: bool) -> Vec<Prediction> {
     let one = Prediction {
         condition: 1,
-        part: Portion::Condition,
+        part: DataRole::Condition,
         nats: 61.2,
     };
     added.then_some(one).into_iter().collect()
 }
 
 /// Builds a diagnosis with the given verdict and all data that belong to it.
-pub(crate) fn diagnosis(verdict: Verdict) -> Made {
+pub(crate) fn diagnosis(verdict: Verdict) -> SampleDiagnosis {
     let case = sample::case();
     let library = library();
     let records = vec![record(0, 8), record(1, 8)];
@@ -479,7 +485,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
     } else {
         before.clone()
     };
-    let force = (verdict == Verdict::Unlisted).then(|| Force {
+    let force = (verdict == Verdict::Unlisted).then(|| ForceEstimate {
         id: "probe.back_head.sign".to_owned(),
         joint: "back_head".to_owned(),
         form: "sign".to_owned(),
@@ -497,7 +503,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
         reason: (verdict == Verdict::Unresolved).then(|| "the likeliest is not enough".to_owned()),
         effects,
         rounds: vec![round],
-        whereabouts: Some(whereabouts()),
+        localisation: Some(whereabouts()),
         preflight: Some(preflight()),
         preflight_after: added.then(preflight),
         limits: limits(&library),
@@ -507,13 +513,13 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
             share: 0.99,
             measurement: "kb1 known from a test of its own, or a sensor at the saddle".to_owned(),
         }],
-        look_alikes: vec![LookAlikes {
+        look_alikes: vec![IndistinguishablePair {
             effects: ["pin_clearance".to_owned(), "gauge_drift".to_owned()],
             cycles: 2.4,
             cycles_with_others: Some(0.6),
         }],
-        wander: vec![wander(1e-4)],
-        wander_after: vec![wander(0.6)],
+        drifts: vec![wander(1e-4)],
+        drifts_after: vec![wander(0.6)],
         before: Some(before),
         after: Some(after),
         rows: rows(&records, if added { 0.1 } else { 1.0 }),
@@ -521,14 +527,14 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
         rival: added.then(|| ("load_cell_lag".to_owned(), rows(&records, 0.4))),
         generic: (verdict == Verdict::Unlisted).then(|| "probe.back_head.sign".to_owned()),
         force,
-        noise: Known::Seen,
+        noise: NoiseSource::Measured,
         ..Diagnosis::unresolved("")
     };
-    Made {
+    SampleDiagnosis {
         case,
         records,
         library,
-        diagnosed: Diagnosed {
+        diagnosed: DiagnosisResult {
             diagnosis,
             accounts: accounts(),
         },
@@ -538,18 +544,18 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
 
 /// Builds the variation of the first gene: doubled in the second quarter of the revolution, unchanged
 /// elsewhere.
-fn wander(p_value: f64) -> Wander {
-    let sector = |k: usize| Part::Sector {
+fn wander(p_value: f64) -> ParameterDrift {
+    let sector = |k: usize| RecordPart::Sector {
         from: 90.0 * k as f64,
         to: 90.0 * (k + 1) as f64,
     };
-    let parts = (0..4).map(sector).chain([Part::Condition(1)]);
-    let shift = |(k, part)| Shift {
+    let parts = (0..4).map(sector).chain([RecordPart::Condition(1)]);
+    let shift = |(k, part)| ParameterShift {
         part,
         by: if k == 1 { 2.0_f64.log10() } else { 0.0 },
         p_value: if k == 1 { p_value } else { 0.9 },
     };
-    Wander {
+    ParameterDrift {
         unknown: 0,
         shifts: parts.enumerate().map(shift).collect(),
         explained: 0.42,
@@ -557,7 +563,7 @@ fn wander(p_value: f64) -> Wander {
 }
 
 /// Builds an ambiguous diagnosis: the first round added one effect, the second an ambiguity set of two.
-pub(crate) fn two_rounds() -> Made {
+pub(crate) fn two_rounds() -> SampleDiagnosis {
     let mut made = diagnosis(Verdict::Ambiguous);
     let ids: Vec<String> = made
         .library
@@ -578,23 +584,24 @@ pub(crate) fn two_rounds() -> Made {
     made
 }
 
-/// Builds a diagnosis of one cycle with stated noise: a suspected effect, but no named one.
-pub(crate) fn assumed() -> Made {
+/// Builds a diagnosis from a record of one cycle, whose noise level is stated instead of measured: an effect
+/// is suspected, but none is named.
+pub(crate) fn assumed() -> SampleDiagnosis {
     let mut made = diagnosis(Verdict::Unresolved);
     let suspect = estimate(&made.library[0], 0.8, 596.9);
     let diagnosis = &mut made.diagnosed.diagnosis;
-    diagnosis.noise = Known::Stated;
+    diagnosis.noise = NoiseSource::Stated;
     diagnosis.effects = vec![suspect];
     made
 }
 
 /// Builds a diagnosis that stopped at once, with a reason and no other data.
-pub(crate) fn stopped(reason: &str) -> Made {
+pub(crate) fn stopped(reason: &str) -> SampleDiagnosis {
     let mut made = diagnosis(Verdict::Unresolved);
     made.records = vec![record(0, 1)];
-    made.diagnosed = Diagnosed {
+    made.diagnosed = DiagnosisResult {
         diagnosis: Diagnosis {
-            noise: Known::Stated,
+            noise: NoiseSource::Stated,
             ..Diagnosis::unresolved(reason)
         },
         accounts: Vec::new(),

@@ -1,28 +1,28 @@
-//! Finite-difference columns of a Jacobian, except those already known; a column whose points all failed is
+//! Finite-difference columns of a Jacobian, except those known exactly; a column whose points all failed is
 //! retried once on the opposite side.
-use super::problem::{Settings, Variable};
+use super::problem::{LeastSquaresSettings, Variable};
 use nalgebra::{DMatrix, DVector};
 
-/// Difference point of one variable: its step and its result.
+/// Point displaced along one variable for a finite difference: its step and its result.
 #[derive(Clone, Debug)]
 pub(super) struct Difference {
     variable: usize,
     /// Signed difference step.
     step: f64,
-    found: Found,
+    found: DifferenceState,
 }
 
-/// Result of evaluating a difference point.
+/// Result at a point displaced for a finite difference.
 #[derive(Clone, Debug)]
-enum Found {
+enum DifferenceState {
     Awaited,
-    /// Residual at the difference point.
+    /// Residual vector at the displaced point.
     Residual(DVector<f64>),
-    /// The point could not be evaluated.
+    /// The displaced point could not be evaluated.
     Failed,
 }
 
-impl Found {
+impl DifferenceState {
     const fn residual(&self) -> Option<&DVector<f64>> {
         match self {
             Self::Residual(residual) => Some(residual),
@@ -31,12 +31,12 @@ impl Found {
     }
 }
 
-/// Jacobian columns being collected at one point, known or by differences.
+/// Jacobian columns being collected at one point, known exactly or from finite differences.
 #[derive(Clone, Debug)]
 pub(super) struct Columns {
     differences: Vec<Difference>,
     retried: bool,
-    /// Columns known without differences, indexed by variable; `None` where a column must be differenced.
+    /// Exactly known columns, indexed by variable; `None` where a column is determined by finite differences.
     known: Vec<Option<DVector<f64>>>,
 }
 
@@ -65,7 +65,7 @@ impl Columns {
                     differences.push(Difference {
                         variable,
                         step,
-                        found: Found::Awaited,
+                        found: DifferenceState::Awaited,
                     });
                 }
             };
@@ -84,10 +84,10 @@ impl Columns {
     fn open(&self) -> impl Iterator<Item = &Difference> {
         self.differences
             .iter()
-            .filter(|d| matches!(d.found, Found::Awaited))
+            .filter(|d| matches!(d.found, DifferenceState::Awaited))
     }
 
-    /// Returns the points still to be evaluated.
+    /// Returns the displaced points that are still to be evaluated.
     pub(super) fn points(&self, x: &[f64]) -> Vec<Vec<f64>> {
         let point = |d: &Difference| {
             let mut point = x.to_vec();
@@ -106,9 +106,9 @@ impl Columns {
         let awaited = self
             .differences
             .iter_mut()
-            .filter(|d| matches!(d.found, Found::Awaited));
+            .filter(|d| matches!(d.found, DifferenceState::Awaited));
         for (difference, residual) in awaited.zip(residuals) {
-            difference.found = residual.map_or(Found::Failed, Found::Residual);
+            difference.found = residual.map_or(DifferenceState::Failed, DifferenceState::Residual);
         }
         if !self.retried {
             self.retried = true;
@@ -116,8 +116,8 @@ impl Columns {
         }
     }
 
-    /// Adds, for every column without a single evaluated point, one more point on the opposite side with half
-    /// the step.
+    /// Adds, for every column none of whose points could be evaluated, one more point on the opposite side
+    /// with half the step.
     fn retry(&mut self, x: &[f64], variables: &[Variable]) {
         let mut again = Vec::new();
         for (variable, v) in variables.iter().enumerate() {
@@ -132,7 +132,7 @@ impl Columns {
                 again.push(Difference {
                     variable,
                     step,
-                    found: Found::Awaited,
+                    found: DifferenceState::Awaited,
                 });
             }
         }
@@ -178,9 +178,14 @@ impl Columns {
     }
 }
 
-/// Returns the difference step that would have changed the residual by `settings.change`, limited to
-/// `settings.step_range` about the variable's first step.
-pub(super) fn next_step(step: f64, variable: &Variable, change: f64, settings: &Settings) -> f64 {
+/// Returns the difference step for the next Jacobian: the step for which the residual would have changed by
+/// `settings.change`, limited to a factor of `settings.step_range` from the variable's first step.
+pub(super) fn next_step(
+    step: f64,
+    variable: &Variable,
+    change: f64,
+    settings: &LeastSquaresSettings,
+) -> f64 {
     let wanted = if change > 0.0 {
         step * (settings.change / change).clamp(0.1, 10.0)
     } else {

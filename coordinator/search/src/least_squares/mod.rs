@@ -14,6 +14,6 @@ mod step;
 #[cfg(test)]
 mod tests;
 
-pub use problem::{Ended, Evaluated, Linearized, Prior, Settings, Variable};
+pub use problem::{EvaluatedPoint, LeastSquaresSettings, Linearized, Prior, Termination, Variable};
 pub use search::LeastSquares;
 pub use step::{prior_cost, undamped};

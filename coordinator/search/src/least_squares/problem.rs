@@ -30,10 +30,11 @@ pub struct Prior {
 
 /// Settings of the least-squares search.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Maximum number of Jacobians.
+pub struct LeastSquaresSettings {
+    /// Maximum number of iterations, each of which computes a Jacobian.
     pub iterations: u32,
-    /// Convergence threshold on the largest cosine between a column of the Jacobian and the residual.
+    /// Convergence threshold on the largest absolute cosine of the angle between a column of the Jacobian and
+    /// the residual.
     pub gradient: f64,
     /// Convergence threshold on the relative decrease of the cost by a step.
     pub decrease: f64,
@@ -41,10 +42,10 @@ pub struct Settings {
     pub change: f64,
     /// Largest factor by which a difference step may grow or shrink from its first value.
     pub step_range: f64,
-    /// Additional damping, as a share of the mean curvature, on top of a variable's own curvature. Without it
-    /// a variable that hardly changes the residual goes to its bound at any damping.
+    /// Additional damping of every variable, as a share of the mean curvature, besides that by its own
+    /// curvature; without it a variable that hardly changes the residual goes to its bound at any damping.
     pub level: f64,
-    /// Whether columns are central differences, second-order accurate at twice the number of points.
+    /// Whether Jacobian columns are central differences, second-order accurate at twice the number of points.
     pub central: bool,
     /// Whether a search that has converged with one-sided differences continues with central ones until it
     /// converges again, so that the error of the differences no longer shifts the minimum.
@@ -53,7 +54,7 @@ pub struct Settings {
     pub exact: bool,
 }
 
-impl Settings {
+impl LeastSquaresSettings {
     /// Returns the default settings with at most `iterations` Jacobians.
     pub fn short(iterations: u32) -> Self {
         Self {
@@ -63,7 +64,7 @@ impl Settings {
     }
 }
 
-impl Default for Settings {
+impl Default for LeastSquaresSettings {
     fn default() -> Self {
         Self {
             iterations: 12,
@@ -81,7 +82,7 @@ impl Default for Settings {
 
 /// Reason why a search ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ended {
+pub enum Termination {
     /// The gradient vanishes, or steps no longer lower the cost noticeably.
     Converged,
     /// No step lowers the cost, though the gradient does not vanish.
@@ -99,14 +100,14 @@ pub struct Linearized {
     pub x: Vec<f64>,
     /// Residual vector at the point, length n.
     pub residual: DVector<f64>,
-    /// Derivatives of the residual, n x number of unknowns; the column of a variable that could not be
-    /// evaluated is zero.
+    /// Derivatives of the residual by the unknowns, n x number of unknowns; a column is zero if none of its
+    /// difference points could be evaluated.
     pub jacobian: DMatrix<f64>,
 }
 
 /// Result of evaluating a point: residual and known derivatives.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Evaluated {
+pub struct EvaluatedPoint {
     /// The residual vector.
     pub residual: DVector<f64>,
     /// Derivatives of the residual by the variables, in their order, if they were requested; `None` for a
@@ -114,7 +115,7 @@ pub struct Evaluated {
     pub columns: Vec<Option<DVector<f64>>>,
 }
 
-impl From<DVector<f64>> for Evaluated {
+impl From<DVector<f64>> for EvaluatedPoint {
     fn from(residual: DVector<f64>) -> Self {
         let columns = Vec::new();
         Self { residual, columns }

@@ -1,26 +1,26 @@
 //! Levenberg-Marquardt search as a sequence of batches: Jacobian columns, then a fan of damped steps.
 use super::{
     differences::{self, Columns},
-    problem::{Ended, Evaluated, Linearized, Settings, Variable},
+    problem::{EvaluatedPoint, LeastSquaresSettings, Linearized, Termination, Variable},
     step,
 };
 use nalgebra::{DMatrix, DVector};
 
-/// Kind of points that are planned next.
+/// Phase of the search, which determines the points planned next.
 #[derive(Clone, Debug)]
 enum Phase {
     Start,
-    /// Best point again, evaluated with its exact columns.
+    /// Evaluation of the best point again, this time with exact Jacobian columns.
     Exact,
     Columns(Columns),
     Fan(Vec<(f64, Vec<f64>)>),
-    Over(Ended),
+    Over(Termination),
 }
 
 /// Levenberg-Marquardt search that plans batches of points and absorbs their residuals.
 #[derive(Clone, Debug)]
 pub struct LeastSquares {
-    settings: Settings,
+    settings: LeastSquaresSettings,
     variables: Vec<Variable>,
     steps: Vec<f64>,
     at: Linearized,
@@ -38,7 +38,7 @@ pub struct LeastSquares {
 
 impl LeastSquares {
     /// Creates a search from the variables' starts, clamped into their boxes.
-    pub fn new(variables: Vec<Variable>, settings: Settings) -> Self {
+    pub fn new(variables: Vec<Variable>, settings: LeastSquaresSettings) -> Self {
         let x = variables
             .iter()
             .map(|v| v.start.clamp(v.lower, v.upper))
@@ -67,14 +67,14 @@ impl LeastSquares {
     /// Creates a search from a point whose residual is known already; only its Jacobian is missing.
     pub fn from_known(
         mut variables: Vec<Variable>,
-        settings: Settings,
+        settings: LeastSquaresSettings,
         known: (&[f64], DVector<f64>),
     ) -> Self {
         for (variable, x) in variables.iter_mut().zip(known.0) {
             variable.start = *x;
         }
         let mut search = Self::new(variables, settings);
-        search.arrive(known.1);
+        search.accept_point(known.1);
         search
     }
 
@@ -89,16 +89,17 @@ impl LeastSquares {
         }
     }
 
-    /// Returns whether the residuals of the planned points are to come with their derivatives by all
-    /// variables.
+    /// Returns whether the planned points are to be evaluated together with the derivatives of their
+    /// residuals by all variables.
     pub const fn wants_columns(&self) -> bool {
         self.settings.exact && matches!(self.phase, Phase::Start | Phase::Exact)
     }
 
     /// Absorbs the results of the planned points; `None` for a point that could not be evaluated. All
     /// residuals of a search have the same length.
-    pub fn absorb<E: Into<Evaluated>>(&mut self, found: Vec<Option<E>>) {
-        let found: Vec<Option<Evaluated>> = found.into_iter().map(|e| e.map(Into::into)).collect();
+    pub fn absorb<E: Into<EvaluatedPoint>>(&mut self, found: Vec<Option<E>>) {
+        let found: Vec<Option<EvaluatedPoint>> =
+            found.into_iter().map(|e| e.map(Into::into)).collect();
         self.evaluations += found.len() as u64;
         self.failures += found.iter().filter(|e| e.is_none()).count() as u64;
         let (residuals, mut columns): (Vec<_>, Vec<_>) = found
@@ -106,7 +107,7 @@ impl LeastSquares {
             .map(|e| e.map_or((None, Vec::new()), |e| (Some(e.residual), e.columns)))
             .unzip();
         let known = columns.pop().filter(|_| self.wants_columns());
-        match std::mem::replace(&mut self.phase, Phase::Over(Ended::StartFailed)) {
+        match std::mem::replace(&mut self.phase, Phase::Over(Termination::StartFailed)) {
             Phase::Start => {
                 if let Some(residual) = residuals.into_iter().next().flatten() {
                     self.place(residual);
@@ -121,7 +122,7 @@ impl LeastSquares {
     }
 
     /// Returns why the search ended; `None` while it is running.
-    pub const fn ended(&self) -> Option<Ended> {
+    pub const fn ended(&self) -> Option<Termination> {
         match self.phase {
             Phase::Over(ended) => Some(ended),
             Phase::Start | Phase::Exact | Phase::Columns(_) | Phase::Fan(_) => None,
@@ -157,13 +158,13 @@ impl LeastSquares {
 
     /// Returns the residual at the minimum of the linearised problem: the residual itself if the search has
     /// converged, otherwise a first-order prediction of the residual at convergence.
-    pub fn settled_residual(&self) -> DVector<f64> {
+    pub fn linear_minimum_residual(&self) -> DVector<f64> {
         step::settled(&self.at, &self.variables)
     }
 
     /// Returns the relative decrease of the cost that the linearised problem predicts for one more step.
-    pub fn promised_decrease(&self) -> f64 {
-        let settled = self.settled_residual().norm_squared();
+    pub fn predicted_decrease(&self) -> f64 {
+        let settled = self.linear_minimum_residual().norm_squared();
         ((self.at.residual.norm_squared() - settled) / self.cost).max(0.0)
     }
 
@@ -173,8 +174,8 @@ impl LeastSquares {
         self.fresh = false;
     }
 
-    /// Moves to the current point, given its residual, and plans its Jacobian.
-    fn arrive(&mut self, residual: DVector<f64>) {
+    /// Accepts the search's current point, given its residual, and plans the evaluation of its Jacobian.
+    fn accept_point(&mut self, residual: DVector<f64>) {
         self.place(residual);
         if self.settings.exact {
             self.phase = Phase::Exact;
@@ -189,17 +190,17 @@ impl LeastSquares {
         self.settings.exact &= known.iter().any(Option::is_some);
         let how = (&self.steps[..], self.settings.central);
         let columns = Columns::new(&self.at.x, &self.variables, how, known);
-        self.seen(columns);
+        self.columns_absorbed(columns);
     }
 
     fn columns(&mut self, mut columns: Columns, residuals: Vec<Option<DVector<f64>>>) {
         columns.absorb(&self.at.x, &self.variables, residuals);
-        self.seen(columns);
+        self.columns_absorbed(columns);
     }
 
-    /// Stores the columns; once all are complete, computes the Jacobian and either ends the search or plans
-    /// the next fan.
-    fn seen(&mut self, columns: Columns) {
+    /// Stores the collected Jacobian columns; once all are complete, computes the Jacobian and either ends
+    /// the search or plans the next fan of damped steps.
+    fn columns_absorbed(&mut self, columns: Columns) {
         if !columns.is_complete() {
             self.phase = Phase::Columns(columns);
             return;
@@ -223,9 +224,9 @@ impl LeastSquares {
             self.last_decrease = 1.0;
             self.plan_columns(Vec::new());
         } else if converged {
-            self.phase = Phase::Over(Ended::Converged);
+            self.phase = Phase::Over(Termination::Converged);
         } else if self.iteration >= self.settings.iterations {
-            self.phase = Phase::Over(Ended::Iterations);
+            self.phase = Phase::Over(Termination::Iterations);
         } else {
             self.refused = 0;
             self.plan_fan();
@@ -239,7 +240,7 @@ impl LeastSquares {
             (self.damping, self.settings.level),
         );
         self.phase = if fan.is_empty() {
-            Phase::Over(Ended::Stalled)
+            Phase::Over(Termination::Stalled)
         } else {
             Phase::Fan(fan)
         };
@@ -259,7 +260,7 @@ impl LeastSquares {
                 self.last_decrease = (self.cost - cost) / self.cost;
                 self.damping = damping.max(1e-9);
                 self.at.x = x;
-                self.arrive(residual);
+                self.accept_point(residual);
             }
             _ => {
                 self.refused += 1;
@@ -269,9 +270,9 @@ impl LeastSquares {
                 } else {
                     let flat = self.gradient_ratio() < 10.0 * self.settings.gradient;
                     self.phase = Phase::Over(if flat {
-                        Ended::Converged
+                        Termination::Converged
                     } else {
-                        Ended::Stalled
+                        Termination::Stalled
                     });
                 }
             }

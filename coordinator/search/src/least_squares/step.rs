@@ -19,7 +19,8 @@ pub fn prior_cost(x: &[f64], variables: &[Variable]) -> f64 {
     x.iter().zip(variables).map(part).sum()
 }
 
-/// Returns gradient and curvature of half the cost: `J^T r + L (x - mean)`, `J^T J + L`.
+/// Returns gradient and curvature of half the cost, with the prior precision L: `J^T r + L (x - mean)` and
+/// `J^T J + L`.
 fn normal(at: &Linearized, variables: &[Variable]) -> (DVector<f64>, DMatrix<f64>) {
     let mut gradient = at.jacobian.tr_mul(&at.residual);
     let mut curvature = at.jacobian.tr_mul(&at.jacobian);

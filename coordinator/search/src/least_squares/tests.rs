@@ -14,17 +14,17 @@ fn variable(start: f64, lower: f64, upper: f64) -> Variable {
     }
 }
 
-fn tight() -> Settings {
-    Settings {
+fn tight() -> LeastSquaresSettings {
+    LeastSquaresSettings {
         iterations: 60,
         gradient: 1e-9,
         decrease: 1e-14,
         change: 1e-4,
-        ..Settings::default()
+        ..LeastSquaresSettings::default()
     }
 }
 
-fn run(search: &mut LeastSquares, residual: impl Fn(&[f64]) -> Option<Vec<f64>>) -> Ended {
+fn run(search: &mut LeastSquares, residual: impl Fn(&[f64]) -> Option<Vec<f64>>) -> Termination {
     loop {
         if let Some(ended) = search.ended() {
             return ended;
@@ -66,12 +66,12 @@ fn an_exponential_is_fitted_as_by_the_normal_equations_of_its_logarithm() {
             .collect()
     };
     for central in [false, true] {
-        let settings = Settings { central, ..tight() };
+        let settings = LeastSquaresSettings { central, ..tight() };
         let mut search = LeastSquares::new(
             vec![variable(1.0, 0.1, 10.0), variable(0.3, 0.0, 9.0)],
             settings,
         );
-        assert_eq!(run(&mut search, |x| Some(model(x))), Ended::Converged);
+        assert_eq!(run(&mut search, |x| Some(model(x))), Termination::Converged);
         let x = &search.best().x;
         assert!(
             (x[0] - 3.0).abs() < 1e-6 && (x[1] - 1.7).abs() < 1e-6,
@@ -84,18 +84,21 @@ fn an_exponential_is_fitted_as_by_the_normal_equations_of_its_logarithm() {
 #[test]
 fn the_settled_residual_is_that_of_the_linear_minimum() {
     let model = |x: &[f64]| vec![x[0] + x[1] - 3.0, x[0] - x[1], 2.0 * x[1] + 1.0];
-    let settings = Settings {
+    let settings = LeastSquaresSettings {
         iterations: 1,
         ..tight()
     };
     let variables = vec![variable(5.0, -9.0, 9.0), variable(5.0, -9.0, 9.0)];
     let mut search = LeastSquares::new(variables, settings);
-    assert_eq!(run(&mut search, |x| Some(model(x))), Ended::Iterations);
+    assert_eq!(
+        run(&mut search, |x| Some(model(x))),
+        Termination::Iterations
+    );
     // normal equations: 2 x + 0 y = 3, 6 y = 1
     let expected = DVector::from_vec(model(&[1.5, 1.0 / 6.0]));
-    assert!((search.settled_residual() - &expected).norm() < 1e-6);
+    assert!((search.linear_minimum_residual() - &expected).norm() < 1e-6);
     let promised = 1.0 - expected.norm_squared() / search.cost();
-    assert!((search.promised_decrease() - promised).abs() < 1e-6);
+    assert!((search.predicted_decrease() - promised).abs() < 1e-6);
 }
 
 #[test]
@@ -130,7 +133,7 @@ fn points_that_fail_are_missing_values() {
     assert!(search.work().1 > 0);
 
     let mut search = LeastSquares::new(vec![variable(3.0, -5.0, 5.0)], tight());
-    assert_eq!(run(&mut search, |_| None), Ended::StartFailed);
+    assert_eq!(run(&mut search, |_| None), Termination::StartFailed);
 }
 
 #[test]
@@ -168,7 +171,7 @@ fn a_known_start_is_not_evaluated_again_and_the_last_jacobian_is_fresh() {
 
 /// Runs a search on the Rosenbrock function, returning exact columns for those variables for which `knows` is
 /// true.
-fn run_knowing(search: &mut LeastSquares, knows: impl Fn(usize) -> bool) -> Ended {
+fn run_knowing(search: &mut LeastSquares, knows: impl Fn(usize) -> bool) -> Termination {
     loop {
         if let Some(ended) = search.ended() {
             return ended;
@@ -178,7 +181,7 @@ fn run_knowing(search: &mut LeastSquares, knows: impl Fn(usize) -> bool) -> Ende
             let columns = [[-20.0 * x[0], -1.0], [10.0, 0.0]];
             let columns = columns.iter().enumerate();
             let columns = columns.map(|(k, c)| knows(k).then(|| DVector::from_row_slice(c)));
-            Some(Evaluated {
+            Some(EvaluatedPoint {
                 residual: DVector::from_vec(rosenbrock(x)),
                 columns: if wants { columns.collect() } else { Vec::new() },
             })
@@ -192,7 +195,7 @@ fn run_knowing(search: &mut LeastSquares, knows: impl Fn(usize) -> bool) -> Ende
 fn known_columns_take_the_place_of_differences() {
     let search = |exact| {
         let variables = vec![variable(-1.2, -5.0, 5.0), variable(1.0, -5.0, 5.0)];
-        LeastSquares::new(variables, Settings { exact, ..tight() })
+        LeastSquares::new(variables, LeastSquaresSettings { exact, ..tight() })
     };
     let (mut differenced, mut exact) = (search(false), search(true));
     run_knowing(&mut differenced, |_| true);

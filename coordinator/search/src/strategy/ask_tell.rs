@@ -1,9 +1,9 @@
 //! Interface of every search strategy: ask for proposals, tell their results.
 use super::{
     archive::{Archive, Residual},
+    evaluation_result::EvaluationResult,
     outcome::{Best, Finish, Progress},
     proposal::Proposal,
-    told::Told,
 };
 
 /// Search for the individual of smallest fitness, in ask/tell form.
@@ -15,7 +15,7 @@ pub trait Strategy {
     /// Takes the result of a proposal. Results may come in any order: they are buffered and consumed in id
     /// order, so the search does not depend on the order of arrival. A second result for the same id is
     /// ignored.
-    fn tell(&mut self, id: u64, result: Told);
+    fn tell(&mut self, id: u64, result: EvaluationResult);
 
     /// Takes the residual vector of a proposal whose purpose requires one, before its result. A strategy that
     /// needs no residuals ignores it.

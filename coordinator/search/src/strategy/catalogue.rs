@@ -1,16 +1,17 @@
 //! Catalogue of presets.
 use super::{
     ask_tell::Strategy,
-    cma_es, l_shade,
+    cma_es,
+    definition::Preset,
+    l_shade,
     memetic::{generations, window},
-    offer::Preset,
     quick, random,
     setting::SettingsError,
     settings::Settings,
 };
 use crate::space::Space;
 
-/// All presets, in the order in which help lists them.
+/// All search presets, in the order in which help texts list them.
 pub const CATALOGUE: &[Preset] = &[
     quick::QUICK,
     quick::MEMETIC_AND_SCANS,

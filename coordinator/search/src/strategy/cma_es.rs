@@ -6,15 +6,15 @@
 //! at a bound, steps towards it keep their size. Only the order of results counts, so failures are merely
 //! ranked last.
 use super::{
-    archive::{Archive, Evaluated},
+    archive::{Archive, EvaluatedIndividual},
     ask_tell::Strategy,
-    conductor::Conductor,
     covariance::{Distribution, normal, ranked},
-    offer::{Group, Preset, Promise},
-    piece::{Batch, Draft, Piece},
+    definition::{Expectations, Preset, SettingGroup},
     proposal::Purpose,
-    setting::{Setting, SettingsError, Values, check},
-    settings::{Recipe, Settings, build_as},
+    sequencer::Conductor,
+    setting::{AllowedValues, Setting, SettingsError, check},
+    settings::{Settings, StrategySettings, build_as},
+    stage::{Batch, Piece, ProposalDraft},
 };
 use crate::{
     random::{Phase, Streams},
@@ -30,38 +30,38 @@ pub const CMA_ES: Preset = Preset {
     summary: "covariance matrix adaptation over the whole box, with restarts",
     strategy: CmaEsSettings::STRATEGY,
     settings: |plan| Settings::of(&CmaEsSettings::for_dimension(plan.space.dimension())),
-    groups: &[Group::whole(SETTINGS)],
-    promise: Promise {
+    groups: &[SettingGroup::whole(SETTINGS)],
+    expectations: Expectations {
         one_basin: 1e-6,
         many_basins: 3.0,
         distance: 1e-3,
-        opens_at_recommended: false,
-        valley: None,
-        chance: true,
+        starts_at_recommended: false,
+        valley_evaluations: None,
+        seed_dependent: true,
     },
     build: build_as::<CmaEsSettings>,
 };
 
-/// Settings that can be set by name.
+/// Table of the CMA-ES settings that can be set by name on the command line.
 const SETTINGS: &[Setting] = &[
     Setting::new(
         "population",
-        Values::Whole(4, u64::MAX),
+        AllowedValues::Whole(4, u64::MAX),
         "individuals per generation",
     ),
     Setting::new(
         "spread",
-        Values::Real(1e-6, 10.0),
+        AllowedValues::Real(1e-6, 10.0),
         "first standard deviation, as a share of each unknown's trust interval",
     ),
     Setting::new(
         "growth",
-        Values::Whole(1, 10),
+        AllowedValues::Whole(1, 10),
         "factor on the population of every restart",
     ),
     Setting::new(
         "evaluations",
-        Values::Whole(4, 100_000_000),
+        AllowedValues::Whole(4, 100_000_000),
         "total number of evaluations",
     ),
 ];
@@ -76,7 +76,7 @@ pub struct CmaEsSettings {
     pub spread: f64,
     /// Factor on the population at every restart.
     pub growth: usize,
-    /// Total number of evaluations.
+    /// Factor by which the population grows at every restart.
     pub evaluations: usize,
 }
 
@@ -99,7 +99,7 @@ impl CmaEsSettings {
     }
 }
 
-impl Recipe for CmaEsSettings {
+impl StrategySettings for CmaEsSettings {
     const STRATEGY: &'static str = "cma-es";
 
     fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
@@ -118,7 +118,7 @@ impl Recipe for CmaEsSettings {
     }
 }
 
-/// CMA-ES with growing populations at restarts, as a piece of a strategy.
+/// CMA-ES with a larger population at every restart, as one batch-wise part (piece) of a strategy.
 struct CmaEs {
     settings: CmaEsSettings,
     space: Space,
@@ -127,69 +127,71 @@ struct CmaEs {
     planned: usize,
     generation: u32,
     restarts: u32,
-    course: Option<Course>,
+    course: Option<RestartRun>,
     /// Standard normal vectors from which the points of the running batch were drawn.
     running: Vec<DVector<f64>>,
 }
 
 /// One CMA-ES run from a start to its convergence, between two restarts.
-struct Course {
+struct RestartRun {
     distribution: Distribution,
     population: usize,
     rounds: u32,
     /// Best fitness of recent generations, the last one at the back.
-    late: VecDeque<f64>,
+    recent_best: VecDeque<f64>,
 }
 
-/// Convergence threshold on the largest standard deviation (coordinate).
+/// Convergence threshold on the largest standard deviation of the search distribution (coordinate).
 const REACH: f64 = 1e-12;
-/// Share of an interval next to each bound in which points are mapped quadratically.
+/// Share of a gene's interval, at each bound, in which search coordinates are mapped quadratically into the
+/// box.
 const BEND: f64 = 0.03;
-/// Convergence thresholds on the range of the best fitness of recent generations: relative and absolute.
+/// Convergence thresholds on the range of the best fitness over recent generations: relative and absolute.
 const FLAT: [f64; 2] = [1e-12, 1e-14];
 
-impl Course {
-    /// Creates a run with its mean at `start` and standard deviations `spread`.
+impl RestartRun {
+    /// Creates a CMA-ES run with its mean at `start` and initial standard deviations `spread`.
     fn new(start: Vec<f64>, spread: &DVector<f64>, population: usize) -> Self {
         Self {
             distribution: Distribution::new(DVector::from_vec(start), spread),
             population,
             rounds: 0,
-            late: VecDeque::new(),
+            recent_best: VecDeque::new(),
         }
     }
 
     /// Updates the distribution with a whole generation; returns whether the run has converged.
-    fn absorb(&mut self, drawn: &[DVector<f64>], results: &[Evaluated]) -> bool {
+    fn absorb(&mut self, drawn: &[DVector<f64>], results: &[EvaluatedIndividual]) -> bool {
         self.rounds += 1;
-        if !results.iter().any(|result| result.told.survived()) {
+        if !results.iter().any(|result| result.result.survived()) {
             // says nothing about where to go
             self.distribution.sigma *= 0.5;
-            return self.distribution.reach() < REACH;
+            return self.distribution.max_deviation() < REACH;
         }
         let ranked = ranked(drawn, results);
         self.distribution.update(&ranked, self.rounds, true);
-        let fitness = results.iter().filter(|result| result.told.survived());
-        let best = fitness.map(|result| result.told.fitness);
-        self.late.push_back(best.fold(f64::INFINITY, f64::min));
+        let fitness = results.iter().filter(|result| result.result.survived());
+        let best = fitness.map(|result| result.result.fitness);
+        self.recent_best
+            .push_back(best.fold(f64::INFINITY, f64::min));
         let window = 10 + 30 * self.distribution.mean.len() / self.population;
-        if self.late.len() > window {
-            self.late.pop_front();
+        if self.recent_best.len() > window {
+            self.recent_best.pop_front();
         }
-        let (low, high) = self.late.iter().fold(
+        let (low, high) = self.recent_best.iter().fold(
             (f64::INFINITY, f64::NEG_INFINITY),
             |(low, high): (f64, f64), y| (low.min(*y), high.max(*y)),
         );
         let flat = high - low <= FLAT[0] * high.abs().max(low.abs()) + FLAT[1];
-        let reach = self.distribution.reach();
-        (self.late.len() == window && flat) || reach < REACH || !reach.is_finite()
+        let reach = self.distribution.max_deviation();
+        (self.recent_best.len() == window && flat) || reach < REACH || !reach.is_finite()
     }
 }
 
 impl CmaEs {
-    /// Creates the next run: the first from the start of the case, later ones from random points of the trust
-    /// intervals.
-    fn begin(&self) -> Course {
+    /// Creates the next CMA-ES run: the first from the start of the case, later ones from random points of
+    /// the trust intervals.
+    fn begin(&self) -> RestartRun {
         let axes = self.space.axes().iter();
         let spread = axes.map(|axis| self.settings.spread * axis.trust.length());
         let spread = DVector::from_iterator(self.space.dimension(), spread);
@@ -205,8 +207,8 @@ impl CmaEs {
         let population = self.settings.population.saturating_mul(grown);
         let most = self.settings.evaluations.max(4);
         let axes = self.space.axes().iter().zip(start);
-        let start = axes.map(|(axis, x)| unbent(axis.interval(), x));
-        Course::new(start.collect(), &spread, population.min(most))
+        let start = axes.map(|(axis, x)| from_box(axis.interval(), x));
+        RestartRun::new(start.collect(), &spread, population.min(most))
     }
 }
 
@@ -227,9 +229,11 @@ impl Piece for CmaEs {
             let z = normal(self.space.dimension(), &mut stream);
             let x = course.distribution.point(&z);
             let axes = self.space.axes().iter().zip(x.iter());
-            let inside: Vec<f64> = axes.map(|(axis, x)| bent(axis.interval(), *x)).collect();
+            let inside: Vec<f64> = axes
+                .map(|(axis, x)| into_box(axis.interval(), *x))
+                .collect();
             self.running.push(z);
-            drafts.push(Draft {
+            drafts.push(ProposalDraft {
                 genes: self.space.values(&inside),
                 purpose: Purpose::Offspring,
             });
@@ -241,7 +245,7 @@ impl Piece for CmaEs {
         })
     }
 
-    fn absorb(&mut self, results: &[Evaluated]) {
+    fn absorb(&mut self, results: &[EvaluatedIndividual]) {
         let drawn = std::mem::take(&mut self.running);
         let Some(course) = &mut self.course else {
             return;
@@ -271,7 +275,7 @@ impl Piece for CmaEs {
 
 /// Maps an unbounded search coordinate into the box: quadratic near a bound, so that the bound is the vertex
 /// of a parabola, and mirrored beyond it.
-fn bent(interval: Interval, y: f64) -> f64 {
+fn into_box(interval: Interval, y: f64) -> f64 {
     let length = interval.length();
     if length <= 0.0 || !y.is_finite() {
         return interval.clamp(y);
@@ -292,7 +296,7 @@ fn bent(interval: Interval, y: f64) -> f64 {
 }
 
 /// Inverse of [`bent`]: returns the search coordinate that is mapped to `x` in the box.
-fn unbent(interval: Interval, x: f64) -> f64 {
+fn from_box(interval: Interval, x: f64) -> f64 {
     let bend = BEND * interval.length();
     let (low, high) = (x - interval.from, interval.to - x);
     if low < bend {
@@ -313,7 +317,7 @@ mod tests {
         let interval = Interval { from: 1.0, to: 3.0 };
         for y in [1.06, 2.0, 2.94] {
             assert!(
-                (bent(interval, y) - y).abs() < 1e-12,
+                (into_box(interval, y) - y).abs() < 1e-12,
                 "{y}: the middle is as it was"
             );
         }
@@ -323,20 +327,20 @@ mod tests {
             (3.0 + bend, 3.0),
             (1.0, 1.0 + 0.25 * bend),
         ] {
-            assert!((bent(interval, y) - inside).abs() < 1e-12, "{y}");
-            assert!((unbent(interval, inside) - y).abs() < 1e-6, "{y}");
+            assert!((into_box(interval, y) - inside).abs() < 1e-12, "{y}");
+            assert!((from_box(interval, inside) - y).abs() < 1e-6, "{y}");
         }
         // the same far from either side of a wall, and once around
         for offset in [0.01, 0.3, 1.7] {
             let [below, above] = [1.0 - bend - offset, 1.0 - bend + offset];
-            assert!((bent(interval, below) - bent(interval, above)).abs() < 1e-12);
+            assert!((into_box(interval, below) - into_box(interval, above)).abs() < 1e-12);
             let around = above + 2.0 * (2.0 + 2.0 * bend);
-            assert!((bent(interval, around) - bent(interval, above)).abs() < 1e-12);
+            assert!((into_box(interval, around) - into_box(interval, above)).abs() < 1e-12);
         }
         for step in -400..400 {
-            let x = bent(interval, f64::from(step) / 50.0);
+            let x = into_box(interval, f64::from(step) / 50.0);
             assert!((1.0..=3.0).contains(&x), "{step}");
         }
-        assert!(bent(interval, f64::INFINITY) <= 3.0);
+        assert!(into_box(interval, f64::INFINITY) <= 3.0);
     }
 }

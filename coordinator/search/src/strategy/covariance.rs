@@ -5,7 +5,7 @@
 //! whitened step of the mean is the weighted mean of the `z`, so no inverse is needed). It learns
 //! correlations between the unknowns, which a search along the axes does not. It handles neither bounds nor
 //! termination.
-use super::archive::Evaluated;
+use super::archive::EvaluatedIndividual;
 use crate::random::Stream;
 use nalgebra::{DMatrix, DVector};
 
@@ -14,7 +14,7 @@ pub(super) struct Distribution {
     pub(super) mean: DVector<f64>,
     covariance: DMatrix<f64>,
     factor: DMatrix<f64>,
-    /// Step size.
+    /// Step size: factor on the standard deviations of the distribution.
     pub(super) sigma: f64,
     sigma_path: DVector<f64>,
     covariance_path: DVector<f64>,
@@ -28,16 +28,17 @@ pub(super) fn normal(count: usize, stream: &mut Stream) -> DVector<f64> {
     )
 }
 
-/// Returns the standard normal vectors of a batch, sorted by result, best first.
-pub(super) fn ranked(drawn: &[DVector<f64>], results: &[Evaluated]) -> Vec<DVector<f64>> {
+/// Returns the standard normal vectors from which a batch was drawn, sorted by the results of its points,
+/// best first.
+pub(super) fn ranked(drawn: &[DVector<f64>], results: &[EvaluatedIndividual]) -> Vec<DVector<f64>> {
     let mut order: Vec<usize> = (0..results.len()).collect();
-    order.sort_by(|a, b| results[*a].told.order(results[*b].told));
+    order.sort_by(|a, b| results[*a].result.order(results[*b].result));
     order.iter().map(|i| drawn[*i].clone()).collect()
 }
 
 /// Returns the magnitudes of the negative weights of the worse half of a batch; the array holds the upper
 /// bounds on their sum by equations 50 and 52.
-fn repelling(count: usize, [one, definite]: [f64; 2]) -> Vec<f64> {
+fn negative_weights(count: usize, [one, definite]: [f64; 2]) -> Vec<f64> {
     let parents = count / 2;
     let raw = |rank: usize| libm::log(0.5 * (count as f64 + 1.0)) - libm::log(rank as f64);
     let worse: Vec<f64> = (parents + 1..=count).map(|rank| -raw(rank)).collect();
@@ -65,13 +66,13 @@ impl Distribution {
         }
     }
 
-    /// Returns the point for a vector of standard normal numbers.
+    /// Returns the search point `m + s L z` for a vector `z` of standard normal numbers.
     pub(super) fn point(&self, z: &DVector<f64>) -> DVector<f64> {
         &self.mean + self.sigma * (&self.factor * z)
     }
 
     /// Returns the largest standard deviation of any unknown.
-    pub(super) fn reach(&self) -> f64 {
+    pub(super) fn max_deviation(&self) -> f64 {
         self.sigma * libm::sqrt(self.covariance.diagonal().max())
     }
 
@@ -122,7 +123,10 @@ impl Distribution {
         }
         if active && c_mu > 0.0 {
             let bound = [1.0 + c_one / c_mu, (1.0 - c_one - c_mu) / (n * c_mu)];
-            for (z, weight) in ranked[parents..].iter().zip(repelling(ranked.len(), bound)) {
+            for (z, weight) in ranked[parents..]
+                .iter()
+                .zip(negative_weights(ranked.len(), bound))
+            {
                 let y = &self.factor * z;
                 let length = z.norm_squared().max(f64::MIN_POSITIVE);
                 covariance -= c_mu * weight * n / length * &y * y.transpose();

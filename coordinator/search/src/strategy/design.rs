@@ -1,8 +1,8 @@
 //! Initial designs: the first points of a search, before any result.
 use super::{
-    archive::{Archive, Evaluated},
-    piece::{Batch, Draft, Piece},
+    archive::{Archive, EvaluatedIndividual},
     proposal::Purpose,
+    stage::{Batch, Piece, ProposalDraft},
 };
 use crate::{
     random::{Phase, Streams},
@@ -30,9 +30,9 @@ pub(super) fn hypercube(intervals: &[Interval], count: usize, streams: Streams) 
     points
 }
 
-/// Returns the starting points followed by the other points; each starting point after the first replaces one
-/// of `others`, and all starting points are kept.
-pub(super) fn led(space: &Space, others: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+/// Returns the starting points of the space followed by `others`, of which one is dropped for each starting
+/// point after the first, so that the total count is kept.
+pub(super) fn prepend_starts(space: &Space, others: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let starts = match space.starts() {
         [] => vec![space.origin()],
         starts => starts.to_vec(),
@@ -44,18 +44,18 @@ pub(super) fn led(space: &Space, others: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Fixed set of points as a piece of a strategy: one batch.
+/// Fixed set of initial points, evaluated in one batch, as a piece of a strategy.
 pub(super) struct Points {
     /// Points that have not been proposed yet.
-    drafts: Vec<Draft>,
-    /// Number of points being evaluated.
+    drafts: Vec<ProposalDraft>,
+    /// Number of initial points being evaluated.
     running: usize,
 }
 
 impl Points {
-    /// Creates a piece that evaluates the points at these coordinates.
+    /// Creates a piece that evaluates the given points (coordinate).
     pub(super) fn new(space: &Space, points: &[Vec<f64>]) -> Self {
-        let drafts = points.iter().map(|point| Draft {
+        let drafts = points.iter().map(|point| ProposalDraft {
             genes: space.values(point),
             purpose: Purpose::Initial,
         });
@@ -76,7 +76,7 @@ impl Piece for Points {
         })
     }
 
-    fn absorb(&mut self, _results: &[Evaluated]) {
+    fn absorb(&mut self, _results: &[EvaluatedIndividual]) {
         self.running = 0;
     }
 

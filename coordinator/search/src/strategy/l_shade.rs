@@ -6,16 +6,16 @@
 //! the evaluations. Only the order of results and the sizes of gains count; failures are ranked last and gain
 //! nothing.
 use super::{
-    archive::{Archive, Evaluated},
+    archive::{Archive, EvaluatedIndividual},
     ask_tell::Strategy,
-    conductor::Conductor,
-    design::{hypercube, led},
-    offer::{Group, Preset, Promise},
-    piece::{Batch, Draft, Piece},
+    definition::{Expectations, Preset, SettingGroup},
+    design::{hypercube, prepend_starts},
+    evaluation_result::EvaluationResult,
     proposal::Purpose,
-    setting::{Setting, SettingsError, Values, check},
-    settings::{Recipe, Settings, build_as},
-    told::Told,
+    sequencer::Conductor,
+    setting::{AllowedValues, Setting, SettingsError, check},
+    settings::{Settings, StrategySettings, build_as},
+    stage::{Batch, Piece, ProposalDraft},
 };
 use crate::{
     random::{Phase, Stream, Streams},
@@ -29,43 +29,43 @@ pub const L_SHADE: Preset = Preset {
     summary: "L-SHADE: differential evolution with adaptive factors and a shrinking population",
     strategy: LShadeSettings::STRATEGY,
     settings: |plan| Settings::of(&LShadeSettings::for_dimension(plan.space.dimension())),
-    groups: &[Group::whole(SETTINGS)],
-    promise: Promise {
+    groups: &[SettingGroup::whole(SETTINGS)],
+    expectations: Expectations {
         one_basin: 0.01,
         many_basins: 3.0,
         distance: 0.1,
-        opens_at_recommended: true,
-        valley: None,
-        chance: true,
+        starts_at_recommended: true,
+        valley_evaluations: None,
+        seed_dependent: true,
     },
     build: build_as::<LShadeSettings>,
 };
 
-/// Settings that can be set by name.
+/// Table of the L-SHADE settings that can be set by name on the command line.
 const SETTINGS: &[Setting] = &[
     Setting::new(
         "population",
-        Values::Whole(4, u64::MAX),
+        AllowedValues::Whole(4, u64::MAX),
         "individuals per generation",
     ),
     Setting::new(
         "memory",
-        Values::Whole(1, 1000),
+        AllowedValues::Whole(1, 1000),
         "number of memory entries for successful factors",
     ),
     Setting::new(
         "best",
-        Values::Real(0.01, 1.0),
+        AllowedValues::Real(0.01, 1.0),
         "share of the population, best first, from which the attractor of a mutation is drawn",
     ),
     Setting::new(
         "archive",
-        Values::Real(0.0, 10.0),
+        AllowedValues::Real(0.0, 10.0),
         "replaced individuals that are kept, as a share of the population",
     ),
     Setting::new(
         "evaluations",
-        Values::Whole(4, 100_000_000),
+        AllowedValues::Whole(4, 100_000_000),
         "total number of evaluations",
     ),
 ];
@@ -80,7 +80,7 @@ pub struct LShadeSettings {
     pub memory: usize,
     /// Share of the population, best first, from which the `pbest` individual is drawn.
     pub best: f64,
-    /// Size of the archive of replaced individuals, relative to the population.
+    /// Maximum size of the archive of replaced individuals, as a multiple of the population size.
     pub archive: f64,
     /// Total number of evaluations.
     pub evaluations: usize,
@@ -101,7 +101,7 @@ impl LShadeSettings {
     }
 }
 
-impl Recipe for LShadeSettings {
+impl StrategySettings for LShadeSettings {
     const STRATEGY: &'static str = "l-shade";
 
     fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
@@ -122,25 +122,25 @@ impl Recipe for LShadeSettings {
     }
 }
 
-/// Minimum population: a mutant needs three other individuals.
+/// Minimum population of L-SHADE: a mutant needs three other individuals.
 const FEWEST: usize = 4;
 
-/// L-SHADE as a piece of a strategy.
+/// L-SHADE as one batch-wise part (piece) of a strategy.
 struct LShade {
     settings: LShadeSettings,
     space: Space,
     streams: Streams,
     /// Coordinates of the individuals with their results, best first.
-    population: Vec<(Vec<f64>, Told)>,
-    /// Archive: coordinates of individuals that were replaced.
+    population: Vec<(Vec<f64>, EvaluationResult)>,
+    /// Coordinates of individuals that better trials replaced (the archive of L-SHADE).
     replaced: Vec<Vec<f64>>,
-    /// Memory of the means of successful factors: `F` and `CR`.
+    /// Memory of L-SHADE: slots with the means of successful factors `F` and `CR`.
     memories: Vec<[f64; 2]>,
     oldest: usize,
     /// Number of points proposed so far.
     planned: usize,
     generation: u32,
-    /// Coordinates of the running batch, with the factors `F` and `CR` that produced them.
+    /// Coordinates of the trials in the running batch, with the factors `F` and `CR` that produced them.
     trials: Vec<(Vec<f64>, [f64; 2])>,
 }
 
@@ -148,12 +148,12 @@ impl LShade {
     fn first(&self, count: usize) -> Vec<(Vec<f64>, [f64; 2])> {
         let trust: Vec<Interval> = self.space.axes().iter().map(|axis| axis.trust).collect();
         let others = hypercube(&trust, count.saturating_sub(1), self.streams);
-        let points = led(&self.space, others);
+        let points = prepend_starts(&self.space, others);
         let points = points.into_iter().take(count);
         points.map(|x| (x, [0.0; 2])).collect()
     }
 
-    /// Creates the trial for the individual at index `place`.
+    /// Creates the trial point that competes with the individual at index `place` of the population.
     fn trial(&self, place: usize) -> (Vec<f64>, [f64; 2]) {
         let stream = &mut self.streams.at(self.generation, Phase::Mutation, place);
         let factors = self.factors(stream);
@@ -176,7 +176,7 @@ impl LShade {
                 return own[k];
             }
             let mutant = own[k] + f * (best[k] - own[k]) + f * (first[k] - second[k]);
-            halfway(axis, own[k], mutant)
+            repair_bound(axis, own[k], mutant)
         });
         (x.collect(), factors)
     }
@@ -211,7 +211,7 @@ impl LShade {
         self.oldest = (self.oldest + 1) % self.memories.len();
     }
 
-    /// Returns the current population size, reduced linearly with the evaluations.
+    /// Returns the population size planned for the evaluations so far, which shrinks linearly.
     fn wanted(&self) -> usize {
         let first = self.settings.population;
         let spent = self.planned as f64 / self.settings.evaluations as f64;
@@ -220,7 +220,7 @@ impl LShade {
     }
 }
 
-/// Returns a share of a count, rounded.
+/// Returns the given share of `count`, rounded to an integer.
 fn share(share: f64, count: usize) -> usize {
     #[expect(
         clippy::cast_possible_truncation,
@@ -242,7 +242,7 @@ fn other(stream: &mut Stream, count: usize, taken: &[usize]) -> usize {
 }
 
 /// Repairs a mutant coordinate outside the bounds: halfway between its parent and the bound.
-fn halfway(axis: &Axis, own: f64, mutant: f64) -> f64 {
+fn repair_bound(axis: &Axis, own: f64, mutant: f64) -> f64 {
     let interval = axis.interval();
     if mutant < interval.from {
         0.5 * (own + interval.from)
@@ -269,7 +269,7 @@ impl Piece for LShade {
             Purpose::Offspring
         };
         self.planned += self.trials.len();
-        let drafts = self.trials.iter().map(|(x, _)| Draft {
+        let drafts = self.trials.iter().map(|(x, _)| ProposalDraft {
             genes: self.space.values(x),
             purpose,
         });
@@ -279,9 +279,9 @@ impl Piece for LShade {
         })
     }
 
-    fn absorb(&mut self, results: &[Evaluated]) {
+    fn absorb(&mut self, results: &[EvaluatedIndividual]) {
         let trials = std::mem::take(&mut self.trials);
-        let told = results.iter().map(|result| result.told);
+        let told = results.iter().map(|result| result.result);
         if self.population.is_empty() {
             let born = trials.into_iter().zip(told);
             self.population = born.map(|((x, _), told)| (x, told)).collect();

@@ -1,17 +1,18 @@
-//! Least squares as a piece of a strategy: descents of the residual vector from the best points so far.
+//! Levenberg-Marquardt least squares as a piece (batch-wise part) of a strategy: descents on the residual
+//! vector from the best points so far.
 //!
-//! The residual of an individual, in units in which its squared norm is the fitness, gives a direction for
-//! every sample; a step of this piece costs one point per gene and a fan of damped tries, and near a minimum
-//! gains more than any search that uses the fitness alone.
+//! The residual of an individual, scaled so that its squared norm is the fitness, gives a derivative for
+//! every sample. An iteration costs one point per gene and a fan of steps with different damping, and gains
+//! more near a minimum than any search that uses the fitness alone.
 use super::{
-    archive::{Archive, Evaluated, Residual},
-    piece::{Batch, Draft, Piece},
+    archive::{Archive, EvaluatedIndividual, Residual},
     proposal::Purpose,
-    setting::{Setting, SettingsError, Values, check},
+    setting::{AllowedValues, Setting, SettingsError, check},
+    stage::{Batch, Piece, ProposalDraft},
 };
 use crate::{
     derivative::terms,
-    least_squares::{self, LeastSquares, Settings, Variable},
+    least_squares::{self, LeastSquares, LeastSquaresSettings, Variable},
     space::Space,
 };
 use nalgebra::DVector;
@@ -25,16 +26,17 @@ pub struct LevenbergSettings {
     pub starts: usize,
     /// Maximum number of Jacobians per descent.
     pub iterations: u32,
-    /// Minimum distance between two starts (coordinate): in the gene with a narrow valley, if there is one,
-    /// or half of a stand-in's shift in that stand-in; otherwise in some gene.
+    /// Minimum distance between two starts (coordinate), in at least one gene that counts: the gene with a
+    /// narrow minimum, or an unknown that can compensate for it (half of that unknown's shift); all genes
+    /// count if no minimum is narrow.
     pub apart: f64,
     /// First difference step (coordinate), for unknowns whose step the case does not state.
     pub step: f64,
-    /// Longest change of a gene in one step (coordinate).
+    /// Maximum change of a gene in one least-squares step (coordinate).
     pub longest: f64,
-    /// Additional damping beyond a gene's own curvature, as a share of the mean curvature.
+    /// Damping added to each gene's own curvature, as a share of the mean curvature over all genes.
     pub level: f64,
-    /// Number of rounds after which the worse half of the descents is abandoned.
+    /// Number of rounds between eliminations, each of which abandons the worse half of the descents.
     pub heat: u32,
     /// Number of descents that are never abandoned: two with nearly equal fitness may converge to different
     /// minima.
@@ -42,16 +44,17 @@ pub struct LevenbergSettings {
     /// Source of the Jacobian columns.
     pub derivatives: Derivatives,
     /// Convergence tolerance of a descent.
-    pub finish: Finish,
+    pub finish: DescentTolerance,
 }
 
 /// Convergence tolerance of a descent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Finish {
-    /// Ends when a step no longer lowers the fitness by 3 parts in 10,000.
+pub enum DescentTolerance {
+    /// Ends when a step no longer lowers the fitness by at least 3 parts in 10,000.
     Usual,
-    /// Ends within a hundredth of a standard deviation of the unknowns, with central differences at the end.
+    /// Ends within a hundredth of a standard deviation of the minimum in every unknown, with central
+    /// differences at the end.
     Exact,
 }
 
@@ -59,57 +62,58 @@ pub enum Finish {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Derivatives {
-    /// One simulation for all columns; differences for columns that the model does not give.
+    /// One simulation that returns all derivatives; finite differences for columns that the model does not
+    /// give.
     Exact,
-    /// One simulation per column.
+    /// Finite differences: one further simulation per column.
     Differences,
 }
 
-/// Settings that can be set by name.
+/// Table of the least-squares settings that can be set by name on the command line.
 pub(super) const SETTINGS: &[Setting] = &[
     Setting::new(
         "starts",
-        Values::Whole(1, 1000),
+        AllowedValues::Whole(1, 1000),
         "number of concurrent least-squares descents",
     ),
     Setting::new(
         "iterations",
-        Values::Whole(1, 1000),
+        AllowedValues::Whole(1, 1000),
         "maximum number of Jacobians per descent",
     ),
     Setting::new(
         "apart",
-        Values::Real(0.0, 10.0),
+        AllowedValues::Real(0.0, 10.0),
         "minimum distance between two starts in some gene [decade]",
     ),
     Setting::new(
         "step",
-        Values::Real(1e-9, 1.0),
+        AllowedValues::Real(1e-9, 1.0),
         "first difference step [decade]",
     ),
     Setting::new(
         "longest",
-        Values::Real(1e-3, 100.0),
+        AllowedValues::Real(1e-3, 100.0),
         "maximum change of a gene in one step [decade]",
     ),
     Setting::new(
         "level",
-        Values::Real(0.0, 1.0),
+        AllowedValues::Real(0.0, 1.0),
         "additional damping as a share of the mean curvature, which keeps insensitive genes in place",
     ),
     Setting::new(
         "heat",
-        Values::Whole(1, 1000),
+        AllowedValues::Whole(1, 1000),
         "rounds after which the worse half of the descents is abandoned",
     ),
     Setting::new(
         "keep",
-        Values::Whole(1, 1000),
+        AllowedValues::Whole(1, 1000),
         "number of descents that are never abandoned",
     ),
     Setting::new(
         "derivatives",
-        Values::Words(&["exact", "differences"]),
+        AllowedValues::Words(&["exact", "differences"]),
         "Jacobian columns: from one simulation where the model gives them, or by differences",
     ),
 ];
@@ -120,10 +124,10 @@ pub(super) const SETTINGS: &[Setting] = &[
 const GRADIENT: f64 = 2e-3;
 const DECREASE: f64 = 3e-4;
 
-/// Number of rounds after which most descents have converged.
+/// Number of rounds after which most descents have converged; caps the estimate of remaining rounds.
 const USUAL: u32 = 10;
 
-/// Least-squares descents as a piece of a strategy.
+/// Least-squares descents as one batch-wise part (piece) of a strategy.
 pub struct Levenberg {
     settings: LevenbergSettings,
     space: Space,
@@ -132,17 +136,18 @@ pub struct Levenberg {
     round: u32,
 }
 
-/// Minimum distance between the starts of descents: along the axis with a narrow valley and its stand-ins, or
-/// along all axes if there is none.
+/// Minimum distance between the starts of descents: along the axis with a narrow minimum and the axes of
+/// unknowns that can compensate for it, or along all axes if there is none.
 #[derive(Clone, Debug)]
-pub struct Apart {
+pub struct SpacingRule {
     /// Axis indices, each with the minimum distance along the axis (coordinate).
     axes: Vec<(usize, f64)>,
 }
 
-impl Apart {
-    /// Creates the rule from a distance along the narrow axis, and half of each stand-in's shift along the
-    /// stand-in's own axis.
+impl SpacingRule {
+    /// Creates the distance rule: `distance` along an axis with a narrow minimum, and half the declared shift
+    /// along the axis of each unknown that can compensate for it; `distance` along all axes if no minimum is
+    /// narrow.
     pub fn new(space: &Space, distance: f64) -> Self {
         let mut axes = Vec::new();
         for (k, axis) in space.axes().iter().enumerate() {
@@ -190,7 +195,7 @@ impl Apart {
 }
 
 impl Levenberg {
-    /// Creates the piece from its settings.
+    /// Creates the least-squares piece from its settings.
     ///
     /// # Errors
     /// If a setting lies outside its range.
@@ -207,19 +212,19 @@ impl Levenberg {
     /// Creates descents from the best archived points that are far enough apart.
     fn begin(&self, archive: &Archive) -> Vec<(LeastSquares, usize)> {
         let ranked = archive.ranked().into_iter();
-        let ranked = ranked.map(|one| (self.space.point(&one.genes), one.told.fitness));
-        let apart = Apart::new(&self.space, self.settings.apart);
+        let ranked = ranked.map(|one| (self.space.point(&one.genes), one.result.fitness));
+        let apart = SpacingRule::new(&self.space, self.settings.apart);
         let starts = apart.first(self.settings.starts, ranked, |(x, _)| x);
         let search = |(x, fitness): (Vec<f64>, f64)| {
-            let usual = Settings::default();
-            let exact = self.settings.finish == Finish::Exact;
+            let usual = LeastSquaresSettings::default();
+            let exact = self.settings.finish == DescentTolerance::Exact;
             // steps that the case states are those that suit its model
             let stated = self
                 .space
                 .axes()
                 .iter()
                 .any(|axis| axis.unknown.step.is_some());
-            let settings = Settings {
+            let settings = LeastSquaresSettings {
                 finish: exact,
                 gradient: if exact { 5e-4 } else { GRADIENT },
                 decrease: if exact { 1e-6 } else { DECREASE },
@@ -236,23 +241,23 @@ impl Levenberg {
         starts.into_iter().map(search).collect()
     }
 
-    /// Returns how many of `descents` remain after a round of elimination.
-    fn left(&self, descents: usize) -> usize {
+    /// Returns how many of `descents` descents survive one elimination: half of them, but at least `keep`.
+    fn survivors(&self, descents: usize) -> usize {
         descents.div_ceil(2).max(self.settings.keep.min(descents))
     }
 
     /// Abandons the worse half of the descents after every `heat` rounds, down to the number always kept.
     fn select(&mut self) {
         let heat_over = self.round > 0 && self.round.is_multiple_of(self.settings.heat);
-        let left = self.left(self.searches.as_ref().map_or(0, Vec::len));
+        let left = self.survivors(self.searches.as_ref().map_or(0, Vec::len));
         if let Some(searches) = self.searches.as_mut().filter(|_| heat_over) {
             searches.sort_by(|(a, _), (b, _)| a.cost().total_cmp(&b.cost()));
             searches.truncate(left);
         }
     }
 
-    /// Returns the expected number of rounds: two per Jacobian, for its columns and the fan, capped because
-    /// most descents end long before the last.
+    /// Returns the expected number of rounds: two per Jacobian, one for its columns and one for the trial
+    /// steps; capped, because most descents converge before the iteration limit.
     fn expected_rounds(&self) -> u32 {
         (1 + 2 * self.settings.iterations).min(USUAL)
     }
@@ -274,13 +279,14 @@ impl Levenberg {
     }
 }
 
-/// Returns the derivatives of a residual by the axes; `None` for an axis of which a term is not known.
+/// Returns the derivatives of a residual by each axis of the space; `None` for an axis if a derivative that
+/// it needs is missing.
 fn columns(space: &Space, genes: &[f64], residual: &Residual) -> Vec<Option<DVector<f64>>> {
     let x = space.point(genes);
     let column = |axis: usize| {
         let mut sum = DVector::zeros(residual.values.len());
         for term in terms(space, axis, &x, genes) {
-            let by = residual.by.get(&term.column.name)?;
+            let by = residual.derivatives.get(&term.column.name)?;
             term.add(by, (0, None), sum.as_mut_slice())?;
         }
         Some(sum)
@@ -303,7 +309,7 @@ impl Piece for Levenberg {
             } else {
                 Purpose::LeastSquares
             };
-            drafts.extend(points.iter().map(|x| Draft {
+            drafts.extend(points.iter().map(|x| ProposalDraft {
                 genes: self.space.values(x),
                 purpose,
             }));
@@ -318,15 +324,15 @@ impl Piece for Levenberg {
         })
     }
 
-    fn absorb(&mut self, results: &[Evaluated]) {
+    fn absorb(&mut self, results: &[EvaluatedIndividual]) {
         let mut results = results.iter();
         for (search, awaited) in self.searches.iter_mut().flatten() {
             if *awaited > 0 {
                 let own = results.by_ref().take(*awaited);
                 let (space, wanted) = (&self.space, search.wants_columns());
-                let residual = |one: &Evaluated| {
-                    let residual = one.residual.as_ref().filter(|_| one.told.survived())?;
-                    Some(least_squares::Evaluated {
+                let residual = |one: &EvaluatedIndividual| {
+                    let residual = one.residual.as_ref().filter(|_| one.result.survived())?;
+                    Some(least_squares::EvaluatedPoint {
                         residual: DVector::from_column_slice(&residual.values),
                         columns: if wanted {
                             columns(space, &one.genes, residual)
@@ -361,7 +367,7 @@ impl Piece for Levenberg {
         let mut ahead = 0;
         for round in self.round..self.generations() {
             if round > 0 && round.is_multiple_of(self.settings.heat) {
-                live = self.left(live);
+                live = self.survivors(live);
             }
             ahead += live * per_round;
         }

@@ -1,13 +1,13 @@
 //! Search strategies, and their common interface.
 //!
-//! A strategy is a sequence of *pieces* (an initial design, a memetic search, a line scan, a refinement),
-//! each of which plans one batch of points at a time; the [`Conductor`] assigns ids to the points, accepts
-//! the results in any order and passes them on in id order. One strategy needs no batches:
-//! [`memetic::window`].
+//! A strategy is a sequence of *pieces*, its batch-wise parts (an initial design, a memetic search, a line
+//! scan, a refinement), each of which plans one batch of points at a time; the [`Conductor`] assigns ids to
+//! the points, accepts the results in any order and passes them on in id order. One strategy needs no
+//! batches: [`memetic::window`].
 //!
 //! # Adding a strategy
 //! A new strategy takes one file here and one line in [`CATALOGUE`] (beside its `mod` line); [`random`] is
-//! the smallest example. The file has the settings as a struct that implements [`Recipe`], the table of the
+//! the smallest example. The file has the settings as a struct that implements [`StrategySettings`], the table of the
 //! settings that can be set by name, and the [`Preset`] with the accuracy that tests may demand. `calibrate
 //! --preset NAME --set KEY=VALUE`, its help, resuming, `report` and `export` then support it, and the tests
 //! of the catalogue check the requirements on every search:
@@ -21,39 +21,39 @@ pub mod archive;
 pub mod ask_tell;
 mod catalogue;
 pub mod cma_es;
-mod conductor;
 mod covariance;
+pub mod definition;
 mod design;
-mod intake;
+mod evaluation_result;
 pub mod l_shade;
 pub mod levenberg;
 pub mod memetic;
-pub mod offer;
+mod ordered_results;
 mod outcome;
-pub mod piece;
 mod proposal;
 pub mod quick;
 pub mod random;
 pub mod refine;
 pub mod scan;
+mod sequencer;
 pub mod setting;
 pub mod settings;
 mod sobol;
+pub mod stage;
 mod table;
 #[cfg(test)]
 mod tests;
-mod told;
 
-pub use archive::{Archive, Evaluated, Residual};
+pub use archive::{Archive, EvaluatedIndividual, Residual};
 pub use ask_tell::Strategy;
 pub use catalogue::{CATALOGUE, build, preset};
-pub use conductor::Conductor;
+pub use definition::{Preset, SearchPlan};
 pub use design::latin_hypercube;
-pub use offer::{Plan, Preset};
+pub use evaluation_result::EvaluationResult;
 pub use outcome::{Best, Finish, Progress};
-pub use piece::{Batch, Draft, Piece};
 pub use proposal::{Proposal, Purpose};
+pub use sequencer::Conductor;
 pub use setting::SettingsError;
-pub use settings::{Recipe, Settings};
+pub use settings::{Settings, StrategySettings};
+pub use stage::{Batch, Piece, ProposalDraft};
 pub use table::build_after;
-pub use told::Told;

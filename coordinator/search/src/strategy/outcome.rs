@@ -1,5 +1,5 @@
 //! Progress, result and end of a search.
-use super::archive::Evaluated;
+use super::archive::EvaluatedIndividual;
 use serde::{Deserialize, Serialize};
 
 /// Reason why a search ended.
@@ -15,19 +15,19 @@ pub enum Finish {
 /// Progress of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
-    /// Current generation; 0 is the initial one.
+    /// Current generation of the search; 0 is the initial one.
     pub generation: u32,
     /// Planned number of generations.
     pub generations: u32,
-    /// Number of results consumed, in id order.
+    /// Number of results consumed so far, in id order.
     pub evaluations: u64,
     /// Expected total number of evaluations: those so far and those still planned.
     pub expected_evaluations: u64,
-    /// Fitness of the best complete individual.
+    /// Fitness of the best complete individual so far; `None` if there is none.
     pub best_fitness: Option<f64>,
 }
 
-/// Best individual of a search.
+/// Best individual found by a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Best {
     /// Id of the individual's proposal.
@@ -40,13 +40,13 @@ pub struct Best {
     pub complete: bool,
 }
 
-impl From<&Evaluated> for Best {
-    fn from(found: &Evaluated) -> Self {
+impl From<&EvaluatedIndividual> for Best {
+    fn from(found: &EvaluatedIndividual) -> Self {
         Self {
             id: found.id,
             genes: found.genes.clone(),
-            fitness: found.told.fitness,
-            complete: found.told.survived(),
+            fitness: found.result.fitness,
+            complete: found.result.survived(),
         }
     }
 }

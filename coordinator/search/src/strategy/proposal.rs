@@ -1,12 +1,12 @@
 //! Proposals: the individuals that a search asks to be evaluated.
 use serde::{Deserialize, Serialize};
 
-/// Individual to evaluate.
+/// Individual that a search asks to be evaluated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proposal {
-    /// Id, consecutive from 0 over the run.
+    /// Id of the proposal, consecutive from 0 over the run.
     pub id: u64,
-    /// Gene values in declared units, in the case's order.
+    /// Gene values of the individual in declared units, in the case's order.
     pub genes: Vec<f64>,
     /// Generation of the individual; 0 is the initial one.
     pub generation: u32,
@@ -14,7 +14,7 @@ pub struct Proposal {
     pub purpose: Purpose,
 }
 
-/// Purpose of a proposal.
+/// Purpose for which a search proposes an individual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Purpose {
@@ -26,9 +26,9 @@ pub enum Purpose {
     CrossoverTrial,
     /// Trial of the mutation-based hill climb.
     MutationTrial,
-    /// Station of a line scan.
+    /// Grid point (station) of a line scan.
     Scan,
-    /// Step of a local refinement.
+    /// Point of a local refinement by an evolution strategy.
     Refinement,
     /// Jacobian column or step of a least-squares descent.
     LeastSquares,
@@ -37,7 +37,7 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// Returns the name as written in tables and files.
+    /// Returns the name of the purpose as written in tables and files.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Initial => "initial",
@@ -56,7 +56,7 @@ impl Purpose {
         matches!(self, Self::LeastSquares | Self::Derivatives)
     }
 
-    /// Returns whether the derivatives of the residual vector are required.
+    /// Returns whether proposals with this purpose need the derivatives of the residual vector.
     pub const fn wants_derivatives(self) -> bool {
         matches!(self, Self::Derivatives)
     }

@@ -1,29 +1,30 @@
-//! Searches that fit a laptop, as sequences of parts: first points, line scans of the unknown with a narrow
-//! valley, races of descents, a short memetic search, refinement.
+//! Searches small enough for a laptop, as sequences of parts: initial points, line scans of the unknown with
+//! a narrow minimum, concurrent descents of which the worse are eliminated (races), a short memetic search,
+//! refinement.
 //!
-//! A fitness with resonances has a valley in a stiffness that is a hundred times narrower than the box, so a
-//! population finds the plateau around it but not the valley; and on the plateau more damping always looks
+//! A fitness with resonances has a valley in a stiffness, a minimum a hundred times narrower than the box, so
+//! a population finds the plateau around it but not the valley; and on the plateau more damping always looks
 //! better, because it removes the oscillation whose phase does not fit. `quick` therefore races descents of
 //! the residual vector from scattered points, which finds approximate values of the other unknowns, scans the
 //! narrow unknown around the best of them, on lines along which the valley is visible, and races descents
-//! again from the best stations. `memetic` needs the fitness alone: population, scan, refinement, fine scan,
-//! refinement. The case states which unknown has a narrow valley and what hides it; if it states none, there
-//! is no scan.
+//! again from the best grid points (stations) of the scan. `memetic` needs the fitness alone: population,
+//! scan, refinement, fine scan, refinement. The case states which unknown has a narrow valley and what hides
+//! it; if it states none, there is no scan.
 use super::{
     ask_tell::Strategy,
-    conductor::Conductor,
-    design::{Points, hypercube, led},
-    levenberg::{self, Derivatives, Finish, Levenberg, LevenbergSettings},
+    definition::{Expectations, Preset, SettingGroup},
+    design::{Points, hypercube, prepend_starts},
+    levenberg::{self, Derivatives, DescentTolerance, Levenberg, LevenbergSettings},
     memetic::{
         generations::Memetic,
         settings::{self as memetic_settings, MemeticSettings},
     },
-    offer::{Group, Preset, Promise},
-    piece::Piece,
     refine::{self, Refine, RefineSettings},
     scan::{self, Center, Line, Scan, ScanSettings, Share, Shift},
-    setting::{Setting, SettingsError, Values, require},
-    settings::{Recipe, Settings, build_as},
+    sequencer::Conductor,
+    setting::{AllowedValues, Setting, SettingsError, require},
+    settings::{Settings, StrategySettings, build_as},
+    stage::Piece,
 };
 use crate::{
     random::Streams,
@@ -32,7 +33,7 @@ use crate::{
 use protocol::case::Valley;
 use serde::{Deserialize, Serialize};
 
-/// Preset with races of descents before and after a line scan.
+/// Preset with least-squares descents before and after a line scan, of which the worse are eliminated.
 pub const QUICK: Preset = Preset {
     name: "quick",
     summary: "least-squares descents from many points, a scan of a narrow valley, more descents",
@@ -40,21 +41,21 @@ pub const QUICK: Preset = Preset {
     settings: |plan| Settings::of(&QuickSettings::quick(plan.space)),
     groups: &[
         part("", "/parts/0/points", POINTS),
-        Group {
-            without: &["apart"],
+        SettingGroup {
+            excluded: &["apart"],
             ..part("race_", "/parts/1/least_squares", levenberg::SETTINGS)
         },
         part("scan_", "/parts/2/scan", scan::SETTINGS),
         part("descent_", "/parts/3/least_squares", levenberg::SETTINGS),
     ],
-    promise: Promise {
+    expectations: Expectations {
         one_basin: 1e-8,
         many_basins: 3.0,
         distance: 1e-4,
-        opens_at_recommended: true,
+        starts_at_recommended: true,
         // differences take an evaluation for each column
-        valley: Some(1_400),
-        chance: true,
+        valley_evaluations: Some(1_400),
+        seed_dependent: true,
     },
     build: build_as::<QuickSettings>,
 };
@@ -71,16 +72,16 @@ pub const MEMETIC_AND_SCANS: Preset = Preset {
         part("fine_scan_", "/parts/3/scan", scan::SETTINGS),
         part("fine_refine_", "/parts/4/refine", refine::SETTINGS),
     ],
-    promise: Promise {
+    expectations: Expectations {
         one_basin: 1e-4,
         many_basins: 1.1,
         distance: 0.01,
-        ..QUICK.promise
+        ..QUICK.expectations
     },
     ..QUICK
 };
 
-/// Preset with one race of descents after a line scan.
+/// Preset with a line scan followed by least-squares descents, of which the worse are eliminated.
 pub const LEAST_SQUARES: Preset = Preset {
     name: "least-squares",
     summary: "a few points and a line scan, then Levenberg-Marquardt on the residual",
@@ -98,18 +99,18 @@ pub const DESCENT: Preset = Preset {
     name: "descent",
     summary: "one Levenberg-Marquardt descent of the residual from the start",
     settings: |plan| Settings::of(&QuickSettings::descent(plan.space)),
-    groups: &[Group {
-        named: "",
-        place: "/parts/1/least_squares",
+    groups: &[SettingGroup {
+        prefix: "",
+        pointer: "/parts/1/least_squares",
         table: levenberg::SETTINGS,
-        without: &["starts", "apart", "heat", "keep"],
+        excluded: &["starts", "apart", "heat", "keep"],
     }],
-    promise: Promise {
+    expectations: Expectations {
         // it stays in the basin that it begins in
         many_basins: 1e3,
-        valley: None,
-        chance: false,
-        ..LEAST_SQUARES.promise
+        valley_evaluations: None,
+        seed_dependent: false,
+        ..LEAST_SQUARES.expectations
     },
     ..QUICK
 };
@@ -122,52 +123,52 @@ pub const HYBRID: Preset = Preset {
     groups: &[
         MEMETIC,
         part("scan_", "/parts/1/scan", scan::SETTINGS),
-        Group {
-            without: &["keep"],
+        SettingGroup {
+            excluded: &["keep"],
             ..part("descent_", "/parts/2/least_squares", levenberg::SETTINGS)
         },
     ],
     ..LEAST_SQUARES
 };
 
-/// Settings of the first points that can be set by name.
+/// Table of the settings of the initial points that can be set by name on the command line.
 const POINTS: &[Setting] = &[Setting::new(
     "points",
-    Values::Whole(1, 1_000_000),
+    AllowedValues::Whole(1, 1_000_000),
     "first points: the start and a Latin hypercube",
 )];
 
-/// Group of the settings of the memetic part.
-const MEMETIC: Group = part("", "/parts/0/memetic", memetic_settings::SETTINGS);
+/// Group of the settings of the memetic part, the first part of the search.
+const MEMETIC: SettingGroup = part("", "/parts/0/memetic", memetic_settings::SETTINGS);
 
-/// Creates the group of settings of one part.
-const fn part(named: &'static str, place: &'static str, table: &'static [Setting]) -> Group {
-    Group {
-        named,
-        place,
+/// Creates the group of settings of one part of the search.
+const fn part(named: &'static str, place: &'static str, table: &'static [Setting]) -> SettingGroup {
+    SettingGroup {
+        prefix: named,
+        pointer: place,
         table,
-        without: &[],
+        excluded: &[],
     }
 }
 
 /// Part of a search; parts are executed in order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Part {
+pub enum SearchPart {
     /// Memetic algorithm in the trust box, from the start and a Latin hypercube.
     Memetic(MemeticSettings),
     /// Initial points: the start and a Latin hypercube in the trust box.
     Points {
-        /// Total number of points.
+        /// Total number of initial points, including the start.
         points: usize,
     },
-    /// Line scan around the best points.
+    /// Line scan through the best points so far.
     Scan(ScanSettings),
-    /// Placeholder for a scan if no unknown has a narrow valley.
+    /// Placeholder for a line scan if no unknown has a narrow minimum; does nothing.
     NoScan,
-    /// Refinement around the best point.
+    /// Local refinement around the best point so far.
     Refine(RefineSettings),
-    /// Descents of the residual vector from the best points.
+    /// Least-squares descents from the best points so far.
     LeastSquares(LevenbergSettings),
 }
 
@@ -179,12 +180,13 @@ pub struct QuickSettings {
     /// search.
     pub trust: Vec<Interval>,
     /// Parts of the search, in order.
-    pub parts: Vec<Part>,
+    pub parts: Vec<SearchPart>,
 }
 
 impl QuickSettings {
     /// Returns the settings of a search by fitness alone, about 900 evaluations. The first axis with a narrow
-    /// valley is scanned, at the best point and with every set of shifts that may uncover the valley.
+    /// minimum is scanned through the best point, with every subset of the shifts of other unknowns that may
+    /// reveal the minimum.
     pub fn memetic(space: &Space) -> Self {
         let trust: Vec<Interval> = space.axes().iter().map(|axis| axis.trust).collect();
         let scanned = narrow(space);
@@ -198,8 +200,9 @@ impl QuickSettings {
             .collect::<Vec<f64>>()
         };
         let scans = scanned.map(|(axis, valley)| scans(space, axis, valley));
-        let [coarse, fine] =
-            scans.map_or([Part::NoScan, Part::NoScan], |scans| scans.map(Part::Scan));
+        let [coarse, fine] = scans.map_or([SearchPart::NoScan, SearchPart::NoScan], |scans| {
+            scans.map(SearchPart::Scan)
+        });
         let memetic = MemeticSettings {
             population: 32,
             generations: 6,
@@ -209,15 +212,15 @@ impl QuickSettings {
         };
         Self {
             parts: vec![
-                Part::Memetic(memetic),
+                SearchPart::Memetic(memetic),
                 coarse,
-                Part::Refine(RefineSettings {
+                SearchPart::Refine(RefineSettings {
                     batch: 16,
                     rounds: 12,
                     spread: spread(0.4, 0.06),
                 }),
                 fine,
-                Part::Refine(RefineSettings {
+                SearchPart::Refine(RefineSettings {
                     batch: 16,
                     rounds: 8,
                     spread: spread(0.1, 0.02),
@@ -227,19 +230,19 @@ impl QuickSettings {
         }
     }
 
-    /// Returns the settings of a global stage of some 300 evaluations, a coarse scan, and eight descents,
-    /// half of which are abandoned after every round of elimination.
+    /// Returns the settings of a memetic search of some 300 evaluations, a coarse scan, and eight descents,
+    /// half of which are abandoned at every elimination.
     pub fn hybrid(space: &Space) -> Self {
         let Self { trust, parts } = Self::memetic(space);
         let Self {
             parts: descents, ..
         } = Self::least_squares(space);
-        let mut hybrid: Vec<Part> = parts.into_iter().take(1).collect();
-        if let Some(Part::Memetic(memetic)) = hybrid.first_mut() {
+        let mut hybrid: Vec<SearchPart> = parts.into_iter().take(1).collect();
+        if let Some(SearchPart::Memetic(memetic)) = hybrid.first_mut() {
             memetic.generations = 2;
         }
         hybrid.extend(descents.into_iter().skip(1));
-        if let Some(Part::LeastSquares(descent)) = hybrid.last_mut() {
+        if let Some(SearchPart::LeastSquares(descent)) = hybrid.last_mut() {
             descent.starts = 8;
         }
         Self {
@@ -251,26 +254,26 @@ impl QuickSettings {
     /// Returns the settings of one descent from the start to full convergence.
     pub fn descent(space: &Space) -> Self {
         let Self { trust, mut parts } = Self::least_squares(space);
-        if let Some(Part::LeastSquares(descent)) = parts.last_mut() {
+        if let Some(SearchPart::LeastSquares(descent)) = parts.last_mut() {
             descent.starts = 1;
             descent.iterations = 50;
-            descent.finish = Finish::Exact;
+            descent.finish = DescentTolerance::Exact;
         }
         let descent = parts.pop();
-        let mut parts = vec![Part::Points { points: 1 }];
+        let mut parts = vec![SearchPart::Points { points: 1 }];
         parts.extend(descent);
         Self { trust, parts }
     }
 
-    /// Returns the settings of a race of ten descents from scattered points, a scan about the best, and a
-    /// race of eight from the stations of the scan, two of which run to convergence: some 400 evaluations, 60
-    /// of them with columns. Results with these numbers are in `tests/truth/README.md`.
+    /// Returns the settings of ten descents from scattered points, a scan about the best, and eight descents
+    /// from the grid points of the scan, two of which run to convergence: some 400 evaluations, 60 of them
+    /// with derivatives. Results with these numbers are in `tests/truth/README.md`.
     pub fn quick(space: &Space) -> Self {
         let Self { trust, mut parts } = Self::least_squares(space);
-        parts[0] = Part::Points { points: 16 };
-        if let Some(Part::LeastSquares(descent)) = parts.last_mut() {
+        parts[0] = SearchPart::Points { points: 16 };
+        if let Some(SearchPart::LeastSquares(descent)) = parts.last_mut() {
             // it decides between families of fits, not how deep each of them is
-            let race = Part::LeastSquares(LevenbergSettings {
+            let race = SearchPart::LeastSquares(LevenbergSettings {
                 starts: 10,
                 iterations: 8,
                 heat: 2,
@@ -280,7 +283,7 @@ impl QuickSettings {
             *descent = LevenbergSettings {
                 starts: RACE.starts,
                 apart: RACE.apart,
-                heat: RACE.heat,
+                heat: RACE.elimination_interval,
                 keep: RACE.keep,
                 ..descent.clone()
             };
@@ -290,13 +293,13 @@ impl QuickSettings {
     }
 
     /// Returns the settings of a few points and a scan followed by descents of the residual vector: about 300
-    /// evaluations, some 40 of them with columns.
+    /// evaluations, some 40 of them with derivatives.
     pub fn least_squares(space: &Space) -> Self {
         let Self { trust, mut parts } = Self::memetic(space);
         parts.truncate(2);
-        parts[0] = Part::Points { points: 24 };
-        parts[1] = coarse_scan(space).map_or(Part::NoScan, Part::Scan);
-        parts.push(Part::LeastSquares(LevenbergSettings {
+        parts[0] = SearchPart::Points { points: 24 };
+        parts[1] = coarse_scan(space).map_or(SearchPart::NoScan, SearchPart::Scan);
+        parts.push(SearchPart::LeastSquares(LevenbergSettings {
             starts: 4,
             iterations: 25,
             apart: 0.03,
@@ -306,43 +309,44 @@ impl QuickSettings {
             heat: 6,
             keep: 1,
             derivatives: Derivatives::Exact,
-            finish: Finish::Usual,
+            finish: DescentTolerance::Usual,
         }));
         Self { trust, parts }
     }
 }
 
-/// Settings of a race of descents that start at stations of a scan.
+/// Settings of concurrent descents (a race) that start at grid points of a scan and of which the worse are
+/// eliminated.
 #[derive(Debug)]
 pub struct Race {
-    /// Number of stations from which descents start.
+    /// Number of grid points of the scan from which descents start.
     pub starts: usize,
     /// Minimum distance between the starts along the scanned unknown (coordinate).
     pub apart: f64,
-    /// Number of Jacobians per descent before the worse half of the race is abandoned.
-    pub heat: u32,
+    /// Number of rounds between eliminations, each of which abandons the worse half of the descents.
+    pub elimination_interval: u32,
     /// Number of descents that are never abandoned.
     pub keep: usize,
 }
 
-/// Settings of the race from the stations of a [`coarse_scan`].
+/// Settings of the descents that start at grid points of a [`coarse_scan`].
 pub const RACE: Race = Race {
     starts: 8,
     // half of what the machine's stations lie apart
     apart: 0.07,
-    heat: 2,
+    elimination_interval: 2,
     keep: 2,
 };
 
-/// Returns the axis of the first unknown with a narrow valley, and the case's description of the valley.
+/// Returns the axis of the first unknown with a narrow minimum, and the case's description of that minimum.
 fn narrow(space: &Space) -> Option<(usize, &Valley)> {
     let mut axes = space.axes().iter().enumerate();
     axes.find_map(|(axis, own)| Some((axis, own.unknown.valley.as_ref()?)))
 }
 
-/// Returns the scan between two races of descents: its stations are spaced so that a descent enters the
-/// valley from at least one of them, on lines along which the valley is visible. `None` if no unknown has a
-/// narrow valley.
+/// Returns the scan between two sets of descents: its grid is just fine enough that a descent from at least
+/// one grid point enters the narrow minimum, on lines along which the minimum is visible. `None` if no
+/// unknown has a narrow minimum.
 pub fn coarse_scan(space: &Space) -> Option<ScanSettings> {
     let (axis, valley) = narrow(space)?;
     let [mut scan, _] = scans(space, axis, valley);
@@ -354,7 +358,8 @@ pub fn coarse_scan(space: &Space) -> Option<ScanSettings> {
     Some(scan)
 }
 
-/// Returns the coarse scan of an axis for its valley, and the fine scan of the minimum found by the first.
+/// Returns the coarse scan of an axis for its narrow minimum, and the fine scan around the minimum found by
+/// the coarse one.
 fn scans(space: &Space, axis: usize, valley: &Valley) -> [ScanSettings; 2] {
     let coarse = ScanSettings {
         axis,
@@ -375,7 +380,8 @@ fn scans(space: &Space, axis: usize, valley: &Valley) -> [ScanSettings; 2] {
     [coarse, fine]
 }
 
-/// Returns the shifts of searched unknowns, with axes in place of names.
+/// Converts the case's shifts to those of a scan, with axis indices in place of names; shifts of unknowns
+/// that are not searched are dropped.
 fn shifts(space: &Space, of: &[protocol::case::Shift]) -> Vec<Shift> {
     let known = of.iter().filter_map(|shift| {
         let axis = space.position(&shift.unknown)?;
@@ -384,7 +390,7 @@ fn shifts(space: &Space, of: &[protocol::case::Shift]) -> Vec<Shift> {
     known.collect()
 }
 
-/// Returns the lines through and beside a point, one for every subset of the shifts that uncover a valley.
+/// Returns one scan line for every subset of the shifts of other unknowns that can reveal the narrow minimum.
 fn uncovered(space: &Space, valley: &Valley) -> Vec<Line> {
     let mut lines = vec![Line::default()];
     for shift in shifts(space, &valley.uncovered_by) {
@@ -398,8 +404,9 @@ fn uncovered(space: &Space, valley: &Valley) -> Vec<Line> {
     lines
 }
 
-/// Returns the lines through a point and at each stand-in's shift, with the unknown that hides a valley held
-/// at given ratios to the scanned unknown; `None` if the case states no ratios.
+/// Returns scan lines through a point and at each shift of an unknown that can compensate for the scanned
+/// one; on each line, the unknown that hides the minimum is held at one of the given ratios to the scanned
+/// unknown. `None` if the case states no ratios.
 fn held(space: &Space, valley: &Valley) -> Option<Vec<Line>> {
     let shares = valley.shares.as_ref()?;
     let axis = space.position(&shares.unknown)?;
@@ -415,7 +422,7 @@ fn held(space: &Space, valley: &Valley) -> Option<Vec<Line>> {
     Some(lines.collect())
 }
 
-impl Recipe for QuickSettings {
+impl StrategySettings for QuickSettings {
     const STRATEGY: &'static str = "quick";
 
     fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
@@ -426,22 +433,28 @@ impl Recipe for QuickSettings {
         let mut reuse_clones = true;
         let start = |points: usize, streams| {
             let others = points.saturating_sub(1);
-            led(space, hypercube(&self.trust, others, streams))
+            prepend_starts(space, hypercube(&self.trust, others, streams))
         };
         for (scope, part) in (1..).zip(&self.parts) {
             let streams = Streams::new(seed, scope);
             pieces.push(match part {
-                Part::Memetic(memetic) => {
+                SearchPart::Memetic(memetic) => {
                     reuse_clones &= memetic.reuse_clones;
                     let inside = (space, self.trust.clone());
                     let start = start(memetic.population, streams);
                     Box::new(Memetic::new(memetic.clone(), inside, &start, streams)?)
                 }
-                Part::Points { points } => Box::new(Points::new(space, &start(*points, streams))),
-                Part::Scan(scan) => Box::new(Scan::new(scan.clone(), space)?),
-                Part::NoScan => continue,
-                Part::Refine(refine) => Box::new(Refine::new(refine.clone(), space, streams)?),
-                Part::LeastSquares(settings) => Box::new(Levenberg::new(settings.clone(), space)?),
+                SearchPart::Points { points } => {
+                    Box::new(Points::new(space, &start(*points, streams)))
+                }
+                SearchPart::Scan(scan) => Box::new(Scan::new(scan.clone(), space)?),
+                SearchPart::NoScan => continue,
+                SearchPart::Refine(refine) => {
+                    Box::new(Refine::new(refine.clone(), space, streams)?)
+                }
+                SearchPart::LeastSquares(settings) => {
+                    Box::new(Levenberg::new(settings.clone(), space)?)
+                }
             });
         }
         Ok(Box::new(Conductor::new(pieces, reuse_clones)))

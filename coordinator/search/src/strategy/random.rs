@@ -4,11 +4,11 @@
 //! (exactly one point in every part of every gene's interval), or a Sobol sequence.
 use super::{
     ask_tell::Strategy,
-    conductor::Conductor,
+    definition::{Expectations, Preset, SettingGroup},
     design::{Points, hypercube},
-    offer::{Group, Preset, Promise},
-    setting::{Setting, SettingsError, Values, check, require},
-    settings::{Recipe, Settings, build_as},
+    sequencer::Conductor,
+    setting::{AllowedValues, Setting, SettingsError, check, require},
+    settings::{Settings, StrategySettings, build_as},
     sobol,
 };
 use crate::{
@@ -23,14 +23,14 @@ pub const RANDOM: Preset = Preset {
     summary: "individuals drawn at random from the box of genes: a baseline for other searches",
     strategy: RandomSettings::STRATEGY,
     settings: |_| Settings::of(&RandomSettings::thousand(Design::Chance)),
-    groups: &[Group::whole(SETTINGS)],
-    promise: Promise {
+    groups: &[SettingGroup::whole(SETTINGS)],
+    expectations: Expectations {
         one_basin: 1.5,
         many_basins: 3.0,
         distance: 1.5,
-        opens_at_recommended: false,
-        valley: None,
-        chance: true,
+        starts_at_recommended: false,
+        valley_evaluations: None,
+        seed_dependent: true,
     },
     build: build_as::<RandomSettings>,
 };
@@ -51,26 +51,26 @@ pub const SOBOL: Preset = Preset {
     ..RANDOM
 };
 
-/// Settings that can be set by name.
+/// Table of the sampling settings that can be set by name on the command line.
 const SETTINGS: &[Setting] = &[
-    Setting::new("points", Values::Whole(1, 1_000_000), "individuals"),
+    Setting::new("points", AllowedValues::Whole(1, 1_000_000), "individuals"),
     Setting::new(
         "within",
-        Values::Words(&["trust", "bounds"]),
+        AllowedValues::Words(&["trust", "bounds"]),
         "region of the draw: where simulations usually succeed, or the whole box",
     ),
     Setting::new(
         "design",
-        Values::Words(&["chance", "hypercube", "sobol"]),
+        AllowedValues::Words(&["chance", "hypercube", "sobol"]),
         "sampling design",
     ),
 ];
 
-/// Settings of the sampling.
+/// Settings of the uniform sampling.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RandomSettings {
-    /// Number of individuals.
+    /// Number of individuals to sample.
     pub points: usize,
     /// Part of the box that is sampled.
     pub within: Within,
@@ -109,11 +109,11 @@ pub enum Design {
 pub enum Within {
     /// Trust intervals, in which simulations usually succeed.
     Trust,
-    /// The whole box.
+    /// The whole box, between the bounds of all genes.
     Bounds,
 }
 
-impl Recipe for RandomSettings {
+impl StrategySettings for RandomSettings {
     const STRATEGY: &'static str = "random";
 
     fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
@@ -131,7 +131,7 @@ impl Recipe for RandomSettings {
                     let mut stream = streams.at(0, Phase::Initial, k);
                     intervals.iter().map(|_| stream.unit()).collect()
                 };
-                placed(&intervals, (0..self.points).map(unit))
+                scale_to_box(&intervals, (0..self.points).map(unit))
             }
             Design::Sobol => {
                 let genes = intervals.len();
@@ -142,7 +142,7 @@ impl Recipe for RandomSettings {
                     u32::from_le_bytes([bits[0], bits[1], bits[2], bits[3]])
                 };
                 let shifts: Vec<u32> = (0..genes).map(shift).collect();
-                placed(&intervals, sobol::sobol(self.points, &shifts).into_iter())
+                scale_to_box(&intervals, sobol::sobol(self.points, &shifts).into_iter())
             }
         };
         let piece = Points::new(space, &points);
@@ -151,7 +151,7 @@ impl Recipe for RandomSettings {
 }
 
 /// Maps points of the unit cube into a box.
-fn placed(intervals: &[Interval], units: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
+fn scale_to_box(intervals: &[Interval], units: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
     let inside = |unit: Vec<f64>| {
         let axes = intervals.iter().zip(unit);
         axes.map(|(own, share)| own.from + share * own.length())

@@ -3,11 +3,11 @@
 //! Each round draws a batch and moves the distribution towards the better half (`covariance.rs`). Only the
 //! order of the results counts, so failures are merely ranked last.
 use super::{
-    archive::{Archive, Evaluated},
+    archive::{Archive, EvaluatedIndividual},
     covariance::{Distribution, normal, ranked},
-    piece::{Batch, Draft, Piece},
     proposal::Purpose,
-    setting::{Setting, SettingsError, Values, check, require},
+    setting::{AllowedValues, Setting, SettingsError, check, require},
+    stage::{Batch, Piece, ProposalDraft},
 };
 use crate::{
     random::{Phase, Streams},
@@ -20,9 +20,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RefineSettings {
-    /// Points per round, at least 4.
+    /// Number of points per round, at least 4.
     pub batch: usize,
-    /// Number of rounds.
+    /// Number of rounds of the refinement.
     pub rounds: u32,
     /// Initial standard deviation of each gene (coordinate); 0 keeps a gene fixed.
     pub spread: Vec<f64>,
@@ -43,26 +43,26 @@ impl RefineSettings {
     }
 }
 
-/// Settings that can be set by name.
+/// Table of the refinement settings that can be set by name on the command line.
 pub(super) const SETTINGS: &[Setting] = &[
     Setting::new(
         "batch",
-        Values::Whole(4, 100_000),
+        AllowedValues::Whole(4, 100_000),
         "points per round of the refinement",
     ),
     Setting::new(
         "rounds",
-        Values::Whole(0, 100_000),
+        AllowedValues::Whole(0, 100_000),
         "rounds of the refinement",
     ),
 ];
 
-/// Local refinement as a piece of a strategy.
+/// Local refinement as one batch-wise part (piece) of a strategy.
 pub struct Refine {
     settings: RefineSettings,
     space: Space,
     streams: Streams,
-    /// Positions of the genes that are varied.
+    /// Positions of the genes that the refinement varies.
     moving: Vec<usize>,
     round: u32,
     state: Option<State>,
@@ -101,7 +101,7 @@ impl Refine {
     }
 
     fn begin(&self, archive: &Archive) -> Option<State> {
-        let best = archive.best().filter(|best| best.told.survived())?;
+        let best = archive.best().filter(|best| best.result.survived())?;
         let base = self.space.point(&best.genes);
         let n = self.moving.len();
         let spread = self.moving.iter().map(|axis| self.settings.spread[*axis]);
@@ -140,7 +140,7 @@ impl Piece for Refine {
                 point[*axis] = *x;
             }
             state.drawn.push(z);
-            drafts.push(Draft {
+            drafts.push(ProposalDraft {
                 genes: self.space.values(&point),
                 purpose: Purpose::Refinement,
             });
@@ -151,11 +151,11 @@ impl Piece for Refine {
         })
     }
 
-    fn absorb(&mut self, results: &[Evaluated]) {
+    fn absorb(&mut self, results: &[EvaluatedIndividual]) {
         let Some(state) = &mut self.state else { return };
         let ranked = ranked(&state.drawn, results);
         // a round in which everything failed says nothing about where to go
-        if results.iter().any(|result| result.told.survived()) {
+        if results.iter().any(|result| result.result.survived()) {
             state.distribution.update(&ranked, self.round, false);
         } else {
             state.distribution.sigma *= 0.5;

@@ -3,31 +3,31 @@
 //! A narrow valley that random steps miss is found by brute force along the one axis that is known to be
 //! narrow. All stations are independent, so any number of workers is busy at once.
 use super::{
-    archive::{Archive, Evaluated},
-    piece::{Batch, Draft, Piece},
+    archive::{Archive, EvaluatedIndividual},
     proposal::Purpose,
-    setting::{Setting, SettingsError, Values, check, require},
+    setting::{AllowedValues, Setting, SettingsError, check, require},
+    stage::{Batch, Piece, ProposalDraft},
 };
 use crate::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// Centre of the scan's grid.
+/// Centre of the grid along the scanned axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Center {
     /// Start value of the scanned unknown.
     Start,
-    /// Value of the scanned unknown at the point.
+    /// Value of the scanned unknown at the point through which the line passes.
     Point,
 }
 
-/// Constant offset of an unknown from the point's value along a whole line.
+/// Offset of an unknown from its value at the base point of a scan, constant along a whole line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Shift {
     /// Axis of the shifted unknown.
     pub axis: usize,
-    /// Offset from the point's value (coordinate).
+    /// Offset of the unknown from its value at the base point (coordinate).
     pub by: f64,
 }
 
@@ -41,13 +41,13 @@ pub struct Share {
     pub of_scanned: f64,
 }
 
-/// Line of stations through or beside a point.
+/// Line of grid points (stations) along the scanned axis, through a base point or offset from it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Line {
-    /// Unknowns that are offset from the point's values.
+    /// Unknowns that are offset from their values at the base point.
     pub shifts: Vec<Shift>,
-    /// Unknown that follows the scanned one at a constant ratio, if any.
+    /// Unknown that is held at a constant ratio to the scanned one, if any.
     pub share: Option<Share>,
 }
 
@@ -59,22 +59,22 @@ pub struct ScanSettings {
     pub axis: usize,
     /// Centre of the grid.
     pub center: Center,
-    /// Distance from the centre down to the first station (coordinate).
+    /// Distance from the centre of the grid down to its lowest station (coordinate).
     pub below: f64,
-    /// Distance from the centre up to the last station (coordinate).
+    /// Distance from the centre of the grid up to its highest station (coordinate).
     pub above: f64,
     /// Spacing of the stations (coordinate); a valley narrower than twice the spacing may be missed.
     pub step: f64,
     /// Number of best points about which lines are scanned.
     pub points: usize,
-    /// Minimum distance between these points along some axis other than the scanned one (coordinate).
+    /// Minimum distance between the scanned points along some axis other than the scanned one (coordinate).
     pub apart: f64,
-    /// Lines through and beside each point; at least one.
+    /// Lines to scan through, or offset from, each of the best points; at least one.
     pub lines: Vec<Line>,
 }
 
 impl ScanSettings {
-    /// Returns the number of stations per line.
+    /// Returns the number of grid points (stations) per line.
     fn stations(&self) -> usize {
         #[expect(
             clippy::cast_possible_truncation,
@@ -85,7 +85,7 @@ impl ScanSettings {
         intervals + 1
     }
 
-    /// Returns the points of the scan through and beside one point, line by line (coordinates).
+    /// Returns all grid points of the scan for one base point, line by line (coordinates).
     pub fn points_around(&self, space: &Space, base: &[f64]) -> Vec<Vec<f64>> {
         let middle = match self.center {
             Center::Start => 0.0,
@@ -134,36 +134,36 @@ impl ScanSettings {
     }
 }
 
-/// Settings that can be set by name.
+/// Table of the line-scan settings that can be set by name on the command line.
 pub(super) const SETTINGS: &[Setting] = &[
     Setting::new(
         "below",
-        Values::Real(0.0, 10.0),
+        AllowedValues::Real(0.0, 10.0),
         "how far below its centre the scan begins [decade]",
     ),
     Setting::new(
         "above",
-        Values::Real(0.0, 10.0),
+        AllowedValues::Real(0.0, 10.0),
         "how far above its centre the scan ends [decade]",
     ),
     Setting::new(
         "step",
-        Values::Real(2e-4, 1.0),
+        AllowedValues::Real(2e-4, 1.0),
         "spacing of the scan [decade]; a valley narrower than twice this may be missed",
     ),
     Setting::new(
         "points",
-        Values::Whole(1, 1000),
+        AllowedValues::Whole(1, 1000),
         "how many of the best points are scanned",
     ),
 ];
 
-/// Line scan as a piece of a strategy.
+/// Line scan as one batch-wise part (piece) of a strategy.
 pub struct Scan {
     settings: ScanSettings,
     space: Space,
     done: bool,
-    /// Number of stations being evaluated.
+    /// Number of grid points (stations) being evaluated.
     running: usize,
 }
 
@@ -182,7 +182,7 @@ impl Scan {
         })
     }
 
-    /// Returns the best points that are far enough apart (coordinate).
+    /// Returns the best points that are far enough apart to scan lines through each (coordinate).
     fn bases(&self, archive: &Archive) -> Vec<Vec<f64>> {
         let mut bases: Vec<Vec<f64>> = Vec::new();
         for entry in archive.ranked() {
@@ -211,11 +211,11 @@ impl Piece for Scan {
         }
         let bases = self.bases(archive).into_iter();
         let points = bases.flat_map(|base| self.settings.points_around(&self.space, &base));
-        let draft = |point: Vec<f64>| Draft {
+        let draft = |point: Vec<f64>| ProposalDraft {
             genes: self.space.values(&point),
             purpose: Purpose::Scan,
         };
-        let drafts: Vec<Draft> = points.map(draft).collect();
+        let drafts: Vec<ProposalDraft> = points.map(draft).collect();
         self.running = drafts.len();
         (!drafts.is_empty()).then_some(Batch {
             generation: 1,
@@ -223,7 +223,7 @@ impl Piece for Scan {
         })
     }
 
-    fn absorb(&mut self, _results: &[Evaluated]) {
+    fn absorb(&mut self, _results: &[EvaluatedIndividual]) {
         self.running = 0;
     }
 

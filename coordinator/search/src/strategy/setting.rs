@@ -13,19 +13,19 @@ pub enum SettingsError {
     /// A setting lies outside its range.
     #[error("{setting} is {value}, but must be {allowed}")]
     Range {
-        /// Key of the setting.
+        /// Key of the setting that lies outside its range.
         setting: String,
         /// Rejected value, as text.
         value: String,
-        /// Allowed values, in words.
+        /// Allowed values of the setting, in words.
         allowed: String,
     },
     /// No setting has this key.
     #[error("there is no setting `{key}`")]
     Unknown {
-        /// Key given by the user.
+        /// Key given by the user, which no setting has.
         key: String,
-        /// Keys that exist.
+        /// Keys of the settings that exist.
         known: Vec<String>,
     },
     /// The setting belongs to a part that the search omits for this case.
@@ -33,7 +33,7 @@ pub enum SettingsError {
         "`{key}` has no effect: no unknown of the case has a `valley`, so this search has no scan; remove the setting, or add `valley` to an unknown in case.toml"
     )]
     Absent {
-        /// Key given by the user.
+        /// Key of the setting, as given by the user.
         key: String,
     },
     /// The settings name an unknown or different strategy, or do not have the form of the strategy's
@@ -49,7 +49,7 @@ pub enum SettingsError {
 
 /// Allowed values of a setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Values {
+pub enum AllowedValues {
     /// One of a list of words.
     Words(&'static [&'static str]),
     /// Integer within an inclusive range.
@@ -65,8 +65,8 @@ pub enum Values {
 pub struct Setting {
     /// Field name in the strategy's settings.
     pub field: &'static str,
-    /// Allowed values.
-    pub values: Values,
+    /// Allowed values of the setting.
+    pub values: AllowedValues,
     /// Word that stands for no value, if the setting is optional.
     pub none: Option<&'static str>,
     /// Meaning of the setting, one line.
@@ -77,7 +77,7 @@ pub struct Setting {
 
 impl Setting {
     /// Creates a setting that always has a value.
-    pub const fn new(field: &'static str, values: Values, meaning: &'static str) -> Self {
+    pub const fn new(field: &'static str, values: AllowedValues, meaning: &'static str) -> Self {
         Self {
             field,
             values,
@@ -89,7 +89,7 @@ impl Setting {
 
     /// Makes the setting optional, with a word for no value.
     #[must_use]
-    pub const fn or(self, none: &'static str) -> Self {
+    pub const fn optional(self, none: &'static str) -> Self {
         Self {
             none: Some(none),
             ..self
@@ -108,32 +108,32 @@ impl Setting {
     /// Returns the allowed values, in words.
     pub fn allowed(&self) -> String {
         let values = match self.values {
-            Values::Words(words) => words.join(", "),
-            Values::Whole(least, u64::MAX) => format!("at least {least}"),
-            Values::Whole(least, most) => format!("{least} to {most}"),
-            Values::Real(least, most) if most >= f64::MAX => format!("{least} or more"),
-            Values::Real(least, most) => format!("{least} to {most}"),
-            Values::Switch => "true, false".to_owned(),
+            AllowedValues::Words(words) => words.join(", "),
+            AllowedValues::Whole(least, u64::MAX) => format!("at least {least}"),
+            AllowedValues::Whole(least, most) => format!("{least} to {most}"),
+            AllowedValues::Real(least, most) if most >= f64::MAX => format!("{least} or more"),
+            AllowedValues::Real(least, most) => format!("{least} to {most}"),
+            AllowedValues::Switch => "true, false".to_owned(),
         };
         self.none
             .map_or(values.clone(), |none| format!("{values}, or {none}"))
     }
 
-    /// Parses a value; `None` if it is not allowed.
+    /// Parses a value of the setting from text; `None` if the value is not allowed.
     pub fn parse(&self, text: &str) -> Option<Value> {
         if self.none == Some(text) {
             return Some(Value::Null);
         }
         let value = match self.values {
-            Values::Words(_) => Value::from(text),
-            Values::Whole(..) => Value::from(text.parse::<u64>().ok()?),
-            Values::Real(..) => {
+            AllowedValues::Words(_) => Value::from(text),
+            AllowedValues::Whole(..) => Value::from(text.parse::<u64>().ok()?),
+            AllowedValues::Real(..) => {
                 let number = text.parse::<f64>().ok()?;
                 Value::from(Some(number).filter(|number| number.is_finite())?)
             }
-            Values::Switch => Value::from(text.parse::<bool>().ok()?),
+            AllowedValues::Switch => Value::from(text.parse::<bool>().ok()?),
         };
-        self.holds(&value).then_some(value)
+        self.allows(&value).then_some(value)
     }
 
     /// Formats a value as text that [`Setting::parse`] accepts.
@@ -152,17 +152,17 @@ impl Setting {
     }
 
     /// Returns whether a value is allowed.
-    fn holds(&self, value: &Value) -> bool {
+    fn allows(&self, value: &Value) -> bool {
         match (self.values, value) {
             (_, Value::Null) => self.none.is_some(),
-            (Values::Words(words), Value::String(word)) => words.contains(&word.as_str()),
-            (Values::Whole(least, most), Value::Number(number)) => number
+            (AllowedValues::Words(words), Value::String(word)) => words.contains(&word.as_str()),
+            (AllowedValues::Whole(least, most), Value::Number(number)) => number
                 .as_u64()
                 .is_some_and(|number| (least..=most).contains(&number)),
-            (Values::Real(least, most), Value::Number(number)) => number
+            (AllowedValues::Real(least, most), Value::Number(number)) => number
                 .as_f64()
                 .is_some_and(|number| (least..=most).contains(&number)),
-            (Values::Switch, Value::Bool(_)) => true,
+            (AllowedValues::Switch, Value::Bool(_)) => true,
             _ => false,
         }
     }
@@ -177,7 +177,7 @@ impl Setting {
     }
 }
 
-/// Checks settings against their table.
+/// Checks a strategy's settings against their table of allowed values.
 ///
 /// # Errors
 /// If a setting has a value that is not allowed.
@@ -185,14 +185,14 @@ pub fn check(settings: &impl Serialize, table: &[Setting]) -> Result<(), Setting
     let values = serde_json::to_value(settings).unwrap_or_default();
     for setting in table {
         let value = &values[setting.field];
-        if !setting.holds(value) {
+        if !setting.allows(value) {
             return Err(setting.refusal(setting.field, &setting.show(value)));
         }
     }
     Ok(())
 }
 
-/// Checks one number against a condition that no table can state.
+/// Checks a condition on a setting that its table cannot express.
 ///
 /// # Errors
 /// If the condition does not hold.

@@ -4,11 +4,11 @@ use crate::space::Space;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
 
-/// Key of the strategy's name in the settings.
+/// JSON key under which the settings store the strategy's name.
 const STRATEGY: &str = "strategy";
 
-/// Settings of one strategy that can build the search.
-pub trait Recipe: Serialize + DeserializeOwned {
+/// Settings of one strategy, from which its search can be built.
+pub trait StrategySettings: Serialize + DeserializeOwned {
     /// Name of the strategy, as stored in run folders.
     const STRATEGY: &'static str;
 
@@ -26,8 +26,8 @@ pub trait Recipe: Serialize + DeserializeOwned {
 pub struct Settings(Value);
 
 impl Settings {
-    /// Creates the settings from those of a strategy.
-    pub fn of<R: Recipe>(recipe: &R) -> Self {
+    /// Creates general settings from those of one strategy.
+    pub fn of<R: StrategySettings>(recipe: &R) -> Self {
         // plain data: numbers, words, lists
         let mut values = serde_json::to_value(recipe).unwrap_or_default();
         values[STRATEGY] = Value::from(R::STRATEGY);
@@ -43,7 +43,7 @@ impl Settings {
     ///
     /// # Errors
     /// If the settings belong to another strategy, or do not have the form of its settings.
-    pub fn read<R: Recipe>(&self) -> Result<R, SettingsError> {
+    pub fn read<R: StrategySettings>(&self) -> Result<R, SettingsError> {
         let problem = |problem: String| SettingsError::Form {
             strategy: self.strategy().to_owned(),
             problem,
@@ -61,7 +61,7 @@ impl Settings {
         serde_json::from_value(values).map_err(|error| problem(error.to_string()))
     }
 
-    /// Returns the value at a JSON pointer.
+    /// Returns the settings' value at a JSON pointer.
     pub(super) fn at(&self, place: &str) -> Option<&Value> {
         self.0.pointer(place)
     }
@@ -76,7 +76,7 @@ impl Settings {
 ///
 /// # Errors
 /// If the settings belong to another strategy, or a setting lies outside its range.
-pub fn build_as<R: Recipe>(
+pub fn build_as<R: StrategySettings>(
     settings: &Settings,
     space: &Space,
     seed: u64,

@@ -28,10 +28,10 @@ const POLYNOMIALS: [(usize, u32, &[u32]); 20] = [
     (7, 4, &[1, 3, 7, 13, 13, 15, 69]),
 ];
 
-/// Maximum number of dimensions, for which direction numbers are known.
+/// Maximum number of dimensions of the sequence, limited by the table of direction numbers.
 pub(super) const MOST: usize = POLYNOMIALS.len() + 1;
 
-/// Number of bits of a coordinate.
+/// Number of bits with which each coordinate of a Sobol point is computed.
 const BITS: usize = 32;
 
 /// Returns the direction numbers of a dimension, highest bit first.

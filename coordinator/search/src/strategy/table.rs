@@ -1,19 +1,19 @@
-//! Searches that begin with a table of individuals.
+//! Searches that first evaluate a given table of individuals.
 //!
-//! The table is evaluated first, all of it at once. Then the search is built over a space whose starting
-//! points are the surviving individuals, best first ([`Space::beginning_at`]): populations contain them in
-//! their first places, a local search begins at the best, and a strategy that can use neither ignores them.
-//! Individuals of the table are not evaluated again. Strategies need no knowledge of the table.
+//! The whole table is evaluated as one batch. Then the search is built over a space whose starting points are
+//! the surviving individuals, best first ([`Space::with_starting_points`]): populations contain them in their first
+//! places, a local search begins at the best, and a strategy that can use neither ignores them. Individuals
+//! of the table are not evaluated again. Strategies need no knowledge of the table.
 use super::{
-    archive::{Archive, Evaluated, Residual},
+    archive::{Archive, EvaluatedIndividual, Residual},
     ask_tell::Strategy,
     catalogue::build,
-    intake::Intake,
+    evaluation_result::EvaluationResult,
+    ordered_results::Intake,
     outcome::{Best, Finish, Progress},
     proposal::{Proposal, Purpose},
     setting::{SettingsError, require},
     settings::Settings,
-    told::Told,
 };
 use crate::space::Space;
 use std::collections::BTreeMap;
@@ -22,9 +22,9 @@ use std::collections::BTreeMap;
 /// back differs in the last bits.
 const SAME: f64 = 1e-12;
 
-/// Builds a search over a space, from a seed, that first evaluates these individuals: values of all unknowns
-/// [declared units] inside the bounds. They are added to the evaluations that the settings plan; without
-/// individuals the search is that of [`build`].
+/// Builds a search over a space, from a seed, that first evaluates the given individuals: values of all
+/// unknowns [declared units] inside the bounds. Their evaluations are added to those that the settings plan;
+/// without individuals the search is that of [`build`].
 ///
 /// # Errors
 /// As [`build`]; if there are more individuals than evaluations are planned without them.
@@ -60,41 +60,42 @@ pub fn build_after(
     for one in &outbox {
         intake.expect(one.id, one.genes.clone());
     }
-    Ok(Box::new(AfterTable {
+    Ok(Box::new(TableFirst {
         outbox,
         intake,
         table: count,
         inner: alone,
         own_ids: BTreeMap::new(),
-        known: 0,
+        answered_by_table: 0,
         recipe: (settings.clone(), space.clone(), seed),
     }))
 }
 
 /// Strategy that evaluates a table of individuals, then runs a search.
-struct AfterTable {
+struct TableFirst {
     /// Number of individuals in the table.
     table: usize,
-    /// Inner search: until the table is evaluated a placeholder that only reports the planned evaluations.
+    /// Search that runs after the table; before that, a placeholder that only reports the planned
+    /// evaluations.
     inner: Box<dyn Strategy>,
     /// Settings, space and seed from which the inner search is rebuilt.
     recipe: (Settings, Space, u64),
-    /// Ids of the inner search by the ids under which its proposals were handed out.
+    /// Map from the ids of proposals handed out to their ids in the inner search.
     own_ids: BTreeMap<u64, u64>,
     /// Number of the inner search's individuals whose results were taken from the table.
-    known: u64,
+    answered_by_table: u64,
     outbox: Vec<Proposal>,
     intake: Intake,
 }
 
-impl AfterTable {
+impl TableFirst {
     /// Returns the next proposal id.
     fn next_id(&self) -> u64 {
         self.intake.archive().entries().len() as u64 + self.intake.awaited()
     }
 
     /// Returns whether every individual of the table has its result.
-    fn is_through(&self) -> bool {
+    fn is_table_evaluated(&self) -> bool {
         self.intake.archive().entries().len() >= self.table
     }
 
@@ -105,27 +106,27 @@ impl AfterTable {
             let ranked = self.intake.archive().ranked().into_iter();
             ranked.map(|one| one.genes.clone()).collect()
         };
-        let space = space.clone().beginning_at(&survived);
+        let space = space.clone().with_starting_points(&survived);
         // settings that made one search make another over the same box
         if let Ok(inner) = build(settings, &space, *seed) {
             self.inner = inner;
         }
-        self.pass_on();
+        self.forward_proposals();
     }
 
     /// Returns the table's result for these genes, if the table contains them.
-    fn answered(&self, genes: &[f64]) -> Option<Told> {
+    fn table_result(&self, genes: &[f64]) -> Option<EvaluationResult> {
         let table = self.intake.archive().entries().iter().take(self.table);
-        let same = |entry: &&Evaluated| {
+        let same = |entry: &&EvaluatedIndividual| {
             let mut pairs = entry.genes.iter().zip(genes);
             pairs.all(|(a, b)| (a - b).abs() <= SAME * a.abs().max(b.abs()))
         };
-        table.into_iter().find(same).map(|entry| entry.told)
+        table.into_iter().find(same).map(|entry| entry.result)
     }
 
     /// Forwards the proposals of the inner search, answering initial individuals that are in the table
     /// directly.
-    fn pass_on(&mut self) {
+    fn forward_proposals(&mut self) {
         loop {
             let asked = self.inner.ask();
             if asked.is_empty() {
@@ -133,8 +134,8 @@ impl AfterTable {
             }
             for proposal in asked {
                 let initial = proposal.purpose == Purpose::Initial;
-                if let Some(told) = self.answered(&proposal.genes).filter(|_| initial) {
-                    self.known += 1;
+                if let Some(told) = self.table_result(&proposal.genes).filter(|_| initial) {
+                    self.answered_by_table += 1;
                     self.inner.tell(proposal.id, told);
                     continue;
                 }
@@ -147,18 +148,18 @@ impl AfterTable {
     }
 }
 
-impl Strategy for AfterTable {
+impl Strategy for TableFirst {
     fn ask(&mut self) -> Vec<Proposal> {
         std::mem::take(&mut self.outbox)
     }
 
-    fn tell(&mut self, id: u64, result: Told) {
+    fn tell(&mut self, id: u64, result: EvaluationResult) {
         self.intake.keep(id, result);
         while let Some((first, told)) = self.intake.take() {
             if let Some(own) = self.own_ids.remove(&first) {
                 self.inner.tell(own, told);
-                self.pass_on();
-            } else if self.is_through() {
+                self.forward_proposals();
+            } else if self.is_table_evaluated() {
                 self.begin();
             }
         }
@@ -171,7 +172,7 @@ impl Strategy for AfterTable {
     }
 
     fn finished(&self) -> Option<Finish> {
-        self.inner.finished().filter(|_| self.is_through())
+        self.inner.finished().filter(|_| self.is_table_evaluated())
     }
 
     fn progress(&self) -> Progress {
@@ -180,10 +181,10 @@ impl Strategy for AfterTable {
         Progress {
             evaluations: self.intake.archive().entries().len() as u64,
             expected_evaluations: (self.table as u64 + inner.expected_evaluations)
-                .saturating_sub(self.known),
+                .saturating_sub(self.answered_by_table),
             best_fitness: best
-                .filter(|best| best.told.survived())
-                .map(|best| best.told.fitness),
+                .filter(|best| best.result.survived())
+                .map(|best| best.result.fitness),
             ..inner
         }
     }
@@ -209,7 +210,7 @@ mod tests {
         test_function::SPHERE,
     };
 
-    /// Returns individuals with the same coordinate on every axis, one per given coordinate.
+    /// Returns one individual per given coordinate, with that coordinate on every axis.
     fn at(space: &Space, coordinates: &[f64]) -> Vec<Vec<f64>> {
         let one = |x: &f64| space.values(&vec![*x; space.dimension()]);
         coordinates.iter().map(one).collect()
@@ -251,7 +252,7 @@ mod tests {
         assert_eq!(search.ask().len(), alone - table.len());
         // what the table answers counts once
         assert_eq!(search.progress().expected_evaluations, expected - 3);
-        let led = space.clone().beginning_at(&table);
+        let led = space.clone().with_starting_points(&table);
         let paper = settings(preset("paper").unwrap(), &space);
         let first = build(&paper, &led, 5);
         let first = first.unwrap().ask();
@@ -274,7 +275,7 @@ mod tests {
             // the second looks best and failed
             let complete = proposal.id != 1;
             let fitness = [3.0, 1.0, 2.0][usize::try_from(proposal.id).unwrap()];
-            search.tell(proposal.id, Told { fitness, complete });
+            search.tell(proposal.id, EvaluationResult { fitness, complete });
         }
         for proposal in search.ask() {
             for x in space.point(&proposal.genes) {

@@ -9,13 +9,13 @@ use protocol::case::{Scale, Unknown};
 use std::collections::BTreeMap;
 
 /// Objective function on which strategies are tested.
-pub(super) type Tell<'a> = dyn Fn(&[f64]) -> Told + 'a;
+pub(super) type Tell<'a> = dyn Fn(&[f64]) -> EvaluationResult + 'a;
 
-/// Record of a run: proposals and results in id order, best individual, end.
+/// Record of a search under test: proposals and results in id order, best individual, and reason for its end.
 #[derive(Debug, PartialEq)]
 pub(super) struct Record {
     pub(super) asked: Vec<Proposal>,
-    pub(super) told: Vec<Told>,
+    pub(super) told: Vec<EvaluationResult>,
     pub(super) best: Best,
     pub(super) finish: Finish,
 }
@@ -60,7 +60,13 @@ fn run_with(
         told.insert(proposal.id, result);
         if proposal.purpose.wants_residual() {
             let (values, by) = (residual(&proposal.genes), BTreeMap::new());
-            strategy.tell_residual(proposal.id, Residual { values, by });
+            strategy.tell_residual(
+                proposal.id,
+                Residual {
+                    values,
+                    derivatives: by,
+                },
+            );
         }
         strategy.tell(proposal.id, result);
     }
@@ -75,7 +81,7 @@ fn run_with(
 
 /// Returns a preset's settings for a space, with 16 planned workers.
 pub(super) fn settings(preset: &Preset, space: &Space) -> Settings {
-    (preset.settings)(&Plan { space, workers: 16 })
+    (preset.settings)(&SearchPlan { space, workers: 16 })
 }
 
 fn made(preset: &Preset, space: &Space, seed: u64) -> Box<dyn Strategy> {
@@ -149,7 +155,11 @@ fn the_seed_decides_and_ids_are_consecutive() {
         assert_eq!(one, run_preset(preset, &SPHERE, 5, None), "{}", preset.name);
         let other = run_preset(preset, &SPHERE, 6, None);
         let differs = one.asked != other.asked;
-        assert_eq!(differs, preset.promise.chance, "{}", preset.name);
+        assert_eq!(
+            differs, preset.expectations.seed_dependent,
+            "{}",
+            preset.name
+        );
         for (id, proposal) in (0..).zip(&one.asked) {
             assert_eq!(proposal.id, id, "{}", preset.name);
         }
@@ -171,7 +181,13 @@ fn a_replay_of_the_first_results_gives_the_same_state() {
             if proposal.purpose.wants_residual() {
                 let values = SPHERE.residual(&space, &proposal.genes);
                 let by = BTreeMap::new();
-                again.tell_residual(proposal.id, Residual { values, by });
+                again.tell_residual(
+                    proposal.id,
+                    Residual {
+                        values,
+                        derivatives: by,
+                    },
+                );
             }
             again.tell(proposal.id, *told);
             asked.extend(again.ask());
@@ -199,7 +215,7 @@ fn bounds_are_never_left_and_the_recommended_individual_opens_a_quick_search() {
                 assert!(bounds.contains(value), "{}", preset.name);
             }
         }
-        if preset.promise.opens_at_recommended {
+        if preset.expectations.starts_at_recommended {
             for x in space.point(&record.asked[0].genes) {
                 assert!(x.abs() < 5e-5, "{x}");
             }
@@ -211,15 +227,15 @@ fn bounds_are_never_left_and_the_recommended_individual_opens_a_quick_search() {
 fn if_everything_fails_the_search_still_ends() {
     let space = SPHERE.space();
     let all_failures: [&Tell<'_>; 3] = [
-        &|genes| Told {
+        &|genes| EvaluationResult {
             fitness: 1e6 + genes[0],
             complete: false,
         },
-        &|_| Told {
+        &|_| EvaluationResult {
             fitness: f64::INFINITY,
             complete: false,
         },
-        &|_| Told {
+        &|_| EvaluationResult {
             fitness: f64::NAN,
             complete: true,
         },
@@ -242,7 +258,7 @@ fn a_failure_is_never_best_beside_a_complete_run() {
         let tell = |genes: &[f64]| {
             let told = SPHERE.tell(&space, genes);
             let complete = space.point(genes)[0] < 0.5;
-            Told {
+            EvaluationResult {
                 fitness: if complete { told.fitness } else { -1.0 },
                 complete,
             }
@@ -256,7 +272,7 @@ fn a_failure_is_never_best_beside_a_complete_run() {
                     .archive()
                     .entries()
                     .iter()
-                    .any(|entry| entry.told.complete);
+                    .any(|entry| entry.result.complete);
                 assert_eq!(best.complete, any, "{}", preset.name);
             }
         }
@@ -290,14 +306,14 @@ fn every_preset_finds_the_minima_that_it_promises_to_find() {
         for function in [SPHERE, test_function::CLIFF] {
             let (found, name) = (best(function), function.name);
             assert!(
-                found < preset.promise.one_basin,
+                found < preset.expectations.one_basin,
                 "{} {name}: {found}",
                 preset.name
             );
         }
         let found = best(test_function::RASTRIGIN);
         assert!(
-            found < preset.promise.many_basins,
+            found < preset.expectations.many_basins,
             "{}: {found}",
             preset.name
         );
@@ -339,7 +355,11 @@ fn linear_axes_are_searched_like_logarithmic_ones() {
         let found = &record.best.genes;
         for (x, wanted) in space.point(found).iter().zip(space.point(&minimum)) {
             let far = (x - wanted).abs();
-            assert!(far < preset.promise.distance, "{}: {found:?}", preset.name);
+            assert!(
+                far < preset.expectations.distance,
+                "{}: {found:?}",
+                preset.name
+            );
         }
     }
 }
@@ -373,7 +393,7 @@ fn refining_presets_enter_the_valley_wherever_it_lies() {
         &[0.511, 0.3, 0.1, 0.0, 1.4, 1.0, 0.0, 0.6, 2.7, 0.2],
     ];
     for preset in CATALOGUE {
-        let Some(most) = preset.promise.valley else {
+        let Some(most) = preset.expectations.valley_evaluations else {
             continue;
         };
         let (mut found, mut runs) = (0, 0);
@@ -391,7 +411,7 @@ fn refining_presets_enter_the_valley_wherever_it_lies() {
     }
 }
 
-/// Settings that keep searches short in tests of single settings; keys that a preset lacks are skipped.
+/// Settings that keep searches short when tests vary one setting; settings that a preset lacks are skipped.
 const SMALL: &[(&str, &str)] = &[
     ("population", "12"),
     ("generations", "3"),
@@ -411,33 +431,34 @@ const BESIDE: &[(&str, &str, &str)] = &[
     ("speculation", "acceptance", "first"),
 ];
 
-/// Returns allowed values other than the present one.
+/// Returns allowed values of a setting other than its present one.
 fn others(setting: &setting::Setting, now: &str) -> Vec<String> {
     let some = match setting.values {
-        setting::Values::Words(words) => words.iter().map(ToString::to_string).collect(),
-        setting::Values::Whole(least, most) => {
+        setting::AllowedValues::Words(words) => words.iter().map(ToString::to_string).collect(),
+        setting::AllowedValues::Whole(least, most) => {
             let now: u64 = now.parse().unwrap_or(least);
             vec![
                 now.saturating_add(2).min(most).to_string(),
                 least.max(1).to_string(),
             ]
         }
-        setting::Values::Real(least, most) => match now.parse::<f64>() {
+        setting::AllowedValues::Real(least, most) => match now.parse::<f64>() {
             Ok(now) => vec![(0.5 * now + 0.5 * least.max(1e-3 * now)).to_string()],
             // none so far: one that every search reaches
             Err(_) => vec![most.min(1e9).to_string()],
         },
-        setting::Values::Switch => vec!["true".to_owned(), "false".to_owned()],
+        setting::AllowedValues::Switch => vec!["true".to_owned(), "false".to_owned()],
     };
     some.into_iter().filter(|value| value != now).collect()
 }
 
-/// Checks that every value offered in help is accepted, formatted in the same words, and changes the search.
+/// Checks that every allowed value of every setting can be set, is printed as it was given, and changes the
+/// search.
 #[test]
 fn every_setting_of_every_preset_can_be_set_and_changes_something() {
     let space = test_function::RASTRIGIN.space();
     for preset in CATALOGUE {
-        let named = preset.named();
+        let named = preset.settable();
         let keys: Vec<&str> = named.iter().map(|one| one.key.as_str()).collect();
         let mut small = settings(preset, &space);
         for (key, value) in SMALL.iter().filter(|(key, _)| keys.contains(key)) {
@@ -463,7 +484,7 @@ fn every_setting_of_every_preset_can_be_set_and_changes_something() {
                 assert_ne!(changed, base, "{name}");
                 let same = run(&changed) == before;
                 changes.push(!same);
-                let word = matches!(one.setting.values, setting::Values::Words(_));
+                let word = matches!(one.setting.values, setting::AllowedValues::Words(_));
                 assert!(!(word && same), "{name} changes nothing");
                 preset.set(&mut changed, &one.key, &now).unwrap();
                 assert_eq!(changed, base, "{name} and back");
@@ -502,7 +523,7 @@ fn unknown_settings_and_values_are_refused_with_what_there_is() {
     let plain = Unknown::new("k", "1", Scale::Logarithmic, 1.0, [0.1, 10.0]);
     let space = Space::new(&[plain]).unwrap();
     let quick = preset("quick").unwrap();
-    let mut settings = (quick.settings)(&Plan {
+    let mut settings = (quick.settings)(&SearchPlan {
         space: &space,
         workers: 1,
     });

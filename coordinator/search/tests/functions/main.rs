@@ -6,7 +6,7 @@ use protocol::case::{Scale, Unknown};
 use search::{
     random::{Phase, Streams},
     space::Space,
-    strategy::{Plan, Told, build, preset},
+    strategy::{EvaluationResult, SearchPlan, build, preset},
 };
 
 const DIMENSION: usize = 5;
@@ -48,7 +48,7 @@ fn solved(name: &str, function: Function, below: f64) -> u64 {
     let space = Space::new(&names.iter().map(unknown).collect::<Vec<_>>()).expect("a box");
     let preset = preset(name).expect("a preset");
     let solves = |seed: u64| {
-        let mut settings = (preset.settings)(&Plan {
+        let mut settings = (preset.settings)(&SearchPlan {
             space: &space,
             workers: 1,
         });
@@ -69,7 +69,7 @@ fn solved(name: &str, function: Function, below: f64) -> u64 {
                 let x = DVector::from_vec(proposal.genes);
                 let fitness = function(&(&rotation * (x - &minimum)));
                 let complete = true;
-                strategy.tell(proposal.id, Told { fitness, complete });
+                strategy.tell(proposal.id, EvaluationResult { fitness, complete });
             }
         }
         assert_eq!(asked, BUDGET, "{name}");

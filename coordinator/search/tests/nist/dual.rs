@@ -1,5 +1,5 @@
-//! Dual numbers: values with their derivatives by the parameters, so that a model is written once and its
-//! Jacobian columns are exact. Independent of any model.
+//! Dual numbers: values with their derivatives by a model's parameters, so that a model is written once and
+//! its Jacobian columns are exact. Independent of any model.
 //!
 //! `f(a + a' e) = f(a) + f'(a) a' e` with `e^2 = 0` (forward differentiation).
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -15,19 +15,20 @@ pub(crate) struct Dual {
 }
 
 impl Dual {
-    /// Creates the parameter at index `place`.
+    /// Creates the dual number of the model parameter with index `place`: derivative 1 by itself, 0 by the
+    /// others.
     pub(crate) fn parameter(place: usize, value: f64) -> Self {
         let by = std::array::from_fn(|k| if k == place { 1.0 } else { 0.0 });
         Self { value, by }
     }
 
-    /// Applies the chain rule for a function with this value and slope.
+    /// Applies the chain rule for a function of one argument, given its value and slope.
     fn through(self, value: f64, slope: f64) -> Self {
         let by = self.by.map(|own| slope * own);
         Self { value, by }
     }
 
-    /// Applies the chain rule for a function of two arguments with this value and partial derivatives.
+    /// Applies the chain rule for a function of two arguments, given its value and partial derivatives.
     fn with(self, other: Self, value: f64, [own, others]: [f64; 2]) -> Self {
         let by = std::array::from_fn(|k| own * self.by[k] + others * other.by[k]);
         Self { value, by }

@@ -1,6 +1,6 @@
-//! Comparison of the least squares of `calibrate` and `diagnose` with the certified values of NIST's
+//! Comparison of the least-squares solver of `calibrate` and `diagnose` with the certified values of NIST's
 //! Statistical Reference Datasets for nonlinear regression: correct digits of parameters and of standard
-//! errors, from both starts, with exact columns and with the search's own differences.
+//! errors, from both starts, with exact Jacobian columns and with the search's own differences.
 //!
 //! `cargo test -p search --test nist -- --nocapture` prints the table.
 mod dual;
@@ -9,14 +9,14 @@ mod set;
 
 use model::MODELS;
 use nalgebra::DMatrix;
-use search::least_squares::{LeastSquares, Settings, Variable};
+use search::least_squares::{LeastSquares, LeastSquaresSettings, Variable};
 use set::Set;
 
 /// Maximum number of digits counted, as certified values are not more precise.
 const MOST: f64 = 10.0;
 
-/// Data sets for which no fit converges from start 1: the first step leads to where the model is flat in a
-/// parameter, or to another minimum.
+/// Data sets for which no fit converges from start 1, because the first step leads to where the model is flat
+/// in a parameter, or to another minimum.
 const FAR: [&str; 4] = ["MGH17", "BoxBOD", "MGH10", "Eckerle4"];
 
 /// Result of a fit: the fewest correct digits of any parameter and of any standard error, and the number of
@@ -38,14 +38,14 @@ fn fit(set: &Set, start: &[f64], exact: bool) -> Fit {
         longest: f64::INFINITY,
         prior: None,
     };
-    let settings = Settings {
+    let settings = LeastSquaresSettings {
         iterations: 2000,
         gradient: 1e-11,
         decrease: 0.0,
         step_range: 1.0,
         central: true,
         exact,
-        ..Settings::default()
+        ..LeastSquaresSettings::default()
     };
     let mut search = LeastSquares::new(start.iter().map(variable).collect(), settings);
     while search.ended().is_none() {
@@ -86,7 +86,8 @@ fn standard_errors(jacobian: &DMatrix<f64>, square: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Returns the fewest digits in which values agree with the certified ones, at most [`MOST`].
+/// Returns the smallest number of decimal digits in which any value agrees with its certified one, at most
+/// [`MOST`].
 fn digits(values: &[f64], certified: &[f64]) -> f64 {
     let pairs = values.iter().zip(certified);
     let one = pairs.map(|(value, known)| -((value - known) / known).abs().log10());

@@ -2,7 +2,7 @@
 use crate::dual::Dual;
 use std::f64::consts::PI;
 
-/// Model function of parameters and predictors.
+/// Regression model: function of parameters and predictors.
 pub(crate) type Model = fn(&[Dual], &[f64]) -> Dual;
 
 /// Data sets with their models, from lower to higher level of difficulty.

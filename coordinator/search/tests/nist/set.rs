@@ -1,17 +1,17 @@
 //! Data set as its file states it: starts, certified values, data. Independent of any search.
 use crate::{dual::Dual, model::Model};
-use search::least_squares::Evaluated;
+use search::least_squares::EvaluatedPoint;
 use std::{fs, path::Path};
 
-/// Number of lines before the data.
+/// Number of lines before the data in the file of a data set.
 const HEAD: usize = 60;
 
-/// Data set with its model and certified values.
+/// NIST data set with its regression model and certified values.
 pub(crate) struct Set {
     model: Model,
-    /// Starting values: far, near.
+    /// Two sets of starting values of the parameters: far from and near the solution.
     pub(crate) starts: [Vec<f64>; 2],
-    /// Certified parameters; `errors` are their standard errors.
+    /// Certified values of the parameters; `errors` holds their standard errors.
     pub(crate) parameters: Vec<f64>,
     pub(crate) errors: Vec<f64>,
     /// Response and predictors of each observation.
@@ -54,8 +54,9 @@ impl Set {
         }
     }
 
-    /// Returns the residual (model minus data) with its Jacobian columns; `None` if any value is not finite.
-    pub(crate) fn evaluate(&self, x: &[f64]) -> Option<Evaluated> {
+    /// Returns the residual (model minus data) at parameters `x` with its Jacobian columns; `None` if any
+    /// value is not finite.
+    pub(crate) fn evaluate(&self, x: &[f64]) -> Option<EvaluatedPoint> {
         let parameters = x.iter().enumerate();
         let parameters: Vec<Dual> = parameters.map(|(k, x)| Dual::parameter(k, *x)).collect();
         let rows = self.data.iter();
@@ -71,7 +72,7 @@ impl Set {
                     .into(),
             )
         };
-        rows.iter().all(finite).then(|| Evaluated {
+        rows.iter().all(finite).then(|| EvaluatedPoint {
             residual: rows
                 .iter()
                 .map(|row| row.value)

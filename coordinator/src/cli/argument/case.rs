@@ -1,4 +1,4 @@
-//! Source and loading of a case.
+//! Arguments that name a case folder and its measured records, and loading of that case.
 use crate::cli::output::terminal;
 use case::{Overrides, load_with_notes};
 use clap::Args;
@@ -32,26 +32,26 @@ pub(crate) struct CaseChoice {
     pub(crate) measured: Option<PathBuf>,
 }
 
-/// Loaded case with the source of its measured records.
+/// Loaded case, with the folder from which its measured records were read.
 pub(crate) struct LoadedCase {
     pub(crate) case: Case,
     /// Folder of the measured records.
     pub(crate) measured: String,
     /// Whether the case declares its records as computed (synthetic).
     pub(crate) synthetic: bool,
-    /// Notes about the records.
+    /// Notes about the measured records.
     pub(crate) notes: Vec<String>,
 }
 
 impl CaseChoice {
-    /// Reads the case; prints notes to standard error.
+    /// Reads the case that the arguments name; prints notes on its records to standard error.
     pub(crate) fn load(&self) -> anyhow::Result<LoadedCase> {
         load_case(&self.case, self.measured.as_deref())
     }
 }
 
 /// Reads a case folder, with the measured records of another folder in place of its own if one is given;
-/// prints notes to standard error.
+/// prints notes on the records to standard error.
 pub(crate) fn load_case(folder: &Path, measured: Option<&Path>) -> anyhow::Result<LoadedCase> {
     let overrides = Overrides {
         measured: measured.map(Path::to_owned),

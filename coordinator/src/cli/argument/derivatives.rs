@@ -1,12 +1,13 @@
-//! Parsing of `--derivatives`: the columns by which a simulation is differentiated.
+//! Parsing of `--derivatives`: names of the unknowns and effect parameters by which a simulation is
+//! differentiated.
 use crate::cli::output::problem::Problem;
 use protocol::{case::Case, job::Column};
 
 /// Word for all unknowns and effect parameters of the case.
 const ALL: &str = "all";
 
-/// Parses columns by name, separated by commas; `all` stands for the unknowns of the case and the parameters
-/// of its effects.
+/// Parses the names of unknowns and effect parameters to differentiate by, separated by commas; `all` stands
+/// for the unknowns of the case and the parameters of its effects.
 ///
 /// # Errors
 /// If a name is neither an unknown nor could be a parameter of an effect, or occurs twice.
@@ -24,7 +25,7 @@ pub(crate) fn columns(case: &Case, typed: &str) -> Result<Vec<Column>, Problem> 
         }
     }
     if typed == ALL {
-        return Ok(known.into_iter().map(Column::of).collect());
+        return Ok(known.into_iter().map(Column::new).collect());
     }
     let mut names: Vec<&str> = Vec::new();
     for name in typed.split(',').map(str::trim) {
@@ -44,5 +45,5 @@ pub(crate) fn columns(case: &Case, typed: &str) -> Result<Vec<Column>, Problem> 
             ),
         });
     }
-    Ok(names.into_iter().map(Column::of).collect())
+    Ok(names.into_iter().map(Column::new).collect())
 }

@@ -4,7 +4,7 @@ use crate::cli::output::problem::Problem;
 use search::strategy::{Preset, Settings};
 use study::orthogonal::Factor;
 
-/// Separator between settings that are varied jointly as one factor.
+/// Separator between the names of settings that are varied jointly as one factor.
 const JOINT: char = '+';
 
 /// Parses a factor from the command line: `KEY=A,B,C`.

@@ -1,4 +1,4 @@
-//! Arguments for the simulated individual and the working condition.
+//! Arguments that select the simulated individual and the working condition.
 use crate::cli::output::problem::Problem;
 use case::read_genes;
 use clap::Args;
@@ -22,7 +22,7 @@ pub(crate) struct IndividualChoice {
 }
 
 impl IndividualChoice {
-    /// Returns the genes in the case's order.
+    /// Returns the chosen gene values in the case's order.
     pub(crate) fn genes(&self, case: &Case) -> anyhow::Result<Vec<f64>> {
         Ok(match self.genes.as_str() {
             "recommended" => case.start(),
@@ -36,7 +36,8 @@ impl IndividualChoice {
     }
 }
 
-/// Returns the position of a condition by name; that of the objective without a name.
+/// Returns the position of the named condition in the case; without a name, that of the objective's
+/// condition.
 pub(crate) fn condition(case: &Case, name: Option<&str>) -> Result<usize, Problem> {
     let Some(name) = name else {
         return Ok(case.objective.condition);

@@ -1,14 +1,14 @@
 //! Table of individuals: a CSV file with a column for each unknown that a case searches.
 use case::{
     CaseError, file,
-    table::{Table, columns},
+    table::{CsvTable, columns},
 };
 use search::space::{Axis, Space};
 use std::path::Path;
 use store::gene_column;
 
-/// Columns that identify a table written by this program: by `export`, or by a sweep. Further columns, which
-/// hold results, are permitted in it.
+/// Names of columns that identify a table written by this program: by `export`, or by a sweep. Such a table
+/// may have further columns, which hold results.
 const EXPORTED: [&[&str]; 2] = [&["job", "verdict"], &["objective", "verdict"]];
 
 /// Individuals read from a user's table.
@@ -16,7 +16,7 @@ const EXPORTED: [&[&str]; 2] = [&["job", "verdict"], &["objective", "verdict"]];
 pub(crate) struct Individuals {
     /// Searched unknowns, in the case's order.
     pub(crate) names: Vec<String>,
-    /// Values of the searched unknowns, row by row \[declared units\].
+    /// Values of the searched unknowns, one row per individual \[declared units\].
     pub(crate) rows: Vec<Vec<f64>>,
 }
 
@@ -49,9 +49,9 @@ impl Individuals {
         let wanted: Vec<&str> = wanted.collect();
         let exported = EXPORTED.iter().any(|all| all.iter().all(|name| has(name)));
         let table = if exported {
-            Table::read(path, &bytes, &wanted)?
+            CsvTable::read(path, &bytes, &wanted)?
         } else {
-            Table::read_alone(path, &bytes, &wanted)?
+            CsvTable::read_alone(path, &bytes, &wanted)?
         };
         let row = |row: usize| {
             let cells = table.columns.iter().zip(space.axes()).enumerate();

@@ -1,10 +1,10 @@
 //! Arguments shared by several commands, one kind per file.
 pub(crate) mod case;
 pub(super) mod derivatives;
-pub(super) mod door;
 pub(super) mod factor;
 pub(crate) mod individual;
 pub(super) mod individuals;
+pub(super) mod listening;
 pub(crate) mod nodes;
 pub(crate) mod output;
 pub(super) mod settings;

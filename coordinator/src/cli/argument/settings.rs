@@ -3,7 +3,7 @@
 use crate::cli::output::problem::Problem;
 use clap::Args;
 use search::{
-    strategy::{CATALOGUE, Plan, Preset, Settings, SettingsError, offer::Named},
+    strategy::{CATALOGUE, Preset, SearchPlan, Settings, SettingsError, definition::PresetSetting},
     test_function::RESONANCE,
 };
 use std::{collections::BTreeMap, fmt::Write as _};
@@ -30,10 +30,10 @@ fn pair(text: &str) -> Result<(String, String), String> {
     Ok((key.trim().to_owned(), value.trim().to_owned()))
 }
 
-/// Settings given on the command line that replace those of the preset.
+/// Settings of a search after the command line's `--set` values have been applied.
 #[derive(Clone, Debug)]
-pub(crate) struct Chosen {
-    /// Complete settings: the preset's, with the values given on the command line in their place.
+pub(crate) struct ResolvedSettings {
+    /// Complete settings of the search: those of the preset, with the values given by `--set` in their place.
     pub(crate) settings: Settings,
     /// Settings that differ from the preset's, as `key=value`, in the order of the settings table.
     pub(crate) set: Vec<String>,
@@ -45,20 +45,24 @@ impl SettingsChoice {
     ///
     /// # Errors
     /// If a key is unknown or a value is not allowed for its setting.
-    pub(crate) fn choose(&self, preset: &Preset, plan: &Plan<'_>) -> Result<Chosen, Problem> {
+    pub(crate) fn choose(
+        &self,
+        preset: &Preset,
+        plan: &SearchPlan<'_>,
+    ) -> Result<ResolvedSettings, Problem> {
         let usual = (preset.settings)(plan);
         let mut settings = usual.clone();
         for (key, value) in &self.set {
             let set = preset.set(&mut settings, key, value);
             set.map_err(|error| refuse(preset, error))?;
         }
-        let differs = |one: &Named| {
+        let differs = |one: &PresetSetting| {
             let (usual, value) = (one.value(&usual), one.value(&settings));
             let typed = one.setting.follows_workers && self.names(&one.key);
             (typed || usual != value).then(|| format!("{}={}", one.key, value.unwrap_or_default()))
         };
-        let set = preset.named().iter().filter_map(differs).collect();
-        Ok(Chosen { settings, set })
+        let set = preset.settable().iter().filter_map(differs).collect();
+        Ok(ResolvedSettings { settings, set })
     }
 
     /// Returns whether a setting was given by `--set`.
@@ -68,8 +72,13 @@ impl SettingsChoice {
 
     /// Copies from an earlier session every setting whose default depends on the number of workers and that
     /// was not set anew, so that a run can be resumed with a different number of workers.
-    pub(crate) fn keep(&self, chosen: &mut Chosen, preset: &Preset, earlier: Option<&Settings>) {
-        let named = preset.named();
+    pub(crate) fn keep_worker_dependent(
+        &self,
+        chosen: &mut ResolvedSettings,
+        preset: &Preset,
+        earlier: Option<&Settings>,
+    ) {
+        let named = preset.settable();
         let follow = named.iter().filter(|one| one.setting.follows_workers);
         for one in follow.filter(|one| !self.names(&one.key)) {
             let of_run = earlier.filter(|earlier| earlier.strategy() == preset.strategy);
@@ -107,13 +116,13 @@ pub(crate) fn refuse(preset: &Preset, error: SettingsError) -> Problem {
 pub(crate) fn table() -> String {
     // of a function that has everything on which a default of the table depends
     let space = RESONANCE.space();
-    let plan = Plan {
+    let plan = SearchPlan {
         space: &space,
         workers: 1,
     };
     let mut text = String::new();
     let mut listed: Vec<String> = Vec::new();
-    for one in CATALOGUE.iter().flat_map(Preset::named) {
+    for one in CATALOGUE.iter().flat_map(Preset::settable) {
         if listed.contains(&one.key) {
             continue;
         }
@@ -130,11 +139,11 @@ pub(crate) fn table() -> String {
     text
 }
 
-/// Lists the values of a setting by preset, for example `quick 32; paper, window 80`.
-fn usual(key: &str, plan: &Plan<'_>) -> String {
+/// Formats the default values of a setting by preset, for example `quick 32; paper, window 80`.
+fn usual(key: &str, plan: &SearchPlan<'_>) -> String {
     let mut by_value: BTreeMap<String, Vec<&str>> = BTreeMap::new();
     for preset in CATALOGUE {
-        let named = preset.named();
+        let named = preset.settable();
         let Some(one) = named.iter().find(|one| one.key == key) else {
             continue;
         };

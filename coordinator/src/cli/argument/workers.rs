@@ -1,6 +1,6 @@
 //! Worker arguments: worker processes on this machine, and workers of other machines that connect over the
 //! network.
-use super::{door::Door, nodes::HostsChoice};
+use super::{listening::RemoteAccess, nodes::HostsChoice};
 use clap::{
     Args,
     builder::{RangedU64ValueParser, TypedValueParser},
@@ -12,14 +12,14 @@ use std::time::Duration;
 #[derive(Clone, Debug, Args)]
 pub(crate) struct WorkersChoice {
     #[command(flatten)]
-    pub(crate) door: Door,
+    pub(crate) door: RemoteAccess,
     /// Worker processes to start on this machine; 0 for none [default: one per core].
     #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
     workers: Option<usize>,
     #[command(flatten)]
     pub(crate) hosts: HostsChoice,
-    /// Name or address under which those hosts reach this machine [default: the one from which the first
-    /// of them says that we come].
+    /// Name or address under which the ssh hosts reach this machine [default: the one from which the first of
+    /// them says that we come].
     #[arg(long, value_name = "ADDRESS", env = "HORSEHEAD_ADVERTISE")]
     pub(crate) advertise: Option<String>,
     /// How long the run waits where its disk is full before it ends with what it has, in minutes [default: 10].

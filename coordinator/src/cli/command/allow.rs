@@ -6,7 +6,7 @@ use crate::cli::{
         terminal,
     },
 };
-use case::command::{Proposal, proposed};
+use case::command::{EntryProposal, propose_entry};
 use clap::Args;
 use exchange::allow::{self, Allowed};
 use serde::Serialize;
@@ -53,7 +53,7 @@ struct AllowOutput<'a> {
     entry: &'a str,
     /// Content of the entry: program, arguments, files, version and limits.
     #[serde(flatten)]
-    allowed: &'a allow::Entry,
+    allowed: &'a allow::AllowEntry,
     /// Files that the program finds in its working folder.
     case_files: &'a [String],
     /// Whether the entry was written; false with `--dry-run`.
@@ -62,18 +62,18 @@ struct AllowOutput<'a> {
 
 /// Shows the allow list entry that the case needs and, without `--dry-run`, writes it.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Proposal {
+    let EntryProposal {
         name,
         mut entry,
         files,
-    } = proposed(&arguments.case)?;
+    } = propose_entry(&arguments.case)?;
     let path = allow::path();
     let mut allowed = allow::read(&path).map_err(|problem| Problem {
         message: problem.to_string(),
         remedy: "nothing was written".to_owned(),
     })?;
     if let Some(own) = allowed.entry.get(&name) {
-        let started = |entry: &allow::Entry| {
+        let started = |entry: &allow::AllowEntry| {
             let program = entry.program.display().to_string();
             [&[program], &entry.arguments[..]].concat().join(" ")
         };
@@ -98,7 +98,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             ));
         }
         // limits and variables are this machine's business and stay as they are
-        entry = allow::Entry {
+        entry = allow::AllowEntry {
             program: entry.program,
             arguments: entry.arguments,
             files: entry.files,

@@ -1,14 +1,14 @@
 //! `horsehead bench`: measures the overhead of job dispatch with no-op jobs, without simulation.
 use crate::cli::{
     argument::{
-        door::Door,
+        listening::RemoteAccess,
         output::{Output, OutputChoice},
     },
     output::{problem::EXIT_CODES, terminal},
     run::bus,
 };
 use clap::{Args, Subcommand};
-use dispatch::runtime::{self, BenchPlan, BenchWorkers, Silence, SilentPlan, SilentResult};
+use dispatch::runtime::{self, BenchPlan, BenchWorkers, SilentPlan, SilentResult, SilentStage};
 use link::locator::Locator;
 use protocol::case::Case;
 use serde::Serialize;
@@ -18,11 +18,11 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(subcommand)]
-    what: What,
+    what: Benchmark,
 }
 
 #[derive(Debug, Subcommand)]
-enum What {
+enum Benchmark {
     /// The bus alone: no-op jobs to local workers.
     #[command(after_help = format!("\
 Examples:
@@ -131,11 +131,11 @@ struct BenchOutput {
     cost_ratio: f64,
     /// Resident memory of the coordinator process (MiB).
     coordinator_rss_mib: f64,
-    /// Cost of silent connections; null unless `--silent` or `--idle` is given.
+    /// Cost of silent connections to the coordinator; null unless `--silent` or `--idle` is given.
     silent: Option<SilentResult>,
 }
 
-/// Round-trip times (ms).
+/// Round-trip times of jobs dispatched one at a time (ms).
 #[derive(Debug, Serialize)]
 struct RoundTrip {
     median: f64,
@@ -145,7 +145,7 @@ struct RoundTrip {
 /// Runs the selected benchmark and prints its result.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match &arguments.what {
-        What::Dispatch {
+        Benchmark::Dispatch {
             workers,
             sessions,
             connections,
@@ -187,8 +187,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                 result_bytes: *result_bytes,
                 silent: silent.or(*idle).map(|connections| SilentPlan {
                     silence: match idle {
-                        None => Silence::Connection,
-                        Some(_) => Silence::Session,
+                        None => SilentStage::Connection,
+                        Some(_) => SilentStage::Session,
                     },
                     connections: connections as usize,
                     turns: *turns as usize,
@@ -196,22 +196,22 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             };
             dispatch(plan, tls, of_what, *output)
         }
-        What::Sessions {
+        Benchmark::Sessions {
             connect,
             sessions,
             tls,
         } => {
             bus::block_on(async { Ok(runtime::connect(connect, *sessions, tls.as_deref()).await?) })
         }
-        What::Silent {
+        Benchmark::Silent {
             connect,
             connections,
             opened,
         } => {
             let silence = if *opened {
-                Silence::Session
+                SilentStage::Session
             } else {
-                Silence::Connection
+                SilentStage::Connection
             };
             bus::block_on(async { Ok(runtime::keep_silent(connect, silence, *connections).await?) })
         }
@@ -246,14 +246,14 @@ fn dispatch(
             result.coordinator_rss_mib
         );
         if let Some(silent) = &result.silent {
-            text += &beside(silent);
+            text += &silent_text(silent);
         }
         text
     };
     terminal::print(output, table, &result)
 }
 
-fn beside(silent: &SilentResult) -> String {
+fn silent_text(silent: &SilentResult) -> String {
     let (smallest, largest) = silent.rate_ratio_range;
     format!(
         "beside {} that say nothing ({} held at least, {} opened again in {} blocks):\n\
@@ -275,9 +275,9 @@ async fn measure(plan: BenchPlan, tls: Option<PathBuf>) -> anyhow::Result<BenchO
     let scratch = tempfile::tempdir()?;
     let options = bus::Options {
         run_dir: scratch.path().to_owned(),
-        door: Door {
+        network: RemoteAccess {
             tls,
-            ..Door::default()
+            ..RemoteAccess::default()
         },
         local_workers: 0,
         pause_limit: runtime::PAUSE_LIMIT,

@@ -14,11 +14,11 @@ use crate::cli::{
         terminal,
     },
     run::{
-        begun::Run,
         bus,
-        calibration::{Calibration, calibrate, seen},
-        folder::{RunFolder, SEEN},
+        calibration::{Calibration, calibrate, identifiability},
+        folder::{IDENTIFIABILITY, RunFolder},
         manifest::{self, FirstTable, Manifest, Start},
+        opened::Run,
         session::Session,
     },
 };
@@ -28,7 +28,7 @@ use clap::{Args, builder::PossibleValuesParser};
 use protocol::case::Case;
 use search::{
     space::Space,
-    strategy::{CATALOGUE, Plan, Preset, Settings, build_after, preset},
+    strategy::{CATALOGUE, Preset, SearchPlan, Settings, build_after, preset},
 };
 use std::path::{Path, PathBuf};
 use study::Watch as _;
@@ -106,12 +106,12 @@ Ctrl-C stops cleanly: results so far are kept, and the same command goes on.
 }
 
 /// Number of workers assumed for planning when workers of other machines may connect.
-const LISTENING: usize = 40;
+const PLANNED_REMOTE_WORKERS: usize = 40;
 
-/// Returns the number of workers that the run is planned for.
+/// Returns the number of workers for which the run's default settings are chosen.
 fn planned_workers(workers: &WorkersChoice) -> usize {
     if workers.has_others() {
-        workers.local().max(LISTENING)
+        workers.local().max(PLANNED_REMOTE_WORKERS)
     } else {
         workers.local()
     }
@@ -174,7 +174,7 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Calibration> {
     let space = searched(&case, start.as_ref())?;
     let preset = preset(&arguments.preset).context("the catalogue has lost a preset")?;
     require_record(&arguments.choice.case, &case, case.objective.condition)?;
-    let plan = Plan {
+    let plan = SearchPlan {
         space: &space,
         workers: planned_workers(&arguments.workers),
     };
@@ -198,7 +198,7 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Calibration> {
     };
     let earlier = Calibration::open(&path).ok().map(|run| run.manifest);
     let settings = earlier.as_ref().map(|earlier| &earlier.settings);
-    choice.keep(&mut chosen, preset, settings);
+    choice.keep_worker_dependent(&mut chosen, preset, settings);
     // its file is not needed again
     table = table.or_else(|| earlier.and_then(|earlier| earlier.table));
     check_table(table.as_ref(), &chosen.settings, &space, arguments.seed)?;
@@ -233,8 +233,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         display.clear();
         let found = found?;
         let best = &found.calibrated.best.genes;
-        let seen = seen(bus, &run, best, &mut Silent, stop).await?;
-        run.folder.write_json(SEEN, &seen.unwrap_or_default())?;
+        let seen = identifiability(bus, &run, best, &mut Silent, stop).await?;
+        run.folder
+            .write_json(IDENTIFIABILITY, &seen.unwrap_or_default())?;
         Ok(found)
     })?;
     show(&run, &found, session.wall_s(&run), arguments.output.output)

@@ -5,9 +5,9 @@ use crate::cli::{
         problem::{EXIT_CODES, Problem},
         terminal,
     },
-    run::once::in_scratch,
+    run::temporary::with_temporary_run,
 };
-use case::command::{self, Proposal};
+use case::command::{self, EntryProposal};
 use case::{CaseError, Overrides, effect::check_known, load_with_notes, source::document};
 use clap::{Args, Subcommand};
 use serde::Serialize;
@@ -79,7 +79,7 @@ struct CheckOutput<'a> {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match &arguments.action {
         Action::Check { choice, output } => check(choice, *output),
-        Action::New { folder } => begin(folder),
+        Action::New { folder } => write_template(folder),
         Action::Import {
             control,
             folder,
@@ -125,13 +125,13 @@ fn ask_worker(folder: &Path, overrides: &Overrides) -> anyhow::Result<Vec<String
             bare.effect_units.clear();
             bare.unknowns
                 .retain(|unknown| unknown.of_effect().is_none());
-            let library = in_scratch(&bare, "check", 1, async |bus, stop| {
+            let library = with_temporary_run(&bare, "check", 1, async |bus, stop| {
                 study::library(bus, stop).await
             })?;
             let document = document(folder, overrides)?;
             check_known(&document, &loaded.effects, &library)?;
         }
-        in_scratch(case, "check", 1, async |bus, stop| {
+        with_temporary_run(case, "check", 1, async |bus, stop| {
             study::check_records(bus, case, stop).await
         })
     };
@@ -175,11 +175,11 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
     };
     terminal::note(&object.notes);
     // what was written is read as every command will read it; a folder that none can read would block the next try
-    let read = |folder: &Path| -> anyhow::Result<Proposal> {
+    let read = |folder: &Path| -> anyhow::Result<EntryProposal> {
         case::check(folder, &Overrides::default())?;
-        Ok(command::proposed(folder)?)
+        Ok(command::propose_entry(folder)?)
     };
-    let Proposal { name, entry, .. } = read(&imported.folder).inspect_err(|_| {
+    let EntryProposal { name, entry, .. } = read(&imported.folder).inspect_err(|_| {
         drop(std::fs::remove_dir_all(&imported.folder));
         terminal::tell(&format!(
             "note: no case was made, and {} was removed again: correct the files beside {}, then import it again",
@@ -202,7 +202,7 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
     terminal::print(output.output, words, &object)
 }
 
-fn begin(folder: &Path) -> anyhow::Result<()> {
+fn write_template(folder: &Path) -> anyhow::Result<()> {
     let file = folder.join("case.toml");
     if file.exists() {
         return Err(Problem {

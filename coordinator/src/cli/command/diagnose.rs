@@ -2,12 +2,12 @@
 //! difference, how certain that is, and how far the gap closes.
 use crate::cli::{
     argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
-    output::{diagnosis::Answer, problem::EXIT_CODES, progress::StageDisplay, terminal},
+    output::{diagnosis::DiagnosisOutput, problem::EXIT_CODES, progress::StageDisplay, terminal},
     run::{
-        begun::Run,
-        diagnosis::{Decides, Diagnosis, diagnose},
+        diagnosis::{Diagnosis, DiagnosisSettings, diagnose},
         folder::RunFolder,
         manifest::DIAGNOSE,
+        opened::Run,
         session::Session,
         target::Target,
     },
@@ -87,11 +87,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let stated = target.loaded.effects.len();
     if let Ok(earlier) = Diagnosis::open(&path) {
-        target = target.without_found_by(&earlier)?;
+        target = target.without_additions_of(&earlier)?;
     }
     let has_own = target.loaded.effects.len() < stated;
     terminal::note(&target.loaded.notes);
-    let settings = Decides {
+    let settings = DiagnosisSettings {
         thresholds: Thresholds {
             rounds: usize::from(arguments.rounds),
             without: arguments.without.clone(),
@@ -107,7 +107,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         display.clear();
         found
     })?;
-    let answer = Answer {
+    let answer = DiagnosisOutput {
         run: &run,
         loaded: &target.loaded,
         found: &found,

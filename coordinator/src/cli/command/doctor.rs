@@ -55,13 +55,14 @@ struct DoctorOutput {
     side: &'static str,
     /// Address that was checked.
     locator: String,
-    /// Whether every checked layer works.
+    /// Whether all checked layers of the connection work.
     healthy: bool,
-    /// Results by layer, in the order of checking; checking stops at the first failure.
+    /// Result for each layer of the connection, in the order of checking; checking stops at the first
+    /// failure.
     checks: Vec<Check>,
 }
 
-/// Checks the layers and prints the findings.
+/// Checks the layers of the connection and prints the findings.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut checks = Vec::new();
     if let Some(case) = &arguments.case {

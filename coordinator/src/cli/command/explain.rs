@@ -12,7 +12,7 @@ use report::table::{self, Table};
 use serde::Serialize;
 use std::{collections::BTreeMap, path::PathBuf};
 
-/// Maximum number of abandoned jobs listed individually.
+/// Maximum number of given-up jobs that are listed individually.
 const MOST_NAMED: usize = 10;
 
 /// Say how the workers of a run spent their time, and why they were idle.
@@ -42,9 +42,9 @@ struct ExplainOutput {
     wall_s: f64,
     /// Number of recorded results.
     results: u64,
-    /// Number of failed attempts.
+    /// Number of failed attempts at jobs.
     failed_attempts: u64,
-    /// Slot time by activity (s).
+    /// Time of all worker slots by activity (s).
     slot_seconds: BTreeMap<&'static str, f64>,
     /// Work done by each machine, by host name.
     hosts: BTreeMap<String, HostOutput>,
@@ -54,7 +54,7 @@ struct ExplainOutput {
     why: Vec<String>,
     /// Reasons why workers left, each with its number of occurrences.
     left: Vec<(String, u64)>,
-    /// Jobs that were given up, each with the reason.
+    /// Numbers of the jobs that were given up, each with the reason.
     given_up: Vec<(u64, String)>,
     /// Descriptions of the parts of the journal that could not be read.
     damage: Vec<String>,
@@ -124,7 +124,7 @@ impl ExplainOutput {
             why: account.reasons(),
             left: account.left.clone(),
             given_up: account.given_up.clone(),
-            damage: journal::words(&account.damage),
+            damage: journal::describe_damage(&account.damage),
         }
     }
 }

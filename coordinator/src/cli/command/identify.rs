@@ -4,10 +4,10 @@ use crate::cli::{
     argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
     output::{identification::show, problem::EXIT_CODES, progress::StageDisplay, terminal},
     run::{
-        begun::Run,
         folder::RunFolder,
-        identification::{Decides, identify},
+        identification::{IdentificationSettings, identify},
         manifest::IDENTIFY,
+        opened::Run,
         session::Session,
         target::Target,
     },
@@ -72,7 +72,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         RunFolder::default_path(&target.loaded.case, IDENTIFY, &[], measured, arguments.seed)?
     };
     terminal::note(&target.loaded.notes);
-    let settings = Decides {
+    let settings = IdentificationSettings {
         orders: Thresholds::default().orders,
         differences: arguments.differences,
     };

@@ -8,7 +8,7 @@ use crate::cli::{
 };
 use clap::{Args, Subcommand};
 use link::keys::{
-    CA_KEY, KeyError, Keys, Role, WORKER,
+    CA_KEY, KeyError, KeyRole, Keys, WORKER,
     authority::{Authority, Validity},
 };
 use std::path::{Path, PathBuf};
@@ -135,14 +135,14 @@ fn add(folder: &Path, names: &[String], valid: Validity) -> Result<(), KeyError>
 
 fn check(folder: &Path) -> Result<(), KeyError> {
     if folder.join(WORKER[0]).exists() {
-        let keys = Keys::read(folder, Role::Worker)?;
+        let keys = Keys::read(folder, KeyRole::Worker)?;
         terminal::tell(&format!(
             "{} can be used by workers, as \"{}\"",
             folder.display(),
             keys.owner()
         ));
     } else {
-        let keys = Keys::read(folder, Role::Coordinator)?;
+        let keys = Keys::read(folder, KeyRole::Coordinator)?;
         let names: Vec<&str> = keys.workers().iter().map(String::as_str).collect();
         terminal::tell(&format!(
             "{} can be used by a coordinator; {} workers may join: {}",

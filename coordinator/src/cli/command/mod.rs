@@ -11,13 +11,13 @@ mod case;
 mod completions;
 mod diagnose;
 mod doctor;
+#[cfg(test)]
+mod documented_commands;
 mod evaluate;
 mod explain;
 mod export;
 mod identify;
 mod keys;
-#[cfg(test)]
-mod printed;
 mod report;
 mod simulate;
 mod sweep;
@@ -94,7 +94,7 @@ commands! {
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(error) => match problem::plainly(&error.to_string()) {
+        Err(error) => match problem::in_plain_words(&error.to_string()) {
             Some(text) if error.use_stderr() => {
                 terminal::tell(text.trim_end());
                 return ExitCode::from(problem::BAD_INPUT);

@@ -7,7 +7,7 @@ use crate::cli::{
 use clap::Args;
 use protocol::{event::Finished, job::Job};
 use std::path::PathBuf;
-use study::Recorded;
+use study::ReplayEvaluator;
 
 /// Write tables, figures and report of a finished run again, from its journal.
 #[derive(Debug, Args)]
@@ -29,13 +29,13 @@ pub(super) struct Arguments {
 /// Replays the run from its journal and writes its report files.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let run = AnyRun::open(&arguments.run)?;
-    run.expect_replayable()?;
+    run.check_replayable()?;
     let recording = RunFolder::new(&arguments.run).recording()?;
     let mut unseen = |_: &Job, _: &Finished| Ok(());
-    let mut recorded = Recorded::new(&recording, &mut unseen);
+    let mut recorded = ReplayEvaluator::new(&recording, &mut unseen);
     let repeated = bus::block_on(async {
         let mut stop = interrupt::listen();
-        run.repeat(&mut recorded, &mut Silent, &mut stop).await
+        run.replay(&mut recorded, &mut Silent, &mut stop).await
     })?;
     repeated.write(arguments.output.output)
 }

@@ -8,7 +8,7 @@ use crate::{
             output::{Output, OutputChoice},
         },
         output::{files::check_out, object::simulation::simulation, problem::EXIT_CODES, terminal},
-        run::{bus, command_line::command_line, once::compare_once},
+        run::{bus, command_line::command_line, temporary::compare_once},
     },
     kind,
 };
@@ -17,7 +17,7 @@ use clap::Args;
 use protocol::{case::Case, job::Verdict};
 use report::{self, Origin, SingleRun, table, words};
 use std::path::PathBuf;
-use study::{self, Compared, Curves, EvaluatorError, PICTURES, Wanted};
+use study::{self, CompareRequest, Compared, ComparedCurves, EvaluatorError, PICTURES};
 
 /// Simulate once: curves, verdict, counters.
 #[derive(Debug, Args)]
@@ -64,11 +64,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     terminal::note(&outside);
     let mut notes = loaded.notes.clone();
     notes.extend(outside);
-    let wanted = Wanted {
+    let wanted = CompareRequest {
         condition,
         first: 0,
         individuals: vec![(arguments.individual.genes.clone(), genes)],
-        pictures,
+        frames: pictures,
         columns,
     };
     let groups = compare_once("simulate", case, std::slice::from_ref(&wanted), 1)?;
@@ -155,7 +155,7 @@ fn outside_bounds(case: &Case, genes: &[f64]) -> Vec<String> {
         .collect()
 }
 
-fn first(groups: Vec<Compared>) -> Option<Curves> {
+fn first(groups: Vec<Compared>) -> Option<ComparedCurves> {
     groups.into_iter().next()?.individuals.into_iter().next()
 }
 

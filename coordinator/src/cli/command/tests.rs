@@ -3,15 +3,15 @@ use super::*;
 use crate::cli::{
     argument::{
         individual::condition,
-        settings::{Chosen, SettingsChoice},
+        settings::{ResolvedSettings, SettingsChoice},
     },
     output::problem::Problem,
     run::{
-        begun::Run,
         bus,
         calibration::Calibration,
         folder::RunFolder,
         manifest::{CALIBRATE, DIAGNOSE, FORMAT, Manifest, Start},
+        opened::Run,
     },
 };
 use ::case::{Overrides, load, read_genes, write_genes};
@@ -22,7 +22,7 @@ use protocol::{
 };
 use search::{
     space::Space,
-    strategy::{Plan, preset},
+    strategy::{SearchPlan, preset},
 };
 use std::path::{Path, PathBuf};
 
@@ -40,7 +40,7 @@ fn manifest(case: &Case, seed: u64) -> Manifest {
         preset: "quick".to_owned(),
         seed,
         set: Vec::new(),
-        settings: (preset("quick").unwrap().settings)(&Plan {
+        settings: (preset("quick").unwrap().settings)(&SearchPlan {
             space: &space,
             workers: 1,
         }),
@@ -76,7 +76,7 @@ fn a_run_keeps_the_genes_that_it_started_at() {
         elsewhere.settings_json().unwrap()
     );
     let begin = |manifest: &Manifest| Run::begin(scratch.path(), manifest.clone(), case.clone());
-    begin(&elsewhere).unwrap().remember(0.0).unwrap();
+    begin(&elsewhere).unwrap().save(0.0).unwrap();
     begin(&elsewhere).unwrap();
     let error = begin(&manifest).unwrap_err();
     assert!(
@@ -221,7 +221,7 @@ fn a_run_folder_goes_on_with_the_same_run_and_refuses_another() {
     assert!(!first.folder.is_begun() && !first.folder.is_finished());
     assert!(!path.exists(), "nothing is written before the journal is");
     std::fs::create_dir_all(&path).unwrap();
-    first.remember(12.5).unwrap();
+    first.save(12.5).unwrap();
     let again = begin(3, &case).unwrap();
     assert!(again.folder.is_begun());
     assert!(again.lost_journal(), "12.5 s were spent on nothing");
@@ -336,10 +336,10 @@ fn the_way_to_go_on_names_the_folder_in_hand() {
 }
 
 /// Applies `--set` arguments to a preset's settings, planned for the given number of workers.
-fn chosen(name: &str, set: &[(&str, &str)], workers: usize) -> Result<Chosen, Problem> {
+fn chosen(name: &str, set: &[(&str, &str)], workers: usize) -> Result<ResolvedSettings, Problem> {
     let case = load(&shipped(), &Overrides::default()).unwrap();
     let space = Space::new(&case.unknowns).unwrap();
-    let plan = Plan {
+    let plan = SearchPlan {
         space: &space,
         workers,
     };
@@ -372,14 +372,14 @@ fn settings_by_name_make_another_run_in_a_folder_of_its_own() {
         own.display()
     );
 
-    let of = |chosen: &Chosen| Manifest {
+    let of = |chosen: &ResolvedSettings| Manifest {
         preset: "paper".to_owned(),
         settings: chosen.settings.clone(),
         set: chosen.set.clone(),
         ..manifest(&case, 3)
     };
     let begin = |chosen| Run::begin(scratch.path(), of(chosen), case.clone());
-    begin(&gray).unwrap().remember(0.0).unwrap();
+    begin(&gray).unwrap().save(0.0).unwrap();
     let run = begin(&gray).unwrap();
     let error = begin(&plain).unwrap_err().to_string();
     assert!(
@@ -419,10 +419,10 @@ fn unknown_settings_are_answered_with_the_nearest_and_bad_values_with_what_is_al
 #[test]
 fn what_follows_the_workers_stays_with_the_run() {
     let window = preset("window").unwrap();
-    let kept = |set: &[(&str, &str)], earlier: Option<&Chosen>| {
+    let kept = |set: &[(&str, &str)], earlier: Option<&ResolvedSettings>| {
         let mut now = chosen("window", set, 40).unwrap();
         let earlier = earlier.map(|earlier| &earlier.settings);
-        choice(set).keep(&mut now, window, earlier);
+        choice(set).keep_worker_dependent(&mut now, window, earlier);
         now.set
     };
     let earlier = chosen("window", &[], 2).unwrap();
@@ -440,7 +440,7 @@ fn help_lists_every_setting_of_every_preset_with_its_values() {
     let help = calibrate.render_long_help().to_string();
     for named in search::strategy::CATALOGUE
         .iter()
-        .flat_map(search::strategy::Preset::named)
+        .flat_map(search::strategy::Preset::settable)
     {
         let line = format!("  {}={}", named.key, named.setting.allowed());
         assert!(help.contains(&line), "{line}");

@@ -15,7 +15,7 @@ use crate::cli::{
     run::{
         calibration::{Calibration, pair},
         folder::GENES,
-        once::compare_once,
+        temporary::compare_once,
     },
 };
 use anyhow::Context as _;
@@ -23,7 +23,7 @@ use case::{read_genes, require_record};
 use clap::Args;
 use report::table;
 use std::{path::PathBuf, time::Instant};
-use study::Wanted;
+use study::CompareRequest;
 
 /// Score a run's parameters under another working condition (the paper's Table 4).
 #[derive(Debug, Args)]
@@ -71,11 +71,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let best = read_genes(&parameters, &case)?;
     let condition = condition(&case, Some(&arguments.condition))?;
     require_record(&run.manifest.case_folder, &case, condition)?;
-    let wanted = Wanted {
+    let wanted = CompareRequest {
         condition,
         first: 0,
         individuals: pair(&case, &best),
-        pictures: 0,
+        frames: 0,
         columns: Vec::new(),
     };
     let workers = arguments.workers.unwrap_or_else(|| cores().min(4)).max(1);

@@ -2,7 +2,7 @@
 use crate::cli::output::problem::EXIT_CODES;
 use clap::{Args, Subcommand};
 
-mod crew;
+mod control;
 mod up;
 
 /// Start workers on spare nodes, and manage those of a run.
@@ -18,26 +18,26 @@ enum Action {
     #[command(after_help = format!("{}\n\n{EXIT_CODES}", up::EXAMPLES))]
     Up(Box<up::Arguments>),
     /// Show the workers of a run: name, host, slots, version, jobs in hand, rate, last seen.
-    #[command(after_help = format!("{}\n\n{EXIT_CODES}", crew::LIST))]
-    List(crew::ListArguments),
+    #[command(after_help = format!("{}\n\n{EXIT_CODES}", control::LIST))]
+    List(control::ListArguments),
     /// Give workers no more jobs.
-    #[command(after_help = format!("{}\n\n{EXIT_CODES}", crew::DRAIN))]
-    Drain(crew::DrainArguments),
+    #[command(after_help = format!("{}\n\n{EXIT_CODES}", control::DRAIN))]
+    Drain(control::DrainArguments),
     /// End workers.
-    #[command(after_help = format!("{}\n\n{EXIT_CODES}", crew::DOWN))]
-    Down(crew::DownArguments),
+    #[command(after_help = format!("{}\n\n{EXIT_CODES}", control::DOWN))]
+    Down(control::DownArguments),
     /// Show the last lines of the log of a host's workers.
     #[command(after_help = format!("{}\n\n{EXIT_CODES}", up::LOGS))]
     Logs(up::LogsArguments),
 }
 
-/// Runs the selected action.
+/// Runs the selected action of `horsehead workers`: up, list, drain, down or logs.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match &arguments.action {
         Action::Up(arguments) => up::run(arguments),
-        Action::List(arguments) => crew::list(arguments),
-        Action::Drain(arguments) => crew::drain(arguments),
-        Action::Down(arguments) => crew::down(arguments),
+        Action::List(arguments) => control::list(arguments),
+        Action::Drain(arguments) => control::drain(arguments),
+        Action::Down(arguments) => control::down(arguments),
         Action::Logs(arguments) => up::logs(arguments),
     }
 }

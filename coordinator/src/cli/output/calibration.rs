@@ -2,7 +2,7 @@
 use super::{
     object::{
         calibration::CalibrateOutput,
-        score::{Both, ConditionOutput, condition, unknowns},
+        score::{ConditionOutput, RecommendedAndOptimised, condition, unknowns},
     },
     terminal,
 };
@@ -10,7 +10,7 @@ use crate::cli::{
     argument::output::Output,
     run::{
         calibration::{Calibration as Run, Found},
-        folder::{GENES, RESULT, SEEN},
+        folder::{GENES, IDENTIFIABILITY, RESULT},
         tables,
     },
 };
@@ -23,10 +23,10 @@ use protocol::{
 use report::{self, Calibration, ConditionResult, HistoryPoint, Individual, WorkerUse};
 use search::strategy::Finish;
 use std::collections::BTreeMap;
-use study::{self, Calibrated, Compared, Curves};
+use study::{self, Calibrated, Compared, ComparedCurves};
 
-/// Converts a comparison of the recommended and the optimised individual to the report's type; `None` unless
-/// there are exactly these two.
+/// Converts the comparison of the recommended and the optimised individual under one condition to the
+/// report's type; `None` unless exactly these two were compared.
 pub(crate) fn condition_result(compared: &Compared) -> Option<ConditionResult> {
     let [recommended, optimised] = compared.individuals.as_slice() else {
         return None;
@@ -38,7 +38,7 @@ pub(crate) fn condition_result(compared: &Compared) -> Option<ConditionResult> {
     })
 }
 
-fn report_run(curves: &Curves) -> report::Run {
+fn report_run(curves: &ComparedCurves) -> report::Run {
     let unscored = || Evaluation {
         verdict: curves.drawn.verdict,
         fitness: f64::NAN,
@@ -53,7 +53,7 @@ fn report_run(curves: &Curves) -> report::Run {
     }
 }
 
-/// Writes the files of a finished run and prints its result.
+/// Writes the result files of a finished calibration and prints its result.
 ///
 /// # Errors
 /// If a file cannot be written.
@@ -70,7 +70,9 @@ pub(crate) fn show(run: &Run, found: &Found, wall_s: f64, output: Output) -> any
     files.extend([GENES, RESULT].map(|name| folder.file(name)));
     let files = files.iter().map(|path| path.display().to_string());
     let mut object = result_object(run, found, wall_s, files.collect());
-    object.unknowns.say(&calibration.seen);
+    object
+        .unknowns
+        .add_identifiability(&calibration.identifiability);
     folder.write_json(RESULT, &object)?;
     terminal::tell(&format!(
         "open {}\nparameters in {}",
@@ -93,7 +95,7 @@ fn result_object<'a>(
     let case = &run.case;
     let log = &found.calibrated.log;
     let mut calibrated = ConditionOutput {
-        objective: Both {
+        objective: RecommendedAndOptimised {
             recommended: None,
             optimised: None,
         },
@@ -112,7 +114,7 @@ fn result_object<'a>(
         }
     }
     if !case.objective.others.is_empty() {
-        calibrated.objective = summed(run, found);
+        calibrated.objective = total_objective(run, found);
     }
     CalibrateOutput {
         run: run.folder.path().display().to_string(),
@@ -131,8 +133,9 @@ fn result_object<'a>(
     }
 }
 
-/// Sums each parameter set's objective over the calibrated conditions; null if a condition failed.
-fn summed(run: &Run, found: &Found) -> Both<Option<f64>> {
+/// Sums the objective of each parameter set (recommended, optimised) over the calibrated conditions; null if
+/// the simulation of a condition failed.
+fn total_objective(run: &Run, found: &Found) -> RecommendedAndOptimised<Option<f64>> {
     let objective = &run.case.objective;
     let of = |which: usize| -> Option<f64> {
         let fitness = |condition: usize| {
@@ -143,7 +146,7 @@ fn summed(run: &Run, found: &Found) -> Both<Option<f64>> {
         };
         objective.conditions().map(fitness).sum()
     };
-    Both {
+    RecommendedAndOptimised {
         recommended: of(0),
         optimised: of(1),
     }
@@ -164,7 +167,7 @@ fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Result<Calibrat
         purpose: entry.purpose.as_str().to_owned(),
         genes: entry.genes.clone(),
         fitness: entry.fitness,
-        complete: entry.ending == study::Ending::Complete,
+        complete: entry.ending == study::EvaluationOutcome::Complete,
         failure: entry.ending.failure(),
         cost: costs.get(&entry.id).copied(),
     });
@@ -189,7 +192,7 @@ fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Result<Calibrat
         },
         conditions: found.compared.iter().filter_map(condition_result).collect(),
         // a run of before this was looked at has none
-        seen: run.folder.read_json(SEEN).unwrap_or_default(),
+        identifiability: run.folder.read_json(IDENTIFIABILITY).unwrap_or_default(),
         notes,
     })
 }

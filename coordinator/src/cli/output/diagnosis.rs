@@ -16,7 +16,7 @@ use case::{Loaded, append_effects, write_starts};
 use std::path::Path;
 
 /// Finished diagnosis with the data that its output files need.
-pub(crate) struct Answer<'a> {
+pub(crate) struct DiagnosisOutput<'a> {
     /// Run that was diagnosed: its manifest and its folder.
     pub(crate) run: &'a Diagnosis,
     /// Case with the measured cycles of its records.
@@ -27,9 +27,9 @@ pub(crate) struct Answer<'a> {
     pub(crate) wall_s: f64,
 }
 
-impl Answer<'_> {
-    fn subject(&self) -> anyhow::Result<report::Subject<'_>> {
-        Ok(report::Subject {
+impl DiagnosisOutput<'_> {
+    fn subject(&self) -> anyhow::Result<report::DiagnosisInput<'_>> {
+        Ok(report::DiagnosisInput {
             case: &self.loaded.case,
             records: &self.loaded.cycles,
             library: &self.found.library,

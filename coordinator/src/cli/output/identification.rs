@@ -10,7 +10,7 @@ use crate::cli::{
 };
 use ::report::{identification as report, text};
 
-/// Writes the files of a finished run and prints its result.
+/// Writes the result files of a finished identifiability analysis and prints its result.
 ///
 /// # Errors
 /// If a file cannot be written.
@@ -20,7 +20,7 @@ pub(crate) fn show(
     wall_s: f64,
     output: Output,
 ) -> anyhow::Result<()> {
-    let subject = report::Subject {
+    let subject = report::IdentificationInput {
         case: &run.case,
         identified: &found.identified,
         origin: run.origin(String::new())?,

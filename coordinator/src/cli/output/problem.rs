@@ -37,8 +37,9 @@ const NUMBERS: [(&str, &str); 6] = [
     ("number too small to fit in target type", "it is too small"),
 ];
 
-/// Replaces technical wording in a command line error; `None` if nothing was replaced.
-pub(crate) fn plainly(message: &str) -> Option<String> {
+/// Replaces the standard library's number parsing messages in a command line error by plain words; `None` if
+/// nothing was replaced.
+pub(crate) fn in_plain_words(message: &str) -> Option<String> {
     let replace = |text: String, (from, to): &(&str, &str)| text.replace(from, to);
     let plain = NUMBERS.iter().fold(message.to_owned(), replace);
     (plain != message).then_some(plain)

@@ -8,23 +8,23 @@ use std::{
     io::{self, IsTerminal as _},
     time::{Duration, Instant},
 };
-use study::{Crew, ProgressView, StageView, View, Watch};
+use study::{ProgressView, StageView, View, Watch, WorkersSnapshot};
 
 /// Maximum time between two progress lines if there is no terminal.
-const SILENCE: Duration = Duration::from_secs(10);
+const LINE_INTERVAL: Duration = Duration::from_secs(10);
 /// Minimum time between two queries of the workers' state, since a query costs more than processing a result.
-const LOOK: Duration = Duration::from_millis(200);
+const WORKER_POLL_INTERVAL: Duration = Duration::from_millis(200);
 
 /// Progress display of a calibration.
 pub(crate) struct Display {
-    /// Unit appended to the best objective, with a leading space; empty if it has no unit.
+    /// Unit of the objective, appended to the best value with a leading space; empty if it has no unit.
     unit: String,
-    /// Name of the counted quantity shown besides simulations.
+    /// Name of the quantity that the display counts besides simulations, such as generations.
     counted: &'static str,
     bar: Option<ProgressBar>,
     last: Instant,
     generation: Option<u32>,
-    /// Number of results of earlier sessions, which are read from the journal at once.
+    /// Number of results that earlier sessions recorded; they are read from the journal at once.
     recorded: u64,
 }
 
@@ -34,7 +34,7 @@ impl Display {
         Self::counting("generation or stage", unit)
     }
 
-    /// Creates a display that counts something other than the generations of one search.
+    /// Creates a display that counts `counted` instead of the generations of a single search.
     pub(crate) fn counting(counted: &'static str, unit: Option<&str>) -> Self {
         let bar = io::stderr().is_terminal().then(|| {
             let template = "{bar:32} {pos}/{len}  {msg}";
@@ -93,7 +93,7 @@ impl StageDisplay {
 }
 
 impl Watch<StageView> for StageDisplay {
-    fn progress(&mut self, view: &StageView, crew: &dyn Fn() -> Crew) {
+    fn progress(&mut self, view: &StageView, crew: &dyn Fn() -> WorkersSnapshot) {
         let StageView {
             stages,
             stage,
@@ -104,7 +104,11 @@ impl Watch<StageView> for StageDisplay {
         let now = Instant::now();
         let pace = self.pace.of(now, view.spent);
         let silent = now.duration_since(self.last);
-        let patience = if self.bar.is_some() { LOOK } else { SILENCE };
+        let patience = if self.bar.is_some() {
+            WORKER_POLL_INTERVAL
+        } else {
+            LINE_INTERVAL
+        };
         if self.stage == Some(stage) && silent < patience {
             return;
         }
@@ -138,8 +142,8 @@ struct Pace {
 }
 
 impl Pace {
-    /// Records the total `spent` at time `now` and returns the rate per second; `None` until more than 8 s
-    /// have been observed.
+    /// Records the total work `spent` by time `now` and returns its rate per second; `None` until more than 8
+    /// s have been observed.
     fn of(&mut self, now: Instant, spent: f64) -> Option<f64> {
         const WINDOW: Duration = Duration::from_secs(45);
         const ENOUGH: Duration = Duration::from_secs(8);
@@ -160,7 +164,7 @@ impl Pace {
 pub(crate) struct Silent;
 
 impl<V: View> Watch<V> for Silent {
-    fn progress(&mut self, _view: &V, _crew: &dyn Fn() -> Crew) {}
+    fn progress(&mut self, _view: &V, _crew: &dyn Fn() -> WorkersSnapshot) {}
 }
 
 impl Watch<ProgressView> for Display {
@@ -168,7 +172,7 @@ impl Watch<ProgressView> for Display {
         self.recorded = recorded as u64;
     }
 
-    fn progress(&mut self, view: &ProgressView, crew: &dyn Fn() -> Crew) {
+    fn progress(&mut self, view: &ProgressView, crew: &dyn Fn() -> WorkersSnapshot) {
         // what is only read again needs neither workers nor lines
         let reading = view.completed == view.replayed && view.completed < self.recorded;
         if reading && view.completed < view.expected {
@@ -177,8 +181,8 @@ impl Watch<ProgressView> for Display {
         let now = Instant::now();
         let silent = now.duration_since(self.last);
         let due = match &self.bar {
-            Some(_) => silent >= LOOK,
-            None => self.generation != Some(view.generation) || silent >= SILENCE,
+            Some(_) => silent >= WORKER_POLL_INTERVAL,
+            None => self.generation != Some(view.generation) || silent >= LINE_INTERVAL,
         };
         if !due && view.completed < view.expected {
             return;
@@ -198,7 +202,7 @@ impl Watch<ProgressView> for Display {
 }
 
 /// Formats the progress line: generation or stage, best objective, failures, workers, rate, remaining time.
-fn describe(view: &ProgressView, (counted, unit): (&str, &str), crew: &Crew) -> String {
+fn describe(view: &ProgressView, (counted, unit): (&str, &str), crew: &WorkersSnapshot) -> String {
     let mut parts = Vec::new();
     // before the first is asked for there is nothing to count, and one of one says nothing
     if view.generations > 1 {
@@ -231,7 +235,7 @@ fn describe(view: &ProgressView, (counted, unit): (&str, &str), crew: &Crew) -> 
 
 /// Describes the connected workers. Before the first job is dispatched, workers fetch the case and build the
 /// model.
-fn at_work(crew: &Crew) -> String {
+fn at_work(crew: &WorkersSnapshot) -> String {
     let attached = crew.workers.iter().filter(|worker| worker.attached).count();
     let workers = match attached {
         0 => return "waiting for workers".to_owned(),
@@ -244,8 +248,8 @@ fn at_work(crew: &Crew) -> String {
     workers
 }
 
-/// Formats the use of slot time, for example `slots 91 % useful, 8 % barrier`; `None` below 5 s of connected
-/// slot time.
+/// Formats how worker slots spend their time, for example `slots 91 % useful, 8 % barrier`; `None` below 5 s
+/// of connected slot time.
 fn slot_use(spent: &Spent) -> Option<String> {
     if spent.connected_us < 5_000_000 {
         return None;
@@ -289,7 +293,7 @@ mod tests {
             best: Some(0.31239),
         };
         let words = ("generation or stage", " N^2");
-        let mut crew = Crew::default();
+        let mut crew = WorkersSnapshot::default();
         assert_eq!(
             describe(&ProgressView::default(), words, &crew),
             "waiting for workers"

@@ -1,6 +1,6 @@
 //! Adapter that makes the dispatcher an evaluator: options, opening, and conversion of its errors to messages
 //! with remedies.
-use crate::cli::{argument::door::Door, output::problem::Problem};
+use crate::cli::{argument::listening::RemoteAccess, output::problem::Problem};
 use dispatch::journal::{self, JournalError};
 use dispatch::runtime::{Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot};
 use link::LinkError;
@@ -12,7 +12,7 @@ use protocol::{
 };
 use serde::Serialize;
 use std::{path::PathBuf, time::Duration};
-use study::{Completed, Crew, Evaluator, EvaluatorError, JobNumbers, WorkerStatus};
+use study::{Completed, Evaluator, EvaluatorError, JobNumbers, WorkerStatus, WorkersSnapshot};
 
 /// Name and version of this program.
 pub(crate) const PROGRAM: &str = concat!("horsehead ", env!("CARGO_PKG_VERSION"));
@@ -22,7 +22,7 @@ pub(crate) struct Options {
     /// Folder of the journal.
     pub(crate) run_dir: PathBuf,
     /// Network access for workers of other machines: listening address and key material.
-    pub(crate) door: Door,
+    pub(crate) network: RemoteAccess,
     /// Number of worker processes to start on this machine.
     pub(crate) local_workers: usize,
     /// Longest time for which the run waits while its disk is full.
@@ -38,9 +38,9 @@ impl Options {
     pub(crate) fn for_dispatch(self, case: &Case) -> anyhow::Result<DispatchOptions> {
         Ok(DispatchOptions {
             run_dir: self.run_dir,
-            listen: self.door.listen,
-            insecure: self.door.insecure,
-            tls: self.door.tls,
+            listen: self.network.listen,
+            insecure: self.network.insecure,
+            tls: self.network.tls,
             local_workers: self.local_workers,
             pause_limit: self.pause_limit,
             case: case.clone(),
@@ -65,7 +65,8 @@ impl Bus {
     /// # Errors
     /// If the local workers cannot run the case, or the dispatcher cannot be opened.
     pub(crate) async fn open(options: Options, case: &Case) -> anyhow::Result<Self> {
-        let unready = (options.local_workers > 0).then(|| case::kind::of(case).unready(case));
+        let unready =
+            (options.local_workers > 0).then(|| case::kind::of(case).readiness_problem(case));
         if let Some((message, help)) = unready.flatten() {
             return Err(Problem {
                 message,
@@ -114,12 +115,12 @@ impl Evaluator for Bus {
             .map_err(|error| explain(&error.into()))
     }
 
-    fn crew(&self) -> Crew {
+    fn workers_status(&self) -> WorkersSnapshot {
         crew(self.dispatch.snapshot())
     }
 }
 
-fn crew(snapshot: Snapshot) -> Crew {
+fn crew(snapshot: Snapshot) -> WorkersSnapshot {
     let workers = snapshot.workers.into_iter().map(|worker| WorkerStatus {
         name: worker.id.to_string(),
         host: worker.host,
@@ -131,7 +132,7 @@ fn crew(snapshot: Snapshot) -> Crew {
         busy_s: worker.spent.useful_us as f64 / 1e6,
         present_s: worker.spent.connected_us as f64 / 1e6 / f64::from(worker.slots.max(1)),
     });
-    Crew {
+    WorkersSnapshot {
         workers: workers.collect(),
         queued: snapshot.queued,
         running: snapshot.running,
@@ -143,7 +144,7 @@ fn crew(snapshot: Snapshot) -> Crew {
 /// Converts an error of opening a run to one with a remedy, mostly a corrected command line argument.
 fn refuse(error: &DispatchError) -> anyhow::Error {
     let help = match error {
-        DispatchError::NobodyToAsk => "for example --workers 2, or --listen tcp/127.0.0.1:7447",
+        DispatchError::NoWorkers => "for example --workers 2, or --listen tcp/127.0.0.1:7447",
         DispatchError::Listen { .. } => {
             "choose another address or port, as --listen tcp/127.0.0.1:7447; port 0 takes any \
              free one"
@@ -173,8 +174,8 @@ fn refuse(error: &DispatchError) -> anyhow::Error {
     .into()
 }
 
-/// Removes fragments such as ` at /some/file.rs:12`, which the transport adds to its errors to show a place
-/// in its own source.
+/// Removes source locations such as ` at /some/file.rs:12`, which the transport library adds to its error
+/// messages.
 fn without_source_places(text: &str) -> String {
     let mut kept = String::with_capacity(text.len());
     let mut rest = text;

@@ -1,12 +1,12 @@
 //! Work of a calibration: the search, then the comparison of the recommended with the best individual.
-use super::{begun::Run, diagnosis::inputs};
+use super::{diagnosis::inputs, opened::Run};
 use crate::cli::output::terminal;
 use discrepancy::{diagnose::Inputs, identify::UnknownEstimate, thresholds::Thresholds};
 use protocol::case::Case;
 use search::strategy::{self, Settings};
 use study::{
-    self, Calibrated, Compared, Evaluator, PICTURES, ProgressView, StageView, Stop, StudyError,
-    Wanted, Watch,
+    self, Calibrated, CompareRequest, Compared, Evaluator, PICTURES, ProgressView, StageView, Stop,
+    StudyError, Watch,
 };
 
 /// Run of `horsehead calibrate`.
@@ -43,7 +43,7 @@ pub(crate) async fn calibrate<E: Evaluator>(
     // workers may be long in coming
     let mut view = ProgressView::default();
     view.plan(&strategy.progress());
-    watch.progress(&view, &|| evaluator.crew());
+    watch.progress(&view, &|| evaluator.workers_status());
     let recommended = match study::compare(evaluator, case, &wanted, stop).await {
         // others may do better; without a comparison there is no report
         Err(error @ StudyError::Unavailable { .. }) => Err(error),
@@ -54,12 +54,12 @@ pub(crate) async fn calibrate<E: Evaluator>(
     terminal::note(&notes);
     let calibrated = study::calibrate(evaluator, case, strategy.as_mut(), watch, stop).await?;
     let recommended = recommended?;
-    let best = |one: Wanted| Wanted {
+    let best = |one: CompareRequest| CompareRequest {
         first: 1,
         individuals: vec![("optimised".to_owned(), calibrated.best.genes.clone())],
         ..one
     };
-    let wanted: Vec<Wanted> = wanted.into_iter().map(best).collect();
+    let wanted: Vec<CompareRequest> = wanted.into_iter().map(best).collect();
     let optimised = study::compare(evaluator, case, &wanted, stop).await?;
     let both = recommended.into_iter().zip(optimised);
     let both = both.map(|(mut recommended, optimised)| {
@@ -73,12 +73,12 @@ pub(crate) async fn calibrate<E: Evaluator>(
     })
 }
 
-/// Estimates to first order how well the record determines the unknowns at the best individual, each with an
-/// interval; `None` if the case has changed or no estimate is possible.
+/// Estimates to first order how well the measured record determines the unknowns at the best individual, each
+/// with an interval; `None` if the case has changed or no estimate is possible.
 ///
 /// # Errors
 /// If no evaluator is left, or the user stops the run.
-pub(crate) async fn seen<E: Evaluator>(
+pub(crate) async fn identifiability<E: Evaluator>(
     evaluator: &mut E,
     run: &Calibration,
     best: &[f64],
@@ -95,10 +95,10 @@ pub(crate) async fn seen<E: Evaluator>(
         start: Some(inputs.space.point(best)),
         ..inputs
     };
-    Ok(study::glance_on(evaluator, &inputs, watch, stop).await?)
+    Ok(study::estimate_at_start_on(evaluator, &inputs, watch, stop).await?)
 }
 
-/// Returns the two parameter sets of the paper's tables, recommended and optimised, with their names.
+/// Returns the parameter sets compared in the paper's tables, recommended and optimised, with their names.
 pub(crate) fn pair(case: &Case, best: &[f64]) -> Vec<(String, Vec<f64>)> {
     vec![
         ("recommended".to_owned(), case.start()),

@@ -1,30 +1,30 @@
 //! Work of a diagnosis: its settings, its inputs (case and measured cycles) and its execution.
 use super::{
-    begun::Run,
     command_line::quote,
     manifest::{self, DIAGNOSE, Manifest},
+    opened::Run,
 };
 use crate::cli::output::{problem::Problem, terminal};
 use case::Loaded;
-use discrepancy::{diagnose::Inputs, model::Off, thresholds::Thresholds};
+use discrepancy::{diagnose::Inputs, model::InactiveUnknowns, thresholds::Thresholds};
 use protocol::{announce::EffectDescriptor, case::Case};
 use search::space::Space;
 use serde::{Deserialize, Serialize};
-use study::{self, Diagnosed, Evaluator, StageView, Stop, Watch};
+use study::{self, DiagnosisResult, Evaluator, StageView, Stop, Watch};
 
 /// Run of `horsehead diagnose`.
-pub(crate) type Diagnosis = Run<Decides>;
+pub(crate) type Diagnosis = Run<DiagnosisSettings>;
 
 /// Settings that determine a diagnosis, besides case, seed and start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Decides {
+pub(crate) struct DiagnosisSettings {
     /// Thresholds of the statistical tests and limits of the diagnosis.
     pub(crate) thresholds: Thresholds,
     /// Whether every derivative is a finite difference of whole simulations.
     pub(crate) differences: bool,
 }
 
-impl manifest::Decides for Decides {
+impl manifest::RunIdentity for DiagnosisSettings {
     const KIND: &'static str = DIAGNOSE;
 
     fn arguments(&self) -> String {
@@ -44,7 +44,7 @@ pub(crate) struct Found {
     /// Notes about the case and its records.
     pub(crate) notes: Vec<String>,
     /// Diagnosis and its cost by stage.
-    pub(crate) diagnosed: Diagnosed,
+    pub(crate) diagnosed: DiagnosisResult,
     /// Candidate effects: those known to the workers but absent from the case, and unknowns of the case that
     /// are switched off.
     pub(crate) library: Vec<EffectDescriptor>,
@@ -57,7 +57,7 @@ pub(crate) struct Found {
 /// If an effect to be excluded is unknown; otherwise as [`study::diagnose_on`].
 pub(crate) async fn diagnose<E: Evaluator>(
     evaluator: &mut E,
-    manifest: &Manifest<Decides>,
+    manifest: &Manifest<DiagnosisSettings>,
     loaded: &Loaded,
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
@@ -66,9 +66,9 @@ pub(crate) async fn diagnose<E: Evaluator>(
     let notes = study::check_records(evaluator, &loaded.case, stop).await?;
     terminal::note(&notes);
     let notes = [&manifest.notes[..], &notes].concat();
-    let off = Off::of(&loaded.case.unknowns);
+    let off = InactiveUnknowns::of(&loaded.case.unknowns);
     for id in &manifest.settings.thresholds.without {
-        let mut known = library.iter().chain(off.iter().map(|off| &off.suspect));
+        let mut known = library.iter().chain(off.iter().map(|off| &off.candidate));
         if known.all(|suspect| suspect.id != *id) {
             let names = library.iter().filter(|e| !e.generic).map(|e| e.id.as_str());
             let known: Vec<&str> = names.collect();
@@ -86,11 +86,11 @@ pub(crate) async fn diagnose<E: Evaluator>(
             loaded,
             manifest,
             &own.thresholds,
-            (library, entrance(&loaded.case)),
+            (library, basin_search_preset(&loaded.case)),
         )?
     };
     let diagnosed = study::diagnose_on(evaluator, &inputs, watch, stop).await?;
-    let off = off.into_iter().map(|off| off.suspect);
+    let off = off.into_iter().map(|off| off.candidate);
     Ok(Found {
         notes,
         diagnosed,
@@ -101,7 +101,7 @@ pub(crate) async fn diagnose<E: Evaluator>(
 /// Returns the preset of the search that finds the basin of attraction of the fit: `quick` if the case
 /// declares a narrow valley, else `least-squares`, whose local descents find the basin with a fraction of the
 /// simulations.
-pub(super) fn entrance(case: &Case) -> &'static str {
+pub(super) fn basin_search_preset(case: &Case) -> &'static str {
     let narrow = case.unknowns.iter().any(|unknown| unknown.valley.is_some());
     if narrow { "quick" } else { "least-squares" }
 }
@@ -128,7 +128,7 @@ pub(super) fn inputs<S>(
         .into_iter()
         .filter(|effect| case.effects.iter().all(|own| own.id != effect.id))
         .collect();
-    let (usual, finer) = case::kind::of(case).numerics(case, thresholds)?;
+    let (usual, finer) = case::kind::of(case).diagnosis_numerics(case, thresholds)?;
     Ok(Inputs {
         conditions: case.conditions.iter().map(|own| own.name.clone()).collect(),
         unknowns: case.unknowns.clone(),
@@ -138,7 +138,7 @@ pub(super) fn inputs<S>(
         library,
         usual,
         finer,
-        entrance,
+        global_search: entrance,
         seed: manifest.seed,
         thresholds: thresholds.clone(),
         differences: false,

@@ -1,4 +1,4 @@
-//! Run folder: paths of its files, and the remedy if one of them is damaged.
+//! Paths of the files in a run folder, and the remedy if one of them is damaged.
 //!
 //! `run.json` and `case.json` make the folder independent of the case folder: `verify` and `report` need
 //! nothing else. The journal, which the dispatcher keeps in the same folder, holds every result.
@@ -10,7 +10,7 @@ use super::{
 use crate::cli::output::{problem::Problem, terminal};
 use anyhow::Context as _;
 use case::write_genes;
-use dispatch::journal::{self, Recording};
+use dispatch::journal::{self, JournalSnapshot};
 use protocol::{case::Case, event::Event};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::{
@@ -23,22 +23,22 @@ use support::atomic_file;
 pub(crate) const MANIFEST: &str = "run.json";
 /// File with the case as it was when the run was begun.
 pub(crate) const CASE: &str = "case.json";
-/// File with the output of a finished run.
+/// Name of the file that holds the output of a finished run.
 pub(crate) const RESULT: &str = "result.json";
 /// File with the first-order identifiability of a calibration's unknowns.
-pub(crate) const SEEN: &str = "seen.json";
+pub(crate) const IDENTIFIABILITY: &str = "seen.json";
 /// Gene file with the parameters that a run found.
 pub(crate) const GENES: &str = "calibrated.toml";
 
-/// Folder with the keys of workers that the run starts itself.
+/// Name of the folder that holds the keys of workers that the run itself launches.
 pub(crate) const KEYS: &str = "keys";
 
 /// Maximum length of the settings in a default folder name (bytes); a longer list is replaced by its hash.
 const LONGEST_SET: usize = 60;
 
-/// Fields common to the manifests of all kinds of run.
+/// Manifest fields that all kinds of run have in common.
 #[derive(Debug, Deserialize)]
-pub(crate) struct Head {
+pub(crate) struct ManifestHeader {
     format: u32,
     program: String,
     #[serde(default = "calibrate")]
@@ -58,7 +58,7 @@ impl RunFolder {
         Self { path }
     }
 
-    /// Returns the default path `runs/CASE-WHAT[-SET...][-RECORDS-HASH]-seedN`, relative to the current
+    /// Returns the default path `runs/CASE-WHAT[-AMBIGUITY_MARGIN...][-RECORDS-HASH]-seedN`, relative to the current
     /// folder, so that repeating a command finds its run. `set` lists the settings that differ from the
     /// default; `measured` is the folder of records that replace the case's. Since many such folders have the
     /// same name, the start of the records' hash is appended.
@@ -116,8 +116,8 @@ impl RunFolder {
     ///
     /// # Errors
     /// If the manifest is damaged or has a format that this version does not read.
-    pub(crate) fn head(&self) -> anyhow::Result<Head> {
-        let head: Head = self.read_json(MANIFEST)?;
+    pub(crate) fn head(&self) -> anyhow::Result<ManifestHeader> {
+        let head: ManifestHeader = self.read_json(MANIFEST)?;
         if head.format == FORMAT {
             return Ok(head);
         }
@@ -174,9 +174,9 @@ impl RunFolder {
     }
 
     /// Opens the journal read-only; damage to it is reported on standard error.
-    pub(crate) fn recording(&self) -> anyhow::Result<Recording> {
-        let recording = Recording::read(&self.file(journal::FILE), |_, _| {})?;
-        for damage in journal::words(&recording.report().damage) {
+    pub(crate) fn recording(&self) -> anyhow::Result<JournalSnapshot> {
+        let recording = JournalSnapshot::read(&self.file(journal::FILE), |_, _| {})?;
+        for damage in journal::describe_damage(&recording.report().damage) {
             terminal::tell(&format!("warning: {damage}"));
         }
         Ok(recording)

@@ -1,30 +1,30 @@
 //! Work of an identifiability analysis: its settings and its execution.
 use super::{
-    begun::Run,
-    diagnosis::{entrance, inputs},
+    diagnosis::{basin_search_preset, inputs},
     manifest::{self, IDENTIFY, Manifest},
+    opened::Run,
 };
 use crate::cli::output::{problem::Problem, terminal};
 use case::Loaded;
 use discrepancy::{
-    diagnose::Inputs, identify::Identified, laboratory::Stage, thresholds::Thresholds,
+    diagnose::Inputs, identify::IdentificationResult, laboratory::Stage, thresholds::Thresholds,
 };
 use serde::{Deserialize, Serialize};
 use study::{self, Evaluator, StageCost, StageView, Stop, Watch};
 
 /// Run of `horsehead identify`.
-pub(crate) type Identification = Run<Decides>;
+pub(crate) type Identification = Run<IdentificationSettings>;
 
 /// Settings that determine an identifiability analysis, besides case, seed and start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Decides {
-    /// Highest order of a period that is compared [1].
+pub(crate) struct IdentificationSettings {
+    /// Highest harmonic order of the period at which simulation and record are compared [1].
     pub(crate) orders: usize,
     /// Whether every derivative is a finite difference of whole simulations.
     pub(crate) differences: bool,
 }
 
-impl manifest::Decides for Decides {
+impl manifest::RunIdentity for IdentificationSettings {
     const KIND: &'static str = IDENTIFY;
 
     fn arguments(&self) -> String {
@@ -41,7 +41,7 @@ pub(crate) struct Found {
     /// Notes about the case and its records.
     pub(crate) notes: Vec<String>,
     /// Identifiability of the unknowns, and prediction bands.
-    pub(crate) identified: Identified,
+    pub(crate) identified: IdentificationResult,
     /// Cost of each stage that ran simulations.
     pub(crate) accounts: Vec<(Stage, StageCost)>,
 }
@@ -52,7 +52,7 @@ pub(crate) struct Found {
 /// If no fit completes near the start; otherwise as [`study::identify_on`].
 pub(crate) async fn identify<E: Evaluator>(
     evaluator: &mut E,
-    manifest: &Manifest<Decides>,
+    manifest: &Manifest<IdentificationSettings>,
     loaded: &Loaded,
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
@@ -69,7 +69,12 @@ pub(crate) async fn identify<E: Evaluator>(
     let case = &loaded.case;
     let inputs = Inputs {
         differences: own.differences,
-        ..inputs(loaded, manifest, &thresholds, (library, entrance(case)))?
+        ..inputs(
+            loaded,
+            manifest,
+            &thresholds,
+            (library, basin_search_preset(case)),
+        )?
     };
     let done = study::identify_on(evaluator, case, &inputs, watch, stop).await?;
     let Some(identified) = done.identified else {

@@ -1,17 +1,17 @@
 //! Determines the kind of a run (calibration, diagnosis or identification) from its run folder; no other
 //! module does so.
 use super::{
-    begun::Run,
     calibration::{self, Calibration, calibrate},
     diagnosis::{self, Diagnosis, diagnose},
     folder::{RESULT, RunFolder},
     identification::{self, Identification, identify},
     manifest::{CALIBRATE, DIAGNOSE, IDENTIFY},
+    opened::Run,
 };
 use crate::cli::{
     argument::output::Output,
     output::{
-        calibration::show, diagnosis::Answer, identification::show as identified,
+        calibration::show, diagnosis::DiagnosisOutput, identification::show as identified,
         object::diagnosis::times::Times, problem::Problem,
     },
 };
@@ -30,7 +30,7 @@ pub(crate) enum AnyRun {
 }
 
 /// Run together with its result, recomputed from its journal.
-pub(crate) enum Repeated<'a> {
+pub(crate) enum ReplayedRun<'a> {
     /// Calibration and its result.
     Calibration(&'a Calibration, calibration::Found),
     /// Diagnosis and its result, with the case and the measured records read again.
@@ -63,7 +63,7 @@ impl AnyRun {
     ///
     /// # Errors
     /// If the run cannot be replayed; the error says how to continue.
-    pub(crate) fn expect_replayable(&self) -> Result<(), Problem> {
+    pub(crate) fn check_replayable(&self) -> Result<(), Problem> {
         match self {
             Self::Calibration(run) => run.expect_replayable(),
             Self::Diagnosis(run) => run.expect_replayable(),
@@ -71,36 +71,36 @@ impl AnyRun {
         }
     }
 
-    /// Repeats the study of the run with an evaluator that answers from a recording.
+    /// Repeats the study of the run with recorded results instead of simulations.
     ///
     /// # Errors
-    /// If the recording lacks a result that the run asks for.
-    pub(crate) async fn repeat<E: Evaluator>(
+    /// If the recording lacks a result that the study requests.
+    pub(crate) async fn replay<E: Evaluator>(
         &self,
         evaluator: &mut E,
         watch: &mut (impl Watch<ProgressView> + Watch<StageView>),
         stop: &mut Stop,
-    ) -> anyhow::Result<Repeated<'_>> {
+    ) -> anyhow::Result<ReplayedRun<'_>> {
         Ok(match self {
             Self::Calibration(run) => {
-                Repeated::Calibration(run, calibrate(evaluator, run, watch, stop).await?)
+                ReplayedRun::Calibration(run, calibrate(evaluator, run, watch, stop).await?)
             }
             Self::Diagnosis(run) => {
                 let loaded = Box::new(run.loaded()?);
                 let found = diagnose(evaluator, &run.manifest, &loaded, watch, stop).await?;
-                Repeated::Diagnosis(run, loaded, Box::new(found))
+                ReplayedRun::Diagnosis(run, loaded, Box::new(found))
             }
             Self::Identification(run) => {
                 let loaded = run.loaded()?;
                 let found = identify(evaluator, &run.manifest, &loaded, watch, stop).await?;
-                Repeated::Identification(run, Box::new(found))
+                ReplayedRun::Identification(run, Box::new(found))
             }
         })
     }
 }
 
-impl Repeated<'_> {
-    /// Writes the files of the run and prints its result.
+impl ReplayedRun<'_> {
+    /// Writes the result files of the run and prints its result.
     ///
     /// # Errors
     /// If a file cannot be written.
@@ -111,7 +111,7 @@ impl Repeated<'_> {
                 // reading takes a moment: the times are those of the session that computed
                 let known: Times = run.folder.read_json(RESULT)?;
                 known.restore(&mut found.diagnosed.accounts);
-                let answer = Answer {
+                let answer = DiagnosisOutput {
                     run,
                     loaded: &loaded,
                     found: &found,

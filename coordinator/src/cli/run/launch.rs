@@ -5,13 +5,13 @@
 //! address and keys for its workers.
 use super::folder::KEYS;
 use crate::cli::{
-    argument::{door::Door, workers::WorkersChoice},
+    argument::{listening::RemoteAccess, workers::WorkersChoice},
     output::{problem::Problem, terminal},
 };
 use dispatch::runtime::locate::worker_program;
 use launch::{
-    Host, Plan, Program, WorkerOptions,
-    execute::{LaunchError, carry_out},
+    Host, LaunchPlan, Program, WorkerOptions,
+    execute::{LaunchError, execute_plan},
     ssh,
 };
 use link::{
@@ -38,13 +38,13 @@ const WAIT_S: u64 = 30;
 /// because this process was killed.
 const IDLE_S: u64 = 600;
 
-/// Remote workers that are launched together with a run.
+/// Workers on other hosts that are launched together with a run and stopped with it.
 #[derive(Debug)]
 pub(crate) struct Launch {
     hosts: Vec<Host>,
-    order: WorkerOptions,
-    /// Listening address and keys of the run for these workers.
-    pub(crate) door: Door,
+    options: WorkerOptions,
+    /// Listening address and keys of the run, through which the launched workers connect.
+    pub(crate) endpoint: RemoteAccess,
     /// Cancellation flag: once set, no further launch step begins.
     cancelled: Arc<AtomicBool>,
     /// Thread that launches the workers; none before [`Launch::up`].
@@ -52,8 +52,8 @@ pub(crate) struct Launch {
 }
 
 impl Launch {
-    /// Determines the address and creates the keys that the run needs before it listens; returns none if no
-    /// host is named.
+    /// Determines the listening address and creates the keys for workers on other hosts, before the run
+    /// listens; returns `None` if no host is named.
     pub(crate) fn prepare(workers: &WorkersChoice, run: &Path) -> anyhow::Result<Option<Self>> {
         let hosts = workers.hosts.read()?;
         let Some(first) = hosts.first() else {
@@ -64,7 +64,7 @@ impl Launch {
         let mut connect = Locator::parse(listen)?;
         connect.host = match &workers.advertise {
             Some(address) => address.clone(),
-            None => ssh::our_address(first).map_err(|error| remedied(&error))?,
+            None => ssh::our_address(first).map_err(|error| to_problem(&error))?,
         };
         if connect.protocol == Protocol::Quic && door.tls.is_none() {
             let folder = run.join(KEYS);
@@ -83,8 +83,8 @@ impl Launch {
         };
         Ok(Some(Self {
             hosts,
-            order,
-            door,
+            options: order,
+            endpoint: door,
             cancelled: Arc::default(),
             launching: None,
         }))
@@ -93,13 +93,13 @@ impl Launch {
     /// Launches the workers on a separate thread, concurrently with the run; a host that fails is reported
     /// and not waited for.
     pub(crate) fn up(&mut self) -> anyhow::Result<()> {
-        let plan = ssh::up(&self.order, &self.hosts, &programs(&[])?, WAIT_S);
+        let plan = ssh::up(&self.options, &self.hosts, &programs(&[])?, WAIT_S);
         let plan = plan?;
         let cancelled = Arc::clone(&self.cancelled);
         let launching = thread::Builder::new()
             .name("launch".to_owned())
             .spawn(move || {
-                if let Err(error) = carry_until(&plan, &cancelled) {
+                if let Err(error) = execute_plan_until(&plan, &cancelled) {
                     tracing::warn!("workers on other hosts could not be started: {error}");
                 }
             })?;
@@ -112,13 +112,13 @@ impl Launch {
         self.cancelled.store(true, Ordering::Relaxed);
         let is_launching = |launching: &JoinHandle<()>| !launching.is_finished();
         let launching = self.launching.take().filter(is_launching);
-        let down = ssh::down(&self.hosts, Some(&self.order));
+        let down = ssh::down(&self.hosts, Some(&self.options));
         // whoever waits for a worker to take part goes on once its process has ended
-        let mut ended = carry(&down);
+        let mut ended = execute(&down);
         if let Some(launching) = launching {
             // a step that had begun may have started a worker behind that
             drop(launching.join());
-            ended = carry(&down);
+            ended = execute(&down);
         }
         if let Err(error) = ended {
             tracing::warn!(
@@ -154,22 +154,22 @@ fn owner(run: &Path) -> std::io::Result<String> {
     Ok(format!("run-{}", hash.chars().take(16).collect::<String>()))
 }
 
-/// Executes a plan and prints the outcome at each host.
-pub(crate) fn carry(plan: &Plan) -> anyhow::Result<()> {
-    carry_until(plan, &AtomicBool::new(false))
+/// Executes a launch plan and prints the outcome at each host.
+pub(crate) fn execute(plan: &LaunchPlan) -> anyhow::Result<()> {
+    execute_plan_until(plan, &AtomicBool::new(false))
 }
 
 /// Executes a plan like [`carry`] until `cancelled` is set.
-fn carry_until(plan: &Plan, cancelled: &AtomicBool) -> anyhow::Result<()> {
+fn execute_plan_until(plan: &LaunchPlan, cancelled: &AtomicBool) -> anyhow::Result<()> {
     let failed = AtomicUsize::new(0);
-    carry_out(plan, cancelled, &|part, ended| match ended {
-        Ok(()) => terminal::tell(&format!("{}: {}", part.place, part.then)),
+    execute_plan(plan, cancelled, &|part, ended| match ended {
+        Ok(()) => terminal::tell(&format!("{}: {}", part.place, part.success_message)),
         Err(error) => {
             failed.fetch_add(1, Ordering::Relaxed);
             terminal::tell(&format!("error: {error}; {}", error.remedy));
         }
     })
-    .map_err(|error| remedied(&error))?;
+    .map_err(|error| to_problem(&error))?;
     match failed.into_inner() {
         0 => Ok(()),
         failed => anyhow::bail!("{failed} of {} places failed", plan.parts.len()),
@@ -177,16 +177,15 @@ fn carry_until(plan: &Plan, cancelled: &AtomicBool) -> anyhow::Result<()> {
 }
 
 /// Converts a launch error into a problem with its remedy.
-fn remedied(error: &LaunchError) -> Problem {
+fn to_problem(error: &LaunchError) -> Problem {
     Problem {
         message: error.to_string(),
         remedy: error.remedy.clone(),
     }
 }
 
-/// Returns the worker programs for the machine types of the hosts: the worker program of this machine first,
-/// then those named for other architectures; a named program replaces the local one for the same
-/// architecture.
+/// Returns the worker programs for the machine architectures of the hosts: the worker program of this machine
+/// first, then the programs in `named`; a named program replaces the local one for the same architecture.
 pub(crate) fn programs(named: &[String]) -> Result<Vec<Program>, Problem> {
     let mut programs = Vec::new();
     for text in named {

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 pub(crate) const FORMAT: u32 = 1;
 
 /// Maximum number of differing settings that are listed by name when two runs differ.
-const MOST_NAMED: usize = 3;
+const MAX_LISTED_DIFFERENCES: usize = 3;
 
 /// Kind of a calibration; also the default for manifests without a kind.
 pub(crate) const CALIBRATE: &str = "calibrate";
@@ -27,13 +27,13 @@ pub(crate) const IDENTIFY: &str = "identify";
 /// Kind of a run that evaluates individuals for another program.
 pub(crate) const EVALUATE: &str = "evaluate";
 
-/// Returns the default kind of a manifest that names none.
+/// Returns `calibrate`, the kind of run assumed for a manifest that names none.
 pub(crate) fn calibrate() -> String {
     CALIBRATE.to_owned()
 }
 
 /// Settings of one kind of run that determine its result, in addition to case, seed and start.
-pub(crate) trait Decides: Serialize + DeserializeOwned + PartialEq + Clone {
+pub(crate) trait RunIdentity: Serialize + DeserializeOwned + PartialEq + Clone {
     /// Command that creates runs of this kind, as in `horsehead calibrate`.
     const KIND: &'static str;
     /// Whether the command takes a seed.
@@ -45,8 +45,8 @@ pub(crate) trait Decides: Serialize + DeserializeOwned + PartialEq + Clone {
         [Self::KIND, " ", case].concat()
     }
 
-    /// Returns the further options that a command line must repeat besides preset, settings and seed, each
-    /// word preceded by a space.
+    /// Returns the further command line options that resuming the run requires besides preset, settings and
+    /// seed, each word preceded by a space.
     fn arguments(&self) -> String {
         String::new()
     }
@@ -57,17 +57,17 @@ pub(crate) trait Decides: Serialize + DeserializeOwned + PartialEq + Clone {
     }
 }
 
-impl Decides for Settings {
+impl RunIdentity for Settings {
     const KIND: &'static str = CALIBRATE;
 
     fn difference(&self, earlier: &Self) -> String {
         let same = |preset: &&Preset| preset.strategy == self.strategy();
-        let named = CATALOGUE.iter().filter(same).flat_map(Preset::named);
+        let named = CATALOGUE.iter().filter(same).flat_map(Preset::settable);
         let differences = named.filter_map(|one| {
             let (was, is) = (one.value(earlier)?, one.value(self)?);
             (was != is).then(|| format!("{} is {was}, not {is}", one.key))
         });
-        let first: Vec<String> = differences.take(MOST_NAMED).collect();
+        let first: Vec<String> = differences.take(MAX_LISTED_DIFFERENCES).collect();
         match first.as_slice() {
             [] => "its search settings differ".to_owned(),
             some => format!("its search settings differ: {}", some.join(", ")),
@@ -96,10 +96,10 @@ pub(crate) struct Manifest<S = Settings> {
     pub(crate) seed: u64,
     /// Settings that determine the result, besides seed and start.
     pub(crate) settings: S,
-    /// Start of the search; none for the recommended values.
+    /// Values of the unknowns from which the search starts; none for the recommended values.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) start: Option<Start>,
-    /// Individuals that the search evaluates first.
+    /// Table of individuals that the search evaluates first, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) table: Option<FirstTable>,
     /// Folder from which the case was read.
@@ -109,7 +109,7 @@ pub(crate) struct Manifest<S = Settings> {
     /// Whether the case declares its measured records as synthetic (computed instead of measured).
     #[serde(default)]
     pub(crate) synthetic: bool,
-    /// Remarks about the case.
+    /// Notes about the case and its records.
     pub(crate) notes: Vec<String>,
     /// Wall time of the completed sessions (s).
     pub(crate) wall_s: f64,
@@ -140,7 +140,7 @@ pub(crate) struct FirstTable {
 pub(crate) struct Start {
     /// Gene file from which the values were read.
     pub(crate) file: PathBuf,
-    /// One value per gene [declared units].
+    /// Starting value of each unknown, in the case's order [declared units].
     pub(crate) genes: Vec<f64>,
 }
 
@@ -189,7 +189,7 @@ impl<S> Manifest<S> {
     }
 }
 
-impl<S: Decides> Manifest<S> {
+impl<S: RunIdentity> Manifest<S> {
     /// Creates the manifest of a new run with the measured records of the case, no preset, and the
     /// recommended values as start.
     pub(crate) fn new(case_folder: &Path, seed: u64, settings: S) -> anyhow::Result<Self> {
@@ -256,6 +256,6 @@ impl<S: Decides> Manifest<S> {
 pub(crate) fn space(case: &Case, start: Option<&Start>) -> Result<Space, SpaceError> {
     match start {
         None => Space::new(&case.unknowns),
-        Some(start) => Space::about(&case.unknowns, &start.genes),
+        Some(start) => Space::with_start(&case.unknowns, &start.genes),
     }
 }

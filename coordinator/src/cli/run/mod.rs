@@ -1,5 +1,4 @@
 //! Runs: run folders, manifests, and functions that open, resume and repeat runs.
-pub(super) mod begun;
 pub(crate) mod bus;
 pub(super) mod calibration;
 pub(super) mod command_line;
@@ -10,11 +9,12 @@ pub(super) mod interrupt;
 pub(super) mod kind;
 pub(super) mod launch;
 pub(super) mod manifest;
-pub(crate) mod once;
+pub(super) mod opened;
 pub(super) mod orthogonal;
-pub(super) mod scaled;
+pub(super) mod scaling;
 pub(super) mod searches;
 pub(super) mod session;
-pub(super) mod swept;
+pub(super) mod sweep_file;
 pub(super) mod tables;
 pub(super) mod target;
+pub(crate) mod temporary;

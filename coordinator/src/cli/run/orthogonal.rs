@@ -1,20 +1,20 @@
 //! Orthogonal test of settings: evaluates the rows of an orthogonal array with every seed, then confirms the
 //! best levels with new seeds.
-use super::{begun::Run, manifest::Decides, searches::Searches};
+use super::{manifest::RunIdentity, opened::Run, searches::Searches};
 use serde::{Deserialize, Serialize};
-use study::orthogonal::{Analysis, Array, Confirmation, Tested};
+use study::orthogonal::{Analysis, Array, Confirmation, TestResult};
 use study::{Evaluator, ProgressView, Stop, Sweep, Watch};
 
 /// Settings of an orthogonal test that determine its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Orthogonal {
-    /// Orthogonal array.
+    /// Orthogonal array whose rows are the tested combinations of levels.
     pub(crate) array: Array,
-    /// Searches that the rows of the array vary.
+    /// Base settings, factors and seeds of the searches.
     pub(crate) searches: Searches,
 }
 
-impl Decides for Orthogonal {
+impl RunIdentity for Orthogonal {
     const KIND: &'static str = "sweep orthogonal";
 
     fn arguments(&self) -> String {
@@ -35,7 +35,7 @@ pub(crate) async fn test<E: Evaluator>(
     run: &Run<Orthogonal>,
     watch: &mut dyn Watch<ProgressView>,
     stop: &mut Stop,
-) -> anyhow::Result<Tested> {
+) -> anyhow::Result<TestResult> {
     let Orthogonal { array, searches } = &run.manifest.settings;
     let space = run.manifest.space(&run.case)?;
     let mut sweep = Sweep::new(&run.case, &space);
@@ -65,7 +65,7 @@ pub(crate) async fn test<E: Evaluator>(
     } else {
         None
     };
-    Ok(Tested {
+    Ok(TestResult {
         array: *array,
         factors: searches.factors.clone(),
         runs,

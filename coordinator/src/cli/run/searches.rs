@@ -11,13 +11,13 @@ use crate::cli::{
 use anyhow::Context as _;
 use search::{
     space::Space,
-    strategy::{Plan, Preset, Settings, build, preset},
+    strategy::{Preset, SearchPlan, Settings, build, preset},
 };
 use serde::{Deserialize, Serialize};
-use study::orthogonal::{Factor, Tried};
-use study::{Search, Searched};
+use study::orthogonal::{Factor, TrialRun};
+use study::{Search, SearchResult};
 
-/// Names of the settings that limit the length of a search; a preset has some of these.
+/// Names of settings that limit the length of a search; every preset has at least one of them.
 const LENGTHS: [&str; 3] = ["generations", "evaluations", "points"];
 
 /// Upper limit of the settings in [`LENGTHS`].
@@ -31,13 +31,13 @@ const EVALUATIONS: u64 = 1000;
 pub(crate) struct Searches {
     /// Name of the preset whose settings the factors vary.
     pub(crate) preset: String,
-    /// Base settings, before factors are applied.
+    /// Base settings of the searches, before factor levels are applied.
     pub(crate) settings: Settings,
     /// Factors: varied settings with their levels.
     pub(crate) factors: Vec<Factor>,
     /// Evaluations per search; none where a factor sets the length of the search.
     pub(crate) evaluations: Option<u64>,
-    /// Seeds with which every row is searched.
+    /// Seeds with which every combination of levels is searched.
     pub(crate) seeds: Vec<u64>,
 }
 
@@ -54,7 +54,7 @@ impl Searches {
         (evaluations, seeds): (Option<u64>, Vec<u64>),
     ) -> Result<(Self, Vec<String>), Problem> {
         // what follows the number of workers is that of one: any crew finds the same
-        let plan = Plan { space, workers: 1 };
+        let plan = SearchPlan { space, workers: 1 };
         let chosen = choice.choose(preset, &plan)?;
         check(&factors, preset, &chosen.settings)?;
         let varied = |key: &str| {
@@ -62,7 +62,7 @@ impl Searches {
                 .iter()
                 .any(|own| factor::keys(own).any(|own| own == key))
         };
-        let has = |key: &str| preset.named().iter().any(|one| one.key == key);
+        let has = |key: &str| preset.settable().iter().any(|one| one.key == key);
         let free = |key: &str| has(key) && !varied(key) && !choice.names(key);
         let usual = Some(EVALUATIONS).filter(|_| !LENGTHS.into_iter().any(varied));
         let evaluations = evaluations.or(usual);
@@ -130,12 +130,12 @@ impl Searches {
         words.join(" ")
     }
 
-    /// Returns the results with levels and seeds, in the order of [`Searches::list`].
-    pub(crate) fn tried(&self, rows: &[Vec<usize>], found: &[Searched]) -> Vec<Tried> {
+    /// Combines the results of the searches with their levels and seeds, in the order of [`Searches::list`].
+    pub(crate) fn tried(&self, rows: &[Vec<usize>], found: &[SearchResult]) -> Vec<TrialRun> {
         let asked = rows
             .iter()
             .flat_map(|row| self.seeds.iter().map(move |seed| (row, seed)));
-        let one = |((row, seed), found): ((&Vec<usize>, &u64), &Searched)| Tried {
+        let one = |((row, seed), found): ((&Vec<usize>, &u64), &SearchResult)| TrialRun {
             levels: row.clone(),
             seed: *seed,
             objective: found
@@ -148,7 +148,7 @@ impl Searches {
         asked.zip(found).map(one).collect()
     }
 
-    /// Returns the command-line options that reproduce these searches, each word preceded by a space.
+    /// Returns the command line options that define these searches, each word preceded by a space.
     pub(crate) fn arguments(&self) -> String {
         let mut text = String::new();
         for factor in &self.factors {

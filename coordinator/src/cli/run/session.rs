@@ -1,16 +1,17 @@
-//! Session of a run: opens the bus in the run folder, does the work, and records the wall time.
+//! Session of a run, i.e. one process that works on it: opens the dispatcher in the run folder, does the
+//! work, and records the wall time.
 use super::{
-    begun::Run,
     bus::{self, Bus},
     interrupt,
     launch::Launch,
-    manifest::Decides,
+    manifest::RunIdentity,
+    opened::Run,
 };
 use crate::cli::{argument::workers::WorkersChoice, output::terminal};
 use std::time::Instant;
 use study::{Stop, StudyError};
 
-/// Choice of workers and start time of a session.
+/// Workers and start time of a session, one process that works on a run.
 pub(crate) struct Session {
     /// Choice of local and remote workers.
     workers: WorkersChoice,
@@ -32,9 +33,10 @@ impl Session {
         run.manifest.wall_s + self.started.elapsed().as_secs_f64()
     }
 
-    /// Executes the work of a run on the bus; results in the journal are not computed again. Prints at the
-    /// beginning whether the run is new or resumed, and the command that resumes it if it is stopped.
-    pub(crate) fn work<S: Decides, T>(
+    /// Executes the work of a run with the dispatcher as evaluator; results in the journal are not computed
+    /// again. Prints at the beginning whether the run is new or resumed, and the command that resumes it if
+    /// it is stopped.
+    pub(crate) fn work<S: RunIdentity, T>(
         &self,
         run: &Run<S>,
         work: impl AsyncFnOnce(&mut Bus, &mut Stop) -> anyhow::Result<T>,
@@ -42,13 +44,13 @@ impl Session {
         let mut launch = Launch::prepare(&self.workers, run.folder.path())?;
         let door = launch
             .as_ref()
-            .map_or(&self.workers.door, |launch| &launch.door)
+            .map_or(&self.workers.door, |launch| &launch.endpoint)
             .clone();
         let done = bus::block_on(async {
             let mut stop = interrupt::listen();
             let options = bus::Options {
                 run_dir: run.folder.path().to_owned(),
-                door,
+                network: door,
                 local_workers: self.workers.local(),
                 pause_limit: self.workers.pause_limit(),
                 kind: S::KIND.to_owned(),
@@ -57,7 +59,7 @@ impl Session {
             let resumed = run.folder.is_begun();
             let mut bus = Bus::open(options, &run.case).await?;
             // the journal is ours now: before, another run may have it
-            run.remember(run.manifest.wall_s)?;
+            run.save(run.manifest.wall_s)?;
             let path = run.folder.path().display();
             terminal::tell(&match (resumed || bus.recorded() > 0, bus.recorded()) {
                 (false, _) => format!("beginning {path}"),
@@ -69,7 +71,7 @@ impl Session {
             launch.as_mut().map_or(Ok(()), Launch::up)?;
             let done = work(&mut bus, &mut stop).await;
             // while the run is still locked
-            let remembered = run.remember(self.wall_s(run));
+            let remembered = run.save(self.wall_s(run));
             let closed = bus.close().await;
             let done = done?;
             remembered?;
@@ -91,8 +93,8 @@ impl Session {
     }
 }
 
-/// Returns whether repeating the command may add results: true after an interruption or an evaluator error,
-/// false if the case or the workers are at fault.
+/// Returns whether repeating the command after this error may add results: true after an interruption or an
+/// evaluator error, false if the case or the workers are at fault.
 fn can_go_on(error: &anyhow::Error) -> bool {
     let study = error.downcast_ref::<StudyError>();
     matches!(

@@ -14,11 +14,14 @@ use protocol::{case::Case, event::Finished, job::Job};
 use search::strategy::Proposal;
 use serde::Serialize;
 use std::{cell::RefCell, collections::BTreeMap, path::PathBuf};
-use store::{Exported, Format, Label, Store, StoreError, Target};
-use study::{Crew, EvaluatorError, ProgressView, Recorded, StageView, Stop, StudyError, Watch};
+use store::{ColumnLabel, Exported, Format, Store, StoreError, Target};
+use study::{
+    EvaluatorError, ProgressView, ReplayEvaluator, StageView, Stop, StudyError, Watch,
+    WorkersSnapshot,
+};
 
 /// Returns the properties of the whole run, from its manifest, as names and values.
-pub(crate) fn facts<S: Serialize>(
+pub(crate) fn run_properties<S: Serialize>(
     manifest: &Manifest<S>,
 ) -> anyhow::Result<Vec<(&'static str, String)>> {
     let Manifest {
@@ -68,17 +71,17 @@ pub(crate) fn facts<S: Serialize>(
     ])
 }
 
-/// Labels of simulations that were requested and have not returned, by job number.
-type Waiting = RefCell<BTreeMap<u64, Label>>;
+/// Labels (purpose and generation) of simulations that were requested and have not returned, by job number.
+type Waiting = RefCell<BTreeMap<u64, ColumnLabel>>;
 
-/// Watch that records why the study requested each simulation.
+/// Observer of a study that records the purpose and generation of each requested simulation.
 pub(crate) struct Labels<'a>(&'a Waiting);
 
 impl Watch<ProgressView> for Labels<'_> {
-    fn progress(&mut self, _: &ProgressView, _: &dyn Fn() -> Crew) {}
+    fn progress(&mut self, _: &ProgressView, _: &dyn Fn() -> WorkersSnapshot) {}
 
     fn asked(&mut self, id: u64, proposal: &Proposal) {
-        let label = Label {
+        let label = ColumnLabel {
             generation: Some(proposal.generation),
             purpose: proposal.purpose.as_str().to_owned(),
         };
@@ -87,10 +90,10 @@ impl Watch<ProgressView> for Labels<'_> {
 }
 
 impl Watch<StageView> for Labels<'_> {
-    fn progress(&mut self, _: &StageView, _: &dyn Fn() -> Crew) {}
+    fn progress(&mut self, _: &StageView, _: &dyn Fn() -> WorkersSnapshot) {}
 
     fn asked(&mut self, id: u64, stage: &Stage) {
-        let label = Label {
+        let label = ColumnLabel {
             generation: None,
             purpose: stage.name().to_owned(),
         };
@@ -100,8 +103,8 @@ impl Watch<StageView> for Labels<'_> {
 
 /// Returns the label of simulations requested outside the search, which are the two parameter sets that the
 /// result tables compare.
-fn comparison() -> Label {
-    Label {
+fn comparison() -> ColumnLabel {
+    ColumnLabel {
         generation: None,
         purpose: "comparison".to_owned(),
     }
@@ -131,9 +134,9 @@ pub(crate) fn calibration(run: &Calibration) -> anyhow::Result<Vec<PathBuf>> {
     let source = Source {
         folder: &run.folder,
         case: &run.case,
-        facts: facts(&run.manifest)?,
+        facts: run_properties(&run.manifest)?,
     };
-    let (exported, notes) = make(&source, target, async |recorded, labels, stop| {
+    let (exported, notes) = export(&source, target, async |recorded, labels, stop| {
         calibrate(recorded, run, labels, stop).await.map(drop)
     })?;
     terminal::note(&notes);
@@ -145,10 +148,10 @@ pub(crate) fn calibration(run: &Calibration) -> anyhow::Result<Vec<PathBuf>> {
 ///
 /// # Errors
 /// If there is no journal, the target cannot be written, or the user stops.
-pub(crate) fn make(
+pub(crate) fn export(
     source: &Source<'_>,
     target: Target,
-    repeat: impl AsyncFnOnce(&mut Recorded<'_>, &mut Labels<'_>, &mut Stop) -> anyhow::Result<()>,
+    repeat: impl AsyncFnOnce(&mut ReplayEvaluator<'_>, &mut Labels<'_>, &mut Stop) -> anyhow::Result<()>,
 ) -> anyhow::Result<(Exported, Vec<String>)> {
     let path = source.folder.file(journal::FILE);
     if !path.exists() {
@@ -167,7 +170,7 @@ pub(crate) fn make(
         store.fact(name, value)?;
     }
     let recording = store.journal(&path)?;
-    let mut notes = journal::words(&recording.report().damage);
+    let mut notes = journal::describe_damage(&recording.report().damage);
     let (waiting, mut failed) = (Waiting::default(), None);
     let mut seen = |job: &Job, finished: &Finished| {
         let label = waiting.borrow_mut().remove(&finished.job().0);
@@ -181,7 +184,7 @@ pub(crate) fn make(
             }
         })
     };
-    let mut recorded = Recorded::new(&recording, &mut seen);
+    let mut recorded = ReplayEvaluator::new(&recording, &mut seen);
     let repeated = bus::block_on(async {
         let mut stop = interrupt::listen();
         repeat(&mut recorded, &mut Labels(&waiting), &mut stop).await
@@ -210,7 +213,7 @@ pub(crate) fn make(
     Ok((store.finish()?, notes))
 }
 
-/// Adds a remedy to errors caused by the target of the export.
+/// Adds a remedy to export errors that are caused by the target file or folder.
 fn explained(error: StoreError) -> anyhow::Error {
     let help = match &error {
         StoreError::Foreign { .. } => "choose another place with --to, or replace it with --force",

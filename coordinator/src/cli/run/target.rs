@@ -4,7 +4,7 @@ use super::{
     calibration::Calibration,
     diagnosis::Diagnosis,
     folder::{GENES, RunFolder},
-    manifest::{CALIBRATE, Decides, Manifest, Start},
+    manifest::{CALIBRATE, Manifest, RunIdentity, Start},
 };
 use crate::cli::output::problem::Problem;
 use case::{Loaded, Overrides, load_with_notes, require_record};
@@ -60,7 +60,7 @@ impl Target {
     }
 
     /// Creates the manifest of a new run on this target with the given seed and settings.
-    pub(crate) fn manifest<S: Decides>(
+    pub(crate) fn manifest<S: RunIdentity>(
         &self,
         seed: u64,
         settings: S,
@@ -78,7 +78,7 @@ impl Target {
 
     /// Removes what an earlier session of this diagnosis added to the case, and restricts the start to the
     /// remaining unknowns.
-    pub(crate) fn without_found_by(mut self, earlier: &Diagnosis) -> anyhow::Result<Self> {
+    pub(crate) fn without_additions_of(mut self, earlier: &Diagnosis) -> anyhow::Result<Self> {
         let stated = self.loaded.case.unknowns.clone();
         self.loaded = earlier.as_begun(self.loaded)?;
         let left = &self.loaded.case.unknowns;

@@ -9,8 +9,8 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
-/// Returns the derivatives with respect to `per`: those of the gauges by gauge number in MPa per unit of
-/// `per`, and those of position and torque where the case has these channels.
+/// Returns the derivative curves with respect to the parameter unit `per`: of the gauges by gauge number (MPa
+/// per unit), and of suspension position and crank torque where the case has these channels.
 pub(in crate::pumping_unit) fn derivative(
     case: &Case,
     condition: usize,
@@ -38,8 +38,8 @@ pub(in crate::pumping_unit) fn derivative(
     said
 }
 
-/// Returns the prediction bands of the channels: those of the gauges by gauge number in MPa, the others in
-/// the units of their keys.
+/// Returns the prediction bands (lowest and highest curve) of the channels: gauges by gauge number in MPa,
+/// others in the unit stated in their JSON key.
 pub(in crate::pumping_unit) fn predicted(case: &Case, band: &Band) -> Map<String, Value> {
     let mut said = Map::new();
     for ((_, channel), curve) in case.channels_of(band.condition).zip(&band.channels) {
@@ -80,7 +80,8 @@ pub(in crate::pumping_unit) struct CurvesOutput<'a> {
     energy: Option<Energy>,
 }
 
-/// Difference of twin rope tensions over the revolution, for back and front ropes (N).
+/// Tension of the rope at +z minus that at -z over the revolution, for the back and the front pair of ropes
+/// (N).
 #[derive(Debug, Serialize)]
 struct TwinTensionOutput<'a> {
     back: &'a [f64],

@@ -14,7 +14,7 @@ use std::{
 };
 use support::atomic_file::Draft;
 
-/// Modes file of a case.
+/// JSON layout of a case's file with the modes of its back head.
 #[derive(Debug, Serialize)]
 struct ModesFile<'a> {
     mesh_blake3: &'a str,

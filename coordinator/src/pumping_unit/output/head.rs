@@ -2,7 +2,7 @@
 use case::pumping_unit::HeadComparison;
 use protocol::{
     case::Case,
-    pumping_unit::{LeftOutMode, ModeFamily, ReducedHead},
+    pumping_unit::{ModeFamily, OmittedMode, ReducedHead},
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -11,11 +11,11 @@ use std::collections::BTreeMap;
 #[derive(Debug, Serialize)]
 pub(crate) struct HeadOutput<'a> {
     case: &'a str,
-    /// Condition of the quasi-static turn.
+    /// Name of the condition whose load is used for the quasi-static turn.
     condition: &'a str,
     /// BLAKE3 hash of the mesh file.
     mesh_blake3: &'a str,
-    /// Computing time on the worker (s).
+    /// Computing time of the reduction on the worker (s).
     wall_s: f64,
     /// Number of displacement unknowns of the solved half of the mesh.
     unknowns: usize,
@@ -25,28 +25,30 @@ pub(crate) struct HeadOutput<'a> {
     /// Frequencies of the out-of-plane modes (Hz); absent where there is one rope.
     #[serde(skip_serializing_if = "Option::is_none")]
     twin_modes_hz: Option<&'a [f64]>,
-    /// Modes that were left out because they couple less to the loads of a turn; empty unless coupled modes
-    /// were requested.
-    left_out: &'a [LeftOutMode],
+    /// Computed modes that were discarded because they couple less to the loads of a revolution; empty unless
+    /// coupled modes were requested.
+    left_out: &'a [OmittedMode],
     /// Frequencies of modes in the case's table that do not move the rope surface (Hz).
     inert_table_modes_hz: &'a [f64],
-    /// Statics of the gauges by gauge number.
+    /// Stress results of the quasi-static turn, by gauge number.
     gauges: BTreeMap<String, HeadGaugeOutput>,
 }
 
-/// Mode of the reduced head; the `table` fields and `mac` are null where the case's table has no matching
-/// mode.
+/// Mode of the reduced head, compared with the case's modes table; the `table` fields and `mac` are null
+/// where the table has no matching mode.
 #[derive(Debug, Serialize)]
 pub(crate) struct HeadModeOutput {
     family: ModeFamily,
     frequency_hz: f64,
     table_frequency_hz: Option<f64>,
     mac: Option<f64>,
-    /// Largest share of any load pattern's static energy; null unless coupled modes were requested.
+    /// Largest share of the mode in the static strain energy of any load pattern; null unless coupled modes
+    /// were requested.
     coupling: Option<f64>,
 }
 
-/// Statics of a gauge over the quasi-static turn.
+/// Stress of a gauge over the quasi-static turn: half ranges from the exact solution, the case's table and
+/// the modes alone.
 #[derive(Debug, Serialize)]
 pub(crate) struct HeadGaugeOutput {
     exact_half_range_mpa: f64,

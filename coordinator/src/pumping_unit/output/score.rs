@@ -1,8 +1,8 @@
-//! Score of a gauge by its gauge number, with units in the field names.
+//! Output of channel scores for pumping units: gauges under their numbers, units in the field names.
 use protocol::{case::Channel, job::ChannelScore, pumping_unit::Sensor};
 use serde_json::{Map, Value, json};
 
-/// Returns the key of a channel's score, and further fields for a gauge.
+/// Returns the JSON key of a channel's score, and additional fields if the channel is a gauge.
 pub(in crate::pumping_unit) fn scored(
     channel: &Channel,
     score: &ChannelScore,

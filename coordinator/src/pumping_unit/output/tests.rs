@@ -13,14 +13,14 @@ use protocol::{
 };
 use serde_json::Value;
 use std::{collections::BTreeMap, path::Path};
-use study::Curves;
+use study::ComparedCurves;
 
 fn case() -> Case {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
     case::load(&folder, &case::Overrides::default()).unwrap()
 }
 
-fn curves(verdict: Verdict) -> Curves {
+fn curves(verdict: Verdict) -> ComparedCurves {
     let score = |channel| ChannelScore {
         channel,
         mse: 0.25,
@@ -31,7 +31,7 @@ fn curves(verdict: Verdict) -> Curves {
         peak_to_peak_error: -0.03125,
     };
     let complete = verdict == Verdict::Complete;
-    Curves {
+    ComparedCurves {
         name: "recommended".to_owned(),
         genes: case().start(),
         evaluation: Some(Evaluation {

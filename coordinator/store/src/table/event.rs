@@ -1,4 +1,4 @@
-//! Tables of workers, events of the run, and damage of its journal.
+//! Definition of the tables of workers, of run events, and of damaged sections of the journal.
 use crate::{column::Columns, row::Happened};
 use dispatch::journal::Damage;
 use protocol::event::{Spent, WorkerAccount};

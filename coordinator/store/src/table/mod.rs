@@ -9,10 +9,10 @@ mod result;
 pub use about::gene_column;
 
 use super::{
-    book::{Book, Table},
     column::Column,
     error::StoreError,
-    row::{Added, Brief, Evaluated, Fact, Happened, Scored},
+    row::{Brief, EffectRow, Evaluated, Fact, Happened, Scored},
+    writer::{TableHandle, TableWriter},
 };
 use dispatch::journal::Damage;
 use protocol::{
@@ -22,21 +22,21 @@ use protocol::{
 
 /// Handles of all tables of an export.
 pub(super) struct Tables {
-    pub(super) run: Table<Fact>,
-    pub(super) genes: Table<Unknown>,
-    pub(super) evaluations: Table<Evaluated>,
-    pub(super) effects: Table<Added>,
-    pub(super) results: Table<Brief>,
-    pub(super) scores: Table<Scored>,
-    pub(super) workers: Table<WorkerAccount>,
-    pub(super) events: Table<Happened>,
-    pub(super) damage: Table<Damage>,
-    pub(super) dictionary: Table<(String, Column)>,
+    pub(super) run: TableHandle<Fact>,
+    pub(super) genes: TableHandle<Unknown>,
+    pub(super) evaluations: TableHandle<Evaluated>,
+    pub(super) effects: TableHandle<EffectRow>,
+    pub(super) results: TableHandle<Brief>,
+    pub(super) scores: TableHandle<Scored>,
+    pub(super) workers: TableHandle<WorkerAccount>,
+    pub(super) events: TableHandle<Happened>,
+    pub(super) damage: TableHandle<Damage>,
+    pub(super) dictionary: TableHandle<(String, Column)>,
 }
 
 impl Tables {
     /// Begins all tables.
-    pub(super) fn begin(book: &mut Book, case: &Case) -> Result<Self, StoreError> {
+    pub(super) fn begin(book: &mut TableWriter, case: &Case) -> Result<Self, StoreError> {
         Ok(Self {
             run: book.begin("run", about::run())?,
             genes: book.begin("genes", about::genes())?,

@@ -2,7 +2,7 @@
 use super::about::{column, gene_column};
 use crate::{
     column::{Columns, JOB},
-    row::{Added, Brief, Evaluated, Scored},
+    row::{Brief, EffectRow, Evaluated, Scored},
 };
 use protocol::{
     case::{Case, Channel},
@@ -117,17 +117,17 @@ fn outcome(case: &Case) -> Columns<Brief> {
         .text("failure", "the same in words", |row| {
             Some(row.failure.as_ref()?.to_string())
         });
-    for (at, (name, about, _)) in Counters::default().named().into_iter().enumerate() {
+    for (at, (name, about, _)) in Counters::default().labelled().into_iter().enumerate() {
         columns = columns.integer(name, about, move |row| {
-            let (_, _, count) = row.counters()?.named()[at];
+            let (_, _, count) = row.counters()?.labelled()[at];
             Some(count)
         });
     }
     columns
 }
 
-/// Returns the measured channels, each name once for all conditions, with the indices of its channels in the
-/// case.
+/// Returns the distinct names of measured channels over all conditions, each with the indices of its channels
+/// in the case.
 fn measured(case: &Case) -> Vec<(&Channel, Vec<usize>)> {
     let mut named: Vec<(&Channel, Vec<usize>)> = Vec::new();
     let all = (0..case.conditions.len()).flat_map(|condition| case.measured(condition));
@@ -193,9 +193,9 @@ pub(super) fn scores(case: &Case) -> Columns<Scored> {
         )
 }
 
-pub(super) fn effects() -> Columns<Added> {
+pub(super) fn effects() -> Columns<EffectRow> {
     Columns::new()
-        .integer(JOB, "the simulation that had it", |row: &Added| {
+        .integer(JOB, "the simulation that had it", |row: &EffectRow| {
             Some(row.job.0)
         })
         .text("effect", "identifier", |row| Some(row.effect.clone()))

@@ -1,6 +1,6 @@
 //! Analysis of variance of a balanced design in blocks: sum of squares of each factor, and the probability
 //! that chance alone causes a sum as large.
-use super::range::{Observation, mean, means};
+use super::range::{Response, mean, means};
 use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
 /// Share of the total sum of squares below which the residual sum is taken for rounding errors, with no F
@@ -9,7 +9,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// Source of variation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum VarianceSource {
     /// Factor with this index, from 0.
     Factor(usize),
     /// Blocks, whose variation is separated from the error.
@@ -18,11 +18,11 @@ pub enum Source {
     Error,
 }
 
-/// Line of the analysis of variance table.
+/// Row of an analysis of variance table: one source of variation.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Term {
+pub struct AnovaTerm {
     /// Source of variation.
-    pub source: Source,
+    pub source: VarianceSource,
     /// Sum of squares \[square of the unit of the response\].
     pub squares: f64,
     /// Degrees of freedom.
@@ -34,7 +34,7 @@ pub struct Term {
     pub p: Option<f64>,
 }
 
-impl Term {
+impl AnovaTerm {
     /// Returns the sum of squares per degree of freedom.
     pub fn mean_square(&self) -> f64 {
         self.squares / self.freedom as f64
@@ -45,13 +45,13 @@ impl Term {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Anova {
     /// Lines of the table.
-    pub terms: Vec<Term>,
+    pub terms: Vec<AnovaTerm>,
 }
 
 /// Computes the table of a balanced design of `factors` factors with `levels` levels in `blocks` blocks.
 /// Returns none for a saturated design, which leaves no degree of freedom for the error.
 pub fn anova(
-    observations: &[Observation],
+    observations: &[Response],
     levels: usize,
     factors: usize,
     blocks: usize,
@@ -62,7 +62,7 @@ pub fn anova(
         return None;
     }
     let grand = mean(observations.iter().map(|one| one.response));
-    let squares = |groups: usize, group: &dyn Fn(&Observation) -> usize| -> f64 {
+    let squares = |groups: usize, group: &dyn Fn(&Response) -> usize| -> f64 {
         let means = means(observations, groups, group);
         let own = means.iter().map(|mean| (mean - grand).powi(2));
         own.sum::<f64>() * observations.len() as f64 / groups as f64
@@ -81,26 +81,26 @@ pub fn anova(
     let of = |(factor, squares): (usize, &f64)| {
         let freedom = levels - 1;
         let f = scatter.map(|scatter| squares / freedom as f64 / scatter);
-        Term {
-            source: Source::Factor(factor),
+        AnovaTerm {
+            source: VarianceSource::Factor(factor),
             squares: *squares,
             freedom,
             f,
             p: f.zip(law.as_ref()).map(|(f, law)| law.sf(f)),
         }
     };
-    let plain = |source, squares, freedom| Term {
+    let plain = |source, squares, freedom| AnovaTerm {
         source,
         squares,
         freedom,
         f: None,
         p: None,
     };
-    let mut terms: Vec<Term> = factors.iter().enumerate().map(of).collect();
+    let mut terms: Vec<AnovaTerm> = factors.iter().enumerate().map(of).collect();
     if blocks > 1 {
-        terms.push(plain(Source::Block, block, blocks - 1));
+        terms.push(plain(VarianceSource::Block, block, blocks - 1));
     }
-    terms.push(plain(Source::Error, left, error));
+    terms.push(plain(VarianceSource::Error, left, error));
     Some(Anova { terms })
 }
 
@@ -114,7 +114,7 @@ mod tests {
         assert!((value - expected).abs() <= step, "{value} {expected}");
     }
 
-    fn holds(term: &Term, (squares, freedom): (f64, usize)) {
+    fn holds(term: &AnovaTerm, (squares, freedom): (f64, usize)) {
         near(term.squares, squares, 2);
         assert_eq!(term.freedom, freedom);
     }
@@ -129,12 +129,12 @@ mod tests {
             [82.5, 89.5, 85.6, 87.4, 78.9, 90.7],
         ];
         let pressures = YIELD.iter().enumerate();
-        let observations: Vec<Observation> = pressures
+        let observations: Vec<Response> = pressures
             .flat_map(|(level, batches)| {
                 batches
                     .iter()
                     .enumerate()
-                    .map(move |(block, response)| Observation {
+                    .map(move |(block, response)| Response {
                         levels: vec![level],
                         block,
                         response: *response,
@@ -160,7 +160,7 @@ mod tests {
             [22.0, 30.0, 20.0, 29.0, 31.0],
         ];
         let rows = Array::L25.rows(3).into_iter();
-        let observe = |levels: Vec<usize>| Observation {
+        let observe = |levels: Vec<usize>| Response {
             response: RATE[levels[0]][levels[1]],
             block: 0,
             levels,
@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn a_saturated_design_has_no_table_and_rounding_is_no_scatter() {
         let observe = |block| {
-            move |levels: Vec<usize>| Observation {
+            move |levels: Vec<usize>| Response {
                 response: levels[0] as f64 / 3.0 + block as f64,
                 block,
                 levels,

@@ -5,10 +5,10 @@
 //! Source: D. C. Montgomery, Design and Analysis of Experiments, chapters 3 and 4.
 mod anova;
 mod array;
+mod outcome;
 mod range;
-mod tested;
 
-pub use anova::{Anova, Source, Term, anova};
+pub use anova::{Anova, AnovaTerm, VarianceSource, anova};
 pub use array::Array;
-pub use range::{Observation, Range, predicted, ranges};
-pub use tested::{Analysis, Confirmation, Factor, Tested, Tried};
+pub use outcome::{Analysis, Confirmation, Factor, TestResult, TrialRun};
+pub use range::{Range, Response, predicted, ranges};

@@ -2,7 +2,7 @@
 
 /// Observation of a design: one run with its response.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Observation {
+pub struct Response {
     /// Level of every factor, from 0.
     pub levels: Vec<usize>,
     /// Index of the block, from 0; runs of one block share conditions other than the factors.
@@ -24,9 +24,9 @@ pub struct Range {
 
 /// Computes the ranges of the first `factors` factors, each of `levels` levels. In a balanced design, the
 /// mean over all runs of a level is unaffected by the other factors.
-pub fn ranges(observations: &[Observation], levels: usize, factors: usize) -> Vec<Range> {
+pub fn ranges(observations: &[Response], levels: usize, factors: usize) -> Vec<Range> {
     let of = |factor: usize| {
-        let group = |one: &Observation| one.levels[factor];
+        let group = |one: &Response| one.levels[factor];
         let means = means(observations, levels, group);
         let largest = means.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let smallest = means.iter().copied().fold(f64::INFINITY, f64::min);
@@ -40,17 +40,17 @@ pub fn ranges(observations: &[Observation], levels: usize, factors: usize) -> Ve
 }
 
 /// Predicts the response at the best level of every factor under an additive model \[unit of the response\].
-pub fn predicted(observations: &[Observation], ranges: &[Range]) -> f64 {
+pub fn predicted(observations: &[Response], ranges: &[Range]) -> f64 {
     let grand = mean(observations.iter().map(|one| one.response));
     let gains = ranges.iter().map(|own| own.means[own.best] - grand);
     grand + gains.sum::<f64>()
 }
 
-/// Computes the mean response of each group; NaN for an empty group.
+/// Computes the mean response of each of `groups` groups of observations; NaN for an empty group.
 pub(super) fn means(
-    observations: &[Observation],
+    observations: &[Response],
     groups: usize,
-    group: impl Fn(&Observation) -> usize,
+    group: impl Fn(&Response) -> usize,
 ) -> Vec<f64> {
     let of = |number| {
         let own = observations.iter().filter(|one| group(one) == number);
@@ -80,7 +80,7 @@ mod tests {
         ];
         let observe = |levels: Vec<usize>| {
             let gains = levels.iter().zip(EFFECTS).map(|(level, own)| own[*level]);
-            Observation {
+            Response {
                 response: 2.0 + gains.sum::<f64>(),
                 block: 0,
                 levels,

@@ -4,5 +4,5 @@
 mod project;
 mod row;
 
-pub use project::{Stand, project};
-pub use row::{How, Overheads, Row, Scaled, Shares};
+pub use project::{SyntheticObjective, project};
+pub use row::{Overheads, ScalingResult, ScalingRow, Shares, SlotMode};

@@ -1,11 +1,11 @@
 //! Projection of a search to more slots than are available: the real scheduler and the real strategy on a
 //! simulated clock.
-use super::row::{How, Overheads, Row, Shares};
-use dispatch::simulated::{Cluster, Search, Setting};
+use super::row::{Overheads, ScalingRow, Shares, SlotMode};
+use dispatch::simulated::{Cluster, ClusterSetting, SimulatedSearch};
 use protocol::event::Spent;
 use search::{
     space::Space,
-    strategy::{Strategy, Told},
+    strategy::{EvaluationResult, Strategy},
 };
 use std::time::Duration;
 
@@ -14,45 +14,46 @@ const LIMIT: Duration = Duration::from_hours(24 * 365);
 
 /// Synthetic objective in place of the simulation of a case: squared distance from a point in the search
 /// space, in normalised coordinates.
-pub struct Stand<'a>(pub &'a Space);
+pub struct SyntheticObjective<'a>(pub &'a Space);
 
-impl Stand<'_> {
+impl SyntheticObjective<'_> {
     /// Computes the synthetic objective of an individual.
-    pub fn tell(&self, genes: &[f64]) -> Told {
+    pub fn evaluate(&self, genes: &[f64]) -> EvaluationResult {
         let point = self.0.point(genes);
         let squares = point.iter().map(|x| (x - 0.3) * (x - 0.3));
-        Told {
+        EvaluationResult {
             fitness: squares.sum(),
             complete: true,
         }
     }
 }
 
-/// Runs a search to its end on `slots` simulated slots; `name` and `population` are copied into the row.
+/// Runs a search to its end on `slots` simulated slots and returns its scaling result; `name` and
+/// `population` are copied into this.
 pub fn project(
     (name, population): (&str, u64),
     strategy: Box<dyn Strategy>,
     space: &Space,
     slots: u64,
     overheads: &Overheads,
-) -> Row {
+) -> ScalingRow {
     let seconds = |s: f64| Duration::try_from_secs_f64(s).unwrap_or_default();
-    let mut cluster = Cluster::new(Setting {
+    let mut cluster = Cluster::new(ClusterSetting {
         handling: seconds(overheads.coordinator_us * 1e-6),
         delay: seconds(overheads.round_trip_ms * 1e-3),
-        ..Setting::even(slots)
+        ..ClusterSetting::even(slots)
     });
     let times = overheads.clone();
-    cluster.takes = Some(Box::new(move |job| seconds(times.takes_s(job))));
-    let stand = Stand(space);
-    let tell = |genes: &[f64]| stand.tell(genes);
-    let mut source = Search::new(strategy, &tell);
+    cluster.job_durations = Some(Box::new(move |job| seconds(times.sample_duration_s(job))));
+    let stand = SyntheticObjective(space);
+    let tell = |genes: &[f64]| stand.evaluate(genes);
+    let mut source = SimulatedSearch::new(strategy, &tell);
     cluster.run(&mut source, LIMIT);
     let spent = cluster.core.snapshot(cluster.now).spent;
     let evaluations = source.strategy.archive().entries().len() as u64;
     let (wall_s, handled) = (cluster.now.as_secs_f64(), cluster.results.len() as f64);
-    Row {
-        how: How::Projected,
+    ScalingRow {
+        how: SlotMode::Projected,
         preset: name.to_owned(),
         population,
         slots,
@@ -71,14 +72,14 @@ pub fn project(
 mod tests {
     use super::*;
     use search::{
-        strategy::{Plan, build, preset},
+        strategy::{SearchPlan, build, preset},
         test_function::SPHERE,
     };
 
-    fn projected(name: &str, slots: u64, coordinator_us: f64) -> Row {
+    fn projected(name: &str, slots: u64, coordinator_us: f64) -> ScalingRow {
         let space = SPHERE.space();
         let preset = preset(name).unwrap();
-        let plan = Plan {
+        let plan = SearchPlan {
             space: &space,
             workers: usize::try_from(slots).unwrap(),
         };

@@ -1,22 +1,22 @@
-//! Scaling row of one search on one number of slots: speed, and use of slot time.
+//! Scaling result of one search on one number of slots (parallel jobs): speed, and use of slot time.
 use protocol::event::Spent;
 use search::random::{Phase, Streams};
 use serde::{Deserialize, Serialize};
 
-/// Method by which a row was obtained.
+/// Method by which a scaling result was obtained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum How {
+pub enum SlotMode {
     /// Measured: workers of this machine simulated the case.
     Computed,
-    /// Measured with sleeping sessions of another process, over TCP on loopback: real except for the
-    /// computation.
+    /// Measured over TCP on loopback, with simulated workers in another process that sleep instead of
+    /// computing; everything else is real.
     Slept,
-    /// Projected: state machine of the coordinator on a simulated clock.
+    /// Projected: the coordinator's scheduler on a simulated clock.
     Projected,
 }
 
-impl How {
+impl SlotMode {
     /// Returns the name of the method, as in files.
     pub const fn as_str(self) -> &'static str {
         match self {
@@ -30,17 +30,17 @@ impl How {
 /// Shares of slot time by use; their sum is 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Shares {
-    /// Share spent computing accepted results.
+    /// Share of slot time spent computing accepted results.
     pub useful: f64,
-    /// Share spent waiting for results that other slots compute.
+    /// Share of slot time in which the search waits for results that other slots compute.
     pub barrier: f64,
-    /// Share spent waiting for the next job although jobs were available.
+    /// Share of slot time spent waiting for the next job although jobs were available.
     pub starved: f64,
-    /// Share spent computing results that another slot delivered first.
+    /// Share of slot time spent computing results that another slot delivered first.
     pub speculative: f64,
-    /// Share spent on failed attempts.
+    /// Share of slot time spent on attempts that failed.
     pub failed: f64,
-    /// Share spent on attempts whose worker was lost.
+    /// Share of slot time spent on attempts whose worker was lost.
     pub lost: f64,
 }
 
@@ -64,9 +64,9 @@ impl Shares {
 
 /// Scaling result of one search on one number of slots.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Row {
-    /// Method by which the row was obtained.
-    pub how: How,
+pub struct ScalingRow {
+    /// Method by which the result was obtained.
+    pub how: SlotMode,
     /// Name of the preset of the search.
     pub preset: String,
     /// Number of individuals per generation.
@@ -84,9 +84,10 @@ pub struct Row {
     /// Processor time of the coordinator per result, including that of the search \[us\]; for a projection
     /// the assumed value.
     pub coordinator_us_per_result: f64,
-    /// Processor time of the coordinator over the wall time; at 1, one processor is busy all the time.
+    /// Processor time of the coordinator divided by the wall time; 1 if one processor is always busy.
     pub coordinator_share: f64,
-    /// Speed-up: computing time of a single slot for the same number of evaluations, over the wall time.
+    /// Speed-up: computing time of a single slot for the same number of evaluations, divided by the wall
+    /// time.
     pub speed_up: f64,
     /// Parallel efficiency: speed-up over the number of slots.
     pub efficiency: f64,
@@ -109,7 +110,7 @@ pub struct Overheads {
 impl Overheads {
     /// Returns the simulated computing time of a job \[s\]: drawn from the quantiles, and dependent on the
     /// job number alone.
-    pub fn takes_s(&self, job: u64) -> f64 {
+    pub fn sample_duration_s(&self, job: u64) -> f64 {
         let index = usize::try_from(job).unwrap_or(usize::MAX);
         let mut stream = Streams::new(1, 6).at(0, Phase::Mutation, index);
         let last = self.simulation_quantiles_s.len().saturating_sub(1);
@@ -127,23 +128,23 @@ impl Overheads {
     }
 }
 
-/// Scaling of searches, measured and projected.
+/// Scaling results of several searches, measured and projected.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Scaled {
+pub struct ScalingResult {
     /// Measured inputs of the projection.
     pub overheads: Overheads,
     /// Assumptions of the projection, one sentence each.
     pub assumptions: Vec<String>,
-    /// Rows of every search on every number of slots.
-    pub rows: Vec<Row>,
+    /// Scaling results, one for every search and number of slots.
+    pub rows: Vec<ScalingRow>,
 }
 
-impl Scaled {
+impl ScalingResult {
     /// Computes speed-up and efficiency of the rows relative to one slot. The reference is the computing time
     /// per evaluation of the same search on one slot, or that of the row if this was not measured.
-    pub fn new(overheads: Overheads, mut rows: Vec<Row>) -> Self {
-        let per_evaluation = |row: &Row| row.useful_s / row.evaluations.max(1) as f64;
-        let alone: Vec<Row> = rows.iter().filter(|row| row.slots == 1).cloned().collect();
+    pub fn new(overheads: Overheads, mut rows: Vec<ScalingRow>) -> Self {
+        let per_evaluation = |row: &ScalingRow| row.useful_s / row.evaluations.max(1) as f64;
+        let alone: Vec<ScalingRow> = rows.iter().filter(|row| row.slots == 1).cloned().collect();
         for row in &mut rows {
             let same = alone.iter().find(|one| {
                 (one.how, &one.preset, one.population) == (row.how, &row.preset, row.population)
@@ -185,9 +186,9 @@ impl Scaled {
 mod tests {
     use super::*;
 
-    fn row(slots: u64, wall_s: f64, useful_s: f64) -> Row {
-        Row {
-            how: How::Computed,
+    fn row(slots: u64, wall_s: f64, useful_s: f64) -> ScalingRow {
+        ScalingRow {
+            how: SlotMode::Computed,
             preset: "paper".to_owned(),
             population: 80,
             slots,
@@ -212,7 +213,7 @@ mod tests {
             coordinator_us: 100.0,
             round_trip_ms: 0.2,
         };
-        let scaled = Scaled::new(
+        let scaled = ScalingResult::new(
             overheads.clone(),
             vec![row(1, 12.5, 10.0), row(2, 8.0, 15.0)],
         );
@@ -222,7 +223,7 @@ mod tests {
         };
         assert_eq!(speed, [(0.8, 0.8), (1.25, 0.625)]);
         // without one slot the row's own computing time counts
-        let other = Scaled::new(overheads, vec![row(4, 5.0, 15.0)]);
+        let other = ScalingResult::new(overheads, vec![row(4, 5.0, 15.0)]);
         assert!((other.rows[0].speed_up - 3.0).abs() < 1e-12);
     }
 
@@ -254,8 +255,10 @@ mod tests {
             coordinator_us: 100.0,
             round_trip_ms: 0.2,
         };
-        let times: Vec<f64> = (0..9000).map(|job| overheads.takes_s(job)).collect();
-        assert_eq!(times[7].to_bits(), overheads.takes_s(7).to_bits());
+        let times: Vec<f64> = (0..9000)
+            .map(|job| overheads.sample_duration_s(job))
+            .collect();
+        assert_eq!(times[7].to_bits(), overheads.sample_duration_s(7).to_bits());
         // a third takes nothing, a third up to half a second, a third up to four
         let shorter = |than: f64| times.iter().filter(|time| **time <= than).count();
         assert!(shorter(0.0).abs_diff(3000) < 150 && shorter(0.5).abs_diff(6000) < 150);

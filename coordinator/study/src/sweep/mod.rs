@@ -5,11 +5,11 @@
 //! searches request is computed once, and a resumed run finds all results in its journal. The result of a
 //! search depends neither on the other searches nor on the order in which results arrive.
 use super::{
-    calibrate::{LEAST_TRIED, all_failed, entry, residual, score},
+    calibrate::{MIN_FAILED_EVALUATIONS, all_failed, entry, residual, score},
     error::StudyError,
     evaluator::Evaluator,
     job_number::JobNumbers,
-    log::{Ending, Entry, EvaluationLog},
+    log::{EvaluationLog, EvaluationOutcome, LogEntry},
     progress::ProgressView,
     stop::{Stop, or_stop},
     watch::Watch,
@@ -27,7 +27,7 @@ mod tests;
 /// Number of open jobs above which no further search is begun; enough for the slots of many workers.
 const BUSY: usize = 256;
 
-/// Search of a sweep.
+/// Settings of one of the concurrent searches of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Search {
     /// Settings of the search.
@@ -38,9 +38,9 @@ pub struct Search {
     pub evaluations: Option<u64>,
 }
 
-/// Result of a search of a sweep.
+/// Result of one of the concurrent searches of a sweep.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Searched {
+pub struct SearchResult {
     /// Best individual.
     pub best: Option<Best>,
     /// Number of evaluations, including those that other searches had already requested.
@@ -50,7 +50,7 @@ pub struct Searched {
 /// Search in progress.
 struct Running {
     strategy: Box<dyn Strategy>,
-    /// Budget: proposals with this id or a higher one are not evaluated.
+    /// Number of proposals that are evaluated; those with this id or a higher one are not.
     limit: u64,
 }
 
@@ -59,15 +59,16 @@ pub struct Sweep<'a> {
     case: &'a Case,
     space: &'a Space,
     running: BTreeMap<usize, Running>,
-    /// Results of finished searches, by consecutive number over all calls.
-    found: BTreeMap<usize, Searched>,
-    /// Searches and their proposals that wait for each open job.
+    /// Results of finished searches, by number of the search; numbers continue over all calls of
+    /// [`Sweep::run`].
+    found: BTreeMap<usize, SearchResult>,
+    /// Unfinished jobs, each with the searches (by number) and their proposals that wait for its result.
     open: BTreeMap<JobId, Vec<(usize, Proposal)>>,
     known: BTreeMap<JobId, Outcome>,
     /// Job numbers of the run; none before the first call of [`Sweep::run`].
     numbers: Option<JobNumbers>,
     view: ProgressView,
-    /// Log of failed evaluations; none once an evaluation was complete.
+    /// Log of failed evaluations, kept only until the first evaluation is complete.
     failed: Option<EvaluationLog>,
 }
 
@@ -99,7 +100,7 @@ impl<'a> Sweep<'a> {
         searches: &[Search],
         watch: &mut dyn Watch<ProgressView>,
         stop: &mut Stop,
-    ) -> anyhow::Result<Vec<Searched>> {
+    ) -> anyhow::Result<Vec<SearchResult>> {
         if self.numbers.is_none() {
             self.numbers = Some(evaluator.numbers()?);
         }
@@ -120,7 +121,7 @@ impl<'a> Sweep<'a> {
                 self.advance(evaluator, index)?;
             }
             self.plan(waiting.clone().filter_map(|(_, search)| search.evaluations));
-            watch.progress(&self.view, &|| evaluator.crew());
+            watch.progress(&self.view, &|| evaluator.workers_status());
             if self.found.len() == all {
                 return Ok(self.found.values().skip(first).cloned().collect());
             }
@@ -148,7 +149,7 @@ impl<'a> Sweep<'a> {
             if evaluations >= running.limit || strategy.finished().is_some() {
                 let best = strategy.best();
                 self.running.remove(&index);
-                self.found.insert(index, Searched { best, evaluations });
+                self.found.insert(index, SearchResult { best, evaluations });
                 return self.check_failed();
             }
             let limit = running.limit;
@@ -190,11 +191,11 @@ impl<'a> Sweep<'a> {
             running.strategy.tell_residual(proposal.id, residual);
         }
         let entry = entry(proposal, outcome)?;
-        running.strategy.tell(entry.id, entry.told());
+        running.strategy.tell(entry.id, entry.strategy_result());
         Ok(())
     }
 
-    /// Adds a result to the progress, once for all searches that requested it.
+    /// Adds a job's result to the displayed progress, once for all searches that requested it.
     fn count(
         &mut self,
         asked: &[(usize, Proposal)],
@@ -206,11 +207,11 @@ impl<'a> Sweep<'a> {
         };
         let entry = entry(proposal.clone(), outcome.clone())?;
         self.view.apply(&entry, replayed);
-        if entry.ending == Ending::Complete {
+        if entry.ending == EvaluationOutcome::Complete {
             self.failed = None;
         } else if let Some(failed) = &mut self.failed {
             let id = failed.len() as u64;
-            failed.insert(Entry { id, ..entry });
+            failed.insert(LogEntry { id, ..entry });
         }
         Ok(())
     }
@@ -218,12 +219,15 @@ impl<'a> Sweep<'a> {
     /// Fails if a whole search has ended and no evaluation was ever complete.
     fn check_failed(&self) -> anyhow::Result<()> {
         match &self.failed {
-            Some(failed) if failed.len() >= LEAST_TRIED => Err(all_failed(failed).into()),
+            Some(failed) if failed.len() >= MIN_FAILED_EVALUATIONS => {
+                Err(all_failed(failed).into())
+            }
             Some(_) | None => Ok(()),
         }
     }
 
-    /// Updates the progress of all searches; `waiting` holds the budgets of those that have not begun.
+    /// Updates the expected evaluations of all searches together; `waiting` holds the budgets of those that
+    /// have not begun.
     fn plan(&mut self, waiting: impl Iterator<Item = u64>) {
         let running = self.running.values().map(|running| {
             let progress = running.strategy.progress();

@@ -2,15 +2,15 @@
 use super::*;
 use crate::JobNumbers;
 use crate::{
-    Crew, calibrate,
-    oracle::{Oracle, case, physics},
+    WorkersSnapshot, calibrate,
+    test_evaluator::{TestEvaluator, case, physics},
 };
 use search::strategy::memetic::MemeticSettings;
 
 struct Unseen;
 
 impl Watch<ProgressView> for Unseen {
-    fn progress(&mut self, _view: &ProgressView, _crew: &dyn Fn() -> Crew) {}
+    fn progress(&mut self, _view: &ProgressView, _crew: &dyn Fn() -> WorkersSnapshot) {}
 }
 
 fn search(population: usize, seed: u64, evaluations: Option<u64>) -> Search {
@@ -26,9 +26,9 @@ fn search(population: usize, seed: u64, evaluations: Option<u64>) -> Search {
     }
 }
 
-async fn swept(case: &Case, order: u64, lists: &[&[Search]]) -> (Vec<Searched>, usize) {
+async fn swept(case: &Case, order: u64, lists: &[&[Search]]) -> (Vec<SearchResult>, usize) {
     let space = Space::new(&case.unknowns).unwrap();
-    let mut oracle = Oracle::new(case, order, physics);
+    let mut oracle = TestEvaluator::new(case, order, physics);
     let (_sender, mut stop) = tokio::sync::watch::channel(false);
     let mut sweep = Sweep::new(case, &space);
     let mut found = Vec::new();
@@ -53,7 +53,7 @@ async fn searches_do_not_disturb_each_other() {
     assert_eq!(found, other);
     let space = Space::new(&case.unknowns).unwrap();
     for (search, found) in all.iter().zip(&found) {
-        let mut oracle = Oracle::new(&case, 5, physics);
+        let mut oracle = TestEvaluator::new(&case, 5, physics);
         let mut alone = build(&search.settings, &space, search.seed).unwrap();
         let (_sender, mut stop) = tokio::sync::watch::channel(false);
         let (alone, watch) = (alone.as_mut(), &mut Unseen);
@@ -71,7 +71,7 @@ async fn searches_find_the_same_where_numbers_of_jobs_are_few() {
     let space = Space::new(&case.unknowns).unwrap();
     let all = [search(20, 1, Some(60)), search(20, 2, Some(60))];
     let (expected, _) = swept(&case, 1, &[&all]).await;
-    let mut oracle = Oracle::new(&case, 3, physics);
+    let mut oracle = TestEvaluator::new(&case, 3, physics);
     oracle.numbers = JobNumbers::with_bits(7);
     let (_sender, mut stop) = tokio::sync::watch::channel(false);
     let mut sweep = Sweep::new(&case, &space);
@@ -88,7 +88,7 @@ async fn a_budget_is_kept_to_the_evaluation() {
     let (short, computed) = swept(&case, 1, &[&of(33)]).await;
     assert_eq!((short[0].evaluations, computed), (33, 33));
     let (longer, _) = swept(&case, 1, &[&of(60)]).await;
-    let fitness = |found: &[Searched]| found[0].best.as_ref().unwrap().fitness;
+    let fitness = |found: &[SearchResult]| found[0].best.as_ref().unwrap().fitness;
     assert!(fitness(&longer) <= fitness(&short));
 }
 

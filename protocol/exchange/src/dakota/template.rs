@@ -1,4 +1,5 @@
-//! Text templates whose only fields are `{name}`; expressions are left to a driver of the user's own.
+//! Text templates whose only fields are `{name}`; templates with expressions need a driver written by the
+//! user.
 use crate::{Problem, problem::clip};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -4,14 +4,14 @@
 //! converted to lower case, because PEST ignores case.
 mod control;
 mod digits;
+mod first_line;
 mod instruction;
-mod mark;
 mod report;
 mod template;
 
 pub use control::{
-    Control, IncrementKind, Method, Observation, Pair, Parameter, ParameterGroup, PriorInformation,
-    PriorTerm, Transform,
+    Control, FilePair, IncrementKind, IncrementMethod, Observation, Parameter, ParameterGroup,
+    PriorInformation, PriorTerm, Transform,
 };
 pub use digits::fit;
 pub use instruction::Instructions;

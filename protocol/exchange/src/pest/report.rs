@@ -10,7 +10,7 @@ pub struct ParRow {
     pub value: f64,
     /// Factor in `scale x value + offset`, the number written into templates.
     pub scale: f64,
-    /// Summand in `scale x value + offset`; see [`Self::scale`].
+    /// Summand `offset` in `scale x value + offset`, the number written into templates.
     pub offset: f64,
 }
 

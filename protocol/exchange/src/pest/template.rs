@@ -1,5 +1,5 @@
 //! PEST templates: texts with fixed-width fields for the values of parameters.
-use super::mark::Marked;
+use super::first_line::FirstLine;
 use crate::{Problem, problem::clip};
 use std::collections::BTreeMap;
 
@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 const MOST: usize = 64 << 20;
 
 /// Requirements on the first line of a template.
-const FIRST: Marked = Marked {
+const FIRST: FirstLine = FirstLine {
     word: "ptf",
-    barred: "",
+    forbidden_delimiters: "",
     allowed: "`ptf` and one delimiter that is neither letter nor digit",
     remedy: "write it as the first line of the template",
 };
@@ -96,7 +96,8 @@ impl Template {
         })
     }
 
-    /// Returns the parameters with the width of their narrowest field (characters).
+    /// Returns the names of the parameters in the template, each with the width of its narrowest field
+    /// (characters).
     pub fn fields(&self) -> BTreeMap<String, usize> {
         let mut fields = BTreeMap::new();
         for part in &self.parts {

@@ -1,6 +1,6 @@
 //! Connection from the gate to the router over loopback, with certificates that exist only in the memory of
 //! this process.
-use super::terms::{BUS, HANDSHAKE};
+use super::terms::{ALPN_ZENOH, HANDSHAKE};
 use crate::{
     LinkError,
     keys::{
@@ -25,19 +25,19 @@ use std::{
 };
 use tokio::time::timeout;
 
-/// Validity of the certificates (days), longer than any run.
+/// Validity of the in-memory certificates between gate and router (days), longer than any run.
 const DAYS: u32 = 365;
 
-/// In-memory certificate authority with the client configurations for all worker names and the router's TLS
-/// section.
-pub(crate) struct Inner {
+/// In-memory certificate authority for the loopback connections from the gate to the router: client
+/// configurations for all worker names, and the router's TLS section.
+pub(crate) struct RouterConnector {
     router: SocketAddr,
     endpoint: Endpoint,
     configs: BTreeMap<String, ClientConfig>,
     section: Value,
 }
 
-impl fmt::Debug for Inner {
+impl fmt::Debug for RouterConnector {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         // the section holds a key
         to.debug_struct("Inner")
@@ -46,8 +46,8 @@ impl fmt::Debug for Inner {
     }
 }
 
-impl Inner {
-    /// Makes certificates for a router at a loopback port and for each worker's name.
+impl RouterConnector {
+    /// Creates the certificates of a router at a loopback port and of each worker's name.
     pub(crate) fn make(router: SocketAddr, owners: &BTreeSet<String>) -> Result<Self, LinkError> {
         let authority = for_memory()?;
         let valid = Validity::days(DAYS);
@@ -80,7 +80,8 @@ impl Inner {
         })
     }
 
-    /// Returns whether a name has a certificate here, and therefore access rules at the router.
+    /// Returns whether a worker's name has an in-memory certificate, and therefore access rules at the
+    /// router.
     pub(super) fn knows(&self, owner: &str) -> bool {
         self.configs.contains_key(owner)
     }
@@ -129,7 +130,7 @@ fn client_config(
                 .with_client_auth_cert(vec![certificate], key)
         })
         .map_err(|error| unusable(&error))?;
-    config.alpn_protocols = vec![BUS.to_vec()];
+    config.alpn_protocols = vec![ALPN_ZENOH.to_vec()];
     let config = QuicClientConfig::try_from(config).map_err(|error| unusable(&error))?;
     Ok(ClientConfig::new(Arc::new(config)))
 }

@@ -47,7 +47,7 @@ impl Refusals {
     }
 
     fn say(&self, from: SocketAddr, reason: &'static str, detail: &str) {
-        if let Some(more) = self.is_news(reason, Instant::now()) {
+        if let Some(more) = self.take_due(reason, Instant::now()) {
             let more = match more {
                 0 => String::new(),
                 more => format!("; {more} more since the last such message"),
@@ -56,9 +56,9 @@ impl Refusals {
         }
     }
 
-    /// Returns the number of occurrences suppressed since the last message if the reason is to be logged now,
+    /// Returns the number of suppressed messages with this reason if the reason is due to be logged again,
     /// otherwise `None`.
-    fn is_news(&self, reason: &'static str, now: Instant) -> Option<u64> {
+    fn take_due(&self, reason: &'static str, now: Instant) -> Option<u64> {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         match told.get_mut(reason) {
             Some((at, unsaid)) if now.saturating_duration_since(*at) < PAUSE => {
@@ -106,10 +106,10 @@ mod tests {
         let (refusals, now) = (Refusals::default(), Instant::now());
         let unknown = reason("the cryptographic handshake failed: UnknownIssuer").unwrap();
         let none = reason("peer sent no certificates").unwrap();
-        assert_eq!(refusals.is_news(unknown, now), Some(0));
-        assert_eq!(refusals.is_news(unknown, now + PAUSE / 2), None);
-        assert_eq!(refusals.is_news(none, now), Some(0));
-        assert_eq!(refusals.is_news(unknown, now + PAUSE * 2), Some(1));
+        assert_eq!(refusals.take_due(unknown, now), Some(0));
+        assert_eq!(refusals.take_due(unknown, now + PAUSE / 2), None);
+        assert_eq!(refusals.take_due(none, now), Some(0));
+        assert_eq!(refusals.take_due(unknown, now + PAUSE * 2), Some(1));
         assert_eq!(reason("timed out"), None);
     }
 }

@@ -1,16 +1,17 @@
-//! Constants shared by the gate and its peers: protocol names, close codes and limits.
+//! Constants on which the gate (authenticating proxy) and its peers agree: protocol names, close codes and
+//! limits.
 use std::time::Duration;
 
 /// ALPN protocol of a probe connection, by which a worker asks only whether it would be admitted.
-pub(crate) const KNOCK: &[u8] = b"horsehead-knock";
+pub(crate) const ALPN_PROBE: &[u8] = b"horsehead-knock";
 /// ALPN protocol of the router, with one stream per priority.
-pub(crate) const BUS: &[u8] = b"zenoh-ms";
+pub(crate) const ALPN_ZENOH: &[u8] = b"zenoh-ms";
 /// Close code for an admitted probe and for connections that end regularly.
-pub(crate) const WELCOME: u32 = 0;
+pub(crate) const CLOSE_OK: u32 = 0;
 /// Close code for a peer whose name is not on the list of workers.
 pub(crate) const UNLISTED: u32 = 1;
 /// Close code for a peer whose certificate has reached its maximum number of connections.
-pub(crate) const CROWDED: u32 = 2;
+pub(crate) const CLOSE_TOO_MANY_CONNECTIONS: u32 = 2;
 /// Maximum duration of a handshake.
 pub(crate) const HANDSHAKE: Duration = Duration::from_secs(3);
 /// Maximum number of connections, and of workers, per certificate, because all certificates share the

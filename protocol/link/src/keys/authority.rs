@@ -5,7 +5,7 @@
 //! connecting only, so that a stolen worker's key cannot impersonate the coordinator.
 use super::certificate::Certificate;
 use super::error::KeyError;
-use super::material::{CA, CA_KEY, COORDINATOR, Role, WORKER, WORKERS, readable};
+use super::material::{CA, CA_KEY, COORDINATOR, KeyRole, WORKER, WORKERS, readable};
 use protocol::{id::ContentHash, name::check_owner};
 use rcgen::{
     BasicConstraints, CertificateParams, DistinguishedName, DnType, ExtendedKeyUsagePurpose, IsCa,
@@ -102,7 +102,7 @@ impl Authority {
     pub fn open(folder: &Path) -> Result<Self, KeyError> {
         let read = |file: &str| {
             let path = folder.join(file);
-            let pem = readable(&path, Role::Coordinator)?;
+            let pem = readable(&path, KeyRole::Coordinator)?;
             String::from_utf8(pem).map_err(|_| KeyError::NotPem { path, what: "text" })
         };
         let (pem, key) = (read(CA)?, read(CA_KEY)?);

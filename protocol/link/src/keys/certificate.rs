@@ -1,6 +1,6 @@
 //! Parsed certificate: names, validity period, and verification as the other end will perform it.
 use super::error::KeyError;
-use super::material::{Chain, Role};
+use super::material::{Chain, KeyRole};
 use rustls::{
     CertificateError, Error,
     client::{WebPkiServerVerifier, danger::ServerCertVerifier},
@@ -57,7 +57,7 @@ impl Certificate {
 
     /// Verifies certificate and key as the other end will, and returns a specific error, which the transport
     /// would not report.
-    pub(super) fn check(&self, role: Role, chain: &Chain, ca: &Path) -> Result<(), KeyError> {
+    pub(super) fn check(&self, role: KeyRole, chain: &Chain, ca: &Path) -> Result<(), KeyError> {
         let path = || self.path.clone();
         let [end, rest @ ..] = chain.certificates.as_slice() else {
             return Ok(());
@@ -75,14 +75,14 @@ impl Certificate {
             reason,
         };
         let verified = match role {
-            Role::Worker => {
+            KeyRole::Worker => {
                 WebPkiClientVerifier::builder_with_provider(Arc::clone(&roots), provider())
                     .build()
                     .map_err(|error| unfit(error.to_string()))?
                     .verify_client_cert(end, rest, UnixTime::now())
                     .map(drop)
             }
-            Role::Coordinator => {
+            KeyRole::Coordinator => {
                 let host = ServerName::try_from(self.host.as_str())
                     .map_err(|_| unfit("it names no host".to_owned()))?;
                 WebPkiServerVerifier::builder_with_provider(Arc::clone(&roots), provider())

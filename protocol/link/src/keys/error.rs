@@ -17,7 +17,7 @@ pub enum KeyError {
     Missing {
         /// Missing file.
         path: PathBuf,
-        /// Remedy.
+        /// Action that provides the missing file.
         remedy: String,
     },
     /// A file cannot be read.
@@ -47,7 +47,7 @@ pub enum KeyError {
     Date {
         /// File of the certificate.
         path: PathBuf,
-        /// Clause for the message with the date since or from which.
+        /// Part of the message that states since when or from when the date is invalid.
         when: String,
     },
     /// The certificate was signed by another authority.
@@ -71,7 +71,7 @@ pub enum KeyError {
     Name {
         /// File that contains the name.
         path: PathBuf,
-        /// Fault of the name.
+        /// Error that states why the name is not allowed.
         source: NameError,
     },
     /// Key material cannot be created or written.
@@ -79,7 +79,7 @@ pub enum KeyError {
     Make {
         /// File or folder that could not be created.
         path: PathBuf,
-        /// Reason of the failure.
+        /// Reason why the file or folder could not be created.
         reason: String,
     },
 }

@@ -17,9 +17,9 @@ pub const COORDINATOR: [&str; 2] = ["coordinator.pem", "coordinator.key"];
 pub const WORKER: [&str; 2] = ["worker.pem", "worker.key"];
 /// File name of the list of workers that may join.
 pub const WORKERS: &str = "workers";
-/// End of the link for which key material is made.
+/// Role of the owner of key material: coordinator or worker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum KeyRole {
     /// Coordinator: listens; its certificate names hosts.
     Coordinator,
     /// Worker: connects; its certificate carries the worker's name.
@@ -32,7 +32,7 @@ pub fn pool() -> impl Iterator<Item = String> {
     (1..=512).map(|number| format!("worker-{number:02}"))
 }
 
-impl Role {
+impl KeyRole {
     pub(super) const fn files(self) -> [&'static str; 2] {
         match self {
             Self::Coordinator => COORDINATOR,
@@ -51,7 +51,7 @@ pub(crate) struct Chain {
 /// Reads the certificates of a PEM file.
 pub(super) fn certificates(
     path: &Path,
-    role: Role,
+    role: KeyRole,
 ) -> Result<Vec<CertificateDer<'static>>, KeyError> {
     let pem = readable(path, role)?;
     let not = || KeyError::NotPem {
@@ -69,7 +69,7 @@ pub(super) fn certificates(
 }
 
 /// Reads a file; the error for a missing file carries the remedy.
-pub(super) fn readable(path: &Path, role: Role) -> Result<Vec<u8>, KeyError> {
+pub(super) fn readable(path: &Path, role: KeyRole) -> Result<Vec<u8>, KeyError> {
     fs::read(path).map_err(|error| {
         let path = path.to_owned();
         if error.kind() == io::ErrorKind::NotFound {
@@ -84,10 +84,10 @@ pub(super) fn readable(path: &Path, role: Role) -> Result<Vec<u8>, KeyError> {
 
 /// Returns the remedy for a missing file; the most frequent cause is that the folder belongs to the other
 /// end.
-fn remedy(folder: &Path, role: Role) -> String {
+fn remedy(folder: &Path, role: KeyRole) -> String {
     let has = |file: &str| folder.join(file).exists();
     match role {
-        Role::Worker if has(WORKERS) => {
+        KeyRole::Worker if has(WORKERS) => {
             let names = read_workers(&folder.join(WORKERS)).unwrap_or_default();
             let one = names.first().map_or("NAME", String::as_str);
             format!(
@@ -96,12 +96,12 @@ fn remedy(folder: &Path, role: Role) -> String {
                 folder.join(one).display()
             )
         }
-        Role::Coordinator if has(WORKER[0]) => format!(
+        KeyRole::Coordinator if has(WORKER[0]) => format!(
             "{} is a worker's folder: give the one that holds {}",
             folder.display(),
             COORDINATOR[0]
         ),
-        Role::Coordinator | Role::Worker => {
+        KeyRole::Coordinator | KeyRole::Worker => {
             "`horsehead keys new DIR` makes a folder of key material".to_owned()
         }
     }
@@ -109,7 +109,7 @@ fn remedy(folder: &Path, role: Role) -> String {
 
 /// Reads the names of a list of workers.
 pub(super) fn read_workers(path: &Path) -> Result<BTreeSet<String>, KeyError> {
-    let bytes = readable(path, Role::Coordinator)?;
+    let bytes = readable(path, KeyRole::Coordinator)?;
     let text = String::from_utf8_lossy(&bytes);
     let names = text.lines().map(str::trim);
     names

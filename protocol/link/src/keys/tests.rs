@@ -30,11 +30,11 @@ fn what_was_made_can_be_used_and_only_its_owner_reads_the_keys() {
         .unwrap()
         .issue_worker("late", Validity::days(10))
         .unwrap();
-    let coordinator = Keys::read(at, Role::Coordinator).unwrap();
+    let coordinator = Keys::read(at, KeyRole::Coordinator).unwrap();
     let names: Vec<&str> = coordinator.workers().iter().map(String::as_str).collect();
     assert_eq!(names, ["late", "worker-01"]);
     for name in ["worker-01", "late"] {
-        let worker = Keys::read(&at.join(name), Role::Worker).unwrap();
+        let worker = Keys::read(&at.join(name), KeyRole::Worker).unwrap();
         assert_eq!(worker.owner(), name);
         for secret in [worker.key(), coordinator.key(), at.join(CA_KEY)] {
             let mode = fs::metadata(&secret).unwrap().permissions().mode();
@@ -43,7 +43,7 @@ fn what_was_made_can_be_used_and_only_its_owner_reads_the_keys() {
     }
 }
 
-fn refusal(folder: &Path, role: Role) -> String {
+fn refusal(folder: &Path, role: KeyRole) -> String {
     Keys::read(folder, role).unwrap_err().to_string()
 }
 
@@ -57,11 +57,11 @@ fn every_wrong_file_is_named_with_what_is_wrong() {
         }
     };
     says(
-        &refusal(&worker.join("x"), Role::Worker),
+        &refusal(&worker.join("x"), KeyRole::Worker),
         &["there is no folder", "worker-01/x", "keys new"],
     );
     says(
-        &refusal(folder.path(), Role::Worker),
+        &refusal(folder.path(), KeyRole::Worker),
         &[
             "worker.pem is missing",
             "coordinator's folder",
@@ -69,13 +69,13 @@ fn every_wrong_file_is_named_with_what_is_wrong() {
         ],
     );
     says(
-        &refusal(&worker, Role::Coordinator),
+        &refusal(&worker, KeyRole::Coordinator),
         &["coordinator.pem is missing", "is a worker's folder"],
     );
     let other = made();
     fs::copy(other.path().join(CA), worker.join(CA)).unwrap();
     says(
-        &refusal(&worker, Role::Worker),
+        &refusal(&worker, KeyRole::Worker),
         &["worker.pem was not signed by the authority of", "ca.pem"],
     );
     fs::copy(
@@ -84,23 +84,23 @@ fn every_wrong_file_is_named_with_what_is_wrong() {
     )
     .unwrap();
     says(
-        &refusal(&worker, Role::Worker),
+        &refusal(&worker, KeyRole::Worker),
         &["the key beside", "worker.pem is not the one"],
     );
     fs::write(worker.join("worker.key"), "nothing").unwrap();
     says(
-        &refusal(&worker, Role::Worker),
+        &refusal(&worker, KeyRole::Worker),
         &["worker.key holds no private key in PEM"],
     );
     fs::remove_file(worker.join("worker.key")).unwrap();
     fs::create_dir(worker.join("worker.key")).unwrap();
     says(
-        &refusal(&worker, Role::Worker),
+        &refusal(&worker, KeyRole::Worker),
         &["worker.key cannot be read: Is a directory"],
     );
     fs::write(folder.path().join(WORKERS), "worker-01\nanyone\n").unwrap();
     says(
-        &refusal(folder.path(), Role::Coordinator),
+        &refusal(folder.path(), KeyRole::Coordinator),
         &["workers", "\"anyone\" cannot name a worker"],
     );
 }
@@ -124,7 +124,7 @@ fn dates_and_purposes_are_checked_before_anyone_is_dialled() {
         ("early", future, "is valid only from"),
     ] {
         let worker = authority.issue_worker(name, valid).unwrap();
-        let refused = refusal(&worker, Role::Worker);
+        let refused = refusal(&worker, KeyRole::Worker);
         assert!(
             refused.contains(words) && refused.contains("worker.pem"),
             "{refused}"
@@ -134,7 +134,7 @@ fn dates_and_purposes_are_checked_before_anyone_is_dialled() {
     let at = folder.path();
     fs::copy(at.join("worker-01/worker.pem"), at.join(COORDINATOR[0])).unwrap();
     fs::copy(at.join("worker-01/worker.key"), at.join(COORDINATOR[1])).unwrap();
-    let refused = refusal(at, Role::Coordinator);
+    let refused = refusal(at, KeyRole::Coordinator);
     assert!(
         refused.contains("coordinator.pem cannot be used here"),
         "{refused}"

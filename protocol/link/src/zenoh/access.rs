@@ -4,7 +4,7 @@
 //! The transport identifies a peer by the common name of its certificate. Rules are fixed when a coordinator
 //! starts and also cover a pool of names that are not in use yet; the gate decides who is admitted. A denied
 //! action gives the peer no error, which is why names that are not on the list are refused at the gate.
-use protocol::{key::Grant, name::ANYONE};
+use protocol::{key::Grant, name::NO_CERTIFICATE};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
@@ -13,21 +13,21 @@ use std::collections::BTreeSet;
 /// insecure ones.
 pub(super) fn control(owners: &BTreeSet<String>, plain: bool) -> Value {
     let mut rules = vec![
-        rule("fetch-in", "ingress", &["query"], &[Grant::fetch()]),
+        rule("fetch-in", "ingress", &["query"], &[Grant::blob_queries()]),
         rule(
             "fetch-out",
             "egress",
             &["reply", "declare_queryable"],
-            &[Grant::fetch()],
+            &[Grant::blob_queries()],
         ),
     ];
     let (mut subjects, mut policies) = (Vec::new(), Vec::new());
     let mut grant = |owner: &str, mut subject: Value| {
         let id = |what: &str| format!("{owner}-{what}");
         let Grant {
-            hear,
-            speak,
-            appear,
+            subscribe: hear,
+            publish: speak,
+            liveliness: appear,
         } = Grant::of(owner);
         let hear = [hear];
         rules.extend([
@@ -52,7 +52,7 @@ pub(super) fn control(owners: &BTreeSet<String>, plain: bool) -> Value {
         );
     }
     if plain {
-        grant(ANYONE, json!({ "link_protocols": ["tcp"] }));
+        grant(NO_CERTIFICATE, json!({ "link_protocols": ["tcp"] }));
     }
     json!({
         "enabled": true, "default_permission": "deny",

@@ -2,8 +2,8 @@
 use super::session::{INBOX, close, common, needed, open, transport};
 use super::{access, names::Names, sender::Sender};
 use crate::{
-    Blob, CoordinatorEnd, Heard, LinkError,
-    gate::{Gate, Inner},
+    Blob, CoordinatorEnd, LinkError, LinkEvent,
+    gate::{Gate, RouterConnector},
     keys::{Keys, pool},
     locator::{Locator, Protocol},
 };
@@ -44,7 +44,7 @@ const CHOICES: u32 = 5;
 pub struct ZenohCoordinator {
     session: Session,
     sender: Sender,
-    heard: mpsc::Receiver<Heard>,
+    heard: mpsc::Receiver<LinkEvent>,
     listening: Vec<Locator>,
     names: Arc<Mutex<Names>>,
     gates: Vec<Gate>,
@@ -122,7 +122,7 @@ impl ZenohCoordinator {
         })
     }
 
-    /// Returns the addresses it listens on, with the ports that were chosen.
+    /// Returns the addresses on which the coordinator listens, with the ports that were chosen.
     pub fn listening(&self) -> &[Locator] {
         &self.listening
     }
@@ -146,7 +146,7 @@ impl CoordinatorEnd for ZenohCoordinator {
         names.of(worker).map(|name| name.owner().to_owned())
     }
 
-    async fn receive(&mut self) -> Option<Heard> {
+    async fn receive(&mut self) -> Option<LinkEvent> {
         self.heard.recv().await
     }
 
@@ -159,7 +159,8 @@ impl CoordinatorEnd for ZenohCoordinator {
     }
 }
 
-/// Creates the router's configuration for operation behind gates, and a gate for each QUIC address.
+/// Creates the router's configuration for use behind authenticating proxies ("gates"), and one gate for each
+/// QUIC address.
 ///
 /// The router itself listens for QUIC only on a free loopback port, where it accepts only connections made by
 /// a gate.
@@ -173,7 +174,7 @@ fn behind_gates(locators: &[Locator], keys: &Keys) -> Result<(Value, Vec<Gate>),
     let router = (Ipv4Addr::LOCALHOST, inside.port).into();
     let mut owners = keys.workers().clone();
     owners.extend(pool());
-    let inner = Arc::new(Inner::make(router, &owners)?);
+    let inner = Arc::new(RouterConnector::make(router, &owners)?);
     let (mut endpoints, mut gates) = (vec![inside.to_string()], Vec::new());
     for at in locators {
         if at.protocol == Protocol::Tcp {
@@ -189,7 +190,7 @@ fn behind_gates(locators: &[Locator], keys: &Keys) -> Result<(Value, Vec<Gate>),
     Ok((config, gates))
 }
 
-fn offer(to: &mpsc::Sender<Heard>, heard: Heard) {
+fn try_deliver(to: &mpsc::Sender<LinkEvent>, heard: LinkEvent) {
     if to.try_send(heard).is_err() {
         tracing::debug!("a frame was dropped: too many are waiting");
     }
@@ -198,7 +199,7 @@ fn offer(to: &mpsc::Sender<Heard>, heard: Heard) {
 async fn subscribe(
     session: &Session,
     lane: Lane,
-    to: mpsc::Sender<Heard>,
+    to: mpsc::Sender<LinkEvent>,
     names: Arc<Mutex<Names>>,
 ) -> Result<(), LinkError> {
     session
@@ -211,7 +212,7 @@ async fn subscribe(
                     .note(worker, Instant::now());
                 if let Some(worker) = worker {
                     let frame = sample.payload().to_bytes().into_owned();
-                    offer(&to, Heard::Frame(worker, frame));
+                    try_deliver(&to, LinkEvent::Frame(worker, frame));
                 }
             }
         })
@@ -223,7 +224,7 @@ async fn subscribe(
 async fn watch_presence(
     session: &Session,
     run: RunId,
-    to: mpsc::Sender<Heard>,
+    to: mpsc::Sender<LinkEvent>,
     names: Arc<Mutex<Names>>,
 ) -> Result<(), LinkError> {
     session
@@ -238,7 +239,7 @@ async fn watch_presence(
                     .lock()
                     .unwrap_or_else(PoisonError::into_inner)
                     .forget(worker);
-                offer(&to, Heard::Gone(worker));
+                try_deliver(&to, LinkEvent::Disconnected(worker));
             }
         })
         .background()

@@ -1,8 +1,8 @@
-//! Mapping from worker ids to names on the bus, limited per certificate.
+//! Map from worker ids to the workers' names on the bus, limited in number per certificate.
 use crate::gate::terms::CONNECTIONS;
 use protocol::{
     id::WorkerId,
-    name::{ANYONE, WorkerName},
+    name::{NO_CERTIFICATE, WorkerName},
 };
 use std::{
     collections::BTreeMap,
@@ -12,13 +12,15 @@ use std::{
 /// Maximum number of workers without a certificate: those on loopback, and on networks opened with
 /// `--insecure`.
 const OF_ANYONE: usize = 4096;
-/// Silence after which a name may be replaced by another one of the same certificate. Longer than the time
-/// after which a worker counts as lost, so that no certificate works under more names than it may have.
+/// Duration without frames after which a worker's name may be replaced by another one of the same
+/// certificate. Longer than the time after which a worker counts as lost, so that no certificate works under
+/// more names than it may have.
 const SILENT: Duration = Duration::from_secs(10);
-/// Interval for which further names of an owner at its limit are refused without a search for silent ones.
+/// Interval during which a certificate at its limit gets no further worker names and no search is made for
+/// silent ones to replace.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Names from which frames have been received, by worker id and by owner.
+/// Worker names from which frames have been received, by worker id and by certificate owner.
 #[derive(Debug, Default)]
 pub(super) struct Names {
     known: BTreeMap<WorkerId, Known>,
@@ -34,14 +36,14 @@ struct Known {
 #[derive(Debug, Default)]
 struct Owner {
     names: usize,
-    /// Time until which new names are refused without a search for silent ones.
+    /// Time until which new names of this certificate are refused without a search for silent ones.
     full_until: Option<Instant>,
     told: bool,
 }
 
 impl Names {
-    /// Records a frame from a name and returns the worker's id; `None` if its certificate has the maximum
-    /// number of workers.
+    /// Records a frame from a worker's name and returns the worker's id; `None` if its certificate has the
+    /// maximum number of workers.
     pub(super) fn note(&mut self, name: WorkerName, now: Instant) -> Option<WorkerId> {
         let id = name.id();
         if let Some(known) = self.known.get_mut(&id) {
@@ -70,10 +72,10 @@ impl Names {
         }
     }
 
-    /// Returns whether an owner may have another name; removes its longest silent name to make room if that
-    /// has been silent for long enough.
+    /// Returns whether a certificate owner may have another worker name; to make room, removes its name that
+    /// has been silent longest, if that exceeds [`SILENT`].
     fn make_room(&mut self, owner: &str, now: Instant) -> bool {
-        let most = if owner == ANYONE {
+        let most = if owner == NO_CERTIFICATE {
             OF_ANYONE
         } else {
             CONNECTIONS

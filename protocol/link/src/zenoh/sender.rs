@@ -1,4 +1,5 @@
-//! Sending thread of an end; only this thread is blocked by a full pipe, which may take seconds.
+//! Thread that sends the frames of a coordinator or worker; only this thread is blocked by a full pipe, which
+//! may take seconds.
 use protocol::key::Lane;
 use std::{sync::mpsc, thread, time::Duration};
 use tokio::sync::oneshot;

@@ -13,8 +13,8 @@ pub(super) const INBOX: usize = 16 << 10;
 /// Maximum time for closing a session; with a dead peer zenoh needs 10 s.
 const CLOSE: Duration = Duration::from_secs(2);
 
-/// Maximum time for a connected peer to open its session \[ms\]; silent peers occupy pending places for this
-/// long.
+/// Maximum time for a connected peer to open its session \[ms\]; until then a silent peer counts towards
+/// [`PENDING`].
 const ACCEPT_MS: u64 = 4000;
 
 /// Maximum number of sessions of an end. An idle session costs the coordinator its keep-alives, about 80 us

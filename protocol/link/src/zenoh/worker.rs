@@ -36,7 +36,7 @@ impl ZenohWorker {
     ///
     /// # Errors
     /// Faults of the key material or the address, or the reason why one end rejects the other's certificate;
-    /// [`LinkError::may_pass`] tells whether a retry may succeed.
+    /// [`LinkError::is_retryable`] tells whether a retry may succeed.
     pub async fn open(
         connect: &Locator,
         keys: Option<&Keys>,
@@ -44,7 +44,7 @@ impl ZenohWorker {
     ) -> Result<Self, LinkError> {
         let keys = needed(&[connect], keys)?;
         let name = if let Some(keys) = keys {
-            handshake::shake(connect, keys).await?;
+            handshake::probe_quic(connect, keys).await?;
             // checked when the keys were read
             WorkerName::of(keys.owner(), process).map_err(|source| {
                 LinkError::Keys(crate::keys::KeyError::Name {
@@ -53,7 +53,7 @@ impl ZenohWorker {
                 })
             })?
         } else {
-            handshake::knock(connect).await?;
+            handshake::probe_tcp(connect).await?;
             WorkerName::anyone(process)
         };
         let tls = keys.map_or_else(|| json!({}), connecting);
@@ -102,7 +102,7 @@ impl WorkerEnd for ZenohWorker {
         self.frames.recv().await
     }
 
-    async fn appear(&mut self, run: RunId) -> Result<(), LinkError> {
+    async fn announce_presence(&mut self, run: RunId) -> Result<(), LinkError> {
         self.token = None;
         let token = self
             .session

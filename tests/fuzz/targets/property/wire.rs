@@ -1,15 +1,15 @@
 //! Properties of the wire format: frames and their messages.
 use protocol::{
     id::RunId,
-    wire::{self, HEADER_BYTES, Kind},
+    wire::{self, FrameKind, HEADER_BYTES},
 };
 use serde::{Serialize, de::DeserializeOwned};
 
 /// Checks that a frame is either accepted completely or rejected, and that the header alone determines the
 /// body length.
 pub fn is_a_frame_or_refused(bytes: &[u8]) {
-    for kind in Kind::ALL {
-        let opened = wire::open(kind, bytes);
+    for kind in FrameKind::ALL {
+        let opened = wire::parse_frame(kind, bytes);
         if let Some((header, rest)) = bytes.split_first_chunk::<HEADER_BYTES>() {
             let length = wire::body_length(kind, header);
             if let Ok(frame) = opened {
@@ -33,17 +33,17 @@ pub fn is_canonical<T: Serialize + DeserializeOwned>(bytes: &[u8]) {
 }
 
 /// Checks that a value has one encoding also inside a frame with a valid header and checksum.
-pub fn is_canonical_in_frame<T: Serialize + DeserializeOwned>(kind: Kind, body: &[u8]) {
+pub fn is_canonical_in_frame<T: Serialize + DeserializeOwned>(kind: FrameKind, body: &[u8]) {
     is_canonical::<T>(body);
-    let mut frame = wire::seal(kind, RunId(7), &()).expect("an empty frame");
+    let mut frame = wire::encode_frame(kind, RunId(7), &()).expect("an empty frame");
     frame.extend_from_slice(body);
     let length = u32::try_from(body.len()).expect("inputs are short");
     frame[12..16].copy_from_slice(&length.to_le_bytes());
     frame[16..20].copy_from_slice(&crc32(body).to_le_bytes());
-    let opened = wire::open(kind, &frame).expect("a frame in order");
+    let opened = wire::parse_frame(kind, &frame).expect("a frame in order");
     assert_eq!(opened.body, body);
     assert_eq!(
-        wire::unseal::<T>(kind, &frame).is_ok(),
+        wire::decode_frame::<T>(kind, &frame).is_ok(),
         wire::decode::<T>(body).is_ok()
     );
 }

@@ -91,7 +91,7 @@ fn without_friction_it_is_what_small_steps_give() {
             lag,
             ..OSCILLATOR
         };
-        let motion = oscillator.go(&drive(5.0), start, 0.37).unwrap();
+        let motion = oscillator.integrate(&drive(5.0), start, 0.37).unwrap();
         let expected = stepped(&oscillator, &drive(5.0), start, 0.37, 4000);
         assert_close(motion.state(0.37).unwrap(), expected, 1e-10);
     }
@@ -110,7 +110,7 @@ fn with_friction_it_slides_and_stands_as_small_steps_do() {
             lag,
             ..OSCILLATOR
         };
-        let motion = oscillator.go(&drive(5.0), start, 0.61).unwrap();
+        let motion = oscillator.integrate(&drive(5.0), start, 0.61).unwrap();
         assert!(motion.pieces() > 4, "{}", motion.pieces());
         for part in [0.2, 0.61] {
             let expected = stepped(&oscillator, &drive(5.0), start, part, 200_000);
@@ -131,7 +131,7 @@ fn a_mass_that_is_let_go_comes_to_rest() {
         v: 0.0,
         reading: 69.0,
     };
-    let motion = oscillator.go(&Drive::default(), start, 3.0).unwrap();
+    let motion = oscillator.integrate(&Drive::default(), start, 3.0).unwrap();
     let [early, late] = [2.0, 3.0].map(|t| motion.state(t).unwrap());
     assert_eq!(early, late);
     assert!(late.v == 0.0 && (late.x * oscillator.stiffness).abs() <= 8.0);
@@ -157,7 +157,9 @@ fn a_steady_motion_repeats_itself_and_is_reached_from_anywhere() {
             v: 0.0,
             reading: 0.0,
         };
-        let long = oscillator.go(&drive(5.0), start, 40.0 * period).unwrap();
+        let long = oscillator
+            .integrate(&drive(5.0), start, 40.0 * period)
+            .unwrap();
         assert_close(long.state(40.0 * period).unwrap(), begin, 1e-9);
     }
 }

@@ -4,15 +4,15 @@
     clippy::unwrap_used,
     reason = "helpers of tests: a command that cannot be run or read has failed"
 )]
-mod asked;
+mod evaluate;
+mod foreign_terms;
+mod identify;
 mod orthogonal;
 mod rates;
 mod rig;
 mod scaling;
-mod seen;
 mod started;
 mod swept;
-mod words;
 
 use rig::{Rig, number};
 use search::strategy::CATALOGUE;
@@ -51,7 +51,7 @@ fn every_preset_calibrates() {
         // points at random may all be worse than the start
         let better = after < before || (preset.strategy == "random" && after.is_finite());
         assert!(better, "{}: {objective}", preset.name);
-        words::check_folder(run.as_ref());
+        foreign_terms::check_folder(run.as_ref());
     }
 }
 
@@ -83,7 +83,7 @@ fn the_case_is_checked_and_simulated() {
         assert_eq!(missing, "this model gives no derivatives", "{derived}");
     }
     rig.run(&[&simulate[..], &["--out", &rig.path("simulated")]].concat());
-    words::check_folder(&rig.file("simulated"));
+    foreign_terms::check_folder(&rig.file("simulated"));
 }
 
 /// Checks verification, report and export of a calibration.
@@ -110,7 +110,7 @@ fn a_run_is_verified_reported_and_exported() {
     }
     let scores = fs::read_to_string(rig.file("run/csv/scores.csv")).unwrap();
     assert!(scores.contains("displacement,mm"), "{scores}");
-    words::check_folder(run.as_ref());
+    foreign_terms::check_folder(run.as_ref());
 }
 
 /// Checks that tied unknowns stay equal, and that fixed and absent unknowns keep their values.
@@ -138,7 +138,7 @@ fn the_hidden_effect_is_named_and_added() {
     assert_eq!(added[0]["id"], "dry_friction");
     let case = fs::read_to_string(rig.file("case/case.toml")).unwrap();
     assert!(case.contains("id = \"dry_friction\""), "{case}");
-    words::check_folder(run.as_ref());
+    foreign_terms::check_folder(run.as_ref());
     // as the command itself advises: from what was found
     let (found, after) = (rig.path("diagnosis/calibrated.toml"), rig.path("after"));
     let from = ["--genes", &found, "--preset", "least-squares"];
@@ -168,7 +168,7 @@ fn a_hidden_unknown_is_named_and_becomes_the_start() {
         .unwrap();
     let start = found["start"].as_float().unwrap();
     assert!((start / rig::CROSSTALK - 1.0).abs() < 0.1, "{start}");
-    words::check_folder(run.as_ref());
+    foreign_terms::check_folder(run.as_ref());
 }
 
 /// Checks that a calibration that was killed and resumed gives the same log digest as an uninterrupted one.

@@ -1,8 +1,8 @@
 //! Tests of orthogonal sweeps: one that was killed and resumed gives the same bytes, and factors that cannot
 //! be tested are refused before anything runs.
 use crate::{
+    foreign_terms,
     rig::{Rig, number},
-    words,
 };
 use serde_json::{Value, json};
 use std::{fs, time::Duration};
@@ -86,7 +86,7 @@ fn a_killed_orthogonal_test_ends_with_the_same_bytes() {
         .map(|run| number(&run["objective"]).log10());
     let obtained = responses.sum::<f64>() / 2.0;
     assert!((number(&object["confirmation"]["obtained"]) - obtained).abs() < 1e-12);
-    words::check_folder(whole.as_ref());
+    foreign_terms::check_folder(whole.as_ref());
 
     let words: Vec<String> = small(&killed).into_iter().map(str::to_owned).collect();
     rig.kill_at(&words, &rig.file("killed"), 20_000, Duration::from_mins(1));

@@ -18,10 +18,10 @@ use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 use worker::simulator::{Model, Simulator as _};
 
-/// Laboratory that simulates synchronously in this process.
-struct AtOnce(Box<dyn Model>);
+/// Simulator for the diagnosis that answers its requests at once, in this process.
+struct SynchronousLaboratory(Box<dyn Model>);
 
-impl Laboratory for AtOnce {
+impl Laboratory for SynchronousLaboratory {
     type Error = Infallible;
 
     async fn observe(
@@ -34,7 +34,7 @@ impl Laboratory for AtOnce {
     }
 }
 
-/// Diagnoses a rig's case from the first `cycles` periods of each condition.
+/// Diagnoses the case in a test folder from the first `cycles` periods of each condition.
 fn diagnosed(rig: &Rig, cycles: usize) -> Diagnosis {
     let loaded = case::load_with_notes(&rig.file("case"), &Overrides::default()).unwrap();
     let case = loaded.case;
@@ -46,14 +46,14 @@ fn diagnosed(rig: &Rig, cycles: usize) -> Diagnosis {
         records: records.collect(),
         library: descriptors(),
         start: None,
-        usual: Numerics::OF_THE_CASE,
+        usual: Numerics::FROM_CASE,
         finer: Vec::new(),
-        entrance: "least-squares",
+        global_search: "least-squares",
         seed: 1,
         thresholds: Thresholds::default(),
         differences: false,
     };
-    let mut laboratory = AtOnce(Oscillators.prepare(&case).unwrap());
+    let mut laboratory = SynchronousLaboratory(Oscillators.prepare(&case).unwrap());
     let mut work = pin!(diagnose(&mut laboratory, &inputs));
     match work.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
         Poll::Ready(Ok(diagnosis)) => diagnosis,
@@ -62,7 +62,7 @@ fn diagnosed(rig: &Rig, cycles: usize) -> Diagnosis {
     }
 }
 
-/// Returns the name, values and effects of the hidden effect of test number `which`.
+/// Returns the effect that record number `which` hides: its name, the values of the unknowns and the effects.
 fn hiding(which: u64) -> (&'static str, Values, Effects) {
     let none = Effects::default();
     let size = 1.0 + (which / 5) as f64 * 0.4;
@@ -110,7 +110,7 @@ fn hiding(which: u64) -> (&'static str, Values, Effects) {
     }
 }
 
-/// Returns whether a diagnosis claims an effect.
+/// Returns whether the verdict of a diagnosis claims an effect, listed or unlisted.
 fn claims(answer: &Diagnosis) -> bool {
     matches!(
         answer.verdict,

@@ -1,9 +1,9 @@
 //! Test folder with a copy of the case and its synthetic records, and helpers that run the program on them.
-use crate::words;
+use crate::foreign_terms;
 use oscillator::{
     effect::Effects,
     record::Measurement,
-    settings::{Excitation, Order, Rig as Settings},
+    settings::{Excitation, Order, RigSettings as Settings},
     simulate::{Sensor, Values, run},
 };
 use serde_json::Value;
@@ -186,8 +186,8 @@ impl Rig {
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.success(), "{words:?}: {said}");
         let printed = String::from_utf8(output.stdout).unwrap();
-        words::check("standard error", &said);
-        words::check("standard output", &printed);
+        foreign_terms::check("standard error", &said);
+        foreign_terms::check("standard output", &printed);
         printed
     }
 
@@ -196,13 +196,13 @@ impl Rig {
         let output = self.command(words).output().unwrap();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{words:?}: {said}");
-        words::check("standard error", &said);
+        foreign_terms::check("standard error", &said);
         said
     }
 
     /// Runs a command with the given standard input; returns the JSON lines that it printed and its exit
     /// code.
-    pub(crate) fn fed(&self, words: &[&str], input: &str) -> (Vec<Value>, Option<i32>) {
+    pub(crate) fn run_with_input(&self, words: &[&str], input: &str) -> (Vec<Value>, Option<i32>) {
         let mut command = self.command(words);
         let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = piped.stderr(Stdio::null()).spawn().unwrap();

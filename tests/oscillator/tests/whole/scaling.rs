@@ -1,7 +1,7 @@
 //! Tests of `sweep scaling`: the structure of the JSON object, and that existing rows are not measured again.
 use crate::{
+    foreign_terms,
     rig::{Rig, number},
-    words,
 };
 use serde_json::Value;
 use std::fs;
@@ -81,7 +81,7 @@ fn slots_are_computed_slept_and_projected_and_rows_are_kept() {
             .all(|pair| number(&pair[0]) <= number(&pair[1]))
     );
     assert_eq!(object["assumptions"].as_array().unwrap().len(), 6);
-    words::check_folder(run.as_ref());
+    foreign_terms::check_folder(run.as_ref());
     let page = fs::read_to_string(rig.file("run/report.html")).unwrap();
     assert!(
         page.contains("Where slot time went") && page.contains("What the projection is made from")

@@ -1,8 +1,8 @@
 //! Tests of calibrations that start from a table of individuals, and of start points given to `ask-tell` over
 //! standard input.
 use crate::{
+    foreign_terms,
     rig::{Rig, number},
-    words,
 };
 use serde_json::json;
 use std::{fs, time::Duration};
@@ -51,7 +51,7 @@ fn a_killed_calibration_from_a_table_goes_on_without_its_file() {
         object["evaluations"], 900,
         "two of the table, and two that it answered"
     );
-    words::check_folder(whole.as_ref());
+    foreign_terms::check_folder(whole.as_ref());
     rig.kill_at(
         &begun(&killed),
         &rig.file("killed"),
@@ -105,7 +105,7 @@ fn a_talk_begins_with_points() {
     };
     let two = opening(json!([[0.5], [-0.25]]));
     let told = json!({"tell": [{"id": 1, "f": 1.0}, {"id": 0, "f": 2.0}]});
-    let (lines, code) = rig.fed(&["ask-tell", "cma-es"], &format!("{two}{told}\n"));
+    let (lines, code) = rig.run_with_input(&["ask-tell", "cma-es"], &format!("{two}{told}\n"));
     let first = json!([{"id": 0, "x": [0.5]}, {"id": 1, "x": [-0.25]}]);
     assert_eq!((&lines[0]["ask"], code), (&first, Some(0)));
     assert_eq!(lines[1]["ask"][0]["id"], 2);
@@ -117,7 +117,7 @@ fn a_talk_begins_with_points() {
             "point 2 has x = 3e0, outside -1e0 to 1e0",
         ),
     ] {
-        let (lines, code) = rig.fed(&["ask-tell", "cma-es"], &opening(start));
+        let (lines, code) = rig.run_with_input(&["ask-tell", "cma-es"], &opening(start));
         assert_eq!(code, Some(2));
         assert!(
             lines[0]["error"].as_str().unwrap().contains(said),

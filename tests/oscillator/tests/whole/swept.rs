@@ -1,8 +1,8 @@
 //! Tests of sweeps from files: a table of individuals and a grid of settings. Bad input is refused before
 //! anything runs.
 use crate::{
+    foreign_terms,
     rig::{Rig, number},
-    words,
 };
 use serde_json::json;
 use std::fs;
@@ -40,9 +40,9 @@ fn a_table_of_individuals_comes_back_with_scores() {
     // the same as line by line
     let line = json!({"id": 1, "genes": first["genes"]}).to_string();
     let other = rig.path("other");
-    let (lines, _) = rig.fed(&["evaluate", "CASE", "--run", &other], &line);
+    let (lines, _) = rig.run_with_input(&["evaluate", "CASE", "--run", &other], &line);
     assert_eq!(lines[0]["objective"], first["objective"]);
-    words::check_folder(run.as_ref());
+    foreign_terms::check_folder(run.as_ref());
     // another table in the same folder is another run
     fs::write(rig.file("table.csv"), ROWS.replace("2.2", "2.3")).unwrap();
     assert!(
@@ -124,7 +124,7 @@ fn a_grid_runs_every_combination() {
     assert!(text.contains("encoding gray, population 16"), "{text}");
     let table = fs::read_to_string(rig.file("run/sweep.csv")).unwrap();
     assert!(table.starts_with("encoding,population,seed,objective,evaluations\nbinary,8,1,"));
-    words::check_folder(run.as_ref());
+    foreign_terms::check_folder(run.as_ref());
 }
 
 #[test]

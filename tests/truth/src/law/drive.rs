@@ -1,30 +1,34 @@
 //! Hidden effects of the drive: the crank angle differs from the recorded one.
-use super::kind::{Law, Shape, note};
-use crate::draw::Draw;
+use super::kind::{HiddenEffect, Shape, record_shape};
+use crate::draw::RandomStream;
 use crate::turn::Turn;
-use simulation::effect::{Effect, Hooks, Site};
+use simulation::effect::{Effect, Extensions, Site};
 use simulation::math::spline::Splines;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Creates an induction motor after Kloss, `T_m = 2 T_k / (s / s_k + s_k / s)`, that drives a heavy crank: `J
 /// dw/dt = T_m - T_net`, integrated over several turns until the speed is periodic.
-pub(super) fn kloss(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn kloss(
+    size: f64,
+    draw: &mut RandomStream,
+    shape: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
     Arc::new(Motor {
         slip: size,
-        rated: note(shape, "rated_torque_n_m", draw.between(33e3, 38e3)),
-        breakdown: note(shape, "breakdown_over_rated_1", draw.between(1.9, 2.3)),
-        inertia: note(shape, "inertia_kg_m2", draw.between(5e4, 9e4)),
+        rated: record_shape(shape, "rated_torque_n_m", draw.between(33e3, 38e3)),
+        breakdown: record_shape(shape, "breakdown_over_rated_1", draw.between(1.9, 2.3)),
+        inertia: record_shape(shape, "inertia_kg_m2", draw.between(5e4, 9e4)),
     })
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Motor {
-    /// Slip at rated torque.
+    /// Slip of the motor at rated torque.
     slip: f64,
-    /// Rated torque at the crank [N m].
+    /// Rated torque of the motor, referred to the crank [N m].
     rated: f64,
-    /// Ratio of breakdown torque to rated torque.
+    /// Ratio of the motor's breakdown torque to its rated torque.
     breakdown: f64,
     /// Moment of inertia of motor, gear and cranks, referred to the crank [kg m2].
     inertia: f64,
@@ -48,7 +52,7 @@ impl Motor {
     }
 
     /// Computes the crank's lead over uniform rotation \[rad\], at equal times over one turn.
-    fn ahead(&self, speed: f64, net: impl Fn(f64) -> f64) -> Vec<f64> {
+    fn lead_angle(&self, speed: f64, net: impl Fn(f64) -> f64) -> Vec<f64> {
         let step = TAU / speed / STEPS as f64;
         let mean = (0..360)
             .map(|k| net(TAU * f64::from(k) / 360.0))
@@ -101,7 +105,7 @@ impl Motor {
 }
 
 impl Effect for Motor {
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
         let crank = site.description.crank;
         let net = |turn: f64| {
             site.cycle
@@ -111,15 +115,15 @@ impl Effect for Motor {
             .map(|k| net(TAU * k as f64 / NODES as f64))
             .collect();
         let net = Splines::periodic(0.0, TAU / NODES as f64, &[table]);
-        let ahead = self.ahead(crank.speed, |turn| net.value(turn, 0));
-        hooks.add_warp(Splines::periodic(0.0, TAU / NODES as f64, &[ahead]));
+        let ahead = self.lead_angle(crank.speed, |turn| net.value(turn, 0));
+        extensions.add_warp(Splines::periodic(0.0, TAU / NODES as f64, &[ahead]));
     }
 }
 
-impl Law for Motor {}
+impl HiddenEffect for Motor {}
 
 /// Creates an index pulse error: all channels are recorded at a shifted crank angle.
-pub(super) fn late_index(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn late_index(size: f64, _: &mut RandomStream, _: &mut Shape) -> Arc<dyn HiddenEffect> {
     Arc::new(LateIndex { angle: size })
 }
 
@@ -130,8 +134,8 @@ struct LateIndex {
 
 impl Effect for LateIndex {}
 
-impl Law for LateIndex {
-    fn read(&self, turn: &mut Turn) {
+impl HiddenEffect for LateIndex {
+    fn distort_readings(&self, turn: &mut Turn) {
         turn.shift(self.angle / 360.0);
     }
 }
@@ -164,7 +168,7 @@ mod tests {
             slip: 1e-3,
             ..MOTOR
         };
-        let ahead = motor.ahead(0.5, |turn| 10e3 + 20e3 * libm::cos(turn));
+        let ahead = motor.lead_angle(0.5, |turn| 10e3 + 20e3 * libm::cos(turn));
         // its slope is a little higher than at rated torque
         let start = motor.torque(1e-6) / 1e-6;
         for (k, ahead) in ahead.iter().enumerate() {

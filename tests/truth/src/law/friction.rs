@@ -1,28 +1,32 @@
 //! Hidden effects of dry friction: hard sign change, Stribeck peak, and presliding over a distance (Dahl).
-use super::kind::{Law, Shape, note};
-use crate::draw::Draw;
+use super::kind::{HiddenEffect, Shape, record_shape};
+use crate::draw::RandomStream;
 use libm::exp;
 use simulation::drive::DriveState;
-use simulation::effect::{Along, Effect, Hooks, LineForce, Site};
+use simulation::effect::{Effect, Extensions, LineForce, LineForceValue, Site};
 use simulation::math::spline::Splines;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Number of samples of a curve over one turn.
+/// Number of samples of a friction curve over one crank turn.
 const NODES: usize = 1440;
 
 /// Creates the friction of a grease-starved plain bearing: `M = mu r N (1 + p exp(-|w| / w_s)) sgn(w)` with
 /// the bearing load `N`; the sign function is linear only below the speed [`HARD`].
-pub(super) fn plain_bearing(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn plain_bearing(
+    size: f64,
+    draw: &mut RandomStream,
+    shape: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
     Arc::new(Bearing {
         moment: size,
-        peak: note(shape, "stribeck_peak_1", draw.between(0.1, 0.4)),
-        speed: note(shape, "stribeck_speed_rad_s", draw.log_between(0.005, 0.03)),
+        peak: record_shape(shape, "stribeck_peak_1", draw.between(0.1, 0.4)),
+        speed: record_shape(shape, "stribeck_speed_rad_s", draw.log_between(0.005, 0.03)),
     })
 }
 
 /// Creates the friction of a greased bearing: Coulomb friction without a Stribeck peak.
-pub(super) fn sliding(moment: f64) -> Arc<dyn Law> {
+pub(super) fn sliding(moment: f64) -> Arc<dyn HiddenEffect> {
     Arc::new(Bearing {
         moment,
         peak: 0.0,
@@ -32,7 +36,7 @@ pub(super) fn sliding(moment: f64) -> Arc<dyn Law> {
 
 #[derive(Clone, Copy, Debug)]
 struct Bearing {
-    /// Friction moment at the mean load [N m].
+    /// Friction moment of the bearing at its mean load [N m].
     moment: f64,
     peak: f64,
     speed: f64,
@@ -42,7 +46,7 @@ struct Bearing {
 const HARD: f64 = 3e-4;
 
 impl Effect for Bearing {
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
         let d = &site.description;
         let weight = 2.0 * d.suspension_mass * d.gravity;
         let card = Splines::periodic(
@@ -53,81 +57,95 @@ impl Effect for Bearing {
         let load = curve(|turn| site.cycle.tension(turn) + card.value(turn, 0) + weight);
         let mean = load.iter().sum::<f64>() / load.len() as f64;
         let share: Vec<f64> = load.iter().map(|load| load / mean).collect();
-        let rubbing = Rubbing {
+        let rubbing = BearingFriction {
             law: *self,
             share: Splines::periodic(0.0, TAU / NODES as f64, &[share]),
         };
-        hooks.on(site.layout.beam(), rubbing);
+        extensions.add_line_force(site.layout.beam(), rubbing);
     }
 }
 
-impl Law for Bearing {}
+impl HiddenEffect for Bearing {}
 
 #[derive(Clone, Debug)]
-struct Rubbing {
+struct BearingFriction {
     law: Bearing,
-    /// Bearing load divided by its mean, over the turn.
+    /// Bearing load divided by its mean, as a function of the crank turn.
     share: Splines,
 }
 
-impl LineForce for Rubbing {
-    fn along(&self, drive: &DriveState, _: f64, rate: f64) -> Along {
+impl LineForce for BearingFriction {
+    fn along(&self, drive: &DriveState, _: f64, rate: f64) -> LineForceValue {
         let size = self.law.moment * self.share.value(drive.turn, 0);
         let rise = self.law.peak * exp(-rate.abs() / self.law.speed);
         if rate.abs() < HARD {
             // the peak is taken as flat here: it falls by some per cent
             let slope = size * (1.0 + self.law.peak) / HARD;
-            return Along {
-                other: -slope * rate,
+            return LineForceValue {
+                non_conservative: -slope * rate,
                 by_rate: -slope,
-                ..Along::default()
+                ..LineForceValue::default()
             };
         }
-        Along {
-            other: -size * (1.0 + rise) * rate.signum(),
+        LineForceValue {
+            non_conservative: -size * (1.0 + rise) * rate.signum(),
             by_rate: size * rise / self.law.speed,
-            ..Along::default()
+            ..LineForceValue::default()
         }
     }
 }
 
 /// Creates the friction of a stuffing box packing with presliding (Dahl): after a reversal the force changes
 /// with the distance as `F_s (1 - 2 exp(-x / x_d))`, and differs between upstroke and downstroke.
-pub(super) fn packing(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn packing(
+    size: f64,
+    draw: &mut RandomStream,
+    shape: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
     Arc::new(Packing {
         force: size,
-        way: note(shape, "way_m", draw.log_between(0.004, 0.02)),
-        uneven: note(shape, "upstroke_excess_1", draw.between(-0.1, 0.1)),
+        sliding_distance: record_shape(shape, "way_m", draw.log_between(0.004, 0.02)),
+        upstroke_excess: record_shape(shape, "upstroke_excess_1", draw.between(-0.1, 0.1)),
     })
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Packing {
     force: f64,
-    way: f64,
-    uneven: f64,
+    sliding_distance: f64,
+    upstroke_excess: f64,
 }
 
 impl Effect for Packing {
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
         let arm = site.description.front_arc.radius;
-        let side = dahl(&curve(|turn| arm * site.cycle.beam(turn).value), self.way);
+        let side = dahl_state(
+            &curve(|turn| arm * site.cycle.beam(turn).value),
+            self.sliding_distance,
+        );
         let force = side
             .iter()
-            .map(|side| -self.force * (side + self.uneven * side.abs()));
-        hooks.on(site.layout.suspension(), Scheduled::new(force.collect()));
+            .map(|side| -self.force * (side + self.upstroke_excess * side.abs()));
+        extensions.add_line_force(
+            site.layout.suspension(),
+            PrescribedForce::new(force.collect()),
+        );
     }
 }
 
-impl Law for Packing {}
+impl HiddenEffect for Packing {}
 
 /// Creates the loss of a rope that winds on and off its head: a share of the tension plus a constant, reached
 /// gradually over an angle of winding after a reversal.
-pub(super) fn winding(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn winding(
+    size: f64,
+    draw: &mut RandomStream,
+    shape: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
     Arc::new(Winding {
         loss: size,
-        constant: note(shape, "constant_share_1", draw.between(0.1, 0.4)),
-        way: note(shape, "way_rad", draw.log_between(0.005, 0.02)),
+        constant: record_shape(shape, "constant_share_1", draw.between(0.1, 0.4)),
+        way: record_shape(shape, "way_rad", draw.log_between(0.005, 0.02)),
     })
 }
 
@@ -139,29 +157,29 @@ struct Winding {
 }
 
 impl Effect for Winding {
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
         let cycle = site.cycle;
         let tension = curve(|turn| cycle.tension(turn));
         let mean = tension.iter().sum::<f64>() / tension.len() as f64;
-        let side = dahl(&curve(|turn| cycle.tangent(turn).value), self.way);
+        let side = dahl_state(&curve(|turn| cycle.tangent(turn).value), self.way);
         let arm = curve(|turn| cycle.arm(turn));
         let moment = (0..NODES).map(|i| {
             let pull = (1.0 - self.constant) * tension[i] + self.constant * mean;
             self.loss * pull * arm[i] * side[i]
         });
-        hooks.on(site.layout.beam(), Scheduled::new(moment.collect()));
+        extensions.add_line_force(site.layout.beam(), PrescribedForce::new(moment.collect()));
     }
 }
 
-impl Law for Winding {}
+impl HiddenEffect for Winding {}
 
-/// Force prescribed as a function of the crank turn.
+/// Force or moment prescribed as a function of the crank angle.
 #[derive(Clone, Debug)]
-pub(super) struct Scheduled {
+pub(super) struct PrescribedForce {
     force: Splines,
 }
 
-impl Scheduled {
+impl PrescribedForce {
     /// Creates the force from samples at equally spaced angles of the turn, as returned by [`curve`].
     pub(super) fn new(force: Vec<f64>) -> Self {
         Self {
@@ -170,11 +188,11 @@ impl Scheduled {
     }
 }
 
-impl LineForce for Scheduled {
-    fn along(&self, drive: &DriveState, _: f64, _: f64) -> Along {
-        Along {
-            other: self.force.value(drive.turn, 0),
-            ..Along::default()
+impl LineForce for PrescribedForce {
+    fn along(&self, drive: &DriveState, _: f64, _: f64) -> LineForceValue {
+        LineForceValue {
+            non_conservative: self.force.value(drive.turn, 0),
+            ..LineForceValue::default()
         }
     }
 }
@@ -187,7 +205,7 @@ pub(super) fn curve(at: impl Fn(f64) -> f64) -> Vec<f64> {
 }
 
 /// Computes the Dahl friction state between -1 and 1 along a periodic motion: `dz = (1 - z sgn dx) dx / way`.
-fn dahl(motion: &[f64], way: f64) -> Vec<f64> {
+fn dahl_state(motion: &[f64], way: f64) -> Vec<f64> {
     let n = motion.len();
     let mut side = vec![0.0; n];
     let mut z: f64 = 0.0;
@@ -208,7 +226,7 @@ mod tests {
     fn dahl_follows_its_equation_and_repeats() {
         let motion = curve(|turn| 0.2 * libm::cos(turn));
         let way = 0.01;
-        let side = dahl(&motion, way);
+        let side = dahl_state(&motion, way);
         // on the way down from the top: z = -1 + (z_0 + 1) exp(-x / way), with z_0 = 1 at the top
         let x = motion[0] - motion[300];
         assert!((side[300] - (-1.0 + 2.0 * exp(-x / way))).abs() < 1e-6);
@@ -223,22 +241,22 @@ mod tests {
             peak: 0.3,
             speed: 0.02,
         };
-        let rubbing = Rubbing {
+        let rubbing = BearingFriction {
             law,
             share: Splines::periodic(0.0, 1.0, &[vec![1.0; 8]]),
         };
         let drive = DriveState::default();
         for rate in [-0.3, -0.02, -1e-4, 1e-4, 0.02, 0.3] {
             let along = rubbing.along(&drive, 0.0, rate);
-            assert!(along.other * rate < 0.0);
+            assert!(along.non_conservative * rate < 0.0);
             let h = 1e-9;
-            let slope = (rubbing.along(&drive, 0.0, rate + h).other
-                - rubbing.along(&drive, 0.0, rate - h).other)
+            let slope = (rubbing.along(&drive, 0.0, rate + h).non_conservative
+                - rubbing.along(&drive, 0.0, rate - h).non_conservative)
                 / (2.0 * h);
             assert!((slope - along.by_rate).abs() <= 1e-3 * slope.abs().max(1.0));
         }
-        let slow = rubbing.along(&drive, 0.0, 0.001).other.abs();
-        let fast = rubbing.along(&drive, 0.0, 0.3).other.abs();
+        let slow = rubbing.along(&drive, 0.0, 0.001).non_conservative.abs();
+        let fast = rubbing.along(&drive, 0.0, 0.3).non_conservative.abs();
         assert!(slow > 1.2 * fast, "it falls as the bearing floats");
     }
 }

@@ -1,12 +1,12 @@
 //! Hidden effects of the strain gauges and their amplifiers.
-use super::kind::{Law, Shape, note};
-use crate::draw::Draw;
+use super::kind::{HiddenEffect, Shape, record_shape};
+use crate::draw::RandomStream;
 use crate::turn::{Turn, shifted};
 use simulation::effect::Effect;
 use std::sync::Arc;
 
 /// Draws a relative weight for each gauge: 1 for one of them, random for the others.
-fn pattern(draw: &mut Draw, shape: &mut Shape) -> [f64; 4] {
+fn gauge_weights(draw: &mut RandomStream, shape: &mut Shape) -> [f64; 4] {
     let mut shares = [0.0; 4].map(|_: f64| draw.sign() * draw.between(0.1, 0.9));
     shares[draw.index(4)] = 1.0;
     for (k, share) in shares.iter().enumerate() {
@@ -16,7 +16,7 @@ fn pattern(draw: &mut Draw, shape: &mut Shape) -> [f64; 4] {
 }
 
 /// Creates a pure delay of all gauge channels in the amplifiers.
-pub(super) fn delay(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn delay(size: f64, _: &mut RandomStream, _: &mut Shape) -> Arc<dyn HiddenEffect> {
     Arc::new(Delay { time: size })
 }
 
@@ -27,8 +27,8 @@ struct Delay {
 
 impl Effect for Delay {}
 
-impl Law for Delay {
-    fn read(&self, turn: &mut Turn) {
+impl HiddenEffect for Delay {
+    fn distort_readings(&self, turn: &mut Turn) {
         let behind = self.time / turn.period;
         for curve in &mut turn.stress {
             *curve = shifted(curve, -behind);
@@ -37,10 +37,10 @@ impl Law for Delay {
 }
 
 /// Creates a gain error for each gauge, with a slight nonlinearity in the stress.
-pub(super) fn gain(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
-    let bend = note(shape, "per_megapascal_1", draw.between(-2e-4, 2e-4));
+pub(super) fn gain(size: f64, draw: &mut RandomStream, shape: &mut Shape) -> Arc<dyn HiddenEffect> {
+    let bend = record_shape(shape, "per_megapascal_1", draw.between(-2e-4, 2e-4));
     Arc::new(Gain {
-        gain: pattern(draw, shape).map(|share| share * size),
+        gain: gauge_weights(draw, shape).map(|share| share * size),
         bend,
     })
 }
@@ -53,8 +53,8 @@ struct Gain {
 
 impl Effect for Gain {}
 
-impl Law for Gain {
-    fn read(&self, turn: &mut Turn) {
+impl HiddenEffect for Gain {
+    fn distort_readings(&self, turn: &mut Turn) {
         for (curve, gain) in turn.stress.iter_mut().zip(self.gain) {
             for stress in curve {
                 *stress *= 1.0 + gain * (1.0 + self.bend * *stress);
@@ -64,9 +64,13 @@ impl Law for Gain {
 }
 
 /// Creates misaligned gauges, which read part of the partner gauge's component: `s_i cos + s_j sin`.
-pub(super) fn rotated(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn rotated(
+    size: f64,
+    draw: &mut RandomStream,
+    shape: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
     Arc::new(Rotated {
-        into: pattern(draw, shape).map(|share| share * size),
+        into: gauge_weights(draw, shape).map(|share| share * size),
     })
 }
 
@@ -77,8 +81,8 @@ struct Rotated {
 
 impl Effect for Rotated {}
 
-impl Law for Rotated {
-    fn read(&self, turn: &mut Turn) {
+impl HiddenEffect for Rotated {
+    fn distort_readings(&self, turn: &mut Turn) {
         let own = turn.stress.clone();
         for (k, (curve, into)) in turn.stress.iter_mut().zip(self.into).enumerate() {
             let left = (1.0 - into * into).sqrt();
@@ -91,48 +95,56 @@ impl Law for Rotated {
 
 /// Creates a thermal drift of the gauge zeros, from a cheek heated by the sun: fast at the start of the
 /// record and decaying exponentially.
-pub(super) fn warming(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn warming(
+    size: f64,
+    draw: &mut RandomStream,
+    shape: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
     Arc::new(Warming {
-        turns: note(shape, "time_constant_turns_1", draw.between(4.0, 15.0)),
-        rate: pattern(draw, shape).map(|share| share * size),
+        turns: record_shape(shape, "time_constant_turns_1", draw.between(4.0, 15.0)),
+        rate: gauge_weights(draw, shape).map(|share| share * size),
     })
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Warming {
-    /// Drift rate at the start of the record \[MPa per turn\].
+    /// Drift rate of each gauge at the start of the record \[MPa per turn\].
     rate: [f64; 4],
     turns: f64,
 }
 
 impl Effect for Warming {}
 
-impl Law for Warming {
+impl HiddenEffect for Warming {
     fn drift(&self, turns: f64) -> [f64; 4] {
         let passed = self.turns * (1.0 - libm::exp(-turns / self.turns));
         self.rate.map(|rate| rate * passed)
     }
 }
 
-/// Creates pin clearance with hysteresis: pins lie against one side of their holes and change sides instantly
-/// when the rope's force on the head in some direction passes a bias. Friction shifts the change by `stick`
-/// beyond the bias in either direction.
-pub(super) fn clearance(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
-    let direction = note(shape, "direction_deg", 10.0 * draw.cut_normal());
+/// Creates pin clearance with hysteresis: the head's pins lie against one side of their holes and change
+/// sides instantly when the rope's force along a drawn direction exceeds a bias by `stick`, or falls below it
+/// by `stick` (friction).
+pub(super) fn clearance(
+    size: f64,
+    draw: &mut RandomStream,
+    shape: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
+    let direction = record_shape(shape, "direction_deg", 10.0 * draw.clamped_normal());
     Arc::new(Clearance {
         direction: [
             libm::cos(direction.to_radians()),
             libm::sin(direction.to_radians()),
         ],
-        bias: note(shape, "bias_n", 8e3 * draw.cut_normal()),
-        stick: note(shape, "stick_n", draw.log_between(500.0, 3000.0)),
-        step: pattern(draw, shape).map(|share| share * size),
+        bias: record_shape(shape, "bias_n", 8e3 * draw.clamped_normal()),
+        stick: record_shape(shape, "stick_n", draw.log_between(500.0, 3000.0)),
+        step: gauge_weights(draw, shape).map(|share| share * size),
     })
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Clearance {
-    /// Half of the stress step at a change of sides \[MPa\].
+    /// Half of each gauge's stress step when the pins change sides \[MPa\].
     step: [f64; 4],
     direction: [f64; 2],
     bias: f64,
@@ -141,8 +153,8 @@ struct Clearance {
 
 impl Effect for Clearance {}
 
-impl Law for Clearance {
-    fn read(&self, turn: &mut Turn) {
+impl HiddenEffect for Clearance {
+    fn distort_readings(&self, turn: &mut Turn) {
         let n = turn.len();
         let mut side = 1.0;
         // the second time round the side at the begin is known
@@ -164,10 +176,14 @@ impl Law for Clearance {
 
 /// Creates two ropes of unequal length under one crossbeam: each carries `T / 2 +- k dL / 2`, zero if slack,
 /// and part of each cheek's load is felt by the other cheek.
-pub(super) fn twins(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn twins(
+    size: f64,
+    draw: &mut RandomStream,
+    shape: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
     Arc::new(Twins {
         length: size,
-        crossing: note(shape, "crossing_1", draw.between(0.0, 0.15)),
+        crossing: record_shape(shape, "crossing_1", draw.between(0.0, 0.15)),
     })
 }
 
@@ -180,8 +196,8 @@ struct Twins {
 
 impl Effect for Twins {}
 
-impl Law for Twins {
-    fn read(&self, turn: &mut Turn) {
+impl HiddenEffect for Twins {
+    fn distort_readings(&self, turn: &mut Turn) {
         let difference = 0.5 * turn.rope * self.length;
         for i in 0..turn.len() {
             let tension = turn.tension[i];
@@ -223,7 +239,7 @@ mod tests {
     #[test]
     fn a_delay_makes_a_wave_late() {
         let mut late = turn();
-        Delay { time: 0.6 }.read(&mut late);
+        Delay { time: 0.6 }.distort_readings(&mut late);
         let shifted = TAU * 0.6 / 12.0;
         for (i, stress) in late.stress[0].iter().enumerate() {
             let expected = 10.0 * libm::cos(TAU * i as f64 / 360.0 - shifted);
@@ -241,7 +257,7 @@ mod tests {
             stick: 2e3,
         };
         let mut knocked = turn();
-        law.read(&mut knocked);
+        law.distort_readings(&mut knocked);
         let step: Vec<f64> = (0..360)
             .map(|i| knocked.stress[0][i] - turn().stress[0][i])
             .collect();

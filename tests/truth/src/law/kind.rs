@@ -1,5 +1,5 @@
 //! Kinds of effects that can be hidden in a record, and hidden effects with their drawn parameters.
-use crate::draw::Draw;
+use crate::draw::RandomStream;
 use crate::turn::Turn;
 use simulation::effect::Effect;
 use std::collections::BTreeMap;
@@ -7,12 +7,12 @@ use std::sync::Arc;
 
 /// Hidden effect with its size. The supertrait [`Effect`] acts on the machine itself, including its load; the
 /// methods here change the load card and the readings on their way to the record.
-pub trait Law: Effect {
+pub trait HiddenEffect: Effect {
     /// Converts the true load card to the delivered one \[N\]; the crank turns with `speed` [rad/s].
-    fn deliver(&self, _card: &mut Vec<f64>, _speed: f64) {}
+    fn distort_card(&self, _card: &mut Vec<f64>, _speed: f64) {}
 
     /// Changes the sensor readings of one turn.
-    fn read(&self, _turn: &mut Turn) {}
+    fn distort_readings(&self, _turn: &mut Turn) {}
 
     /// Returns the zero drift of the gauges \[MPa\] at a number of turns after the start of the record.
     fn drift(&self, _turns: f64) -> [f64; 4] {
@@ -20,23 +20,24 @@ pub trait Law: Effect {
     }
 }
 
-/// Kind of effect that can be hidden.
+/// Kind of effect that can be hidden in a record.
 #[derive(Clone, Copy, Debug)]
-pub struct Kind {
-    /// Identifier; the one of the library of candidate effects if it contains the effect.
+pub struct EffectKind {
+    /// Identifier of the kind; for an effect that the library of candidate effects contains, the library's
+    /// identifier.
     pub id: &'static str,
-    /// Name of the drawn size parameter.
+    /// Name of the effect's size parameter, whose value is drawn.
     pub parameter: &'static str,
     /// Unit of the size parameter.
     pub unit: &'static str,
-    /// Typical size, in `unit`.
+    /// Typical size of the effect, in `unit`.
     pub scale: f64,
-    /// Whether the size may be negative.
+    /// Whether the size of the effect may be negative.
     pub signed: bool,
-    /// Largest size in multiples of `scale`.
-    pub most: f64,
+    /// Largest size of the effect in multiples of `scale`.
+    pub largest_multiple: f64,
     /// Constructor of the effect, which draws its shape parameters and records them.
-    build: fn(f64, &mut Draw, &mut Shape) -> Arc<dyn Law>,
+    build: fn(f64, &mut RandomStream, &mut Shape) -> Arc<dyn HiddenEffect>,
 }
 
 /// Shape parameters of an effect, by name including the unit.
@@ -44,24 +45,24 @@ pub type Shape = BTreeMap<String, f64>;
 
 /// Effect hidden in a record.
 #[derive(Debug)]
-pub struct Hidden {
-    /// Kind of the effect.
-    pub kind: Kind,
-    /// Size in the kind's unit.
+pub struct PlantedEffect {
+    /// Kind of the hidden effect.
+    pub kind: EffectKind,
+    /// Size of the hidden effect, in the unit of its kind.
     pub size: f64,
-    /// Drawn shape parameters.
+    /// Drawn shape parameters of the hidden effect.
     pub shape: Shape,
-    /// Effect that acts on the machine or the readings.
-    pub law: Arc<dyn Law>,
+    /// Law by which the effect acts on the machine or the readings.
+    pub law: Arc<dyn HiddenEffect>,
 }
 
-impl Kind {
-    /// Creates a hidden effect whose size is `times` the typical size.
-    pub fn hide(self, times: f64, draw: &mut Draw) -> Hidden {
-        let size = times.clamp(-self.most, self.most) * self.scale;
+impl EffectKind {
+    /// Creates a hidden effect of this kind whose size is `times` the typical size.
+    pub fn instantiate(self, times: f64, draw: &mut RandomStream) -> PlantedEffect {
+        let size = times.clamp(-self.largest_multiple, self.largest_multiple) * self.scale;
         let mut shape = Shape::new();
         let law = (self.build)(size, draw, &mut shape);
-        Hidden {
+        PlantedEffect {
             kind: self,
             size,
             shape,
@@ -70,8 +71,8 @@ impl Kind {
     }
 }
 
-/// Records a shape parameter and returns it.
-pub(super) fn note(shape: &mut Shape, name: &str, value: f64) -> f64 {
+/// Records a drawn shape parameter for the answer and returns its value.
+pub(super) fn record_shape(shape: &mut Shape, name: &str, value: f64) -> f64 {
     shape.insert(name.to_owned(), value);
     value
 }
@@ -80,26 +81,29 @@ pub(super) const fn kind(
     id: &'static str,
     (parameter, unit): (&'static str, &'static str),
     scale: f64,
-    build: fn(f64, &mut Draw, &mut Shape) -> Arc<dyn Law>,
-) -> Kind {
-    Kind {
+    build: fn(f64, &mut RandomStream, &mut Shape) -> Arc<dyn HiddenEffect>,
+) -> EffectKind {
+    EffectKind {
         id,
         parameter,
         unit,
         scale,
         signed: false,
-        most: 10.0,
+        largest_multiple: 10.0,
         build,
     }
 }
 
-pub(super) const fn signed(kind: Kind) -> Kind {
-    Kind {
+pub(super) const fn signed(kind: EffectKind) -> EffectKind {
+    EffectKind {
         signed: true,
         ..kind
     }
 }
 
-pub(super) const fn at_most(most: f64, kind: Kind) -> Kind {
-    Kind { most, ..kind }
+pub(super) const fn at_most(most: f64, kind: EffectKind) -> EffectKind {
+    EffectKind {
+        largest_multiple: most,
+        ..kind
+    }
 }

@@ -1,17 +1,17 @@
 //! Hidden effects of the load: a card that is late, lagged, smoothed or truncated, an unbalanced beam, and
 //! other pump conditions.
-use super::kind::{Law, Shape, note};
-use crate::draw::Draw;
+use super::kind::{HiddenEffect, Shape, record_shape};
+use crate::draw::RandomStream;
 use libm::{exp, sin};
 use simulation::drive::DriveState;
-use simulation::effect::{Along, Cycle, Effect, Hooks, LineForce, Site};
+use simulation::effect::{Cycle, Effect, Extensions, LineForce, LineForceValue, Site};
 use simulation::math::harmonics::filter;
 use simulation::model::description::Description;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Creates a late card: the true load precedes the delivered card.
-pub(super) fn late_card(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn late_card(size: f64, _: &mut RandomStream, _: &mut Shape) -> Arc<dyn HiddenEffect> {
     Arc::new(LateCard { time: size })
 }
 
@@ -34,7 +34,7 @@ impl Effect for LateCard {
     }
 }
 
-impl Law for LateCard {}
+impl HiddenEffect for LateCard {}
 
 #[expect(
     clippy::cast_possible_truncation,
@@ -46,7 +46,7 @@ fn whole(place: f64) -> usize {
 }
 
 /// Creates an unbalanced beam with a correct load cell.
-pub(super) fn unbalance(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn unbalance(size: f64, _: &mut RandomStream, _: &mut Shape) -> Arc<dyn HiddenEffect> {
     Arc::new(Unbalance { force: size })
 }
 
@@ -62,23 +62,23 @@ impl Effect for Unbalance {
     }
 }
 
-impl Law for Unbalance {}
+impl HiddenEffect for Unbalance {}
 
 /// Creates a logger with a two-pole filter: the delivered card is the load, smoothed and delayed.
-pub(super) fn slow_logger(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn slow_logger(size: f64, _: &mut RandomStream, _: &mut Shape) -> Arc<dyn HiddenEffect> {
     Arc::new(SlowLogger { lag: size })
 }
 
 #[derive(Clone, Copy, Debug)]
 struct SlowLogger {
-    /// Delay of slow changes, the sum of both poles' time constants \[s\].
+    /// Delay of slow load changes: sum of both poles' time constants \[s\].
     lag: f64,
 }
 
 impl Effect for SlowLogger {}
 
-impl Law for SlowLogger {
-    fn deliver(&self, card: &mut Vec<f64>, speed: f64) {
+impl HiddenEffect for SlowLogger {
+    fn distort_card(&self, card: &mut Vec<f64>, speed: f64) {
         *card = filter(card, u32::MAX, |harmonic| {
             let x = 0.5 * self.lag * speed * f64::from(harmonic);
             // 1 / (1 + i x)^2
@@ -89,7 +89,11 @@ impl Law for SlowLogger {
 }
 
 /// Creates a card smoothed by a moving average.
-pub(super) fn moving_average(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn moving_average(
+    size: f64,
+    _: &mut RandomStream,
+    _: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
     Arc::new(MovingAverage { window: size })
 }
 
@@ -101,8 +105,8 @@ struct MovingAverage {
 
 impl Effect for MovingAverage {}
 
-impl Law for MovingAverage {
-    fn deliver(&self, card: &mut Vec<f64>, _: f64) {
+impl HiddenEffect for MovingAverage {
+    fn distort_card(&self, card: &mut Vec<f64>, _: f64) {
         let n = card.len();
         let reach = whole((0.5 * self.window / 360.0 * n as f64).round()).min(n / 2);
         let own = card.clone();
@@ -114,7 +118,11 @@ impl Law for MovingAverage {
 }
 
 /// Creates a card truncated to its mean and `size` harmonics.
-pub(super) fn cut(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn truncated_card(
+    size: f64,
+    _: &mut RandomStream,
+    _: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
     Arc::new(Cut { harmonics: size })
 }
 
@@ -125,8 +133,8 @@ struct Cut {
 
 impl Effect for Cut {}
 
-impl Law for Cut {
-    fn deliver(&self, card: &mut Vec<f64>, _: f64) {
+impl HiddenEffect for Cut {
+    fn distort_card(&self, card: &mut Vec<f64>, _: f64) {
         *card = filter(card, u32::MAX, |harmonic| {
             [
                 f64::from(u8::from(f64::from(harmonic) <= self.harmonics)),
@@ -138,12 +146,16 @@ impl Law for Cut {
 
 /// Creates fluid pound of an incompletely filled pump: the plunger carries its load down until it meets the
 /// liquid, the load then decays exponentially, and the rods oscillate.
-pub(super) fn pound(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn fluid_pound(
+    size: f64,
+    draw: &mut RandomStream,
+    shape: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
     Arc::new(Pound {
         held: size,
-        fillage: note(shape, "fillage_1", draw.between(0.7, 0.92)),
-        fall: note(shape, "fall_deg", draw.between(2.0, 4.0)),
-        blow: size * note(shape, "blow_n", draw.between(1000.0, 4000.0)),
+        fillage: record_shape(shape, "fillage_1", draw.between(0.7, 0.92)),
+        fall: record_shape(shape, "fall_deg", draw.between(2.0, 4.0)),
+        blow: size * record_shape(shape, "blow_n", draw.between(1000.0, 4000.0)),
     })
 }
 
@@ -161,7 +173,10 @@ const RODS: (f64, f64) = (0.739, 2.0);
 impl Effect for Pound {
     fn describe(&self, d: &mut Description, _: &mut usize) {
         let Ok(cycle) = Cycle::of(d) else { return };
-        let (top, meets) = (cycle.descent(0.0), cycle.descent(1.0 - self.fillage));
+        let (top, meets) = (
+            cycle.turn_at_descent(0.0),
+            cycle.turn_at_descent(1.0 - self.fillage),
+        );
         let n = d.card.len();
         let step = TAU / n as f64;
         let place = |turn: f64| whole((turn / step).round()) % n;
@@ -187,14 +202,14 @@ impl Effect for Pound {
     }
 }
 
-impl Law for Pound {}
+impl HiddenEffect for Pound {}
 
 /// Creates the response of the rod string to motion that the card does not include: an impedance that grows
 /// with speed, and a soft spring for reflections from the lower end.
-pub(super) fn rods(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn rods(size: f64, draw: &mut RandomStream, shape: &mut Shape) -> Arc<dyn HiddenEffect> {
     Arc::new(Rods {
         impedance: size,
-        spring: note(shape, "spring_n_m", draw.log_between(2e3, 1e4)),
+        spring: record_shape(shape, "spring_n_m", draw.log_between(2e3, 1e4)),
     })
 }
 
@@ -205,22 +220,22 @@ struct Rods {
 }
 
 impl Effect for Rods {
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
-        let answer = Answer {
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
+        let answer = RodResponse {
             law: *self,
             arm: site.description.front_arc.radius,
             height: site.lowest_suspension,
             lowest: site.bottom.beam,
             cycle: site.cycle.clone(),
         };
-        hooks.on(site.layout.suspension(), answer);
+        extensions.add_line_force(site.layout.suspension(), answer);
     }
 }
 
-impl Law for Rods {}
+impl HiddenEffect for Rods {}
 
 #[derive(Clone, Debug)]
-struct Answer {
+struct RodResponse {
     law: Rods,
     arm: f64,
     height: f64,
@@ -228,20 +243,20 @@ struct Answer {
     cycle: Cycle,
 }
 
-/// Speed at which the impedance is a quarter larger [m/s].
+/// Speed deviation at which the rods' impedance is a quarter larger [m/s].
 const FAST: f64 = 0.4;
 
-impl LineForce for Answer {
-    fn along(&self, drive: &DriveState, place: f64, rate: f64) -> Along {
+impl LineForce for RodResponse {
+    fn along(&self, drive: &DriveState, place: f64, rate: f64) -> LineForceValue {
         let beam = self.cycle.beam(drive.turn);
         let turning = self.cycle.crank().sense * drive.pin_rate;
         let beyond = place - self.height - self.arm * (beam.value - self.lowest);
         let faster = rate - self.arm * beam.first * turning;
         let growth = 0.25 * faster.abs() / FAST;
-        Along {
+        LineForceValue {
             spring: -self.law.spring * beyond,
             energy: 0.5 * self.law.spring * beyond * beyond,
-            other: -self.law.impedance * faster * (1.0 + growth),
+            non_conservative: -self.law.impedance * faster * (1.0 + growth),
             by_place: -self.law.spring,
             by_rate: -self.law.impedance * (1.0 + 2.0 * growth),
         }
@@ -263,7 +278,7 @@ mod tests {
     fn a_two_pole_filter_delays_and_weakens() {
         let speed = TAU / 12.0;
         let mut card = wave(5.0, 0.0);
-        SlowLogger { lag: 0.2 }.deliver(&mut card, speed);
+        SlowLogger { lag: 0.2 }.distort_card(&mut card, speed);
         let x: f64 = 0.1 * speed * 5.0;
         let expected = wave(5.0, 2.0 * libm::atan(x));
         for (found, expected) in card.iter().zip(expected) {
@@ -280,7 +295,7 @@ mod tests {
         LateCard { time: step }.describe(&mut d, &mut 2);
         assert!((0..plain.len()).all(|i| (d.card[i] - plain[(i + 1) % plain.len()]).abs() < 1e-6));
         let mut card = wave(24.0, 0.3);
-        MovingAverage { window: 14.5 }.deliver(&mut card, 0.5);
+        MovingAverage { window: 14.5 }.distort_card(&mut card, 0.5);
         assert!(
             card.iter().all(|load| load.abs() < 0.05),
             "a wave of 15 deg averages out"
@@ -301,7 +316,7 @@ mod tests {
         };
         pound.describe(&mut d, &mut 2);
         let cycle = Cycle::of(&d).unwrap();
-        let meets = whole(cycle.descent(0.2) / TAU * 720.0);
+        let meets = whole(cycle.turn_at_descent(0.2) / TAU * 720.0);
         assert!(d.card[meets - 2] > 69e3 && d.card[meets + 40] < 42e3);
     }
 }

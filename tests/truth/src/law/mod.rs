@@ -2,26 +2,26 @@
 //!
 //! Effects that the program's library models as smooth, first-order or constant are hard, hysteretic, delayed
 //! or load-dependent here. [`CATALOGUE`] lists effects that the library contains, with the size that machines
-//! of this type typically have; [`OUTSIDE`] lists effects that the library does not contain.
+//! of this type typically have; [`UNLISTED`] lists effects that the library does not contain.
 mod drive;
 mod friction;
 mod gauge;
 mod kind;
 mod load;
 mod nuisance;
-mod outside;
 mod post;
 mod rope;
 mod structure;
+mod unlisted;
 
-pub use kind::{Hidden, Kind, Law, Shape};
+pub use kind::{EffectKind, HiddenEffect, PlantedEffect, Shape};
 pub use nuisance::{Nuisances, Tolerance};
 
 use kind::{at_most, kind, signed};
 
 /// Hidden effects that the library of the program under test also contains, with their typical sizes.
 #[rustfmt::skip]
-pub const CATALOGUE: [Kind; 24] = [
+pub const CATALOGUE: [EffectKind; 24] = [
     at_most(3.0, kind("crank_speed_ripple", ("slip", "1"), 0.0267, drive::kloss)),
     signed(kind("crank_angle_offset", ("angle", "deg"), 2.0, drive::late_index)),
     kind("pivot_friction", ("moment", "N.m"), 1500.0, friction::plain_bearing),
@@ -36,7 +36,7 @@ pub const CATALOGUE: [Kind; 24] = [
     signed(kind("load_offset", ("force", "N"), 1000.0, load::unbalance)),
     at_most(3.0, kind("load_cell_lag", ("lag", "s"), 0.15, load::slow_logger)),
     at_most(4.0, kind("card_smoothing", ("window", "deg"), 15.0, load::moving_average)),
-    at_most(1.2, kind("fluid_pound", ("held", "1"), 1.0, load::pound)),
+    at_most(1.2, kind("fluid_pound", ("held", "1"), 1.0, load::fluid_pound)),
     at_most(8.0, kind("amplifier_lag", ("lag", "s"), 0.05, gauge::delay)),
     signed(kind("gauge_drift", ("drift", "MPa/rev"), 0.5, gauge::warming)),
     at_most(4.0, kind("head_profile_wear", ("depth", "m"), 0.004, structure::worn_edge)),
@@ -50,37 +50,42 @@ pub const CATALOGUE: [Kind; 24] = [
 
 /// Effect that truncates the delivered pump load card to its first harmonics; its size is the number of
 /// harmonics kept. A second form of `card_smoothing`, which is in [`CATALOGUE`] as a moving average.
-pub const CUT_CARD: Kind = kind("card_smoothing", ("harmonics", "1"), 1.0, load::cut);
+pub const CUT_CARD: EffectKind = kind(
+    "card_smoothing",
+    ("harmonics", "1"),
+    1.0,
+    load::truncated_card,
+);
 
 /// Hidden effects that the library of the program under test does not contain.
 #[rustfmt::skip]
-pub const OUTSIDE: [Kind; 8] = [
-    signed(kind("saddle_cubic_spring", ("moment", "N.m"), 4000.0, outside::cubic_spring)),
-    kind("beam_quadratic_drag", ("moment", "N.m"), 4000.0, outside::drag),
-    kind("crosshead_harmonic", ("force", "N"), 1500.0, outside::crosshead),
-    signed(kind("beam_gust", ("moment", "N.m"), 5000.0, outside::gust)),
-    kind("loose_ballast", ("mass", "kg"), 150.0, outside::ballast),
-    at_most(3.0, kind("tuned_mass", ("mass", "kg"), 300.0, outside::tuned_mass)),
-    kind("carrier_bar_rub", ("force", "N"), 2000.0, outside::rub),
-    at_most(3.0, kind("gear_eccentricity", ("angle", "deg"), 0.3, outside::gear)),
+pub const UNLISTED: [EffectKind; 8] = [
+    signed(kind("saddle_cubic_spring", ("moment", "N.m"), 4000.0, unlisted::cubic_spring)),
+    kind("beam_quadratic_drag", ("moment", "N.m"), 4000.0, unlisted::drag),
+    kind("crosshead_harmonic", ("force", "N"), 1500.0, unlisted::crosshead),
+    signed(kind("beam_gust", ("moment", "N.m"), 5000.0, unlisted::gust)),
+    kind("loose_ballast", ("mass", "kg"), 150.0, unlisted::ballast),
+    at_most(3.0, kind("tuned_mass", ("mass", "kg"), 300.0, unlisted::tuned_mass)),
+    kind("carrier_bar_rub", ("force", "N"), 2000.0, unlisted::rub),
+    at_most(3.0, kind("gear_eccentricity", ("angle", "deg"), 0.3, unlisted::gear)),
 ];
 
-/// Returns the effect kind with the identifier `id`, from [`CATALOGUE`] or [`OUTSIDE`].
-pub fn by_id(id: &str) -> Option<Kind> {
-    let all = CATALOGUE.iter().chain(&OUTSIDE);
+/// Returns the effect kind with the identifier `id`, from [`CATALOGUE`] or [`UNLISTED`].
+pub fn by_id(id: &str) -> Option<EffectKind> {
+    let all = CATALOGUE.iter().chain(&UNLISTED);
     all.copied().find(|kind| kind.id == id)
 }
 
 #[cfg(test)]
 mod tests {
     use super::by_id;
-    use crate::draw::Draw;
+    use crate::draw::RandomStream;
 
     #[test]
     fn sizes_are_what_was_asked_for() {
         let hidden = by_id("pivot_friction")
             .expect("in the catalogue")
-            .hide(5.0, &mut Draw::new(1, "law"));
+            .instantiate(5.0, &mut RandomStream::new(1, "law"));
         assert!((hidden.size - 7500.0).abs() < 1e-9 && hidden.shape.len() == 2);
     }
 }

@@ -6,8 +6,8 @@
 use super::drive::late_index;
 use super::friction::sliding;
 use super::gauge::delay;
-use super::kind::{Law, Shape};
-use crate::draw::Draw;
+use super::kind::{HiddenEffect, Shape};
+use crate::draw::RandomStream;
 use crate::turn::Turn;
 use serde::{Deserialize, Serialize};
 use simulation::effect::Effect;
@@ -32,12 +32,12 @@ pub struct Tolerance {
     pub torque: f64,
     /// Scale of the friction moment of the saddle bearing, drawn as a half-normal value [N m].
     pub bearing_friction_nm: f64,
-    /// Standard deviation of the moment of the beam's own weight [N m].
+    /// Standard deviation of the error in the moment of the beam's weight about the pivot [N m].
     pub balance_nm: f64,
 }
 
 impl Tolerance {
-    /// Tolerances that the data sheets of the case's own records state.
+    /// Standard deviations that the data sheets of the case's own records state.
     pub const USUAL: Self = Self {
         gauge_factor: 0.005,
         index_deg: 0.06,
@@ -74,21 +74,22 @@ pub struct Nuisances {
     pub index_deg: f64,
     /// Relative excess of the delivered card's load.
     pub load_cell: f64,
-    /// Delay of the gauge amplifiers \[s\].
+    /// Delay of the gauge signals in the amplifiers \[s\].
     pub amplifier_lag_s: f64,
-    /// Relative gain error of the position.
+    /// Relative gain error of the position sensor.
     pub position: f64,
-    /// Relative gain error of the torque.
+    /// Relative gain error of the torque sensor.
     pub torque: f64,
-    /// Friction of the saddle bearing [N m].
+    /// Friction moment of the saddle bearing [N m].
     pub bearing_friction_nm: f64,
-    /// Moment out of balance [N m].
+    /// Additional moment of the beam's weight about the pivot, by which the beam is out of balance [N m].
     pub balance_nm: f64,
 }
 
 impl Nuisances {
-    /// Draws the nuisance parameters; sets to zero those that a hidden effect of the same kind replaces.
-    pub fn draw(tolerance: &Tolerance, draw: &mut Draw, hidden: &[&str]) -> Self {
+    /// Draws the nuisance parameters of a test; those that a hidden effect of the same kind replaces are
+    /// zero.
+    pub fn draw(tolerance: &Tolerance, draw: &mut RandomStream, hidden: &[&str]) -> Self {
         let mut drawn = Self {
             gauge_factor: [0.0; 4].map(|_: f64| tolerance.gauge_factor * draw.normal()),
             index_deg: tolerance.index_deg * draw.normal(),
@@ -111,9 +112,10 @@ impl Nuisances {
         drawn
     }
 
-    /// Returns the nuisance parameters as laws that act on the machine and its instruments.
-    pub fn laws(&self) -> [Arc<dyn Law>; 4] {
-        let none = (&mut Draw::new(0, "nothing"), &mut Shape::new());
+    /// Returns the nuisance parameters in the form of hidden effects that act on the machine and its
+    /// instruments.
+    pub fn laws(&self) -> [Arc<dyn HiddenEffect>; 4] {
+        let none = (&mut RandomStream::new(0, "nothing"), &mut Shape::new());
         [
             Arc::new(self.clone()),
             sliding(self.bearing_friction_nm),
@@ -129,14 +131,14 @@ impl Effect for Nuisances {
     }
 }
 
-impl Law for Nuisances {
-    fn deliver(&self, card: &mut Vec<f64>, _: f64) {
+impl HiddenEffect for Nuisances {
+    fn distort_card(&self, card: &mut Vec<f64>, _: f64) {
         for load in card {
             *load *= 1.0 + self.load_cell;
         }
     }
 
-    fn read(&self, turn: &mut Turn) {
+    fn distort_readings(&self, turn: &mut Turn) {
         let gauges = turn.stress.iter_mut().zip(self.gauge_factor);
         let others = [
             (&mut turn.position, self.position),
@@ -157,7 +159,7 @@ mod tests {
     #[test]
     fn they_are_as_good_as_stated_and_leave_an_effect_of_their_kind_alone() {
         let drawn = |seed: u64, hidden: &[&str]| {
-            let mut draw = Draw::new(seed, "nuisances");
+            let mut draw = RandomStream::new(seed, "nuisances");
             Nuisances::draw(&Tolerance::USUAL, &mut draw, hidden)
         };
         let many: Vec<Nuisances> = (0..2000).map(|seed| drawn(seed, &[])).collect();
@@ -173,7 +175,7 @@ mod tests {
         assert!(beside.bearing_friction_nm.abs() < 1e-12);
         assert!((beside.balance_nm - many[7].balance_nm).abs() < 1e-12);
         let none = Tolerance::USUAL.times(0.0);
-        let none = Nuisances::draw(&none, &mut Draw::new(7, "nuisances"), &[]);
+        let none = Nuisances::draw(&none, &mut RandomStream::new(7, "nuisances"), &[]);
         assert!(none.balance_nm.abs() < 1e-12 && none.gauge_factor[0].abs() < 1e-12);
     }
 }

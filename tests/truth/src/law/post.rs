@@ -2,37 +2,41 @@
 //!
 //! The vertical motion is one additional mode of the head, a rigid translation across the beam; the load on
 //! the front side acts on it as a prescribed force.
-use super::kind::{Law, Shape, note};
-use crate::draw::Draw;
+use super::kind::{HiddenEffect, Shape, record_shape};
+use crate::draw::RandomStream;
 use libm::{cos, sin, sqrt};
-use simulation::effect::{Dashpot, Effect, Force, Hooks, Site};
+use simulation::effect::{Dashpot, Effect, Extensions, Force, Site};
 use simulation::linear::Bordered;
 use simulation::model::Instant;
 use simulation::model::description::{AddedMode, Description};
 use std::sync::Arc;
 
-pub(super) fn sinking(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
-    Arc::new(Sinking {
+pub(super) fn sinking(
+    size: f64,
+    draw: &mut RandomStream,
+    shape: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
+    Arc::new(FoundationCompliance {
         compliance: size,
-        damping: note(shape, "damping_1", draw.between(0.02, 0.06)),
-        mass: note(shape, "mass_kg", draw.between(5e3, 12e3)),
+        damping: record_shape(shape, "damping_1", draw.between(0.02, 0.06)),
+        mass: record_shape(shape, "mass_kg", draw.between(5e3, 12e3)),
     })
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Sinking {
+struct FoundationCompliance {
     compliance: f64,
     damping: f64,
     mass: f64,
 }
 
-impl Sinking {
+impl FoundationCompliance {
     fn frequency(&self) -> f64 {
         sqrt(1.0 / (self.compliance * self.mass))
     }
 }
 
-impl Effect for Sinking {
+impl Effect for FoundationCompliance {
     fn describe(&self, d: &mut Description, modes: &mut usize) {
         let head = &mut d.head;
         head.keep(*modes);
@@ -54,15 +58,15 @@ impl Effect for Sinking {
         *modes += 1;
     }
 
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
         let d = &site.description;
         let heaviest = (0..360)
             .map(|k| site.cycle.tension(f64::from(k).to_radians()))
             .chain(d.card.iter().copied())
             .fold(0.0, f64::max);
-        hooks.add_rise(5.0 * self.compliance * heaviest);
+        extensions.add_rise(5.0 * self.compliance * heaviest);
         let mode = site.layout.mode(site.layout.modes - 1);
-        hooks.add_force(FrontPull {
+        extensions.add_force(FrontPull {
             weight: d.suspension_mass * d.gravity,
             root: sqrt(self.mass),
             mode,
@@ -70,14 +74,14 @@ impl Effect for Sinking {
         });
         // beside what every mode of the head has
         let damping = 2.0 * (self.damping - d.head.damping_ratio) * self.frequency();
-        hooks.on(mode, Dashpot { damping });
+        extensions.add_line_force(mode, Dashpot { damping });
     }
 }
 
-impl Law for Sinking {}
+impl HiddenEffect for FoundationCompliance {}
 
-/// Force of the front load on the sinking pivot, with the potential `P y cos(theta) / sqrt(m)`, where `y /
-/// sqrt(m)` is the displacement of the pivot across the beam.
+/// Front load `P` as a force on the sinking pivot; its potential is `P u cos(theta)` with the beam angle
+/// `theta` and the displacement `u = y / sqrt(m)` of the pivot across the beam (`y`: modal coordinate).
 #[derive(Clone, Copy, Debug)]
 struct FrontPull {
     weight: f64,
@@ -87,7 +91,8 @@ struct FrontPull {
 }
 
 impl FrontPull {
-    /// Returns the load divided by `sqrt(m)`, `y sin(theta)`, `y cos(theta)`, `sin(theta)` and `cos(theta)`.
+    /// Returns `P / sqrt(m)`, `y sin(theta)`, `y cos(theta)`, `sin(theta)` and `cos(theta)`, with load `P`,
+    /// modal coordinate `y` and beam angle `theta`.
     fn parts(&self, at: &Instant<'_>) -> [f64; 5] {
         let (s, c) = (sin(at.q[self.beam]), cos(at.q[self.beam]));
         let y = at.q[self.mode];

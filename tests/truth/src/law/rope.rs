@@ -1,19 +1,23 @@
 //! Hidden effects in the rope: wire friction, bedding (toe region of the tension curve) and construction
 //! stretch.
-use super::kind::{Law, Shape, note};
-use crate::draw::Draw;
-use simulation::effect::{Along, Axial, Effect, Hooks, Memory, Site, Strain};
+use super::kind::{HiddenEffect, Shape, record_shape};
+use crate::draw::RandomStream;
+use simulation::effect::{Axial, Effect, Extensions, LineForceValue, Memory, Site, Strain};
 use simulation::model::description::Description;
 use std::sync::Arc;
 
 /// Creates friction between wires: a Bouc-Wen model with an exponent other than 1, `dz/de = 1 - (b sgn(z
 /// de) + g) |z / z_y|^n`, integrated from step to step.
-pub(super) fn wires(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
-    let beta = note(shape, "beta_1", draw.between(0.5, 0.8));
+pub(super) fn wires(
+    size: f64,
+    draw: &mut RandomStream,
+    shape: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
+    let beta = record_shape(shape, "beta_1", draw.between(0.5, 0.8));
     Arc::new(Wires {
         share: size,
-        yields: note(shape, "yield_strain_1", draw.log_between(1.5e-4, 6e-4)),
-        exponent: note(shape, "exponent_1", draw.between(1.5, 2.5)),
+        yields: record_shape(shape, "yield_strain_1", draw.log_between(1.5e-4, 6e-4)),
+        exponent: record_shape(shape, "exponent_1", draw.between(1.5, 2.5)),
         beta,
     })
 }
@@ -27,12 +31,12 @@ struct Wires {
 }
 
 impl Effect for Wires {
-    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
-        on_both(hooks, *self);
+    fn install(&self, _: &Site<'_>, extensions: &mut Extensions) {
+        on_both(extensions, *self);
     }
 }
 
-impl Law for Wires {}
+impl HiddenEffect for Wires {}
 
 impl Wires {
     fn slope(&self, z: f64, sense: f64) -> f64 {
@@ -45,8 +49,8 @@ impl Wires {
         1.0 - (against + 1.0 - self.beta) * libm::pow((z / self.yields).abs(), self.exponent)
     }
 
-    /// Integrates the hysteretic variable `z` over a monotonic change of strain by the classical Runge-Kutta
-    /// method.
+    /// Integrates the hysteretic variable `z` of the wire friction over a monotonic change of strain by the
+    /// classical Runge-Kutta method.
     fn advanced(&self, [strain, z]: Memory, now: f64) -> f64 {
         let moved = now - strain;
         let sense = if moved < 0.0 { -1.0 } else { 1.0 };
@@ -69,23 +73,23 @@ impl Wires {
 }
 
 impl Axial for Wires {
-    fn pull(&self, at: &Strain<'_>) -> Along {
+    fn pull(&self, at: &Strain<'_>) -> LineForceValue {
         let stiffness = self.share * at.stiffness;
         let (z, slope) = at.memory.map_or((0.0, 0.0), |memory| {
             let z = self.advanced(memory, at.strain);
             let sense = if at.strain < memory[0] { -1.0 } else { 1.0 };
             (z, self.slope(z, sense))
         });
-        Along {
+        LineForceValue {
             spring: -stiffness * at.strain,
             energy: -0.5 * stiffness * at.strain * at.strain,
-            other: stiffness * z,
+            non_conservative: stiffness * z,
             by_place: stiffness * (slope - 1.0),
-            ..Along::default()
+            ..LineForceValue::default()
         }
     }
 
-    fn remember(&self, at: &Strain<'_>) -> Option<Memory> {
+    fn next_memory(&self, at: &Strain<'_>) -> Option<Memory> {
         let z = at
             .memory
             .map_or(0.0, |memory| self.advanced(memory, at.strain));
@@ -95,10 +99,14 @@ impl Axial for Wires {
 
 /// Creates a rope with a toe region: the strain is `T / EA + e_0 (1 - (1 - T / T_b)^2)` up to the tension
 /// `T_b` and `T / EA + e_0` above.
-pub(super) fn bedding(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn bedding(
+    size: f64,
+    draw: &mut RandomStream,
+    shape: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
     Arc::new(Bedding {
         strain: size,
-        tension: note(shape, "bedded_n", draw.log_between(9e4, 1.6e5)),
+        tension: record_shape(shape, "bedded_n", draw.log_between(9e4, 1.6e5)),
     })
 }
 
@@ -109,12 +117,12 @@ struct Bedding {
 }
 
 impl Effect for Bedding {
-    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
-        on_both(hooks, *self);
+    fn install(&self, _: &Site<'_>, extensions: &mut Extensions) {
+        on_both(extensions, *self);
     }
 }
 
-impl Law for Bedding {}
+impl HiddenEffect for Bedding {}
 
 impl Bedding {
     /// Returns the tension \[N\] at a strain, and its derivative by the strain.
@@ -150,21 +158,21 @@ impl Bedding {
 }
 
 impl Axial for Bedding {
-    fn pull(&self, at: &Strain<'_>) -> Along {
+    fn pull(&self, at: &Strain<'_>) -> LineForceValue {
         let [tension, slope] = self.tension_at(at.strain, at.stiffness);
-        Along {
+        LineForceValue {
             spring: tension - at.stiffness * at.strain,
             energy: tension * at.strain
                 - self.complementary(tension, at.stiffness)
                 - 0.5 * at.stiffness * at.strain * at.strain,
             by_place: slope - at.stiffness,
-            ..Along::default()
+            ..LineForceValue::default()
         }
     }
 }
 
-/// Creates construction stretch, distributed over the ropes: every cylinder of both ropes is longer.
-pub(super) fn stretch(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
+/// Creates construction stretch of the rope: every cylinder of both ropes is longer.
+pub(super) fn stretch(size: f64, _: &mut RandomStream, _: &mut Shape) -> Arc<dyn HiddenEffect> {
     Arc::new(Stretch { length: size })
 }
 
@@ -181,11 +189,11 @@ impl Effect for Stretch {
     }
 }
 
-impl Law for Stretch {}
+impl HiddenEffect for Stretch {}
 
-fn on_both<L: Axial + Clone + 'static>(hooks: &mut Hooks, law: L) {
-    hooks.add_axial(0, law.clone());
-    hooks.add_axial(1, law);
+fn on_both<L: Axial + Clone + 'static>(extensions: &mut Extensions, law: L) {
+    extensions.add_axial(0, law.clone());
+    extensions.add_axial(1, law);
 }
 
 #[cfg(test)]

@@ -1,19 +1,23 @@
 //! Hidden effects in the steel structure: a worn back head, a misplaced front arc, and mass carried by the
 //! beam.
-use super::kind::{Law, Shape, note};
-use crate::draw::Draw;
-use simulation::effect::{Effect, Hollow, Hooks, Site};
+use super::kind::{HiddenEffect, Shape, record_shape};
+use crate::draw::RandomStream;
+use simulation::effect::{Effect, Extensions, Hollow, Site};
 use simulation::model::description::Description;
 use std::sync::Arc;
 
 /// Creates a worn area of the back head with an asymmetric triangular profile, composed of a row of narrow
 /// hollows.
-pub(super) fn worn_edge(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn worn_edge(
+    size: f64,
+    draw: &mut RandomStream,
+    shape: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
     Arc::new(Worn {
         depth: size,
-        centre: note(shape, "centre_deg", draw.between(150.0, 195.0)),
-        base: note(shape, "base_deg", draw.between(16.0, 30.0)),
-        lean: note(shape, "lean_1", draw.between(-0.4, 0.4)),
+        centre: record_shape(shape, "centre_deg", draw.between(150.0, 195.0)),
+        base: record_shape(shape, "base_deg", draw.between(16.0, 30.0)),
+        skew: record_shape(shape, "lean_1", draw.between(-0.4, 0.4)),
     })
 }
 
@@ -22,15 +26,17 @@ struct Worn {
     depth: f64,
     centre: f64,
     base: f64,
-    /// Offset of the deepest point from the centre, in half widths of the base.
-    lean: f64,
+    /// Offset of the worn area's deepest point from its centre, in half widths of its base.
+    skew: f64,
 }
 
-/// Half the number of intervals between the hollows of a row; the row has `2 HALF_ROW - 1` hollows.
+/// Half the number of intervals between the hollows that form a worn area, which has `2 HALF_ROW - 1`
+/// hollows.
 const HALF_ROW: i32 = 6;
 
 impl Worn {
-    /// Returns the depth and the position (deg) of each hollow, and the width shared by all hollows (deg).
+    /// Returns the depth \[m\] and the position \[deg\] of each hollow, and the width shared by all hollows
+    /// \[deg\].
     fn row(&self) -> (Vec<(f64, f64)>, f64) {
         let half = 0.5 * self.base;
         let spacing = half / f64::from(HALF_ROW);
@@ -39,10 +45,10 @@ impl Worn {
         let overlap = reach * std::f64::consts::PI.sqrt() / spacing;
         let row = (-HALF_ROW + 1..HALF_ROW).map(|k| {
             let u = f64::from(k) / f64::from(HALF_ROW);
-            let height = if u < self.lean {
-                (1.0 + u) / (1.0 + self.lean)
+            let height = if u < self.skew {
+                (1.0 + u) / (1.0 + self.skew)
             } else {
-                (1.0 - u) / (1.0 - self.lean)
+                (1.0 - u) / (1.0 - self.skew)
             };
             (self.depth * height / overlap, self.centre + half * u)
         });
@@ -51,10 +57,10 @@ impl Worn {
 }
 
 impl Effect for Worn {
-    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, _: &Site<'_>, extensions: &mut Extensions) {
         let (row, reach) = self.row();
         for (depth, centre) in row {
-            hooks.dig(Hollow {
+            extensions.add_hollow(Hollow {
                 depth,
                 centre: centre.to_radians(),
                 reach: reach.to_radians(),
@@ -63,14 +69,18 @@ impl Effect for Worn {
     }
 }
 
-impl Law for Worn {}
+impl HiddenEffect for Worn {}
 
 /// Creates a misplaced front head arc: its centre is displaced by `size` and its radius is wrong by half as
 /// much, with a drawn sign.
-pub(super) fn front_arc(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn front_arc(
+    size: f64,
+    draw: &mut RandomStream,
+    shape: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
     Arc::new(FrontArc {
         centre: size,
-        radius: note(shape, "radius_m", 0.5 * size * draw.sign()),
+        radius: record_shape(shape, "radius_m", 0.5 * size * draw.sign()),
     })
 }
 
@@ -87,15 +97,19 @@ impl Effect for FrontArc {
     }
 }
 
-impl Law for FrontArc {}
+impl HiddenEffect for FrontArc {}
 
 /// Creates ice and fluid carried near both ends of the beam, slightly uneven: additional inertia and an
 /// unbalanced weight.
-pub(super) fn carried(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+pub(super) fn carried(
+    size: f64,
+    draw: &mut RandomStream,
+    shape: &mut Shape,
+) -> Arc<dyn HiddenEffect> {
     Arc::new(Carried {
         share: size,
-        arm: note(shape, "arm_m", draw.between(2.8, 3.5)),
-        uneven: note(shape, "uneven_1", draw.between(-0.1, 0.1)),
+        arm: record_shape(shape, "arm_m", draw.between(2.8, 3.5)),
+        uneven: record_shape(shape, "uneven_1", draw.between(-0.1, 0.1)),
     })
 }
 
@@ -114,7 +128,7 @@ impl Effect for Carried {
     }
 }
 
-impl Law for Carried {}
+impl HiddenEffect for Carried {}
 
 #[cfg(test)]
 mod tests {
@@ -127,7 +141,7 @@ mod tests {
             depth: 0.004,
             centre: 170.0,
             base: 24.0,
-            lean: 0.25,
+            skew: 0.25,
         };
         let (row, reach) = worn.row();
         let depth = |place: f64| -> f64 {

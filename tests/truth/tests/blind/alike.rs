@@ -3,12 +3,12 @@
 use protocol::{case::EffectSetting, pumping_unit::PumpingUnit};
 use std::path::Path;
 use std::sync::Arc;
-use truth::draw::Draw;
-use truth::law::{CATALOGUE, Hidden, Law};
-use truth::machine::{Fineness, Variation, genes, turn};
+use truth::draw::RandomStream;
+use truth::law::{CATALOGUE, HiddenEffect, PlantedEffect};
+use truth::machine::{Resolution, Variation, draw_coefficients, turn};
 use truth::turn::Turn;
 
-const FINENESS: Fineness = Fineness {
+const FINENESS: Resolution = Resolution {
     cylinder: 0.15,
     step: 0.01,
     more_modes: 0,
@@ -22,7 +22,7 @@ fn unit() -> PumpingUnit {
 }
 
 /// Returns the parameters of the library's effect that correspond to a hidden effect.
-fn setting(hidden: &Hidden) -> EffectSetting {
+fn setting(hidden: &PlantedEffect) -> EffectSetting {
     let id = hidden.kind.id;
     let own = &hidden.shape;
     let share = |gauge: usize| {
@@ -89,16 +89,17 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 #[test]
 fn what_is_hidden_under_a_name_looks_like_the_effect_of_that_name() {
     let unit = unit();
-    let values = genes(&unit.case, &mut Draw::new(1, "genes")).unwrap();
-    let run = |unit: &PumpingUnit, hidden: &[Hidden]| {
-        let laws: Vec<Arc<dyn Law>> = hidden.iter().map(|own| Arc::clone(&own.law)).collect();
+    let values = draw_coefficients(&unit.case, &mut RandomStream::new(1, "genes")).unwrap();
+    let run = |unit: &PumpingUnit, hidden: &[PlantedEffect]| {
+        let laws: Vec<Arc<dyn HiddenEffect>> =
+            hidden.iter().map(|own| Arc::clone(&own.law)).collect();
         turn(unit, 0, (&values, &laws), Variation::default(), &FINENESS).unwrap()
     };
     let plain = run(&unit, &[]);
     for kind in CATALOGUE {
-        let hidden = [kind.hide(1.0, &mut Draw::new(4, kind.id))];
+        let hidden = [kind.instantiate(1.0, &mut RandomStream::new(4, kind.id))];
         let mut truth = run(&unit, &hidden);
-        let speed = truth::chain::speed(unit.machine.conditions[0].speed_rpm);
+        let speed = truth::measuring_chain::speed(unit.machine.conditions[0].speed_rpm);
         let shares: Vec<[f64; 4]> = (0..truth.len())
             .map(|i| hidden[0].law.drift(i as f64 / truth.len() as f64))
             .collect();
@@ -110,7 +111,7 @@ fn what_is_hidden_under_a_name_looks_like_the_effect_of_that_name() {
         // the program would simulate with the card that was delivered
         let mut judged = unit.clone();
         let card = &mut judged.machine.conditions[0].card.load_n;
-        hidden[0].law.deliver(card, speed);
+        hidden[0].law.distort_card(card, speed);
         let believed = if *card == unit.machine.conditions[0].card.load_n {
             plain.clone()
         } else {

@@ -1,4 +1,4 @@
-//! Coarse copy of the shipped case, and sets of records made for it.
+//! Coarsely discretised copy of the shipped case, and sets of records made for it.
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -80,7 +80,7 @@ const CONSIDERED: [&str; 6] = [
     "gauge_drift",
 ];
 
-/// Returns all other named effects of the library, as an argument of `--without`.
+/// Returns the library's named effects outside [`CONSIDERED`], as an argument of `--without`.
 fn without() -> String {
     let library = worker::SIMULATORS[0].effects().into_iter();
     let named = library
@@ -163,8 +163,8 @@ impl Trial {
             .arg(&self.set);
         command
     }
-    /// Opens the answers with a verdict and returns the score table. Also asserts that changed answers are
-    /// refused.
+    /// Scores a verdict with `truth open`, which reveals the hidden effects, and returns the score table.
+    /// Also asserts that changed answers are refused.
     pub(crate) fn open(&self, verdict: &str) -> String {
         let verdicts = self.at("verdicts");
         fs::create_dir(&verdicts).expect("a folder");

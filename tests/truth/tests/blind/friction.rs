@@ -1,5 +1,6 @@
-//! Diagnosis of a strong friction that is killed, resumed, judged, added to the case, reported again and
-//! simulated, with equal numbers throughout. One test with one diagnosis, since it takes minutes.
+//! Diagnosis of a record with strong hidden friction: killed, resumed, scored, its effect added to the case,
+//! reported again and simulated, with equal numbers throughout. One test with one diagnosis, since it takes
+//! minutes.
 use crate::coarse::{FRICTION, Trial, run};
 use protocol::{curve::rounded, pumping_unit::Sensor};
 use serde_json::Value;
@@ -39,7 +40,8 @@ fn instruments(whole: &Value) -> String {
     tables.into_iter().map(table).collect()
 }
 
-/// Reads the simulated stress of each gauge with the found effects from `curves.csv`, every half degree.
+/// Reads each gauge's stress of the simulation with the diagnosed effects from `curves.csv`, every half
+/// degree.
 fn after(curves: &Path, condition: &str) -> [Vec<f64>; 4] {
     let text = fs::read_to_string(curves).expect("curves");
     let mut gauges: [Vec<f64>; 4] = Default::default();

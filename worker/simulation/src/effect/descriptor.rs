@@ -3,9 +3,9 @@
 //!
 //! All numbers are in the declared unit; [`Unit::to_si`] converts them to the unit of the equations.
 use super::unit::Unit;
-use super::value::{Edit, Read, Values};
+use super::value::{Edit, ParameterValues, Read};
 use crate::model::description::Description;
-use crate::model::hook::{Effect, Sampled};
+use crate::model::extension::{Effect, SampleState};
 use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
@@ -13,9 +13,9 @@ use std::sync::Arc;
 /// One effect of the catalogue.
 #[derive(Clone, Debug)]
 pub struct Descriptor {
-    /// Permanent identifier.
+    /// Permanent identifier of the effect.
     pub id: Cow<'static, str>,
-    /// Title in plain words.
+    /// Title of the effect in plain words.
     pub title: Cow<'static, str>,
     /// Joint or part of the machine at which the effect acts.
     pub joint: &'static str,
@@ -33,7 +33,7 @@ pub struct Descriptor {
 struct Build(Arc<Builder>);
 
 /// Function from parameter values to the effect that has them.
-type Builder = dyn Fn(&Values) -> Arc<dyn Effect> + Send + Sync;
+type Builder = dyn Fn(&ParameterValues) -> Arc<dyn Effect> + Send + Sync;
 
 impl fmt::Debug for Build {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -65,13 +65,14 @@ pub struct Parameter {
     pub role: Role,
     /// Value at which the effect vanishes; for a shape, its typical value.
     pub absent: f64,
-    /// Value used to compute a signature, and the default of a shape.
+    /// Typical value: the size at which the effect's signature (change of the gauge curves) is computed, or
+    /// the default of a shape.
     pub typical: f64,
     /// Characteristic magnitude of the parameter, used for scaling.
     pub scale: f64,
-    /// Lower bound.
+    /// Lower bound of the parameter.
     pub lower: f64,
-    /// Upper bound.
+    /// Upper bound of the parameter.
     pub upper: f64,
     /// Whether the effect rounds the parameter to a whole number, so that no derivative by it exists.
     pub whole: bool,
@@ -80,15 +81,15 @@ pub struct Parameter {
 /// Role of a parameter in its effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Parameter whose contribution vanishes at its absent value.
+    /// Parameter that scales a contribution of the effect, which vanishes at the parameter's absent value.
     Size,
-    /// Parameter that forms the contribution of the sizes.
+    /// Parameter that changes the form of a size's contribution, such as a time constant.
     ///
-    /// A shape is expensive: a diagnosis computes the signature of every size at six values of every shape,
-    /// so that one shape costs **six signatures per size**. A shape must change the *form* of a size's
-    /// contribution, never only its magnitude: a record determines only the product of a factor and a size. A
-    /// pure factor belongs into the size or is a constant of the effect (a contract test of the catalogue
-    /// refuses it as a shape).
+    /// A shape is expensive: a diagnosis computes the signature (change of the gauge curves) of every size at
+    /// six values of every shape, so that one shape costs **six signatures per size**. A shape must change
+    /// the *form* of a size's contribution, never only its magnitude: a record determines only the product of
+    /// a factor and a size. A pure factor belongs into the size or is a constant of the effect (a contract
+    /// test of the catalogue refuses it as a shape).
     Shape,
 }
 
@@ -118,7 +119,7 @@ impl Descriptor {
     }
 
     /// Sets the joint or part at which the effect acts, and the part of the model that it changes.
-    pub(super) fn at(self, joint: &'static str, place: Place) -> Self {
+    pub(super) fn with_location(self, joint: &'static str, place: Place) -> Self {
         Self {
             joint,
             place,
@@ -134,7 +135,7 @@ impl Descriptor {
         }
     }
 
-    /// Adds a size, absent at 0. A lower bound of 0 makes it one-sided.
+    /// Adds a size parameter whose absent value is 0. A lower bound of 0 makes it one-sided.
     pub(super) fn size(
         self,
         name: &'static str,
@@ -145,7 +146,7 @@ impl Descriptor {
         self.sizes([name], unit, typical, bounds)
     }
 
-    /// Adds sizes that differ only in their names.
+    /// Adds several size parameters that differ only in their names.
     pub(super) fn sizes<const N: usize>(
         mut self,
         names: [&'static str; N],
@@ -167,7 +168,7 @@ impl Descriptor {
         self
     }
 
-    /// Adds a shape with its typical value; see [`Role::Shape`] for what it costs.
+    /// Adds a shape parameter with its typical value; see [`Role::Shape`] for what it costs.
     pub(super) fn shape(
         mut self,
         name: &'static str,
@@ -198,25 +199,28 @@ impl Descriptor {
     }
 
     /// Sets the constructor from parameter values.
-    pub(super) fn builds<E: Effect + 'static>(
+    pub(super) fn with_constructor<E: Effect + 'static>(
         mut self,
-        build: impl Fn(&Values) -> E + Send + Sync + 'static,
+        build: impl Fn(&ParameterValues) -> E + Send + Sync + 'static,
     ) -> Self {
         self.build = Build(Arc::new(move |values| Arc::new(build(values))));
         self
     }
 
-    /// Sets a function that edits the description, for an effect that does nothing else.
-    pub(super) fn edits(self, edit: fn(&Values, &mut Description)) -> Self {
-        self.builds(move |v| Edit {
+    /// Makes the effect one that only edits the machine description, by the given function.
+    pub(super) fn with_edit(self, edit: fn(&ParameterValues, &mut Description)) -> Self {
+        self.with_constructor(move |v| Edit {
             values: v.clone(),
             edit,
         })
     }
 
-    /// Sets a function that changes gauge readings sample by sample, for an effect that does nothing else.
-    pub(super) fn reads(self, read: fn(&Values, &Sampled, &mut [f64; 4])) -> Self {
-        self.builds(move |v| Read {
+    /// Makes the effect one that only changes gauge readings, sample by sample, by the given function.
+    pub(super) fn with_reading(
+        self,
+        read: fn(&ParameterValues, &SampleState, &mut [f64; 4]),
+    ) -> Self {
+        self.with_constructor(move |v| Read {
             values: v.clone(),
             read,
         })
@@ -232,10 +236,10 @@ impl Descriptor {
     pub fn build(&self, values: &[f64]) -> Arc<dyn Effect> {
         let of = self.parameters.iter().zip(values);
         let si = of.map(|(p, value)| (p.name, p.unit.to_si(*value)));
-        (self.build.0)(&Values(si.collect()))
+        (self.build.0)(&ParameterValues(si.collect()))
     }
 
-    /// Returns whether every size has exactly its absent value.
+    /// Returns whether the given values leave every size parameter exactly at its absent value.
     pub fn is_absent(&self, values: &[f64]) -> bool {
         let mut of = self.parameters.iter().zip(values);
         #[expect(clippy::float_cmp, reason = "absent is exactly absent")]

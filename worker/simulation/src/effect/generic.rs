@@ -9,7 +9,7 @@ use super::unit::Unit;
 use crate::drive::DriveState;
 use crate::math::elementary::{sin_cos, tanh};
 use crate::math::spline::Splines;
-use crate::model::hook::{Along, Axial, Effect, Hooks, LineForce, Site, Strain};
+use crate::model::extension::{Axial, Effect, Extensions, LineForce, LineForceValue, Site, Strain};
 use crate::model::strand::{BACK, FRONT};
 use std::f64::consts::TAU;
 
@@ -18,15 +18,15 @@ use std::f64::consts::TAU;
 struct Joint {
     name: &'static str,
     title: &'static str,
-    line: Line,
+    line: CoordinateKind,
     unit: Unit,
-    /// Typical amplitude, in `unit`.
+    /// Typical amplitude of the generic force at this joint, in `unit`.
     typical: f64,
 }
 
 /// Coordinate on which a generic force acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Line {
+enum CoordinateKind {
     Beam,
     Suspension,
     Rod,
@@ -38,42 +38,42 @@ const JOINTS: [Joint; 6] = [
     Joint {
         name: "saddle",
         title: "Moment at the saddle bearing",
-        line: Line::Beam,
+        line: CoordinateKind::Beam,
         unit: Unit::NewtonMetre,
         typical: 1500.0,
     },
     Joint {
         name: "suspension",
         title: "Force at the suspension point",
-        line: Line::Suspension,
+        line: CoordinateKind::Suspension,
         unit: Unit::Newton,
         typical: 800.0,
     },
     Joint {
         name: "crank_pin",
         title: "Moment between crank and rod",
-        line: Line::Rod,
+        line: CoordinateKind::Rod,
         unit: Unit::NewtonMetre,
         typical: 1000.0,
     },
     Joint {
         name: "back_head",
         title: "Force on the back head's first mode",
-        line: Line::Head,
+        line: CoordinateKind::Head,
         unit: Unit::ModalNewton,
         typical: 10.0,
     },
     Joint {
         name: "back_rope",
         title: "Pull along the back rope",
-        line: Line::Rope(BACK),
+        line: CoordinateKind::Rope(BACK),
         unit: Unit::Newton,
         typical: 1000.0,
     },
     Joint {
         name: "front_rope",
         title: "Pull along the front rope",
-        line: Line::Rope(FRONT),
+        line: CoordinateKind::Rope(FRONT),
         unit: Unit::Newton,
         typical: 1000.0,
     },
@@ -135,17 +135,20 @@ impl Form {
     }
 
     /// Computes the resistance of unit amplitude at relative displacement `u`, relative rate `w` and a turn
-    /// angle; its energy is per unit of `u`.
-    fn resistance(self, u: f64, w: f64, turn: f64) -> Along {
-        let mut along = Along::default();
+    /// angle; its energy is the integral over `u`, which is dimensionless.
+    fn resistance(self, u: f64, w: f64, turn: f64) -> LineForceValue {
+        let mut along = LineForceValue::default();
         match self {
-            Self::Constant => along.other = 1.0,
+            Self::Constant => along.non_conservative = 1.0,
             Self::SignOfRate => {
-                along.other = tanh(w / CREEP);
-                along.by_rate = (1.0 - along.other * along.other) / CREEP;
+                along.non_conservative = tanh(w / REGULARISATION_RATE);
+                along.by_rate =
+                    (1.0 - along.non_conservative * along.non_conservative) / REGULARISATION_RATE;
             }
-            Self::Rate => (along.other, along.by_rate) = (w, 1.0),
-            Self::RateSquared => (along.other, along.by_rate) = (w * w.abs(), 2.0 * w.abs()),
+            Self::Rate => (along.non_conservative, along.by_rate) = (w, 1.0),
+            Self::RateSquared => {
+                (along.non_conservative, along.by_rate) = (w * w.abs(), 2.0 * w.abs());
+            }
             Self::PlaceSquared => {
                 (along.spring, along.by_place, along.energy) = (u * u, 2.0 * u, u * u * u / 3.0);
             }
@@ -155,8 +158,8 @@ impl Form {
                 along.by_place = 3.0 * square;
                 along.energy = 0.25 * square * square;
             }
-            Self::Cosine(h) => along.other = sin_cos(f64::from(h) * turn).1,
-            Self::Sine(h) => along.other = sin_cos(f64::from(h) * turn).0,
+            Self::Cosine(h) => along.non_conservative = sin_cos(f64::from(h) * turn).1,
+            Self::Sine(h) => along.non_conservative = sin_cos(f64::from(h) * turn).0,
         }
         along
     }
@@ -169,10 +172,10 @@ pub(super) fn descriptors() -> impl Iterator<Item = Descriptor> {
             let reach = 20.0 * joint.typical;
             let id = format!("probe.{}.{}", joint.name, form.name());
             Descriptor::new(id, format!("{}, {}", joint.title, form.words()))
-                .at(joint.name, Place::Dynamics)
+                .with_location(joint.name, Place::Dynamics)
                 .generic()
                 .size("amplitude", joint.unit, joint.typical, [-reach, reach])
-                .builds(move |v| Probe {
+                .with_constructor(move |v| Probe {
                     line: joint.line,
                     form,
                     amplitude: v.get("amplitude"),
@@ -183,7 +186,7 @@ pub(super) fn descriptors() -> impl Iterator<Item = Descriptor> {
 
 #[derive(Clone, Copy, Debug)]
 struct Probe {
-    line: Line,
+    line: CoordinateKind,
     form: Form,
     amplitude: f64,
 }
@@ -197,7 +200,7 @@ struct Range {
 }
 
 /// Share of the largest rate at which the regularised dry friction reaches three quarters of its full value.
-const CREEP: f64 = 0.02;
+const REGULARISATION_RATE: f64 = 0.02;
 
 impl Range {
     /// Computes the range of a function of the turn angle, for a crank at `speed` [rad/s].
@@ -219,13 +222,13 @@ impl Range {
     }
 
     /// Computes the resistance of a generic force with its amplitude, at a displacement and its rate.
-    fn resistance(&self, probe: &Probe, place: f64, rate: f64, turn: f64) -> Along {
+    fn resistance(&self, probe: &Probe, place: f64, rate: f64, turn: f64) -> LineForceValue {
         let u = (place - self.middle) / self.reach;
         let unit = probe.form.resistance(u, rate / self.rate, turn);
         let a = probe.amplitude;
-        Along {
+        LineForceValue {
             spring: a * unit.spring,
-            other: a * unit.other,
+            non_conservative: a * unit.non_conservative,
             energy: a * self.reach * unit.energy,
             by_place: a * unit.by_place / self.reach,
             by_rate: a * unit.by_rate / self.rate,
@@ -234,11 +237,11 @@ impl Range {
 }
 
 impl Effect for Probe {
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
         let (d, layout, cycle) = (site.description, site.layout, site.cycle);
         let speed = d.crank.speed;
         let (index, range) = match self.line {
-            Line::Rope(rope) => {
+            CoordinateKind::Rope(rope) => {
                 let (slow, weight) = if rope == BACK {
                     (cycle.tensions().clone(), 0.0)
                 } else {
@@ -251,14 +254,14 @@ impl Effect for Probe {
                     slow,
                     sense: d.crank.sense,
                 };
-                hooks.add_axial(rope, law);
+                extensions.add_axial(rope, law);
                 return;
             }
-            Line::Beam => (
+            CoordinateKind::Beam => (
                 layout.beam(),
                 Range::of(speed, |turn| cycle.beam(turn).value),
             ),
-            Line::Suspension => {
+            CoordinateKind::Suspension => {
                 let length = d.rope.front as f64 * d.rope.pitch;
                 let arm = d.front_arc.radius;
                 (
@@ -268,13 +271,13 @@ impl Effect for Probe {
                     }),
                 )
             }
-            Line::Rod => (
+            CoordinateKind::Rod => (
                 layout.rod(),
                 Range::of(speed, |turn| {
                     cycle.tangent(turn).value + cycle.beam(turn).value - 0.25 * TAU
                 }),
             ),
-            Line::Head => {
+            CoordinateKind::Head => {
                 let [face, ..] = site.faces else {
                     return;
                 };
@@ -304,7 +307,7 @@ impl Effect for Probe {
             }
         };
         let probe = *self;
-        hooks.on(index, AlongLine { probe, range });
+        extensions.add_line_force(index, AlongLine { probe, range });
     }
 }
 
@@ -315,11 +318,11 @@ struct AlongLine {
 }
 
 impl LineForce for AlongLine {
-    fn along(&self, drive: &DriveState, place: f64, rate: f64) -> Along {
+    fn along(&self, drive: &DriveState, place: f64, rate: f64) -> LineForceValue {
         let against = self.range.resistance(&self.probe, place, rate, drive.turn);
-        Along {
+        LineForceValue {
             spring: -against.spring,
-            other: -against.other,
+            non_conservative: -against.non_conservative,
             energy: against.energy,
             by_place: -against.by_place,
             by_rate: -against.by_rate,
@@ -335,14 +338,14 @@ impl LineForce for AlongLine {
 struct AlongRope {
     probe: Probe,
     tension: Range,
-    /// Ideal tension over the turn, up to a constant \[N\].
+    /// Tension of the rope in the ideal mechanism as a function of the turn angle, up to a constant \[N\].
     slow: Splines,
     /// Sense of crank rotation, +1 or -1.
     sense: f64,
 }
 
 impl Axial for AlongRope {
-    fn uniform(&self, drive: &DriveState) -> Option<f64> {
+    fn constant_force(&self, drive: &DriveState) -> Option<f64> {
         if matches!(
             self.probe.form,
             Form::Rate | Form::PlaceSquared | Form::PlaceCubed
@@ -356,24 +359,24 @@ impl Axial for AlongRope {
             stiffness: 1.0,
             memory: None,
         });
-        Some(along.spring + along.other)
+        Some(along.spring + along.non_conservative)
     }
 
-    fn pull(&self, at: &Strain<'_>) -> Along {
+    fn pull(&self, at: &Strain<'_>) -> LineForceValue {
         let (k, turn) = (at.stiffness, at.drive.turn);
         let place = at.strain * k;
         if matches!(self.probe.form, Form::SignOfRate | Form::RateSquared) {
             let slope = self.slow.jet(&self.slow.place(turn), 0).first;
             let rate = slope * self.sense * at.drive.pin_rate;
             let pull = self.tension.resistance(&self.probe, place, rate, turn);
-            return Along {
+            return LineForceValue {
                 by_rate: 0.0,
                 ..pull
             };
         }
         let rate = at.rate * k;
         let pull = self.tension.resistance(&self.probe, place, rate, turn);
-        Along {
+        LineForceValue {
             energy: pull.energy / k,
             by_place: pull.by_place * k,
             by_rate: pull.by_rate * k,

@@ -19,13 +19,13 @@ mod unit;
 mod value;
 
 pub use crate::model::cycle::Cycle;
-pub use crate::model::hook::{
-    Along, Axial, Dashpot, Effect, Force, Hollow, Hooks, LineForce, Memory, Reading, Sampled, Site,
-    Strain,
+pub use crate::model::extension::{
+    Axial, Dashpot, Effect, Extensions, Force, Hollow, LineForce, LineForceValue, Memory, Reading,
+    SampleState, Site, Strain,
 };
 pub use catalogue::catalogue;
 pub use descriptor::{Descriptor, Parameter, Place, Role};
-pub use selection::{Asked, Refused, Selection};
-pub(crate) use selection::{Chosen, chosen};
+pub use selection::{EffectRequest, Selection, SelectionError};
+pub(crate) use selection::{ResolvedEffect, chosen};
 pub use unit::Unit;
-pub use value::Values;
+pub use value::ParameterValues;

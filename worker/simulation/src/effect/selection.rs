@@ -1,16 +1,16 @@
 //! Selection of effects by name, checked against the catalogue and sorted into its order.
 use super::catalogue::catalogue;
 use super::descriptor::Descriptor;
-use crate::model::hook::Effect;
+use crate::model::extension::Effect;
 use std::sync::Arc;
 
-/// Requested effect with parameter values in declared units; omitted sizes are absent and omitted shapes
-/// typical.
+/// Requested effect with parameter values in declared units; an omitted size takes its absent value, an
+/// omitted shape its typical value.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Asked<'a> {
+pub struct EffectRequest<'a> {
     /// Identifier of the effect.
     pub id: &'a str,
-    /// Names and values of its parameters.
+    /// Names and values of the requested effect's parameters.
     pub parameters: Vec<(&'a str, f64)>,
 }
 
@@ -23,7 +23,7 @@ pub struct Selection {
 
 /// Reason why a requested effect is refused; `effect` is its index in the request.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Refused {
+pub enum SelectionError {
     /// Unknown effect identifier.
     #[error("there is no effect `{id}`")]
     UnknownEffect {
@@ -44,7 +44,7 @@ pub enum Refused {
     },
     /// Effect or parameter that is given twice.
     #[error("`{name}` is given twice")]
-    Twice {
+    Duplicate {
         /// Index of the effect in the request.
         effect: usize,
         /// Identifier of the effect, or `effect.parameter`.
@@ -59,22 +59,22 @@ pub enum Refused {
         name: &'static str,
         /// Refused value.
         value: f64,
-        /// Lower bound.
+        /// Lower bound of the parameter.
         lower: f64,
-        /// Upper bound.
+        /// Upper bound of the parameter.
         upper: f64,
         /// Unit of the value and the bounds.
         unit: &'static str,
     },
 }
 
-impl Refused {
+impl SelectionError {
     /// Returns the index of the refused effect in the request.
     pub const fn effect(&self) -> usize {
         match self {
             Self::UnknownEffect { effect, .. }
             | Self::UnknownParameter { effect, .. }
-            | Self::Twice { effect, .. }
+            | Self::Duplicate { effect, .. }
             | Self::OutOfBounds { effect, .. } => *effect,
         }
     }
@@ -84,7 +84,7 @@ impl Refused {
         match self {
             Self::UnknownParameter { name, .. } => Some(name),
             Self::OutOfBounds { name, .. } => Some(name),
-            Self::UnknownEffect { .. } | Self::Twice { .. } => None,
+            Self::UnknownEffect { .. } | Self::Duplicate { .. } => None,
         }
     }
 }
@@ -93,12 +93,12 @@ impl Selection {
     /// Checks the requested effects and sorts them into the order of the catalogue.
     ///
     /// # Errors
-    /// The first error found; see [`Refused`].
-    pub fn new(asked: &[Asked<'_>]) -> Result<Self, Refused> {
+    /// The first error found; see [`SelectionError`].
+    pub fn new(asked: &[EffectRequest<'_>]) -> Result<Self, SelectionError> {
         let chosen = chosen(asked)?;
         let present = chosen.iter().filter(|one| !one.is_absent());
         Ok(Self {
-            effects: present.map(Chosen::build).collect(),
+            effects: present.map(ResolvedEffect::build).collect(),
         })
     }
 
@@ -115,68 +115,69 @@ impl Selection {
 
 /// An effect of the catalogue with a value for each of its parameters, in declared units.
 #[derive(Clone, Debug)]
-pub(crate) struct Chosen {
+pub(crate) struct ResolvedEffect {
     /// Index of the effect in the catalogue.
     at: usize,
     /// Values of all parameters, absent or not.
     pub(crate) values: Vec<f64>,
 }
 
-impl Chosen {
+impl ResolvedEffect {
     /// Returns the catalogue's descriptor of the effect.
     pub(crate) fn descriptor(&self) -> &'static Descriptor {
         &catalogue()[self.at]
     }
 
-    /// Returns the index in the catalogue, which is the order in which effects act.
+    /// Returns the effect's index in the catalogue, which is the order in which effects act.
     pub(crate) const fn place(&self) -> usize {
         self.at
     }
 
-    /// Returns whether every size has its absent value.
+    /// Returns whether every size parameter of the effect has its absent value.
     pub(crate) fn is_absent(&self) -> bool {
         self.descriptor().is_absent(&self.values)
     }
 
-    /// Builds the effect, even if it is absent.
+    /// Builds the effect, even if all its sizes are absent.
     pub(crate) fn build(&self) -> Arc<dyn Effect> {
         self.descriptor().build(&self.values)
     }
 }
 
-/// Checks the requested effects and sorts them into the order of the catalogue; absent effects are kept.
+/// Checks the requested effects and sorts them into the order of the catalogue; effects whose sizes are all
+/// absent are kept.
 ///
 /// # Errors
 /// The first error found; see [`Refused`].
-pub(crate) fn chosen(asked: &[Asked<'_>]) -> Result<Vec<Chosen>, Refused> {
-    let mut chosen: Vec<Chosen> = Vec::new();
+pub(crate) fn chosen(asked: &[EffectRequest<'_>]) -> Result<Vec<ResolvedEffect>, SelectionError> {
+    let mut chosen: Vec<ResolvedEffect> = Vec::new();
     for (effect, one) in asked.iter().enumerate() {
         let Some(at) = catalogue().iter().position(|d| d.id == one.id) else {
-            return Err(Refused::UnknownEffect {
+            return Err(SelectionError::UnknownEffect {
                 effect,
                 id: one.id.to_owned(),
             });
         };
         if chosen.iter().any(|other| other.at == at) {
-            return Err(Refused::Twice {
+            return Err(SelectionError::Duplicate {
                 effect,
                 name: one.id.to_owned(),
             });
         }
         let values = values(effect, at, one)?;
-        chosen.push(Chosen { at, values });
+        chosen.push(ResolvedEffect { at, values });
     }
     chosen.sort_by_key(|one| one.at);
     Ok(chosen)
 }
 
 /// Returns the values of all parameters of a requested effect, in declared units.
-fn values(effect: usize, at: usize, asked: &Asked<'_>) -> Result<Vec<f64>, Refused> {
+fn values(effect: usize, at: usize, asked: &EffectRequest<'_>) -> Result<Vec<f64>, SelectionError> {
     let descriptor = &catalogue()[at];
     let mut values: Vec<f64> = descriptor.parameters.iter().map(|p| p.absent).collect();
     for (k, &(name, value)) in asked.parameters.iter().enumerate() {
         let Some(place) = descriptor.parameter(name) else {
-            return Err(Refused::UnknownParameter {
+            return Err(SelectionError::UnknownParameter {
                 effect,
                 id: asked.id.to_owned(),
                 name: name.to_owned(),
@@ -186,14 +187,14 @@ fn values(effect: usize, at: usize, asked: &Asked<'_>) -> Result<Vec<f64>, Refus
             .iter()
             .any(|(other, _)| *other == name)
         {
-            return Err(Refused::Twice {
+            return Err(SelectionError::Duplicate {
                 effect,
                 name: format!("{}.{name}", asked.id),
             });
         }
         let p = &descriptor.parameters[place];
         if !(p.lower..=p.upper).contains(&value) {
-            return Err(Refused::OutOfBounds {
+            return Err(SelectionError::OutOfBounds {
                 effect,
                 name: p.name,
                 value,

@@ -1,13 +1,13 @@
 //! Parameter values of an effect, and effects that consist of a single function of them.
 use crate::model::description::Description;
-use crate::model::hook::{Effect, Hooks, Reading, Sampled, Site};
+use crate::model::extension::{Effect, Extensions, Reading, SampleState, Site};
 
 /// Parameter values of an effect by name, in declaration order and SI units.
 #[derive(Clone, Debug)]
-pub struct Values(pub(super) Vec<(&'static str, f64)>);
+pub struct ParameterValues(pub(super) Vec<(&'static str, f64)>);
 
-impl Values {
-    /// Returns the value of a parameter.
+impl ParameterValues {
+    /// Returns the value of the parameter with a given name.
     ///
     /// # Panics
     /// If the effect declares no parameter of that name, which is an error in the effect's own file.
@@ -24,7 +24,7 @@ impl Values {
         *value
     }
 
-    /// Returns the values of several parameters.
+    /// Returns the values of several parameters by their names.
     pub fn each<const N: usize>(&self, names: [&str; N]) -> [f64; N] {
         names.map(|name| self.get(name))
     }
@@ -35,11 +35,11 @@ impl Values {
     }
 }
 
-/// Effect that only edits the description.
+/// Effect that only edits the machine description.
 #[derive(Clone, Debug)]
 pub(super) struct Edit {
-    pub(super) values: Values,
-    pub(super) edit: fn(&Values, &mut Description),
+    pub(super) values: ParameterValues,
+    pub(super) edit: fn(&ParameterValues, &mut Description),
 }
 
 impl Effect for Edit {
@@ -51,30 +51,30 @@ impl Effect for Edit {
 /// Effect that only changes gauge readings, sample by sample.
 #[derive(Clone, Debug)]
 pub(super) struct Read {
-    pub(super) values: Values,
-    pub(super) read: fn(&Values, &Sampled, &mut [f64; 4]),
+    pub(super) values: ParameterValues,
+    pub(super) read: fn(&ParameterValues, &SampleState, &mut [f64; 4]),
 }
 
 impl Effect for Read {
-    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
-        hooks.add_reading(self.clone());
+    fn install(&self, _: &Site<'_>, extensions: &mut Extensions) {
+        extensions.add_reading(self.clone());
     }
 }
 
 impl Reading for Read {
-    fn sample(&self, at: &Sampled, stress: &mut [f64; 4]) {
+    fn sample(&self, at: &SampleState, stress: &mut [f64; 4]) {
         (self.read)(&self.values, at, stress);
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Values;
+    use super::ParameterValues;
 
     #[test]
     #[should_panic(expected = "no parameter `momnet`, only [\"moment\", \"creep\"]")]
     fn a_misspelt_parameter_is_no_number() {
-        let values = Values(vec![("moment", 1.0), ("creep", 2.0)]);
+        let values = ParameterValues(vec![("moment", 1.0), ("creep", 2.0)]);
         assert!(values.get("momnet").is_nan());
     }
 }

@@ -89,7 +89,7 @@ impl LinkLoad {
 
 /// Additional tension along the axis of J, besides that of a bushing.
 #[derive(Clone, Copy, Debug)]
-pub struct Pull {
+pub struct AxialTension {
     /// Force, positive where it draws the markers together \[N\].
     pub force: f64,
     /// Dissipated power \[W\].
@@ -140,12 +140,12 @@ impl Bushing {
     }
 
     /// Returns the static tension at an extension along the axis \[N\].
-    pub fn pull_at(&self, extension: f64) -> f64 {
+    pub fn tension_at(&self, extension: f64) -> f64 {
         extension * self.stiffness[0] + self.preload
     }
 
     /// Returns the static extension under a tension along the axis \[m\].
-    pub fn stretch(&self, tension: f64) -> f64 {
+    pub fn extension_under(&self, tension: f64) -> f64 {
         (tension - self.preload) / self.stiffness[0]
     }
 
@@ -226,7 +226,7 @@ impl Bushing {
     }
 
     /// Adds an additional axial tension to a load.
-    pub fn add_pull(&self, (i, j): (&Marker, &Marker), pull: &Pull, load: &mut LinkLoad) {
+    pub fn add_pull(&self, (i, j): (&Marker, &Marker), pull: &AxialTension, load: &mut LinkLoad) {
         let Deformation { e, d, .. } = self.deformation(i, j);
         let force = e * -pull.force;
         load.force += force;
@@ -259,7 +259,7 @@ impl Bushing {
         i: &Marker,
         j: &Marker,
         load: &LinkLoad,
-        further: Option<&Pull>,
+        further: Option<&AxialTension>,
     ) -> [LinkTangent; 2] {
         let [mut k1, k2] = self.stiffness;
         let [mut c1, c2] = self.damping;

@@ -1,6 +1,6 @@
 //! Contract tests of the joints of a rope: tangent, action and reaction, power balance, independence of the
 //! frame.
-use super::bushing::{Bushing, LinkLoad, Marker, Pull};
+use super::bushing::{AxialTension, Bushing, LinkLoad, Marker};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 type V3 = Vector3<f64>;
@@ -196,7 +196,7 @@ fn a_further_pull_has_its_tangent() {
     let element = BUSHING;
     let loaded = |m: &[Marker; 2]| {
         let [x, rate] = element.extension(&m[0], &m[1]);
-        let pull = Pull {
+        let pull = AxialTension {
             force: 7.0 * x * x + 2.0 * rate * x,
             dissipated: 0.0,
             by_extension: 14.0 * x + 2.0 * rate,

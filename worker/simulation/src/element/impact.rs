@@ -36,11 +36,11 @@ pub struct ImpactForce {
 
 /// Intermediate results of the contact law at one penetration and rate.
 #[derive(Clone, Copy)]
-struct Pressed {
+struct ContactState {
     /// Repulsive force, never negative \[N\]; `lost` is the dissipated power \[W\].
     force: f64,
     lost: f64,
-    /// Part of the force from the spring.
+    /// Part of the contact force from the spring \[N\].
     spring: f64,
     /// Share of the damping coefficient that acts; `slope` is its derivative by the penetration.
     step: f64,
@@ -62,7 +62,7 @@ impl ImpactForce {
 
 /// Quantity by which the contact force has a closed-form derivative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum By {
+pub(crate) enum DerivativeVariable {
     Stiffness,
     Damping,
     Penetration,
@@ -76,7 +76,7 @@ impl Impact {
         reason = "loops over many places become vectors; what they do not ask for is never computed"
     )]
     #[inline(always)]
-    fn pressed(&self, depth: f64, rate: f64, power: impl Fn(f64) -> f64) -> Pressed {
+    fn pressed(&self, depth: f64, rate: f64, power: impl Fn(f64) -> f64) -> ContactState {
         let inside = if depth > 0.0 { depth } else { 0.0 };
         let spring = self.stiffness * power(inside);
         let u = inside / self.full_damping_penetration;
@@ -86,7 +86,7 @@ impl Impact {
         let sum = spring + damper;
         // what the spring gives back while the contact is torn open is lost
         let torn = -spring * rate;
-        Pressed {
+        ContactState {
             force: if sum > 0.0 { sum } else { 0.0 },
             lost: if sum > 0.0 { damper * rate } else { torn },
             spring,
@@ -96,11 +96,11 @@ impl Impact {
     }
 
     /// Computes the derivative of the force by one quantity; zero without a force.
-    pub(crate) fn derivative(&self, depth: f64, rate: f64, by: By) -> f64 {
+    pub(crate) fn derivative(&self, depth: f64, rate: f64, by: DerivativeVariable) -> f64 {
         match by {
-            By::Stiffness => self.force_by(depth, rate)[0],
-            By::Damping => self.force_by(depth, rate)[1],
-            By::Penetration => self.force(depth, rate).by_penetration,
+            DerivativeVariable::Stiffness => self.force_by(depth, rate)[0],
+            DerivativeVariable::Damping => self.force_by(depth, rate)[1],
+            DerivativeVariable::Penetration => self.force(depth, rate).by_penetration,
         }
     }
 
@@ -123,7 +123,7 @@ impl Impact {
 
     /// Computes force \[N\] and dissipated power \[W\] at many penetrations \[m\] and rates [m/s], with the
     /// same bits as [`Self::force`].
-    pub fn push_all(&self, [depth, rate]: [&[f64]; 2], [force, lost]: [&mut [f64]; 2]) {
+    pub fn forces_batch(&self, [depth, rate]: [&[f64]; 2], [force, lost]: [&mut [f64]; 2]) {
         let n = depth.len();
         let (rate, force, lost) = (&rate[..n], &mut force[..n], &mut lost[..n]);
         #[expect(clippy::float_cmp, reason = "selects the exact special case")]

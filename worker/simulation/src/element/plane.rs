@@ -4,7 +4,7 @@
 //! All axes lie in the plane and all rotations are about its normal, so that a force has two components, a
 //! torque one, and the rotation vector is a difference of angles. Torsion does not occur: `K_44` and `C_44`
 //! have no influence.
-use super::bushing::{Bushing, Pull};
+use super::bushing::{AxialTension, Bushing};
 use nalgebra::Vector2;
 use std::f64::consts::{PI, TAU};
 
@@ -43,9 +43,9 @@ pub struct PlaneLoad {
 }
 
 /// Number of coefficients of a planar joint: stiffnesses, dampings and the preload.
-pub const PLANE_UNITS: usize = 7;
+pub const PLANE_COEFFICIENTS: usize = 7;
 /// Index of the preload (tension along the axis) among the coefficients of a planar joint.
-pub const PLANE_PULL: usize = 6;
+pub const PRELOAD_INDEX: usize = 6;
 
 /// Derivatives of force, torque on I and torque on J by one coordinate.
 #[derive(Clone, Copy, Debug)]
@@ -60,13 +60,13 @@ pub struct PlaneColumn {
 
 /// Computes `z x r`, the vector rotated by +90 degrees.
 #[inline]
-fn across(r: &V2) -> V2 {
+fn perp(r: &V2) -> V2 {
     V2::new(-r.y, r.x)
 }
 
 /// Computes the z component of `a x b`.
 #[inline]
-fn moment(a: &V2, b: &V2) -> f64 {
+fn cross_z(a: &V2, b: &V2) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
@@ -92,10 +92,10 @@ struct Deformation {
 #[inline]
 fn deformation(i: &PlaneMarker, j: &PlaneMarker) -> Deformation {
     let d = (i.p + i.rho) - (j.p + j.rho);
-    let velocity = (i.v + across(&i.rho) * i.w) - (j.v + across(&j.rho) * j.w);
+    let velocity = (i.v + perp(&i.rho) * i.w) - (j.v + perp(&j.rho) * j.w);
     Deformation {
         d,
-        V: velocity - across(&d) * j.w,
+        V: velocity - perp(&d) * j.w,
         theta: turned(i.angle, j.angle),
         w: i.w - j.w,
     }
@@ -114,12 +114,12 @@ impl PlaneColumn {
 impl PlaneLoad {
     /// Adds an additional axial tension between two markers.
     #[inline]
-    pub fn add_pull(&mut self, (i, j): (&PlaneMarker, &PlaneMarker), pull: &Pull) {
+    pub fn add_pull(&mut self, (i, j): (&PlaneMarker, &PlaneMarker), pull: &AxialTension) {
         let Deformation { d, .. } = deformation(i, j);
         let force = j.axis * -pull.force;
         self.force += force;
-        self.torque_i += moment(&i.rho, &force);
-        self.torque_j -= moment(&(d + j.rho), &force);
+        self.torque_i += cross_z(&i.rho, &force);
+        self.torque_j -= cross_z(&(d + j.rho), &force);
         self.axial -= pull.force;
         self.dissipated += pull.dissipated;
     }
@@ -144,8 +144,8 @@ impl Bushing {
         let torque = -(theta * k5 + bending_damping);
         PlaneLoad {
             force,
-            torque_i: torque + moment(&i.rho, &force),
-            torque_j: -torque - moment(&(d + j.rho), &force),
+            torque_i: torque + cross_z(&i.rho, &force),
+            torque_j: -torque - cross_z(&(d + j.rho), &force),
             axial: e.dot(&force),
             dissipated: damping.dot(&V) + bending_damping * w,
         }
@@ -178,7 +178,7 @@ impl Bushing {
         (i, j): (&PlaneMarker, &PlaneMarker),
         force: &V2,
         gamma: f64,
-        further: Option<&Pull>,
+        further: Option<&AxialTension>,
     ) -> [[PlaneColumn; 3]; 2] {
         let [mut k1, k2] = self.stiffness;
         let [mut c1, c2] = self.damping;
@@ -194,21 +194,21 @@ impl Bushing {
         let damp = |x: V2| x * c2 + e * ((c1 - c2) * e.dot(&x));
         let bend = self.rotational_stiffness[1] + gamma * self.rotational_damping[1];
         // how the force turns with the axis of J
-        let side = across(&e);
+        let side = perp(&e);
         let sweep = side * pull + e * side.dot(&(d * (k1 - k2) + V * (c1 - c2)));
         let arm = d + j.rho;
-        let turn_i = across(&i.rho);
+        let turn_i = perp(&i.rho);
 
-        let by_place = |x: V2| -stiff(x) - damp(x * gamma - across(&x) * j.w);
+        let by_place = |x: V2| -stiff(x) - damp(x * gamma - perp(&x) * j.w);
         let force_x = by_place(V2::x());
         let force_y = by_place(V2::y());
         let force_i = -stiff(turn_i) - damp(turn_i * gamma - i.rho * w);
-        let force_j = -sweep + stiff(across(&j.rho)) + damp(across(&arm) * gamma);
+        let force_j = -sweep + stiff(perp(&j.rho)) + damp(perp(&arm) * gamma);
 
         let column = |by: V2, torque: f64, own: f64, reaction: f64| PlaneColumn {
             force: by,
-            torque_i: torque + moment(&i.rho, &by) + own,
-            torque_j: -torque - moment(&arm, &by) + reaction,
+            torque_i: torque + cross_z(&i.rho, &by) + own,
+            torque_j: -torque - cross_z(&arm, &by) + reaction,
         };
         // with I moves its arm about J's reference point, with its angle also its arm about its own
         let along = force.dot(&i.rho);
@@ -234,13 +234,13 @@ impl Bushing {
         (i, j): (&PlaneMarker, &PlaneMarker),
         force: &V2,
         gamma: f64,
-        further: Option<&Pull>,
+        further: Option<&AxialTension>,
     ) -> [[[PlaneColumn; 3]; 2]; 2] {
         let [mut k1, k2] = self.stiffness;
         let [mut c1, c2] = self.damping;
         let Deformation { d, V, w, .. } = deformation(i, j);
         let e = j.axis;
-        let side = across(&e);
+        let side = perp(&e);
         let mut pull = self.preload + (k1 - k2) * e.dot(&d) + (c1 - c2) * e.dot(&V);
         if let Some(further) = further {
             pull += further.force;
@@ -252,21 +252,21 @@ impl Bushing {
         let turned = side.dot(&(d * (k1 - k2) + V * (c1 - c2)));
         let arm = d + j.rho;
         let [damp_x, damp_y, damp_i] = [V2::x(), V2::y(), i.rho].map(damp);
-        let turn_i = across(&i.rho);
+        let turn_i = perp(&i.rho);
         // by x, y and the angle of I, by the angle of J
         let by_place = [
             damp_y * j.w - stiff(V2::x()),
             -damp_x * j.w - stiff(V2::y()),
             damp_i * w - stiff(turn_i),
-            stiff(across(&j.rho)) - side * pull - e * turned,
+            stiff(perp(&j.rho)) - side * pull - e * turned,
         ];
-        let by_rate = [-damp_x, -damp_y, -damp(turn_i), damp(across(&arm))];
+        let by_rate = [-damp_x, -damp_y, -damp(turn_i), damp(perp(&arm))];
         let along = force.dot(&i.rho);
         let columns = |by: [V2; 4], bend: f64| {
             let column = |by: V2, torque: f64, own: f64, reaction: f64| PlaneColumn {
                 force: by,
-                torque_i: torque + moment(&i.rho, &by) + own,
-                torque_j: -torque - moment(&arm, &by) + reaction,
+                torque_i: torque + cross_z(&i.rho, &by) + own,
+                torque_j: -torque - cross_z(&arm, &by) + reaction,
             };
             let [x, y] = [
                 column(by[0], 0.0, 0.0, -force.y),
@@ -282,8 +282,9 @@ impl Bushing {
         [columns(by_place, k5), columns(whole, k5 + gamma * c5)]
     }
 
-    /// Returns the coefficients by which [`Self::plane_units`] are multiplied.
-    pub const fn plane_coefficients(&self) -> [f64; PLANE_UNITS] {
+    /// Returns the joint's coefficients in the order of [`Self::plane_units`]; with these as factors the
+    /// units add up to the joint's forces.
+    pub const fn plane_coefficients(&self) -> [f64; PLANE_COEFFICIENTS] {
         let ([k1, k2], [c1, c2]) = (self.stiffness, self.damping);
         let [[_, k5], [_, c5]] = [self.rotational_stiffness, self.rotational_damping];
         [k1, k2, k5, c1, c2, c5, self.preload]
@@ -293,20 +294,20 @@ impl Bushing {
     /// and preload, first on the three coordinates of J, then on those of I: forces are linear in the
     /// coefficients.
     #[inline]
-    pub fn plane_units((i, j): (&PlaneMarker, &PlaneMarker)) -> [[f64; PLANE_UNITS]; 6] {
+    pub fn plane_units((i, j): (&PlaneMarker, &PlaneMarker)) -> [[f64; PLANE_COEFFICIENTS]; 6] {
         let Deformation { d, V, theta, w } = deformation(i, j);
         let e = j.axis;
         let arm = d + j.rho;
         let [along_d, along_v] = [d, V].map(|x| e * e.dot(&x));
         let forces = [-along_d, along_d - d, -along_v, along_v - V, -e];
-        let mut units = [[0.0; PLANE_UNITS]; 6];
-        for (k, force) in [0, 1, 3, 4, PLANE_PULL].into_iter().zip(forces) {
+        let mut units = [[0.0; PLANE_COEFFICIENTS]; 6];
+        for (k, force) in [0, 1, 3, 4, PRELOAD_INDEX].into_iter().zip(forces) {
             units[0][k] = -force.x;
             units[1][k] = -force.y;
-            units[2][k] = -moment(&arm, &force);
+            units[2][k] = -cross_z(&arm, &force);
             units[3][k] = force.x;
             units[4][k] = force.y;
-            units[5][k] = moment(&i.rho, &force);
+            units[5][k] = cross_z(&i.rho, &force);
         }
         for (k, turn) in [(2, theta), (5, w)] {
             units[2][k] = turn;

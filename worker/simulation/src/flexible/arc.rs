@@ -35,7 +35,8 @@ impl Station {
         }
     }
 
-    /// Computes the mean displacement \[m\] along `direction` in the plane.
+    /// Computes the rim's mean displacement \[m\] at the station, along `direction` in the plane, from a
+    /// displacement field.
     pub(super) fn mean(&self, field: &[[f64; 3]], direction: [f64; 2]) -> f64 {
         let along = |u: &[f64; 3]| u[0] * direction[0] + u[1] * direction[1];
         self.weights
@@ -44,20 +45,21 @@ impl Station {
             .sum()
     }
 
-    /// Computes the mean displacement \[m\] along z.
+    /// Computes the rim's mean displacement \[m\] at the station along z, from a displacement field.
     pub(super) fn mean_along_z(&self, field: &[[f64; 3]]) -> f64 {
         let weights = self.weights.iter();
         weights.map(|&(node, weight)| weight * field[node][2]).sum()
     }
 
-    /// Distributes a force \[N\] along `direction` over the width, as forces on all nodes.
+    /// Distributes a force \[N\] at the station along `direction` over the rim's width; returns forces on all
+    /// nodes.
     pub(super) fn force(&self, nodes: usize, direction: [f64; 2], size: f64) -> Vec<[f64; 3]> {
         let mut forces = vec![[0.0; 3]; nodes];
         self.add_force(&mut forces, direction, size);
         forces
     }
 
-    /// Adds a force \[N\] along `direction`, distributed over the width, to nodal forces.
+    /// Adds to nodal forces a force \[N\] along `direction`, distributed at the station over the rim's width.
     pub(super) fn add_force(&self, forces: &mut [[f64; 3]], direction: [f64; 2], size: f64) {
         for &(node, weight) in &self.weights {
             forces[node][0] += size * weight * direction[0];
@@ -80,7 +82,7 @@ impl<'a> Rim<'a> {
     pub(super) fn new(mesh: &'a Mesh, center: [f64; 2]) -> Self {
         let mut span = [f64::INFINITY, f64::NEG_INFINITY];
         let mut angles = BTreeMap::new();
-        for &node in &mesh.rim {
+        for &node in &mesh.rope_faces {
             let [x, y, _] = mesh.nodes[node];
             let angle = atan2(y - center[1], x - center[0]).rem_euclid(std::f64::consts::TAU);
             span = [span[0].min(angle), span[1].max(angle)];
@@ -123,10 +125,13 @@ impl<'a> Rim<'a> {
             let [p, q] = cut.ends();
             (p <= z) != (q <= z)
         };
-        let cut = self.cuts(at).find(spans).ok_or(ReductionError::Beside {
-            psi_deg: psi.to_degrees(),
-            offset: z,
-        })?;
+        let cut = self
+            .cuts(at)
+            .find(spans)
+            .ok_or(ReductionError::OutsideRim {
+                psi_deg: psi.to_degrees(),
+                offset: z,
+            })?;
         let mut weights = BTreeMap::new();
         for (point, share) in cut.at(z) {
             add(&mut weights, point, share);
@@ -134,7 +139,8 @@ impl<'a> Rim<'a> {
         Ok(Station::new(psi, weights.into_iter()))
     }
 
-    /// Clamps an angle to the rim; accepts an angle outside by a rounding error.
+    /// Clamps an angle to the rim's angular range; an angle outside by more than a rounding error is an
+    /// error.
     fn within(&self, psi: f64) -> Result<f64, ReductionError> {
         let [from, to] = self.span;
         let slack = 1e-6;
@@ -162,7 +168,7 @@ impl<'a> Rim<'a> {
     }
 }
 
-/// Adds the nodal weights of a point, multiplied by a share.
+/// Adds the nodal weights of a point on a face, multiplied by a share, to `weights`.
 fn add(weights: &mut BTreeMap<usize, f64>, point: &Crossing, share: f64) {
     for &(node, of_point) in &point.nodes {
         *weights.entry(node).or_insert(0.0) += share * of_point;

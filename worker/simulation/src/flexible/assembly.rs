@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 /// Numbering of the unknown nodal displacements (degrees of freedom).
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Unknowns {
-    /// Number of each node's displacements in x, y and z; `None` for a fixed displacement.
+    /// Index among the unknowns of each node's displacements in x, y and z; `None` for a fixed displacement.
     numbers: Vec<[Option<usize>; 3]>,
     count: usize,
 }
@@ -35,7 +35,7 @@ impl Unknowns {
         self.count
     }
 
-    /// Returns the number of a node's displacement; `None` if it is fixed.
+    /// Returns the index among the unknowns of a node's displacement; `None` if it is fixed.
     pub(super) fn number(&self, node: usize, axis: usize) -> Option<usize> {
         self.numbers[node][axis]
     }
@@ -133,7 +133,7 @@ impl Assembly {
         let mut stiffness = pattern(mesh, unknowns);
         let mut mass = stiffness.clone();
         for (element, nodes) in mesh.elements().enumerate() {
-            let inside_out = |_| ReductionError::InsideOut { element };
+            let inside_out = |_| ReductionError::InvertedElement { element };
             let own = mesh.law().matrices(&mesh.places(nodes), steel);
             let own = own.map_err(inside_out)?;
             for (i, a) in each(nodes, unknowns) {
@@ -149,7 +149,7 @@ impl Assembly {
     }
 }
 
-/// Returns the unknowns of an element as pairs: index within the element, number.
+/// Returns an element's free displacements as pairs: index within the element, index among the unknowns.
 fn each(nodes: &[usize], unknowns: &Unknowns) -> impl Iterator<Item = (usize, usize)> {
     (0..3 * nodes.len()).filter_map(|i| Some((i, unknowns.number(nodes[i / 3], i % 3)?)))
 }

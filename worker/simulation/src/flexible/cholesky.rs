@@ -23,7 +23,7 @@ use std::cmp::Ordering;
 
 /// Number of rows and columns of a register tile.
 const TILE: usize = 4;
-/// Number of panel columns that are eliminated before the rest of the panel is updated.
+/// Number of columns of a supernode's panel that are eliminated before the rest of the panel is updated.
 const BLOCK: usize = 32;
 /// Ratio of a pivot to its diagonal entry below which the pivot counts as zero up to rounding.
 const LEAST_PIVOT: f64 = 1e-12;
@@ -31,10 +31,11 @@ const LEAST_PIVOT: f64 = 1e-12;
 /// Cholesky factor of a positive definite matrix.
 #[derive(Debug)]
 pub(super) struct Factor {
-    /// Number of the unknown eliminated at each step; length n.
+    /// Index of the unknown eliminated at each step; length n.
     order: Vec<usize>,
     shape: Shape,
-    /// Values of the factor, panel by panel and column by column; entries above the diagonal are zero.
+    /// Values of the factor, supernode by supernode and column by column; entries above the diagonal are
+    /// zero.
     values: Vec<f64>,
 }
 
@@ -43,11 +44,12 @@ pub(super) struct Factor {
 struct Shape {
     /// First column of each supernode, followed by the number of columns; length s + 1.
     columns: Vec<usize>,
-    /// Start in `rows` of each supernode, followed by the number of rows; length s + 1.
+    /// Index in `rows` where each supernode's rows start, followed by the total number of rows; length s + 1.
     row_starts: Vec<usize>,
     /// Row indices below each supernode's own columns, ascending.
     rows: Vec<usize>,
-    /// Start in the factor's values of each supernode, followed by their number; length s + 1.
+    /// Index in the factor's values where each supernode's values start, followed by their total number;
+    /// length s + 1.
     value_starts: Vec<usize>,
 }
 
@@ -83,7 +85,7 @@ impl Factor {
     /// Factorises a matrix with a fill-reducing elimination order.
     ///
     /// # Errors
-    /// [`ReductionError::NotHeld`] if the matrix is not positive definite, [`ReductionError::TooLarge`] if
+    /// [`ReductionError::NotPositiveDefinite`] if the matrix is not positive definite, [`ReductionError::TooLarge`] if
     /// its factor does not fit into memory.
     pub(super) fn new(matrix: &Symmetric) -> Result<Self, ReductionError> {
         let too_large = ReductionError::TooLarge {
@@ -111,7 +113,7 @@ impl Factor {
         Ok(factor)
     }
 
-    /// Copies the matrix entries into the panels.
+    /// Copies the matrix entries into the panels, the dense column blocks of the supernodes.
     fn scatter(&mut self, matrix: &Symmetric) {
         let Self {
             order,
@@ -295,7 +297,7 @@ fn tile(left: &[f64], right: &[f64]) -> [[f64; TILE]; TILE] {
     sums
 }
 
-/// Computes the lower limit of the pivot of every column from the unfactorised matrix in the panels; length
+/// Computes the smallest acceptable pivot of every column from the unfactorised matrix in the panels; length
 /// n.
 fn least_pivots(shape: &Shape, values: &[f64]) -> Vec<f64> {
     let mut least = Vec::new();
@@ -330,7 +332,7 @@ fn factor_panel(
             let pivot = column[0];
             // not a number fails too
             if pivot.partial_cmp(&least[k]) != Some(Ordering::Greater) {
-                return Err(ReductionError::NotHeld);
+                return Err(ReductionError::NotPositiveDefinite);
             }
             let root = pivot.sqrt();
             for value in column.iter_mut() {

@@ -7,12 +7,12 @@
 //! about z = 0, so antisymmetric modes do not take part. Gauge readings are not considered here: static
 //! readings are exact with any set of modes (influence lines).
 use super::{
-    answer::{LeftOut, Mode},
     arc::Rim,
     eigen::dot,
     error::ReductionError,
     problem::Problem,
     request::Wrap,
+    result::{LeftOut, Mode},
 };
 
 /// Number of candidate modes of a family computed per requested mode.

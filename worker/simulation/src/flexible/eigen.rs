@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 /// Convergence tolerance of a mode: ratio of its residual to its eigenvalue.
 const TOLERANCE: f64 = 1e-11;
 /// Number of Lanczos steps between solutions of the projected (tridiagonal) eigenvalue problem.
-const LOOK_EVERY: usize = 8;
+const CONVERGENCE_CHECK_INTERVAL: usize = 8;
 
 /// Natural modes in ascending order of frequency.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,12 +37,12 @@ pub(super) fn lowest(
     let mut next = start(order);
     while space.basis.len() < limit {
         // whatever a rounding error brings back of earlier directions is taken out once more
-        space.purge(&mut next);
-        space.purge(&mut next);
+        space.orthogonalize(&mut next);
+        space.orthogonalize(&mut next);
         let weighed = assembly.mass.times(&next);
         let length = dot(&next, &weighed).max(0.0).sqrt();
         let exhausted = length <= 1e-13 * space.scale;
-        if space.basis.len().is_multiple_of(LOOK_EVERY) || exhausted {
+        if space.basis.len().is_multiple_of(CONVERGENCE_CHECK_INTERVAL) || exhausted {
             if let Some(modes) = space.modes(count, if exhausted { 0.0 } else { length }) {
                 return Ok(modes);
             }
@@ -50,7 +50,7 @@ pub(super) fn lowest(
                 break;
             }
         }
-        next = space.grow(&next, &weighed, length, factor);
+        next = space.extend(&next, &weighed, length, factor);
     }
     if space.basis.len() == order
         && let Some(modes) = space.modes(count, 0.0)
@@ -85,13 +85,13 @@ struct Space {
     /// Basis vectors multiplied by the mass matrix.
     weighed: Vec<Vec<f64>>,
     diagonal: Vec<f64>,
-    beside: Vec<f64>,
+    off_diagonal: Vec<f64>,
     scale: f64,
 }
 
 impl Space {
     /// Orthogonalises a vector against the basis in the inner product of the mass matrix.
-    fn purge(&self, vector: &mut [f64]) {
+    fn orthogonalize(&self, vector: &mut [f64]) {
         for (direction, weighed) in self.basis.iter().zip(&self.weighed) {
             let part = dot(vector, weighed);
             for (entry, along) in vector.iter_mut().zip(direction) {
@@ -101,10 +101,10 @@ impl Space {
     }
 
     /// Normalises the direction `next` by its length, appends it to the basis and returns `K^-1 M` times it.
-    fn grow(&mut self, next: &[f64], weighed: &[f64], length: f64, factor: &Factor) -> Vec<f64> {
+    fn extend(&mut self, next: &[f64], weighed: &[f64], length: f64, factor: &Factor) -> Vec<f64> {
         let scaled = |vector: &[f64]| vector.iter().map(|x| x / length).collect::<Vec<f64>>();
         if !self.basis.is_empty() {
-            self.beside.push(length);
+            self.off_diagonal.push(length);
         }
         self.basis.push(scaled(next));
         let weighed = scaled(weighed);
@@ -127,7 +127,7 @@ impl Space {
         for (k, value) in self.diagonal.iter().enumerate() {
             small[(k, k)] = *value;
         }
-        for (k, value) in self.beside.iter().enumerate() {
+        for (k, value) in self.off_diagonal.iter().enumerate() {
             small[(k, k + 1)] = *value;
             small[(k + 1, k)] = *value;
         }

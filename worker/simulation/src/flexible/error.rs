@@ -28,7 +28,7 @@ pub enum ReductionError {
     #[error(
         "element {element} (counted from 0 in the half z > 0 of the mesh) is inverted or has no volume: its Jacobian is not positive"
     )]
-    InsideOut {
+    InvertedElement {
         /// Index of the element.
         element: usize,
     },
@@ -36,7 +36,7 @@ pub enum ReductionError {
     #[error(
         "the held nodes of the mesh leave a rigid motion of the head free: hold at least three nodes that are not on one line"
     )]
-    NotHeld,
+    NotPositiveDefinite,
     /// The Cholesky factor does not fit into memory.
     #[error(
         "the stiffness factor for {unknowns} unknowns does not fit into memory: use a coarser mesh"
@@ -71,7 +71,7 @@ pub enum ReductionError {
     #[error(
         "the rope surface at {psi_deg} deg is too narrow for a rope {offset} m from the plane z = 0"
     )]
-    Beside {
+    OutsideRim {
         /// Angle of the station \[deg\].
         psi_deg: f64,
         /// Distance of the rope from the plane z = 0 \[m\].

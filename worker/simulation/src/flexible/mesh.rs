@@ -25,7 +25,7 @@ pub struct Mesh {
     /// Indices of the nodes held in all directions: the pin holes.
     pub held: Vec<usize>,
     /// Node indices of all faces of the surface under the rope, face after face.
-    pub rim: Vec<usize>,
+    pub rope_faces: Vec<usize>,
     /// Whether the mesh is only the half z >= 0 of the head instead of the whole.
     pub half: bool,
 }
@@ -40,18 +40,18 @@ impl Mesh {
         let count = self.nodes.len();
         let inside = |node: &usize| *node < count;
         let wrong = |what| Err(ReductionError::Mesh { what });
-        if self.elements.is_empty() || self.rim.is_empty() || self.held.is_empty() {
+        if self.elements.is_empty() || self.rope_faces.is_empty() || self.held.is_empty() {
             return wrong("it has no elements, no rope surface or no held nodes");
         }
         let law = self.law();
         if !(self.elements.len().is_multiple_of(law.nodes())
-            && self.rim.len().is_multiple_of(law.face().nodes()))
+            && self.rope_faces.len().is_multiple_of(law.face().nodes()))
         {
             return wrong(
                 "the number of node indices is not a multiple of the nodes per element or per face of the rope surface",
             );
         }
-        if ![&self.elements, &self.rim, &self.held]
+        if ![&self.elements, &self.rope_faces, &self.held]
             .into_iter()
             .flatten()
             .all(inside)
@@ -78,7 +78,7 @@ impl Mesh {
 
     /// Iterates over the faces of the rope surface as slices of node indices.
     pub(super) fn faces(&self) -> impl Iterator<Item = &[usize]> {
-        self.rim.chunks_exact(self.law().face().nodes())
+        self.rope_faces.chunks_exact(self.law().face().nodes())
     }
 
     /// Returns the positions of an element's nodes \[m\].
@@ -100,7 +100,8 @@ pub(super) struct Half {
 }
 
 impl Half {
-    /// Cuts a mesh at z = 0; a mesh that is already the half is taken as it is.
+    /// Creates the half z >= 0 of a mesh by cutting it at z = 0; a mesh that is already the half is taken as
+    /// it is.
     ///
     /// # Errors
     /// [`ReductionError::Mesh`] if [`Mesh::check`] fails or a mesh marked as half does not lie in z >= 0 and
@@ -130,7 +131,7 @@ impl Half {
             kind: whole.kind,
             elements: Self::elements(whole, &source)?,
             held: held.into_iter().collect(),
-            rim: rim.flatten().map(half).collect(),
+            rope_faces: rim.flatten().map(half).collect(),
             half: true,
             nodes,
         };

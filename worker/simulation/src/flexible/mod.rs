@@ -4,7 +4,6 @@
 //! Linear elasticity with the pin holes held. The result is all that the dynamics needs of the head: natural
 //! modes evaluated along the rope arc, gauge stress, inertial coupling, exact statics. Input and output are
 //! plain numbers in SI units; the module knows neither files nor the rest of the machine.
-mod answer;
 mod arc;
 mod assembly;
 mod cholesky;
@@ -17,14 +16,15 @@ mod mesh;
 mod problem;
 mod reduction;
 mod request;
+mod result;
 mod sway;
 #[cfg(test)]
 mod tests;
 
-pub use answer::{LeftOut, Mode, Reduction, SwayTables};
 pub use element::{ElementKind, Steel};
 pub use error::ReductionError;
 pub use gauge::Gauge;
 pub use mesh::Mesh;
 pub use reduction::reduce;
-pub use request::{Family, Pair, Request, Wrap};
+pub use request::{Family, Pair, ReductionRequest, Wrap};
+pub use result::{LeftOut, Mode, Reduction, SwayTables};

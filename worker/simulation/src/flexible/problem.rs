@@ -2,7 +2,6 @@
 //!
 //! Statics takes one solve per gauge, `K w_g = row_g`; the reading under any load `f` is then `w_g . f`.
 use super::{
-    answer::{Mode, Reduction, Row},
     arc::{Rim, Station},
     assembly::{Assembly, Unknowns},
     cholesky::Factor,
@@ -10,7 +9,8 @@ use super::{
     element::Steel,
     error::ReductionError,
     mesh::{Half, Mesh},
-    request::{Family, Request, Wrap},
+    request::{Family, ReductionRequest, Wrap},
+    result::{Mode, Reduction, Row},
 };
 use nalgebra::DVector;
 
@@ -26,12 +26,13 @@ fn rigid(mesh: &Mesh) -> [Vec<[f64; 3]>; 3] {
 /// Displacement of every node \[m\] and stress at every element's centre \[Pa\].
 type Fields = (Vec<[f64; 3]>, Vec<[f64; 6]>);
 
-/// Positions at which modes are evaluated.
-pub(super) struct Seen<'a> {
+/// Quantities evaluated for each mode: displacement at rope stations, gauge readings and optionally the whole
+/// field.
+pub(super) struct ModeOutputs<'a> {
     pub(super) stations: &'a [Station],
-    /// Rows that give the gauge readings.
+    /// Weights of nodal displacements that give each gauge's reading.
     pub(super) rows: &'a [Row],
-    /// Whether whole displacement fields are wanted.
+    /// Whether the displacement field of every mode is returned too.
     pub(super) fields: bool,
 }
 
@@ -48,7 +49,7 @@ pub(super) struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     pub(super) fn new(
-        request: &Request<'_>,
+        request: &ReductionRequest<'_>,
         half: &'a Half,
         family: Family,
     ) -> Result<Self, ReductionError> {
@@ -81,7 +82,7 @@ impl<'a> Problem<'a> {
         &self,
         count: usize,
         coupling: &dyn Fn(f64, &[[f64; 3]]) -> f64,
-        seen: &Seen<'_>,
+        seen: &ModeOutputs<'_>,
     ) -> Result<(Vec<Mode>, usize), ReductionError> {
         let found = lowest(&self.assembly, &self.factor, count)?;
         let mode = |(value, shape): (&f64, &Vec<f64>)| {
@@ -127,8 +128,8 @@ impl<'a> Problem<'a> {
         (field, gauge_stress)
     }
 
-    fn mode(&self, seen: &Seen<'_>, frequency: f64, field: Vec<[f64; 3]>) -> Mode {
-        let &Seen {
+    fn mode(&self, seen: &ModeOutputs<'_>, frequency: f64, field: Vec<[f64; 3]>) -> Mode {
+        let &ModeOutputs {
             stations,
             rows,
             fields,
@@ -170,8 +171,8 @@ impl<'a> Problem<'a> {
         if *image { self.family.image()[1] } else { 1.0 }
     }
 
-    /// Solves once per gauge for its influence field; the reading under a load on the half is the inner
-    /// product with the field.
+    /// Solves once per gauge for its influence field on the half; the gauge's reading under a load is the
+    /// inner product of load and field.
     pub(super) fn lines(&self, rows: &[Row]) -> Vec<Vec<[f64; 3]>> {
         let line = |(row, _): &Row| {
             let mut load = vec![[0.0; 3]; self.half.mesh.nodes.len()];
@@ -183,11 +184,11 @@ impl<'a> Problem<'a> {
         rows.iter().map(line).collect()
     }
 
-    /// Computes all static results (influence lines, compliance, wrapped rope, mass properties); the modes
-    /// are left empty.
-    pub(super) fn answer(
+    /// Computes all static results of the reduction (influence lines, compliance, wrapped rope, mass
+    /// properties) and leaves its list of modes empty.
+    pub(super) fn statics(
         &self,
-        request: &Request<'_>,
+        request: &ReductionRequest<'_>,
         rim: &Rim<'_>,
         stations: &[Station],
         rows: &[Row],
@@ -241,7 +242,7 @@ impl<'a> Problem<'a> {
 
     fn compliance(
         &self,
-        request: &Request<'_>,
+        request: &ReductionRequest<'_>,
         rim: &Rim<'_>,
     ) -> Result<Vec<Vec<f64>>, ReductionError> {
         let probes = request.probes.iter().map(|&psi| rim.station(psi));
@@ -274,7 +275,7 @@ impl<'a> Problem<'a> {
     /// Returns displacement and stress of the whole mesh under a wrapped rope.
     fn wrapped(
         &self,
-        request: &Request<'_>,
+        request: &ReductionRequest<'_>,
         rim: &Rim<'_>,
         wrap: &Wrap,
     ) -> Result<Fields, ReductionError> {
@@ -291,7 +292,7 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Multiplies fields over all nodes by the consistent mass matrix.
+/// Multiplies displacement fields over all nodes by the consistent mass matrix.
 fn mass_times<const N: usize>(
     mesh: &Mesh,
     steel: &Steel,
@@ -300,7 +301,9 @@ fn mass_times<const N: usize>(
     let mut products = [(); N].map(|()| vec![[0.0; 3]; mesh.nodes.len()]);
     for (element, nodes) in mesh.elements().enumerate() {
         let own = mesh.law().matrices(&mesh.places(nodes), steel);
-        let mass = own.map_err(|_| ReductionError::InsideOut { element })?.mass;
+        let mass = own
+            .map_err(|_| ReductionError::InvertedElement { element })?
+            .mass;
         for (product, field) in products.iter_mut().zip(fields) {
             let values = DVector::from_fn(mass.ncols(), |i, _| field[nodes[i / 3]][i % 3]);
             let force = &mass * values;

@@ -4,21 +4,21 @@
 //! modes do not move the rope surface in the mean and do not couple to plane motion, though gauges measure
 //! them. Two ropes beside each other do excite them (`sway.rs`). This file defines the sequence of the work;
 //! `problem.rs` implements it.
-use super::answer::{Reduction, Row};
 use super::arc::{Rim, Station};
 use super::coupling::{CANDIDATES, Patterns, pick};
 use super::error::ReductionError;
 use super::gauge::Gauge;
 use super::mesh::Half;
-use super::problem::{Problem, Seen};
-use super::request::{Family, Request};
+use super::problem::{ModeOutputs, Problem};
+use super::request::{Family, ReductionRequest};
+use super::result::{Reduction, Row};
 
 /// Reduces a head to modes and static influence lines.
 ///
 /// # Errors
 /// [`ReductionError`] for a mesh that is not usable, stations or gauges outside it, or too few converged
 /// modes.
-pub fn reduce(request: &Request<'_>) -> Result<Reduction, ReductionError> {
+pub fn reduce(request: &ReductionRequest<'_>) -> Result<Reduction, ReductionError> {
     let half = Half::new(request.mesh)?;
     let rim = Rim::new(&half.mesh, request.center);
     let stations = request.stations.iter().map(|&psi| rim.station(psi));
@@ -45,7 +45,7 @@ pub fn reduce(request: &Request<'_>) -> Result<Reduction, ReductionError> {
             let shares = of.map(|patterns| patterns.shares(frequency, field));
             shares.map_or(0.0, |shares| shares.fold(0.0, f64::max))
         };
-        let seen = Seen {
+        let seen = ModeOutputs {
             stations: &stations,
             rows: &rows,
             fields: request.fields,
@@ -61,7 +61,7 @@ pub fn reduce(request: &Request<'_>) -> Result<Reduction, ReductionError> {
         modes.truncate(request.modes);
         (modes, Vec::new())
     };
-    let mut reduction = statics.answer(request, &rim, &stations, &rows)?;
+    let mut reduction = statics.statics(request, &rim, &stations, &rows)?;
     if let Some(pair) = &request.pair {
         let problem = Problem::new(request, &half, Family::Antisymmetric)?;
         reduction.sway = Some(problem.sway(request, &rim, pair, &rows)?);
@@ -72,7 +72,7 @@ pub fn reduce(request: &Request<'_>) -> Result<Reduction, ReductionError> {
     Ok(reduction)
 }
 
-fn gauge_rows(request: &Request<'_>, half: &Half) -> Result<Vec<Row>, ReductionError> {
+fn gauge_rows(request: &ReductionRequest<'_>, half: &Half) -> Result<Vec<Row>, ReductionError> {
     let young = request.steel.young;
     let row = |(k, gauge): (usize, &Gauge)| {
         let [x, y, z] = gauge.position;

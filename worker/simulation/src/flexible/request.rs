@@ -1,4 +1,4 @@
-//! Input of the reduction: head, gauges, stations and loads.
+//! Input of the model reduction of a head: mesh, gauges, stations and loads.
 use super::{element::Steel, gauge::Gauge, mesh::Mesh};
 
 /// Symmetry of a displacement field about the plane z = 0.
@@ -23,7 +23,7 @@ impl Family {
 
 /// Input of the reduction of a head.
 #[derive(Clone, Debug)]
-pub struct Request<'a> {
+pub struct ReductionRequest<'a> {
     /// Mesh of the head, including its held nodes.
     pub mesh: &'a Mesh,
     /// Material of the head.
@@ -64,8 +64,8 @@ pub struct Wrap {
 }
 
 impl Wrap {
-    /// Returns the normal line load as `pieces` pairs of angle \[rad\] and force \[N\], at the middles of
-    /// equal intervals; the load per angle equals the tension for any radius.
+    /// Returns the rope's normal load on the arc as `pieces` pairs of angle \[rad\] and force \[N\], at the
+    /// middles of equal intervals; the load per angle equals the tension for any radius.
     pub(super) fn line(&self, pieces: u32) -> impl Iterator<Item = (f64, f64)> {
         let step = (self.leaves - self.anchor) / f64::from(pieces);
         let (first, force) = (self.anchor + 0.5 * step, self.tension * step);

@@ -5,19 +5,19 @@
 //! lies on the rope surface, at `z = +offset`, and forces act there. Every force has an image at `z =
 //! -offset`: opposite for a force in the plane of motion, equal for a force along z.
 use super::{
-    answer::{Row, SwayTables},
     arc::{Rim, Station},
     eigen::lowest,
     error::ReductionError,
     problem::Problem,
-    request::{Pair, Request},
+    request::{Pair, ReductionRequest},
+    result::{Row, SwayTables},
 };
 
 impl Problem<'_> {
-    /// Computes the tables for a pair of ropes from the antisymmetric equations.
+    /// Computes the antisymmetric modes and influence lines of a head for a pair of ropes.
     pub(super) fn sway(
         &self,
-        request: &Request<'_>,
+        request: &ReductionRequest<'_>,
         rim: &Rim<'_>,
         pair: &Pair,
         rows: &[Row],

@@ -1,7 +1,8 @@
-//! Adaptive step size control: tries steps of a size that follows the local error, and counts failed ones.
+//! Adaptive step size control: tries integration steps of a size that follows the local error, and counts
+//! failed ones.
 use super::method::Method;
 use super::step_control::StepControl;
-use super::stepper::{Stages, Step, Stepper};
+use super::stepper::{Stages, Stepper, TimeStep};
 use crate::system::{Equations, State, System};
 
 /// Integration method with adaptive step size.
@@ -12,9 +13,9 @@ pub struct Adaptive<E> {
     /// Size of the next step \[s\].
     step: f64,
     /// Largest step allowed after a failure of Newton's method \[s\].
-    trusted: f64,
-    /// Number of steps accepted since the last failure of Newton's method, up to [`LONG_AGO`].
-    since: u32,
+    step_limit: f64,
+    /// Number of steps accepted since the last failure of Newton's method, up to [`FAILURE_MEMORY_STEPS`].
+    steps_since_failure: u32,
 }
 
 /// Error: the step size fell below the shortest allowed step.
@@ -22,12 +23,12 @@ pub struct Adaptive<E> {
 pub struct StepUnderflow;
 
 /// Number of accepted steps after which a failure of Newton's method counts as unrelated to the previous one.
-/// After repeated failures within so many steps, steps stay below `TRUST` times the failed one, and the limit
-/// grows by `REGAIN` with every accepted step: the error estimate alone does not see a chattering contact and
+/// After repeated failures within so many steps, steps stay below `FAILURE_STEP_FACTOR` times the failed one, and the limit
+/// grows by `RECOVERY_FACTOR` with every accepted step: the error estimate alone does not see a chattering contact and
 /// would lead straight back into the failure.
-const LONG_AGO: u32 = 4;
-const TRUST: f64 = 0.6;
-const REGAIN: f64 = 1.1;
+const FAILURE_MEMORY_STEPS: u32 = 4;
+const FAILURE_STEP_FACTOR: f64 = 0.6;
+const RECOVERY_FACTOR: f64 = 1.1;
 /// Shortest step \[s\]; a run that needs shorter ones ends with an error.
 const SHORTEST_STEP: f64 = 1e-9;
 
@@ -44,8 +45,8 @@ impl<E: Equations> Adaptive<E> {
             },
             method,
             step: 1e-3_f64.min(longest),
-            trusted: longest,
-            since: LONG_AGO,
+            step_limit: longest,
+            steps_since_failure: FAILURE_MEMORY_STEPS,
         }
     }
 
@@ -54,13 +55,13 @@ impl<E: Equations> Adaptive<E> {
     ///
     /// # Errors
     /// [`StepUnderflow`] if the step fails.
-    pub fn forced(
+    pub fn step_without_error_control(
         &mut self,
         system: &mut System<E>,
         from: &State,
         end: f64,
         to: &mut State,
-    ) -> Result<Step, StepUnderflow> {
+    ) -> Result<TimeStep, StepUnderflow> {
         let made = self.method.step(system, from, end - from.t, to);
         let step = made.map_err(|_| StepUnderflow)?;
         to.t = end;
@@ -69,7 +70,7 @@ impl<E: Equations> Adaptive<E> {
         Ok(step)
     }
 
-    /// Returns the stages of the last step, if the method has stages.
+    /// Returns the intermediate stages of the last step, if the method has stages.
     pub fn stages(&self) -> Option<Stages<'_>> {
         self.method.stages()
     }
@@ -85,7 +86,7 @@ impl<E: Equations> Adaptive<E> {
         from: &State,
         stop: f64,
         to: &mut State,
-    ) -> Result<Option<Step>, StepUnderflow> {
+    ) -> Result<Option<TimeStep>, StepUnderflow> {
         if self.step < self.control.shortest {
             return Err(StepUnderflow);
         }
@@ -103,10 +104,10 @@ impl<E: Equations> Adaptive<E> {
                 system.statistics.newton_rejections += 1;
                 self.method.reject();
                 self.step = 0.3 * step;
-                if self.since < LONG_AGO {
-                    self.trusted = TRUST * step;
+                if self.steps_since_failure < FAILURE_MEMORY_STEPS {
+                    self.step_limit = FAILURE_STEP_FACTOR * step;
                 }
-                self.since = 0;
+                self.steps_since_failure = 0;
                 Ok(None)
             }
             Ok(done) if done.error > tolerance || !done.error.is_finite() => {
@@ -121,9 +122,9 @@ impl<E: Equations> Adaptive<E> {
                 self.control.order = self.method.error_order();
                 self.method.accept(&system.equations, to);
                 let next = self.method.next(&self.control, step, done.error);
-                let next = next.min(self.trusted);
-                self.trusted = (self.trusted * REGAIN).min(self.control.longest);
-                self.since = (self.since + 1).min(LONG_AGO);
+                let next = next.min(self.step_limit);
+                self.step_limit = (self.step_limit * RECOVERY_FACTOR).min(self.control.longest);
+                self.steps_since_failure = (self.steps_since_failure + 1).min(FAILURE_MEMORY_STEPS);
                 // a step that was cut short to meet `stop` says nothing of the one after it
                 if step >= self.step {
                     self.step = next;

@@ -9,9 +9,9 @@
 //! the error test cuts the step down to where they are resolved. The head's modes (0.5 % damping) and the
 //! ropes' axial modes lie in it, so that higher orders cost more steps, not fewer: 434 with orders up to 2,
 //! 77,911 up to 4 on the shipped unit (this crate's README). The default highest order is therefore 2.
-use super::newton::{Newton, Stage};
+use super::newton::{ImplicitStage, Newton};
 use super::step_control::StepControl;
-use super::stepper::{Step, Stepper, Tried};
+use super::stepper::{StepResult, Stepper, TimeStep};
 use crate::system::{Equations, Powers, State, System};
 
 /// Highest order offered. It is stable at all steps for a real decaying mode; order 6 is stable only barely
@@ -30,7 +30,7 @@ struct Point {
     work: [f64; 3],
 }
 
-/// Order of a formula and its local error.
+/// Candidate order of the next step's formula, with its local error.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     order: usize,
@@ -49,11 +49,11 @@ pub struct Bdf {
     /// Number of steps made at the present order; `failures` counts rejections since the last accepted step.
     at_order: usize,
     failures: u32,
-    /// Work since the start at the end of the present step \[J\].
+    /// Work since the start of the run at the end of the present step \[J\]: input, output, dissipated.
     work: [f64; 3],
     /// Lower and higher neighbouring orders with the local errors that the last step would have had with
     /// them.
-    others: [Option<Candidate>; 2],
+    neighbouring_orders: [Option<Candidate>; 2],
     base_q: Vec<f64>,
     base_v: Vec<f64>,
     /// Predicted coordinates; later the scaled difference between corrected and predicted coordinates (local
@@ -84,7 +84,7 @@ impl Bdf {
             at_order: 0,
             failures: 0,
             work: [0.0; 3],
-            others: [None; 2],
+            neighbouring_orders: [None; 2],
             base_q: vec![0.0; n],
             base_v: vec![0.0; n],
             error: vec![0.0; n],
@@ -145,8 +145,8 @@ impl Bdf {
         weights
     }
 
-    /// Fills the stage's bases, the predicted coordinates (into `error`) and the predicted rates (into `v`);
-    /// returns the bases of the work.
+    /// Computes the stage's bases (the known parts of coordinates and rates), the predicted coordinates (into
+    /// `error`) and the predicted rates (into `v`); returns the corresponding bases of the accumulated work.
     fn predict(&mut self, t: f64, c: f64, v: &mut [f64]) -> [f64; 3] {
         let [value, rate] = self.predictor(t);
         let used = self.order + 1;
@@ -222,7 +222,7 @@ impl Bdf {
 }
 
 impl<E: Equations> Stepper<E> for Bdf {
-    fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> Tried {
+    fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> StepResult {
         if self.points == 0 {
             self.begin(from, h);
         }
@@ -230,7 +230,7 @@ impl<E: Equations> Stepper<E> for Bdf {
         let sum: f64 = (1..=self.order).map(|i| 1.0 / i as f64).sum();
         let c = h / sum;
         let base_work = self.predict(t, c, &mut to.v);
-        let stage = Stage {
+        let stage = ImplicitStage {
             t,
             c,
             d: c,
@@ -248,7 +248,7 @@ impl<E: Equations> Stepper<E> for Bdf {
             self.work[k] = base_work[k] + c * powers[k];
             self.work[k] - self.past[0].work[k]
         });
-        Ok(Step {
+        Ok(TimeStep {
             error: system.equations.error_norm(&self.error),
             work: Powers {
                 input,
@@ -265,7 +265,7 @@ impl<E: Equations> Stepper<E> for Bdf {
         let known = self.points.max(1);
         let order = self.order;
         let ripe = self.at_order > order;
-        self.others = [
+        self.neighbouring_orders = [
             (ripe && order > 1).then(|| self.error_at(order - 1, equations, to)),
             (ripe && order < self.highest && known > order + 1)
                 .then(|| self.error_at(order + 1, equations, to)),
@@ -304,7 +304,7 @@ impl<E: Equations> Stepper<E> for Bdf {
             control.factor(error)
         };
         let mut best = (self.order, error, factor(self.order, error));
-        for other in self.others.into_iter().flatten() {
+        for other in self.neighbouring_orders.into_iter().flatten() {
             // another order must be worth the change
             let gain = factor(other.order, other.error);
             if gain > 1.15 * best.2 || (other.order < best.0 && gain > 1.02 * best.2) {

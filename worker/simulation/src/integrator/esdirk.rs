@@ -3,8 +3,8 @@
 //!
 //! Every implicit stage is `q = base_q + c v`, `v = base_v + c a`, `M a = Q(q, v, t)` with the same
 //! `c`, so one factorisation of `M / c^2 - D / c - K` serves all of them.
-use super::newton::{Newton, Stage};
-use super::stepper::{Stages, Step, Stepper, Tried};
+use super::newton::{ImplicitStage, Newton};
+use super::stepper::{Stages, StepResult, Stepper, TimeStep};
 use super::tableau::Tableau;
 use crate::system::{Equations, Powers, State, System};
 
@@ -13,7 +13,7 @@ use crate::system::{Equations, Powers, State, System};
 pub struct Esdirk {
     tableau: &'static Tableau,
     newton: Newton,
-    /// Rates and accelerations of all stages except the last.
+    /// Rates and accelerations at all stages of the present step except the last.
     stages: Vec<(Vec<f64>, Vec<f64>)>,
     powers: Vec<Powers>,
     base_q: Vec<f64>,
@@ -95,7 +95,7 @@ impl Esdirk {
 }
 
 impl<E: Equations> Stepper<E> for Esdirk {
-    fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> Tried {
+    fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> StepResult {
         let tableau = self.tableau;
         let last = tableau.stages() - 1;
         let c = tableau.diagonal * h;
@@ -104,7 +104,7 @@ impl<E: Equations> Stepper<E> for Esdirk {
         for i in 1..=last {
             self.bases(i, h, from);
             self.predict(i, c, to);
-            let stage = Stage {
+            let stage = ImplicitStage {
                 t: from.t + tableau.nodes[i] * h,
                 c,
                 d: c,
@@ -122,7 +122,7 @@ impl<E: Equations> Stepper<E> for Esdirk {
         self.estimate(h, to);
         let error = system.equations.error_norm(&self.error);
         let work = self.work(h);
-        Ok(Step { error, work })
+        Ok(TimeStep { error, work })
     }
 
     fn accept(&mut self, _: &E, _: &State) {

@@ -7,8 +7,8 @@
 //! acceleration is internal to the method: a [`State`] carries the acceleration at its own time. When the
 //! step size changes, `a_0` is shifted to the time that the new step size implies; without the shift the
 //! order would fall to one.
-use super::newton::{Newton, Stage};
-use super::stepper::{Step, Stepper, Tried};
+use super::newton::{ImplicitStage, Newton};
+use super::stepper::{StepResult, Stepper, TimeStep};
 use crate::system::{Equations, Powers, State, System};
 
 /// Generalised-alpha method with its buffers.
@@ -20,12 +20,12 @@ pub struct GeneralizedAlpha {
     gamma: f64,
     newton: Newton,
     /// Size of the last accepted step, the algorithmic accelerations at its end, and their rate of change.
-    settled: Option<(f64, Vec<f64>, Vec<f64>)>,
+    last_accepted: Option<(f64, Vec<f64>, Vec<f64>)>,
     /// Algorithmic accelerations at both ends of the present step.
     ends: [Vec<f64>; 2],
     step: f64,
-    /// Powers at the time where the equations of motion hold, in the last accepted step and in the present
-    /// one.
+    /// Input, output and dissipated power at the time where the equations of motion hold, in the last
+    /// accepted step and in the present one.
     powers: [Option<Powers>; 2],
     base_q: Vec<f64>,
     base_v: Vec<f64>,
@@ -46,7 +46,7 @@ impl GeneralizedAlpha {
             beta: 0.25 * (1.0 + shift) * (1.0 + shift),
             gamma: 0.5 + shift,
             newton: Newton::new(n, tolerance),
-            settled: None,
+            last_accepted: None,
             ends: [vec![0.0; n], vec![0.0; n]],
             step: 0.0,
             powers: [None; 2],
@@ -58,7 +58,7 @@ impl GeneralizedAlpha {
 
     /// Computes the algorithmic accelerations at the start of a step of size `h`.
     fn start(&mut self, from: &State, h: f64) {
-        let Some((before, a, rate)) = &self.settled else {
+        let Some((before, a, rate)) = &self.last_accepted else {
             self.ends[0].copy_from_slice(&from.a);
             return;
         };
@@ -68,8 +68,8 @@ impl GeneralizedAlpha {
         }
     }
 
-    /// Fills the bases of the stage `x_f = base + coefficient x'`; returns the coefficients of rates and
-    /// accelerations.
+    /// Computes the known parts (bases) of the stage `x_f = base + coefficient x'` of coordinates and rates;
+    /// returns the coefficients of rates and accelerations.
     fn bases(&mut self, from: &State, h: f64) -> (f64, f64) {
         let (f, m) = (1.0 - self.alpha_f, 1.0 - self.alpha_m);
         let old = self.alpha_m / m;
@@ -88,10 +88,10 @@ impl GeneralizedAlpha {
 }
 
 impl<E: Equations> Stepper<E> for GeneralizedAlpha {
-    fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> Tried {
+    fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> StepResult {
         self.start(from, h);
         let (c, d) = self.bases(from, h);
-        let stage = Stage {
+        let stage = ImplicitStage {
             t: from.t + (1.0 - self.alpha_f) * h,
             c,
             d,
@@ -131,7 +131,7 @@ impl<E: Equations> Stepper<E> for GeneralizedAlpha {
         let loads = system.residual(to.motion(), &to.a, &mut self.error);
         loads.solve(&mut self.error);
         let left = system.equations.error_norm(&self.error);
-        Ok(Step {
+        Ok(TimeStep {
             error: if local >= left { local } else { left },
             work,
         })
@@ -140,7 +140,7 @@ impl<E: Equations> Stepper<E> for GeneralizedAlpha {
     fn accept(&mut self, _: &E, to: &State) {
         let n = to.a.len();
         let (before, a, rate) = self
-            .settled
+            .last_accepted
             .get_or_insert_with(|| (0.0, vec![0.0; n], vec![0.0; n]));
         *before = self.step;
         for k in 0..n {

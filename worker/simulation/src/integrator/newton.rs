@@ -1,6 +1,6 @@
 //! Newton's method for one implicit stage, reusing a factorisation of the iteration matrix while it converges
 //! fast enough.
-use crate::system::{Equations, Loads, Powers, Shift, StateRef, System};
+use crate::system::{Equations, Loads, Powers, StateRef, StateShift, System};
 
 /// Policy for renewing the factorisation of the iteration matrix: a small state machine without numerics.
 #[derive(Clone, Copy, Debug, Default)]
@@ -17,7 +17,7 @@ impl RefactorPolicy {
     pub const DRIFT: f64 = 0.25;
 
     /// Returns whether a stage with coefficient `gamma` needs a new factorisation.
-    pub fn wants(&self, gamma: f64) -> bool {
+    pub fn needs_factorization(&self, gamma: f64) -> bool {
         self.slow
             || self
                 .made_for
@@ -25,22 +25,23 @@ impl RefactorPolicy {
     }
 
     /// Records that a factorisation was made for the coefficient `gamma`.
-    pub const fn made(&mut self, gamma: f64) {
+    pub const fn record_factorization(&mut self, gamma: f64) {
         self.made_for = Some(gamma);
         self.slow = false;
     }
 
     /// Records the convergence rate of a stage.
-    pub fn observed(&mut self, rate: f64) {
+    pub fn record_rate(&mut self, rate: f64) {
         self.slow = rate > Self::SLOW;
     }
 
     /// Discards the factorisation, after it failed or Newton's method diverged with it.
-    pub const fn spoiled(&mut self) {
+    pub const fn invalidate(&mut self) {
         self.made_for = None;
     }
 
-    /// Returns the factor for a correction that was solved with a factorisation for another coefficient.
+    /// Returns the factor by which to scale a Newton correction that was solved with a factorisation for
+    /// another coefficient.
     pub fn relaxation(&self, gamma: f64) -> f64 {
         self.made_for
             .map_or(1.0, |made| 2.0 / (1.0 + (gamma / made) * (gamma / made)))
@@ -49,12 +50,13 @@ impl RefactorPolicy {
 
 /// Implicit stage `q = base_q + c v`, `v = base_v + d a`, `M a = Q`, at time `t`.
 #[derive(Clone, Copy, Debug)]
-pub struct Stage<'a> {
+pub struct ImplicitStage<'a> {
     /// Time of the stage \[s\].
     pub t: f64,
-    /// Coefficient c \[s\].
+    /// Coefficient c \[s\] of the rate in the stage's coordinates.
     pub c: f64,
-    /// Coefficient d \[s\], equal to c for most methods; the ratio d/c must be the same for all stages.
+    /// Coefficient d \[s\] of the acceleration in the stage's rates, equal to c for most methods; the ratio
+    /// d/c must be the same for all stages.
     pub d: f64,
     /// Coordinates without the contribution of this stage's rate.
     pub base_q: &'a [f64],
@@ -74,13 +76,13 @@ pub struct Newton {
     change: Vec<f64>,
 }
 
-/// Accuracy of a stage in units of the Newton norm, at a tolerance of 1.
+/// Error of Newton's method allowed in a stage, in units of the error norm, at a step tolerance of 1.
 const ACCURACY: f64 = 0.3;
 const ITERATIONS: u32 = 10;
-/// Largest number of iterations of a stage that is solved to rounding. `QUADRATIC` is the correction below
-/// which the next one is rounding, by quadratic convergence; `ROUNDING` is the largest correction that
-/// rounding may leave.
-const EXHAUSTED: u32 = 40;
+/// Largest number of Newton iterations of a stage that is solved to rounding accuracy. `QUADRATIC` is the
+/// correction below which the next one is rounding, by quadratic convergence; `ROUNDING` is the largest
+/// correction that rounding may leave.
+const MAX_ITERATIONS_TO_ROUNDING: u32 = 40;
 const QUADRATIC: f64 = 1e-7;
 const ROUNDING: f64 = 1e-4;
 
@@ -107,17 +109,17 @@ impl Newton {
     pub fn solve<E: Equations>(
         &mut self,
         system: &mut System<E>,
-        stage: &Stage<'_>,
+        stage: &ImplicitStage<'_>,
         (q, v, a): (&mut [f64], &mut [f64], &mut [f64]),
     ) -> Result<Powers, NotConverged> {
         if self.accuracy == 0.0 {
-            return self.exhaust(system, stage, (q, v, a));
+            return self.solve_to_rounding(system, stage, (q, v, a));
         }
-        let Shift { mass, damping } = stage.shift();
+        let StateShift { mass, damping } = stage.shift();
         let mut fresh = false;
         predict(stage, q, v, a);
         let mut loads = system.residual(StateRef { t: stage.t, q, v }, a, &mut self.change);
-        if self.policy.wants(damping) {
+        if self.policy.needs_factorization(damping) {
             self.factorize(&mut loads, stage)?;
             fresh = true;
         }
@@ -139,14 +141,14 @@ impl Newton {
             } else {
                 rate < 1.0 && norm * rate / (1.0 - rate) < self.accuracy
             };
-            let kept = loads.keep();
+            let kept = loads.release_state();
             for (i, change) in self.change.iter().enumerate() {
                 q[i] += change;
                 v[i] += damping * change;
                 a[i] += mass * change;
             }
             if converged {
-                self.policy.observed(rate);
+                self.policy.record_rate(rate);
                 return Ok(kept.powers(StateRef { t: stage.t, q, v }, a));
             }
             let hopeless = !norm.is_finite()
@@ -169,27 +171,27 @@ impl Newton {
             last = Some(norm);
             loads = system.residual(StateRef { t: stage.t, q, v }, a, &mut self.change);
         }
-        self.policy.spoiled();
+        self.policy.invalidate();
         Err(NotConverged)
     }
 
-    /// Solves a stage to rounding, with a new factorisation in every iteration.
-    fn exhaust<E: Equations>(
+    /// Solves a stage to rounding accuracy, with a new factorisation in every iteration.
+    fn solve_to_rounding<E: Equations>(
         &mut self,
         system: &mut System<E>,
-        stage: &Stage<'_>,
+        stage: &ImplicitStage<'_>,
         (q, v, a): (&mut [f64], &mut [f64], &mut [f64]),
     ) -> Result<Powers, NotConverged> {
-        let Shift { mass, damping } = stage.shift();
+        let StateShift { mass, damping } = stage.shift();
         predict(stage, q, v, a);
         let mut last = f64::INFINITY;
-        for _ in 0..EXHAUSTED {
+        for _ in 0..MAX_ITERATIONS_TO_ROUNDING {
             let mut loads = system.residual(StateRef { t: stage.t, q, v }, a, &mut self.change);
             loads.statistics().newton_iterations += 1;
             self.factorize(&mut loads, stage)?;
             loads.solve(&mut self.change);
             let norm = loads.equations().newton_norm(&self.change);
-            let kept = loads.keep();
+            let kept = loads.release_state();
             for (i, change) in self.change.iter().enumerate() {
                 q[i] += change;
                 v[i] += damping * change;
@@ -207,24 +209,24 @@ impl Newton {
     fn factorize<E: Equations>(
         &mut self,
         loads: &mut Loads<'_, '_, E>,
-        stage: &Stage<'_>,
+        stage: &ImplicitStage<'_>,
     ) -> Result<(), NotConverged> {
         let shift = stage.shift();
         if loads.factorize(shift).is_err() {
-            self.policy.spoiled();
+            self.policy.invalidate();
             return Err(NotConverged);
         }
-        self.policy.made(shift.damping);
+        self.policy.record_factorization(shift.damping);
         Ok(())
     }
 }
 
-impl Stage<'_> {
-    /// Returns the shift of the stage's iteration matrix: rates change `damping` times and accelerations
-    /// `mass` times as much as coordinates.
-    fn shift(&self) -> Shift {
+impl ImplicitStage<'_> {
+    /// Returns the shift that forms the stage's iteration matrix: rates change `damping` times and
+    /// accelerations `mass` times as much as coordinates.
+    fn shift(&self) -> StateShift {
         let damping = 1.0 / self.c;
-        Shift {
+        StateShift {
             mass: damping * (1.0 / self.d),
             damping,
         }
@@ -232,7 +234,7 @@ impl Stage<'_> {
 }
 
 /// Computes the coordinates and accelerations that correspond to the predicted rates.
-fn predict(stage: &Stage<'_>, q: &mut [f64], v: &[f64], a: &mut [f64]) {
+fn predict(stage: &ImplicitStage<'_>, q: &mut [f64], v: &[f64], a: &mut [f64]) {
     for i in 0..q.len() {
         q[i] = stage.base_q[i] + stage.c * v[i];
         a[i] = (v[i] - stage.base_v[i]) / stage.d;
@@ -248,22 +250,22 @@ mod tests {
     #[test]
     fn a_factorisation_is_kept_while_it_serves() {
         let mut policy = RefactorPolicy::default();
-        assert!(policy.wants(100.0));
-        policy.made(100.0);
+        assert!(policy.needs_factorization(100.0));
+        policy.record_factorization(100.0);
         for gamma in [75.1, 100.0, 124.9] {
-            assert!(!policy.wants(gamma), "{gamma}");
+            assert!(!policy.needs_factorization(gamma), "{gamma}");
         }
         for gamma in [74.9, 125.1] {
-            assert!(policy.wants(gamma), "{gamma}");
+            assert!(policy.needs_factorization(gamma), "{gamma}");
         }
-        policy.observed(RefactorPolicy::SLOW);
-        assert!(!policy.wants(100.0));
-        policy.observed(1.01 * RefactorPolicy::SLOW);
-        assert!(policy.wants(100.0));
-        policy.made(100.0);
-        assert!(!policy.wants(100.0));
-        policy.spoiled();
-        assert!(policy.wants(100.0));
+        policy.record_rate(RefactorPolicy::SLOW);
+        assert!(!policy.needs_factorization(100.0));
+        policy.record_rate(1.01 * RefactorPolicy::SLOW);
+        assert!(policy.needs_factorization(100.0));
+        policy.record_factorization(100.0);
+        assert!(!policy.needs_factorization(100.0));
+        policy.invalidate();
+        assert!(policy.needs_factorization(100.0));
     }
 
     /// Checks the relaxation factor: if inertia (gamma squared) and stiffness have equal weight at the
@@ -272,7 +274,7 @@ mod tests {
     fn a_correction_is_scaled_for_another_coefficient() {
         let mut policy = RefactorPolicy::default();
         assert_eq!(policy.relaxation(3.0).to_bits(), 1.0_f64.to_bits());
-        policy.made(100.0);
+        policy.record_factorization(100.0);
         for gamma in [80.0_f64, 100.0, 120.0] {
             let relax = policy.relaxation(gamma);
             let inertia = 1.0 - relax * (gamma / 100.0).powi(2);

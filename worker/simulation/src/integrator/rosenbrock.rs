@@ -5,12 +5,12 @@
 //! of the kind the method was designed for; accelerations are unknowns like the others. Eliminating rates and
 //! accelerations of a stage leaves one solution with `S = g^2 M - g D - K`, `g = 1 / (gamma h)`, the
 //! iteration matrix of all other methods, and one product with `K`. The order needs the exact tangent: this
-//! is the only method that adds the terms that Newton's method can omit ([`Equations::add_spin_tangent`]).
+//! is the only method that adds the terms that Newton's method can omit ([`Equations::add_velocity_inertia_tangent`]).
 use super::dense::interpolate;
 use super::newton::NotConverged;
-use super::stepper::{Step, Stepper, Tried};
+use super::stepper::{StepResult, Stepper, TimeStep};
 use crate::linear::Bordered;
-use crate::system::{Equations, Powers, Shift, State, StateRef, System};
+use crate::system::{Equations, Powers, State, StateRef, StateShift, System};
 
 const STAGES: usize = 6;
 const GAMMA: f64 = 0.25;
@@ -18,8 +18,8 @@ const GAMMA: f64 = 0.25;
 const NODES: [f64; STAGES] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
 /// Coefficients of the forces' time derivative, per stage.
 const BY_TIME: [f64; STAGES] = [0.25, -0.1043, 0.1035, -0.036_200_000_000_000_23, 0.0, 0.0];
-/// Weights of earlier stages in a stage's argument. The sixth argument is the fifth plus the fifth increment;
-/// the result is the sixth argument plus the sixth increment.
+/// Weights of earlier stages' increments in the state at which a stage is evaluated (its argument). The sixth
+/// argument is the fifth plus the fifth increment; the result is the sixth argument plus the sixth increment.
 const ARGUMENT: [&[f64]; STAGES] = [
     &[],
     &[1.544],
@@ -43,7 +43,7 @@ const ARGUMENT: [&[f64]; STAGES] = [
         1.0,
     ],
 ];
-/// Weights (to be divided by `h`) of earlier stages in a stage's right-hand side.
+/// Weights (to be divided by `h`) of earlier stages' increments in a stage's right-hand side.
 const RIGHT: [&[f64]; STAGES] = [
     &[],
     &[-5.6688],
@@ -68,8 +68,8 @@ const RIGHT: [&[f64]; STAGES] = [
     ],
 ];
 
-/// Share of the step over which the time derivative is taken by a forward difference; the difference errs by
-/// this share of a term of the step's own order.
+/// Time increment, as a share of the step `h`, of the forward difference that gives the forces' time
+/// derivative; its error is this share of a term of order `h`.
 const TIME_SHARE: f64 = 1e-5;
 
 /// Increments of coordinates, rates and accelerations of one stage.
@@ -89,9 +89,11 @@ pub struct Rosenbrock {
     powers: [Powers; 2],
     /// Time derivative of the forces.
     by_time: Vec<f64>,
-    /// Rates of the stage's argument plus the contribution of the right-hand side.
+    /// Rates of the stage's argument plus the coordinate increments of earlier stages, weighted by [`RIGHT`]
+    /// and divided by the step.
     rates: Vec<f64>,
-    /// Accelerations of the stage's argument plus the contribution of the right-hand side.
+    /// Accelerations of the stage's argument plus the rate increments of earlier stages, weighted by
+    /// [`RIGHT`] and divided by the step.
     inertial: Vec<f64>,
     right: Vec<f64>,
     product: Vec<f64>,
@@ -121,7 +123,7 @@ impl Rosenbrock {
         }
     }
 
-    /// Computes the time derivative of the forces and `-K`, and factorises `S`.
+    /// Computes the time derivative of the forces and `-K`, and factorises the iteration matrix `S`.
     fn linearize<E: Equations>(
         &mut self,
         system: &mut System<E>,
@@ -136,8 +138,8 @@ impl Rosenbrock {
             *by_time = (*by_time - now) / later;
         }
         let g = 1.0 / (GAMMA * h);
-        loads.exact_tangent(&from.a, Shift::NONE, &mut self.stiffness);
-        let shift = Shift {
+        loads.exact_tangent(&from.a, StateShift::NONE, &mut self.stiffness);
+        let shift = StateShift {
             mass: g * g,
             damping: g,
         };
@@ -146,7 +148,7 @@ impl Rosenbrock {
             .map_err(|_| NotConverged)
     }
 
-    /// Computes the argument of stage `i` into `to`.
+    /// Computes the state at which stage `i` is evaluated (its argument) into `to`.
     fn argument(&self, i: usize, from: &State, to: &mut State) {
         to.q.copy_from_slice(&from.q);
         to.v.copy_from_slice(&from.v);
@@ -158,7 +160,7 @@ impl Rosenbrock {
         }
     }
 
-    /// Solves for the increments of stage `i`, whose argument is in `to`.
+    /// Solves for the increments of stage `i`, which is evaluated at the state `to`.
     fn solve<E: Equations>(
         &mut self,
         i: usize,
@@ -208,7 +210,7 @@ fn add(to: &mut [f64], weight: f64, x: &[f64]) {
 }
 
 impl<E: Equations> Stepper<E> for Rosenbrock {
-    fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> Tried {
+    fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> StepResult {
         self.linearize(system, from, h)?;
         for i in 0..STAGES {
             self.argument(i, from, to);
@@ -229,7 +231,7 @@ impl<E: Equations> Stepper<E> for Rosenbrock {
         work.add(h / 6.0, &self.powers[0]);
         work.add(4.0 * h / 6.0, &middle);
         work.add(h / 6.0, &self.powers[1]);
-        Ok(Step {
+        Ok(TimeStep {
             error: system.equations.error_norm(&self.increments[STAGES - 1].q),
             work,
         })

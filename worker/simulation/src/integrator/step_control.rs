@@ -1,12 +1,12 @@
 //! Step size control by the local error; knows only the order of the method.
 use crate::math::elementary::powf;
 
-/// Controller of a method whose error estimate is of order `order` in the step.
+/// Step size controller of a method whose error estimate is of order `order` in the step.
 #[derive(Clone, Copy, Debug)]
 pub struct StepControl {
     /// Order of the error estimate.
     pub order: f64,
-    /// Target local error, in units of the error norm.
+    /// Target local error of a step, in units of the error norm.
     pub tolerance: f64,
     /// Longest step \[s\].
     pub longest: f64,
@@ -15,7 +15,7 @@ pub struct StepControl {
 }
 
 impl StepControl {
-    /// Returns the factor for the size of the next step after a local error of `error`.
+    /// Returns the factor for the size of the next step after one with local error `error`.
     pub fn factor(&self, error: f64) -> f64 {
         let ratio = self.tolerance / error.max(1e-10 * self.tolerance);
         (0.9 * powf(ratio, 1.0 / self.order)).clamp(0.2, 3.0)

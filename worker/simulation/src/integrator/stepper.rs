@@ -5,7 +5,7 @@ use std::fmt::Debug;
 
 /// Result of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
+pub struct TimeStep {
     /// Local error in units of the error norm.
     pub error: f64,
     /// Work done during the step \[J\]: input, output, dissipated.
@@ -22,7 +22,7 @@ pub struct Stages<'a> {
 }
 
 /// Result of a step, or the failure of Newton's method.
-pub type Tried = Result<Step, NotConverged>;
+pub type StepResult = Result<TimeStep, NotConverged>;
 
 /// Integration method with its buffers and its history of earlier steps.
 ///
@@ -36,9 +36,9 @@ pub trait Stepper<E: Equations>: Debug {
     ///
     /// # Errors
     /// [`NotConverged`] if the step could not be made; `to` is then meaningless.
-    fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> Tried;
+    fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> StepResult;
 
-    /// Accepts the last step, which ends in `to`.
+    /// Accepts the last step, which ends in `to`, into the method's history.
     fn accept(&mut self, equations: &E, to: &State);
 
     /// Rejects the last step, which failed or exceeded the tolerance; another step from the same state

@@ -9,7 +9,7 @@ use nalgebra::{SMatrix, SVector};
 pub const BLOCK: usize = 6;
 
 /// Dense block of a matrix, column-major.
-pub type Block<const N: usize = BLOCK> = SMatrix<f64, N, N>;
+pub type MatrixBlock<const N: usize = BLOCK> = SMatrix<f64, N, N>;
 
 /// Entries of one body in a vector of unknowns.
 pub(super) type Column<const N: usize> = SVector<f64, N>;
@@ -18,7 +18,7 @@ pub(super) type Column<const N: usize> = SVector<f64, N>;
 ///
 /// # Errors
 /// Index of the column whose pivot is zero or not finite.
-pub(super) fn invert<const N: usize>(a: &mut Block<N>) -> Result<(), usize> {
+pub(super) fn invert<const N: usize>(a: &mut MatrixBlock<N>) -> Result<(), usize> {
     let mut exchanged = [0; N];
     for k in 0..N {
         let mut best = k;
@@ -59,7 +59,7 @@ pub(super) fn invert<const N: usize>(a: &mut Block<N>) -> Result<(), usize> {
 
 /// Returns `A x`.
 #[inline]
-pub(super) fn product<const N: usize>(a: &Block<N>, x: &Column<N>) -> Column<N> {
+pub(super) fn product<const N: usize>(a: &MatrixBlock<N>, x: &Column<N>) -> Column<N> {
     let mut y = Column::<N>::zeros();
     for k in 0..N {
         let value = x[k];
@@ -72,7 +72,11 @@ pub(super) fn product<const N: usize>(a: &Block<N>, x: &Column<N>) -> Column<N> 
 
 /// Subtracts `A x` from `y`.
 #[inline]
-pub(super) fn subtract_product<const N: usize>(a: &Block<N>, x: &Column<N>, y: &mut Column<N>) {
+pub(super) fn subtract_product<const N: usize>(
+    a: &MatrixBlock<N>,
+    x: &Column<N>,
+    y: &mut Column<N>,
+) {
     for k in 0..N {
         let value = x[k];
         for i in 0..N {
@@ -87,13 +91,14 @@ mod tests {
 
     #[test]
     fn inverse_undoes_a_block_that_needs_row_exchanges() {
-        let mut a =
-            Block::<6>::from_fn(|i, j| ((3 * i + 5 * j) % 7) as f64 - 2.5 + 0.1 * (i * j) as f64);
+        let mut a = MatrixBlock::<6>::from_fn(|i, j| {
+            ((3 * i + 5 * j) % 7) as f64 - 2.5 + 0.1 * (i * j) as f64
+        });
         a[(0, 0)] = 0.0;
         let mut inverse = a;
         invert(&mut inverse).unwrap();
         assert!(
-            (a * inverse - Block::<6>::identity()).norm() < 1e-12,
+            (a * inverse - MatrixBlock::<6>::identity()).norm() < 1e-12,
             "{}",
             a * inverse
         );

@@ -6,13 +6,13 @@
 //! The border has two parts: first the unknowns of bodies to which more than one chain is attached (the
 //! lead), then the unknowns of the structure that carries the chains' other ends (the counted part, whose
 //! indices start after the lead).
-use super::block::{Block, Column, invert, product, subtract_product};
-use super::entry::Entry;
+use super::block::{Column, MatrixBlock, invert, product, subtract_product};
+use super::entry::MatrixEntry;
 
 /// Error: a pivot is zero or not finite, so the matrix is singular or holds a value that is not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SingularPivot {
-    /// Global index of the unknown.
+    /// Global index of the unknown with the singular pivot.
     pub unknown: usize,
 }
 
@@ -20,14 +20,15 @@ pub struct SingularPivot {
 #[derive(Clone, Debug)]
 pub struct Blocks<const N: usize> {
     pub(super) chains: Vec<usize>,
-    /// Number of unknowns of the border, the lead included; `lead` is the size of the lead alone.
+    /// Number of border unknowns; `lead` is the number of the first of them, which belong to bodies shared by
+    /// several chains.
     pub(super) border: usize,
     lead: usize,
-    pub(super) diagonal: Vec<Block<N>>,
+    pub(super) diagonal: Vec<MatrixBlock<N>>,
     /// Coupling of block i (row) with block i + 1 (column).
-    pub(super) upper: Vec<Block<N>>,
+    pub(super) upper: Vec<MatrixBlock<N>>,
     /// Coupling of block i + 1 (row) with block i (column).
-    pub(super) lower: Vec<Block<N>>,
+    pub(super) lower: Vec<MatrixBlock<N>>,
     /// Couplings of block rows with border columns: `blocks * border` columns of N.
     pub(super) right: Vec<Column<N>>,
     /// Couplings of border rows with block columns: `blocks * border` rows of N.
@@ -44,8 +45,8 @@ pub struct Blocks<const N: usize> {
 }
 
 impl<const N: usize> Blocks<N> {
-    /// Creates an empty matrix for chains of the given numbers of blocks; `lead` and `counted` are the sizes
-    /// of the two parts of the border.
+    /// Creates an empty matrix for chains of the given numbers of blocks. The border has `lead` unknowns of
+    /// bodies shared by several chains, then `counted` unknowns of the structure that carries the chains.
     pub fn new(chains: &[usize], [lead, counted]: [usize; 2]) -> Self {
         let blocks: usize = chains.iter().sum();
         let border = lead + counted;
@@ -53,9 +54,9 @@ impl<const N: usize> Blocks<N> {
             chains: chains.to_vec(),
             border,
             lead,
-            diagonal: vec![Block::zeros(); blocks],
-            upper: vec![Block::zeros(); blocks],
-            lower: vec![Block::zeros(); blocks],
+            diagonal: vec![MatrixBlock::zeros(); blocks],
+            upper: vec![MatrixBlock::zeros(); blocks],
+            lower: vec![MatrixBlock::zeros(); blocks],
             right: vec![Column::zeros(); blocks * border],
             bottom: vec![Column::zeros(); blocks * border],
             corner: vec![0.0; border * border],
@@ -75,16 +76,16 @@ impl<const N: usize> Blocks<N> {
         self.len() == 0
     }
 
-    /// Returns the number of border unknowns without the lead.
+    /// Returns the number of border unknowns without the leading ones of bodies shared by several chains.
     pub const fn border(&self) -> usize {
         self.border - self.lead
     }
 
     /// Sets every entry to zero.
     pub fn clear(&mut self) {
-        self.diagonal.fill(Block::zeros());
-        self.upper.fill(Block::zeros());
-        self.lower.fill(Block::zeros());
+        self.diagonal.fill(MatrixBlock::zeros());
+        self.upper.fill(MatrixBlock::zeros());
+        self.lower.fill(MatrixBlock::zeros());
         self.corner.fill(0.0);
         for b in 0..self.diagonal.len() {
             let used = self.used(b);
@@ -102,20 +103,21 @@ impl<const N: usize> Blocks<N> {
         b * self.border..b * self.border + used
     }
 
-    /// Returns the diagonal block.
+    /// Returns a block on the matrix diagonal, by its index.
     #[inline]
-    pub fn diagonal_mut(&mut self, block: usize) -> &mut Block<N> {
+    pub fn diagonal_mut(&mut self, block: usize) -> &mut MatrixBlock<N> {
         &mut self.diagonal[block]
     }
 
     /// Returns the couplings of `block` (rows) with the next block (columns), and of the next block (rows)
     /// with `block` (columns).
     #[inline]
-    pub fn coupling_mut(&mut self, block: usize) -> (&mut Block<N>, &mut Block<N>) {
+    pub fn coupling_mut(&mut self, block: usize) -> (&mut MatrixBlock<N>, &mut MatrixBlock<N>) {
         (&mut self.upper[block], &mut self.lower[block])
     }
 
-    /// Adds `value` to the coupling of row `row` of `block` with border column `k`, counted after the lead.
+    /// Adds `value` to the coupling of row `row` of `block` with border column `k`, counted from the end of
+    /// the lead (the border's first part).
     #[inline]
     pub fn add_right(&mut self, block: usize, row: usize, k: usize, value: f64) {
         let k = self.lead + k;
@@ -123,8 +125,8 @@ impl<const N: usize> Blocks<N> {
         self.right[block * self.border + k][row] += value;
     }
 
-    /// Adds `value` to the coupling of border row `k`, counted after the lead, with column `column` of
-    /// `block`.
+    /// Adds `value` to the coupling of border row `k`, counted from the end of the lead (the border's first
+    /// part), with column `column` of `block`.
     #[inline]
     pub fn add_bottom(&mut self, block: usize, k: usize, column: usize, value: f64) {
         let k = self.lead + k;
@@ -159,7 +161,8 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    /// Adds `value` to an entry within the border; row and column are counted after the lead.
+    /// Adds `value` to an entry within the border; row and column are counted from the end of the lead (the
+    /// border's first part).
     #[inline]
     pub fn add_corner(&mut self, row: usize, column: usize, value: f64) {
         self.corner[(self.lead + column) * self.border + self.lead + row] += value;
@@ -251,11 +254,11 @@ impl<const N: usize> Blocks<N> {
     #[inline]
     fn factorize_by(
         &mut self,
-        mut invert: impl FnMut(&mut Block<N>) -> Result<(), usize>,
+        mut invert: impl FnMut(&mut MatrixBlock<N>) -> Result<(), usize>,
     ) -> Result<(), SingularPivot> {
         let mut made = Ok(());
         let (diagonal, upper, lower) = (&mut self.diagonal, &mut self.upper, &self.lower);
-        side_by_side(&self.chains, |_, [first, count], from| {
+        interleave_chains(&self.chains, |_, [first, count], from| {
             let b = first + from;
             if let Err(column) = invert(&mut diagonal[b]) {
                 let unknown = b * N + column;
@@ -284,8 +287,8 @@ impl<const N: usize> Blocks<N> {
         self.factorize_corner()
     }
 
-    /// Eliminates one block, whose inverse is already stored and which fills the first `reach` border
-    /// unknowns, from the border: `right` becomes `D^-1 right`.
+    /// Eliminates from the border one block, whose inverse is already stored and whose couplings reach the
+    /// first `reach` border unknowns; `right` becomes `D^-1 right`.
     fn eliminate(&mut self, b: usize, has_next: bool, reach: usize) {
         let m = self.border;
         for k in 0..reach {
@@ -348,7 +351,7 @@ impl<const N: usize> Blocks<N> {
         Ok(())
     }
 
-    /// Solves in place with the factorised matrix.
+    /// Solves the linear system in place with the factorised matrix.
     pub fn solve(&self, x: &mut [f64]) {
         let m = self.border;
         let base = self.diagonal.len() * N;
@@ -356,7 +359,7 @@ impl<const N: usize> Blocks<N> {
         let (blocks, _) = blocks.as_chunks_mut::<N>();
         // what the block before hands on
         let mut handed = [Column::<N>::zeros(); 2];
-        side_by_side(&self.chains, |k, [first, count], from| {
+        interleave_chains(&self.chains, |k, [first, count], from| {
             if from == 0 {
                 handed[k] = Column::zeros();
             }
@@ -374,7 +377,7 @@ impl<const N: usize> Blocks<N> {
             }
         }
         self.solve_corner(border);
-        side_by_side(&self.chains, |k, [first, count], from| {
+        interleave_chains(&self.chains, |k, [first, count], from| {
             if from == 0 {
                 handed[k] = Column::zeros();
             }
@@ -394,7 +397,7 @@ impl<const N: usize> Blocks<N> {
     }
 
     #[inline]
-    pub(super) fn solve_corner<T: Entry>(&self, x: &mut [T]) {
+    pub(super) fn solve_corner<T: MatrixEntry>(&self, x: &mut [T]) {
         let m = self.border;
         for k in 0..m {
             x.swap(k, self.corner_pivots[k]);
@@ -422,7 +425,7 @@ impl<const N: usize> Blocks<N> {
 /// `step` receives the chain's index in the pair (0 or 1), its first block and length, and the number of its
 /// blocks already processed; it returns whether blocks remain.
 #[inline]
-fn side_by_side(chains: &[usize], mut step: impl FnMut(usize, [usize; 2], usize) -> bool) {
+fn interleave_chains(chains: &[usize], mut step: impl FnMut(usize, [usize; 2], usize) -> bool) {
     let mut first = 0;
     for pair in chains.chunks(2) {
         let mut at = [[0; 2]; 2];
@@ -443,7 +446,7 @@ fn side_by_side(chains: &[usize], mut step: impl FnMut(usize, [usize; 2], usize)
     }
 }
 
-/// Returns the entries of block `b`.
+/// Returns the entries of block `b` in a vector of unknowns.
 #[inline]
 fn column<const N: usize>(blocks: &[f64], b: usize) -> Column<N> {
     Column::from_column_slice(&blocks[b * N..(b + 1) * N])
@@ -468,11 +471,11 @@ mod tests {
         for (chain, &count) in chains.iter().enumerate() {
             for b in first..first + count {
                 *a.diagonal_mut(b) =
-                    Block::<6>::from_fn(|i, j| next() + if i == j { 4.0 } else { 0.0 });
+                    MatrixBlock::<6>::from_fn(|i, j| next() + if i == j { 4.0 } else { 0.0 });
                 if b + 1 < first + count {
                     let (upper, lower) = a.coupling_mut(b);
-                    *upper = Block::<6>::from_fn(|_, _| next());
-                    *lower = Block::<6>::from_fn(|_, _| next());
+                    *upper = MatrixBlock::<6>::from_fn(|_, _| next());
+                    *lower = MatrixBlock::<6>::from_fn(|_, _| next());
                 }
                 if b >= first + touch_from[chain] {
                     for k in 0..3 {

@@ -1,5 +1,5 @@
 //! Bordered matrix for bodies in the plane or in space: chains of blocks of width three or six with a border.
-use super::{BLOCK, Block, Blocks, SingularPivot};
+use super::{BLOCK, Blocks, MatrixBlock, SingularPivot};
 
 /// Bordered block-tridiagonal matrix with blocks of width three or six.
 #[derive(Clone, Debug)]
@@ -22,7 +22,7 @@ macro_rules! either {
 
 impl Bordered {
     /// Creates an empty matrix of blocks of width three for chains of the given numbers of blocks; `border`
-    /// holds the numbers of border unknowns in the lead and after it.
+    /// holds the number of leading border unknowns (bodies shared by several chains) and of the others.
     pub fn plane(chains: &[usize], border: [usize; 2]) -> Self {
         Self::Plane(Blocks::new(chains, border))
     }
@@ -42,7 +42,7 @@ impl Bordered {
         self.len() == 0
     }
 
-    /// Returns the number of border unknowns without the lead.
+    /// Returns the number of border unknowns without the leading ones of bodies shared by several chains.
     pub const fn border(&self) -> usize {
         either!(self, blocks => blocks.border())
     }
@@ -52,7 +52,7 @@ impl Bordered {
         either!(self, blocks => blocks.clear());
     }
 
-    /// Adds `value` to a diagonal block.
+    /// Adds `value` to the entry at `row` and `column` of a diagonal block.
     #[inline]
     pub fn add_diagonal(&mut self, block: usize, row: usize, column: usize, value: f64) {
         either!(self, blocks => blocks.diagonal_mut(block)[(row, column)] += value);
@@ -60,7 +60,7 @@ impl Bordered {
 
     /// Decouples all unknowns of `block` but the first by setting their diagonal entries to 1.
     pub fn lock_rest(&mut self, block: usize) {
-        fn lock<const N: usize>(block: &mut Block<N>) {
+        fn lock<const N: usize>(block: &mut MatrixBlock<N>) {
             for k in 1..N {
                 block[(k, k)] = 1.0;
             }
@@ -68,20 +68,22 @@ impl Bordered {
         either!(self, blocks => lock(blocks.diagonal_mut(block)));
     }
 
-    /// Adds `value` to the coupling of row `row` of `block` with border column `k`, counted after the lead.
+    /// Adds `value` to the coupling of row `row` of `block` with border column `k`, counted from the end of
+    /// the lead (the border's first part).
     #[inline]
     pub fn add_right(&mut self, block: usize, row: usize, k: usize, value: f64) {
         either!(self, blocks => blocks.add_right(block, row, k, value));
     }
 
-    /// Adds `value` to the coupling of border row `k`, counted after the lead, with column `column` of
-    /// `block`.
+    /// Adds `value` to the coupling of border row `k`, counted from the end of the lead (the border's first
+    /// part), with column `column` of `block`.
     #[inline]
     pub fn add_bottom(&mut self, block: usize, k: usize, column: usize, value: f64) {
         either!(self, blocks => blocks.add_bottom(block, k, column, value));
     }
 
-    /// Adds `value` to an entry within the border; row and column are counted after the lead.
+    /// Adds `value` to an entry within the border; row and column are counted from the end of the lead (the
+    /// border's first part).
     #[inline]
     pub fn add_corner(&mut self, row: usize, column: usize, value: f64) {
         either!(self, blocks => blocks.add_corner(row, column, value));
@@ -124,7 +126,7 @@ impl Bordered {
         either!(self, blocks => blocks.factorize_closed())
     }
 
-    /// Solves in place with the factorised matrix.
+    /// Solves the linear system in place with the factorised matrix.
     pub fn solve(&self, x: &mut [f64]) {
         either!(self, blocks => blocks.solve(x));
     }

@@ -12,7 +12,7 @@ pub struct Lanes(pub [f64; LANES]);
 
 /// Arithmetic required of an entry by terms that are linear in a vector of unknowns; implemented by a scalar
 /// (one column) and by lanes (several columns).
-pub trait Entry:
+pub trait MatrixEntry:
     Copy
     + Add<Output = Self>
     + AddAssign
@@ -23,8 +23,8 @@ pub trait Entry:
 {
 }
 
-impl Entry for f64 {}
-impl Entry for Lanes {}
+impl MatrixEntry for f64 {}
+impl MatrixEntry for Lanes {}
 
 impl Lanes {
     /// Adds `factor x` with SIMD instructions; product and sum are rounded separately (no fused

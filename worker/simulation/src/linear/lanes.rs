@@ -3,7 +3,7 @@
 //! A factor is read once for several columns, and the dependent operations along a chain in one column
 //! overlap with those of the other columns. Lanes are independent: a column has the same bits whatever
 //! columns are solved with it.
-use super::block::{Block, Column};
+use super::block::{Column, MatrixBlock};
 use super::blocks::Blocks;
 use super::bordered::Bordered;
 use super::entry::Lanes;
@@ -18,7 +18,12 @@ type Part<const N: usize> = [Lanes; N];
     reason = "compiled for each set of instructions"
 )]
 #[inline(always)]
-fn subtract_product<const N: usize, S: Simd>(simd: S, a: &Block<N>, x: &Part<N>, y: &mut Part<N>) {
+fn subtract_product<const N: usize, S: Simd>(
+    simd: S,
+    a: &MatrixBlock<N>,
+    x: &Part<N>,
+    y: &mut Part<N>,
+) {
     for (x, column) in x.iter().zip(&a.data.0) {
         for (y, a) in y.iter_mut().zip(column) {
             y.subtract_scaled(simd, x, *a);
@@ -32,7 +37,7 @@ fn subtract_product<const N: usize, S: Simd>(simd: S, a: &Block<N>, x: &Part<N>,
     reason = "compiled for each set of instructions"
 )]
 #[inline(always)]
-fn product<const N: usize, S: Simd>(simd: S, a: &Block<N>, x: &Part<N>) -> Part<N> {
+fn product<const N: usize, S: Simd>(simd: S, a: &MatrixBlock<N>, x: &Part<N>) -> Part<N> {
     let mut y = [Lanes::default(); N];
     for (x, column) in x.iter().zip(&a.data.0) {
         for (y, a) in y.iter_mut().zip(column) {
@@ -61,7 +66,7 @@ fn touching<const N: usize>(
     reason = "what is done for many columns is a file of its own"
 )]
 impl<const N: usize> Blocks<N> {
-    /// Solves for `LANES` columns in place, like [`Blocks::solve`].
+    /// Solves the linear system for `LANES` right-hand sides in place, like [`Blocks::solve`].
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
@@ -168,7 +173,7 @@ impl<const N: usize> Blocks<N> {
     reason = "what is done for many columns is a file of its own"
 )]
 impl Bordered {
-    /// Solves for `LANES` columns in place, like [`Bordered::solve`].
+    /// Solves the linear system for `LANES` right-hand sides in place, like [`Bordered::solve`].
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
@@ -201,7 +206,7 @@ mod tests {
     use crate::linear::LANES;
     use pulp::{Arch, Scalar, WithSimd};
 
-    /// Test computation: product with a matrix, and solution with its factor.
+    /// Test computation that runs for each SIMD width: product with a matrix, and solution with its factor.
     struct Work<'a>([&'a Bordered; 2], &'a [Lanes]);
 
     impl WithSimd for Work<'_> {

@@ -6,7 +6,7 @@ mod bordered;
 mod entry;
 mod lanes;
 
-pub use block::{BLOCK, Block};
+pub use block::{BLOCK, MatrixBlock};
 pub use blocks::{Blocks, SingularPivot};
 pub use bordered::Bordered;
-pub use entry::{Entry, LANES, Lanes};
+pub use entry::{LANES, Lanes, MatrixEntry};

@@ -19,7 +19,7 @@ pub struct Splines {
 
 /// Value and first two derivatives of one curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Jet {
+pub struct ValueAndDerivatives {
     /// Value of the curve.
     pub value: f64,
     /// First derivative.
@@ -28,18 +28,18 @@ pub struct Jet {
     pub second: f64,
 }
 
-/// Position on the grid: enclosing knots and local coordinate, computed once for all curves.
+/// Position on the grid of splines: enclosing knots and local coordinate, computed once for all curves.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Place {
+pub struct SplinePosition {
     left: usize,
     right: usize,
     t: f64,
     clamped: bool,
 }
 
-impl Place {
-    /// Returns the weights of the values, then of the scaled second derivatives, at the left and the right
-    /// knot.
+impl SplinePosition {
+    /// Returns the interpolation weights of the values, then of the scaled second derivatives, at the left
+    /// and the right knot.
     #[inline]
     const fn weights(&self) -> [f64; 4] {
         let b = self.t;
@@ -65,9 +65,9 @@ impl Splines {
         let mut knots = vec![[0.0; 2]; points * curves.len()];
         for (c, curve) in curves.iter().enumerate() {
             let bends = if periodic {
-                periodic_bends(&curve[..points])
+                periodic_second_derivatives(&curve[..points])
             } else {
-                natural_bends(&curve[..points])
+                natural_second_derivatives(&curve[..points])
             };
             for i in 0..points {
                 knots[i * curves.len() + c] = [curve[i], bends[i] / 6.0];
@@ -95,14 +95,14 @@ impl Splines {
 
     /// Locates `x` on the grid.
     #[inline]
-    pub fn place(&self, x: f64) -> Place {
+    pub fn place(&self, x: f64) -> SplinePosition {
         let points = self.points();
         let u = (x - self.start) * self.per_step;
         if self.periodic {
             let n = points as f64;
             let u = u - (u / n).floor() * n;
             let left = (index(u)).min(points.saturating_sub(1));
-            return Place {
+            return SplinePosition {
                 left,
                 right: if left + 1 == points { 0 } else { left + 1 },
                 t: u - left as f64,
@@ -113,7 +113,7 @@ impl Splines {
         let clamped = !(u >= 0.0 && u <= last as f64);
         let u = u.clamp(0.0, last as f64);
         let left = index(u).min(last.saturating_sub(1));
-        Place {
+        SplinePosition {
             left,
             right: (left + 1).min(last),
             t: u - left as f64,
@@ -121,16 +121,16 @@ impl Splines {
         }
     }
 
-    /// Returns value and derivatives of `curve` at a place.
+    /// Returns value and derivatives of `curve` at a place on the grid.
     #[inline]
-    pub fn jet(&self, place: &Place, curve: usize) -> Jet {
+    pub fn jet(&self, place: &SplinePosition, curve: usize) -> ValueAndDerivatives {
         let [y0, m0] = self.knots[place.left * self.curves + curve];
         let [y1, m1] = self.knots[place.right * self.curves + curve];
         let b = place.t;
         let a = 1.0 - b;
         let value = a * y0 + b * y1 + (a * a * a - a) * m0 + (b * b * b - b) * m1;
         if place.clamped {
-            return Jet {
+            return ValueAndDerivatives {
                 value,
                 first: 0.0,
                 second: 0.0,
@@ -138,15 +138,15 @@ impl Splines {
         }
         let first = (y1 - y0 + (1.0 - 3.0 * a * a) * m0 + (3.0 * b * b - 1.0) * m1) / self.step;
         let second = 6.0 * (a * m0 + b * m1) / (self.step * self.step);
-        Jet {
+        ValueAndDerivatives {
             value,
             first,
             second,
         }
     }
 
-    /// Computes the values of the first `values.len()` curves at a place.
-    pub fn values(&self, place: &Place, values: &mut [f64]) {
+    /// Computes the values of the first `values.len()` curves at a place on the grid.
+    pub fn values(&self, place: &SplinePosition, values: &mut [f64]) {
         let left = &self.knots[place.left * self.curves..];
         let right = &self.knots[place.right * self.curves..];
         let [a, b, cubic_a, cubic_b] = place.weights();
@@ -155,8 +155,8 @@ impl Splines {
         }
     }
 
-    /// Computes the values and first derivatives of the first `values.len()` curves at a place.
-    pub fn slopes(&self, place: &Place, values: &mut [f64], slopes: &mut [f64]) {
+    /// Computes the values and first derivatives of the first `values.len()` curves at a place on the grid.
+    pub fn slopes(&self, place: &SplinePosition, values: &mut [f64], slopes: &mut [f64]) {
         let left = &self.knots[place.left * self.curves..];
         let right = &self.knots[place.right * self.curves..];
         let [a, b, cubic_a, cubic_b] = place.weights();
@@ -185,7 +185,7 @@ fn index(u: f64) -> usize {
 }
 
 /// Returns the second derivatives times step^2 of the natural spline (Thomas algorithm).
-fn natural_bends(y: &[f64]) -> Vec<f64> {
+fn natural_second_derivatives(y: &[f64]) -> Vec<f64> {
     let n = y.len();
     let mut bends = vec![0.0; n];
     if n < 3 {
@@ -208,7 +208,7 @@ fn natural_bends(y: &[f64]) -> Vec<f64> {
 ///
 /// The circulant system (1, 4, 1) is solved with its decaying Green's function, which is exact to rounding
 /// after 30 neighbours.
-fn periodic_bends(y: &[f64]) -> Vec<f64> {
+fn periodic_second_derivatives(y: &[f64]) -> Vec<f64> {
     let n = y.len();
     if n < 3 {
         return vec![0.0; n];

@@ -13,12 +13,12 @@ use crate::model::instant::Instant;
 use crate::model::layout::MAX_MODES;
 use crate::model::machine::Machine;
 use crate::model::pose::Pose;
-use crate::model::strand::{AnchorShape, Face};
+use crate::model::strand::{AnchorShape, HeadResponse};
 use nalgebra::Vector3;
 
 type V3 = Vector3<f64>;
 
-/// Joint between the last cylinder (J) and the head (I), with its load and derivatives.
+/// Joint between a rope's last cylinder (J) and the head (I), with its load and derivatives.
 pub(super) struct Anchor<'a> {
     pub(super) chain: usize,
     /// Matrix block of the last cylinder.
@@ -58,7 +58,7 @@ impl Machine {
             p = self.anchor_marker(chain, at).p;
         }
         let zp = z.cross(&p);
-        let moving = Moving {
+        let moving = AnchorMotion {
             p,
             deflection_rate,
             rate,
@@ -123,7 +123,11 @@ impl Machine {
 
     /// Returns the mode shapes at the anchor in W, the displacement of its reference point from the pivot due
     /// to the modes, and its velocity due to the modes.
-    fn anchor_shapes(&self, face: Option<&Face>, at: &Instant<'_>) -> ([V3; MAX_MODES], V3, V3) {
+    fn anchor_shapes(
+        &self,
+        face: Option<&HeadResponse>,
+        at: &Instant<'_>,
+    ) -> ([V3; MAX_MODES], V3, V3) {
         let (s, c) = sin_cos(at.q[self.layout.beam()]);
         let mut shapes = [V3::zeros(); MAX_MODES];
         let (mut p, mut rate) = (V3::zeros(), V3::zeros());
@@ -136,14 +140,19 @@ impl Machine {
         (shapes, p, rate)
     }
 
-    fn turning<'a>(&self, face: &'a Face, chain: usize, at: &Instant<'_>) -> Option<Turning<'a>> {
+    fn turning<'a>(
+        &self,
+        face: &'a HeadResponse,
+        chain: usize,
+        at: &Instant<'_>,
+    ) -> Option<AnchorRotation<'a>> {
         let turn = self.end_rotation(face, self.arc(chain).anchor, at)?;
         let [t, r] = turn.axes();
         let mut axes = [V3::zeros(); MAX_MODES];
         for (axis, shape) in axes.iter_mut().zip(&face.anchor) {
             *axis = t * shape.turns[0] + r * shape.turns[1];
         }
-        Some(Turning {
+        Some(AnchorRotation {
             shapes: &face.anchor,
             axes,
             velocity: turn.velocity(),
@@ -153,8 +162,8 @@ impl Machine {
     }
 }
 
-/// Motion of the anchor's reference point.
-struct Moving {
+/// Motion of the reference point of a rope's anchor on the head.
+struct AnchorMotion {
     /// Position from the pivot, in W \[m\].
     p: V3,
     /// Velocity due to the modes, in W [m/s].
@@ -165,9 +174,9 @@ struct Moving {
     gamma: f64,
 }
 
-impl Moving {
-    /// Returns the derivative of the joint's load with respect to the beam angle.
-    fn by_angle(&self, by_head: &LinkTangent, turning: Option<&Turning<'_>>) -> Column {
+impl AnchorMotion {
+    /// Returns the derivative of the anchor joint's load with respect to the beam angle.
+    fn by_angle(&self, by_head: &LinkTangent, turning: Option<&AnchorRotation<'_>>) -> Column {
         let &Self {
             p,
             deflection_rate,
@@ -194,24 +203,25 @@ impl Moving {
 }
 
 /// Rotation of a rope's fixed end by the modes.
-struct Turning<'a> {
+struct AnchorRotation<'a> {
     shapes: &'a [AnchorShape],
     /// Rotation axes `W_k` of the modes, in W.
     axes: [V3; MAX_MODES],
     /// Angular velocity relative to the beam [rad/s].
     velocity: V3,
-    /// Derivative of the second axis with respect to the first angle.
+    /// Derivative of the axis of the end's second rotation with respect to the angle of the first.
     by_tilt: V3,
     second_rate: f64,
 }
 
-impl Turning<'_> {
-    /// Returns the derivative of `W_row` with respect to a modal coordinate.
+impl AnchorRotation<'_> {
+    /// Returns the derivative of a mode's rotation axis `W_row` with respect to another modal coordinate.
     fn bend(&self, row: usize, mode: usize) -> V3 {
         self.by_tilt * (self.shapes[row].turns[1] * self.shapes[mode].turns[0])
     }
 
-    /// Returns the derivative of the angular velocity with respect to a modal coordinate at constant rates.
+    /// Returns the derivative of the end's angular velocity with respect to a modal coordinate at constant
+    /// rates.
     fn drift(&self, mode: usize) -> V3 {
         self.by_tilt * (self.second_rate * self.shapes[mode].turns[0])
     }

@@ -6,10 +6,10 @@
 //! touches along its length: the law is integrated with three Gauss points, whose weights divide the
 //! cylinder's coefficients.
 use crate::math::elementary::{atan2, sin_cos};
-use crate::math::spline::sum::Sum;
-use crate::math::spline::{Place, Splines};
+use crate::math::spline::sum::WeightedSplines;
+use crate::math::spline::{SplinePosition, Splines};
 use crate::model::description::Arc;
-use crate::model::hook::profile::Profile;
+use crate::model::extension::profile::Profile;
 use nalgebra::{Matrix2, Vector2};
 
 type V2 = Vector2<f64>;
@@ -24,7 +24,7 @@ pub const GAUSS: [(f64, f64); POINTS] = [
     (0.774_596_669_241_483_4, 5.0 / 18.0),
 ];
 
-/// Surface of an arc at one instant: rigid placement and deflection.
+/// Surface of an arc at one instant: position, beam angle and deflection by modes.
 #[derive(Clone, Debug)]
 pub struct Surface<'a> {
     /// Centre of the arc \[m\].
@@ -35,22 +35,22 @@ pub struct Surface<'a> {
     pub radius: f64,
     /// Beam angle \[rad\] and rate [rad/s].
     pub beam: [f64; 2],
-    /// Distance from the centre beyond which no contact is considered, with room for deflection of the arc
-    /// \[m\].
+    /// Distance from the arc's centre beyond which no contact is considered, with room for deflection of the
+    /// arc \[m\].
     pub reach: f64,
     /// Deflection of the arc by modes; `None` for a rigid arc.
-    pub bend: Option<Bend<'a>>,
+    pub bend: Option<Deflection<'a>>,
     /// Permanent deviation of the surface from a circle; `None` for a circular arc.
     pub profile: Option<&'a Profile>,
 }
 
 /// Deflection of an arc by modes.
 #[derive(Clone, Copy, Debug)]
-pub struct Bend<'a> {
+pub struct Deflection<'a> {
     /// Radial mode shapes as functions of the arc angle \[rad\].
     pub shapes: &'a Splines,
     /// Sums of the shapes weighted by the modal coordinates, and by their rates.
-    pub sum: &'a Sum,
+    pub sum: &'a WeightedSplines,
     /// Rates of the modal coordinates.
     pub modal_rate: &'a [f64],
 }
@@ -112,7 +112,7 @@ pub struct Curvature {
 
 impl<'a> Surface<'a> {
     /// Places an arc at a beam angle \[rad\] and rate [rad/s], with an optional deflection.
-    pub fn new(arc: &Arc, beam: [f64; 2], bend: Option<Bend<'a>>) -> Self {
+    pub fn new(arc: &Arc, beam: [f64; 2], bend: Option<Deflection<'a>>) -> Self {
         let (s, c) = sin_cos(beam[0]);
         let [x, y] = arc.center;
         let center = V2::new(c * x - s * y, s * x + c * y);
@@ -128,7 +128,7 @@ impl<'a> Surface<'a> {
     }
 
     /// Returns whether the surface deviates from a circle, so that arc angles are needed.
-    pub(crate) const fn asks_for_angle(&self) -> bool {
+    pub(crate) const fn is_noncircular(&self) -> bool {
         self.bend.is_some() || self.profile.is_some()
     }
 
@@ -147,7 +147,7 @@ impl<'a> Surface<'a> {
             return None;
         }
         let angle = match before {
-            _ if !self.asks_for_angle() => 0.0,
+            _ if !self.is_noncircular() => 0.0,
             Some(before) if near(&before.toward, &w) => {
                 before.angle + small_angle(before.toward.into(), w.into())
             }
@@ -163,16 +163,16 @@ impl<'a> Surface<'a> {
         angle - turn * (angle / turn).floor()
     }
 
-    /// Returns the second derivatives of the penetration of a point at the vector `toward` from the centre,
-    /// at arc angle `angle` and at `place` on the grid of the shapes, where the surface has the slope `s1`
-    /// with respect to the arc angle [m/rad].
+    /// Returns the second derivatives of the penetration of a contact point at the vector `toward` from the
+    /// arc's centre, at arc angle `angle` and at `place` on the grid of the mode shapes, where the surface
+    /// has the slope `s1` with respect to the arc angle [m/rad].
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
-    pub fn curvature(&self, toward: &V2, angle: f64, place: &Place, s1: f64) -> Curvature {
+    pub fn curvature(&self, toward: &V2, angle: f64, place: &SplinePosition, s1: f64) -> Curvature {
         let r = toward.norm();
         let n = toward * (1.0 / r);
         let t = V2::new(-n.y, n.x);
-        let s2 = self.bent(angle, place);
+        let s2 = self.second_derivative(angle, place);
         let c = self.center_by_beam;
         // C - O turned by the beam: d2C/dtheta2 = -(C - O)
         let arm = self.center;
@@ -197,7 +197,7 @@ impl<'a> Surface<'a> {
     /// Returns the second derivative of the surface's height with respect to the arc angle [m/rad^2].
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
-    fn bent(&self, angle: f64, place: &Place) -> f64 {
+    fn second_derivative(&self, angle: f64, place: &SplinePosition) -> f64 {
         let modes = self.bend.as_ref();
         let modes = modes.map_or(0.0, |bend| bend.sum.at(bend.shapes, place).0.second);
         modes + self.profile.map_or(0.0, |profile| profile.height(angle)[2])

@@ -5,7 +5,7 @@
 //! alone causes: `T = (F A + J theta'' + M_g cos theta) / h`, and the net crank torque is `T h dtheta/dturn +
 //! M_cw cos(phi + tau)`.
 use crate::math::elementary::sin_cos;
-use crate::math::spline::{Jet, Splines};
+use crate::math::spline::{Splines, ValueAndDerivatives};
 use crate::model::description::{Crank, Description};
 use crate::model::kinematics::{DoesNotClose, Mechanism, Position};
 use std::f64::consts::TAU;
@@ -18,7 +18,7 @@ const NODES: usize = 360;
 pub struct Cycle {
     curves: Splines,
     tension: Splines,
-    /// Pin angle at turn 0 \[rad\].
+    /// Crank pin angle at turn angle 0 \[rad\].
     bottom: f64,
     /// Crank parameters that the torque is computed from.
     crank: Crank,
@@ -90,7 +90,7 @@ impl Cycle {
 
     /// Returns the turn angle \[rad\] during the downstroke at which the front head has descended by the
     /// given share (0 to 1) of its stroke.
-    pub fn descent(&self, share: f64) -> f64 {
+    pub fn turn_at_descent(&self, share: f64) -> f64 {
         let beam = |turn: f64| self.curves.value(turn, BEAM);
         let step = TAU / NODES as f64;
         let at = |k: usize| beam(step * k as f64);
@@ -110,13 +110,13 @@ impl Cycle {
     }
 
     /// Returns the beam angle \[rad\] and its first and second derivatives with respect to the turn angle.
-    pub fn beam(&self, turn: f64) -> Jet {
+    pub fn beam(&self, turn: f64) -> ValueAndDerivatives {
         self.curves.jet(&self.curves.place(turn), BEAM)
     }
 
     /// Returns the arc angle \[rad\], in the beam frame, of the point where the rope leaves the back head,
     /// with derivatives with respect to the turn angle.
-    pub fn tangent(&self, turn: f64) -> Jet {
+    pub fn tangent(&self, turn: f64) -> ValueAndDerivatives {
         self.curves.jet(&self.curves.place(turn), TANGENT)
     }
 
@@ -147,7 +147,7 @@ impl Cycle {
         rope + sense * moment * sin_cos(angle).1
     }
 
-    /// Returns the crank parameters.
+    /// Returns the parameters of the mechanism's crank.
     pub const fn crank(&self) -> &Crank {
         &self.crank
     }

@@ -17,13 +17,13 @@ pub struct Description {
     /// Weight of beam and heads times the height of their centre of mass above the pivot at beam angle 0;
     /// positive where the equilibrium is unstable [N m].
     pub beam_gravity_height: f64,
-    /// Crank.
+    /// Parameters of the crank.
     pub crank: Crank,
-    /// Connecting rods and crossbeam.
+    /// Parameters of connecting rods and crossbeam.
     pub rod: Rod,
     /// Mass at the suspension point \[kg\].
     pub suspension_mass: f64,
-    /// Rope geometry and mass.
+    /// Geometry and density of the ropes.
     pub rope: Rope,
     /// Arc of the front head, about the pivot.
     pub front_arc: Arc,
@@ -56,9 +56,9 @@ impl Description {
 /// A crank whose motion is prescribed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crank {
-    /// Shaft centre \[m\].
+    /// Position of the crankshaft's centre \[m\].
     pub center: [f64; 2],
-    /// Radius of the pin \[m\].
+    /// Distance of the crank pin from the shaft centre \[m\].
     pub radius: f64,
     /// Sense of rotation: +1 where the pin angle increases with time, -1 where it decreases (clockwise).
     pub sense: f64,
@@ -76,11 +76,11 @@ pub struct Crank {
 pub struct Rod {
     /// Distance from the crank pin to the rope joint \[m\].
     pub length: f64,
-    /// Mass \[kg\].
+    /// Mass of connecting rods and crossbeam \[kg\].
     pub mass: f64,
-    /// Distance from the crank pin to the centre of mass \[m\].
+    /// Distance from the crank pin to the centre of mass of rods and crossbeam \[m\].
     pub center_of_mass: f64,
-    /// Moment of inertia about the centre of mass [kg m2].
+    /// Moment of inertia of rods and crossbeam about their centre of mass [kg m2].
     pub inertia: f64,
 }
 
@@ -91,11 +91,11 @@ pub struct Rope {
     pub diameter: f64,
     /// Length of a cylinder \[m\].
     pub pitch: f64,
-    /// Density [kg/m3].
+    /// Density of the rope's cylinders [kg/m3].
     pub density: f64,
     /// Cylinder length for which the rope coefficients are stated \[m\].
     pub reference_pitch: f64,
-    /// Length of rope represented by the joint at either end, in pitches: 0.5 or 1.
+    /// Length of rope represented by the joint at either end of a rope, in cylinder lengths: 0.5 or 1.
     pub end_pitches: f64,
     /// Number of cylinders between crossbeam and back head.
     pub back: usize,
@@ -106,7 +106,7 @@ pub struct Rope {
 /// Circular arc fixed to the beam, around which a rope wraps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc {
-    /// Centre in the beam frame \[m\].
+    /// Centre of the arc in the beam frame \[m\].
     pub center: [f64; 2],
     /// Radius of the centre line of the rope lying on the arc \[m\].
     pub radius: f64,
@@ -163,13 +163,13 @@ pub struct Twins {
     /// Excess length of the rope at -z over the rope at +z, on the back head and on the front head \[m\].
     pub longer: [f64; 2],
     /// Out-of-plane (antisymmetric) flexibility of the back head.
-    pub sway: Sway,
+    pub sway: AntisymmetricHead,
 }
 
 /// Antisymmetric part of a reduced head model: `a` modes sampled at the stations of [`Head`], at `z =
 /// +offset`. Each influence line belongs to a pair of forces, one on either rope.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sway {
+pub struct AntisymmetricHead {
     /// Angular frequencies of the `a` antisymmetric modes [rad/s].
     pub frequencies: Vec<f64>,
     /// Radial mode shapes, positive outwards [kg^-1/2]; a x s.
@@ -193,7 +193,7 @@ pub struct Sway {
 /// Additional mode appended to those of a head.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AddedMode {
-    /// Angular frequency [rad/s].
+    /// Angular frequency of the added mode [rad/s].
     pub frequency: f64,
     /// Radial mode shape at s stations, positive outwards [kg^-1/2].
     pub radial: Vec<f64>,

@@ -1,15 +1,15 @@
 //! Generalised forces, inertia, energies, and the powers that the energy balance integrates.
 //!
 //! The equations of motion are `M(q) a = Q(q, v, t)`; this module computes `Q` and `M a`.
-use crate::element::impact::By;
-use crate::element::plane::{PLANE_PULL, PLANE_UNITS};
-use crate::linear::Entry;
+use crate::element::impact::DerivativeVariable;
+use crate::element::plane::{PLANE_COEFFICIENTS, PRELOAD_INDEX};
+use crate::linear::MatrixEntry;
 use crate::math::elementary::sin_cos;
-use crate::math::spline::sum::Sum;
+use crate::math::spline::sum::WeightedSplines;
 use crate::model::chain::parts::Joints;
 use crate::model::chain::state::ChainState;
-use crate::model::contact::{Bend, Surface};
-use crate::model::hook::Hooks;
+use crate::model::contact::{Deflection, Surface};
+use crate::model::extension::Extensions;
 use crate::model::instant::Instant;
 use crate::model::machine::Machine;
 use crate::model::scratch::Scratch;
@@ -28,18 +28,18 @@ type V3 = Vector3<f64>;
 )]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Terms {
-    /// Weights of and loads on the rigid bodies, elastic and damping forces of the head's modes, and forces
-    /// added by effects.
+    /// Whether to include weights of and loads on the rigid bodies, elastic and damping forces of the head's
+    /// modes, and forces added by effects.
     pub(crate) rigid: bool,
-    /// Weights of the cylinders and their velocity-dependent inertia terms.
+    /// Whether to include the weights of the cylinders and their velocity-dependent inertia terms.
     pub(crate) weights: bool,
-    /// Joints at the ends of the ropes only.
+    /// Whether to include the joints at the ends of the ropes, without the joints between cylinders.
     pub(crate) ends: bool,
-    /// All joints, including the axial laws of effects.
+    /// Whether to include all rope joints together with the axial laws that effects add to them.
     pub(crate) joints: bool,
-    /// Axial laws of effects only, without the joints.
+    /// Whether to include the axial laws that effects add to the rope joints, without the joints themselves.
     pub(crate) pulls: bool,
-    /// Contact with the back head (first) and with the front head (second).
+    /// Whether to include the rope's contact with the back head (first) and with the front head (second).
     pub(crate) contact: [bool; 2],
 }
 
@@ -82,7 +82,7 @@ impl Machine {
         let modal = self.layout.beam() + 1..;
         let (q, v) = (&q[modal.clone()], &v[modal]);
         for (face, deflection) in self.faces.iter().zip(&mut scratch.deflection) {
-            deflection.weigh(&face.radial, q, v);
+            deflection.assemble(&face.radial, q, v);
         }
     }
 
@@ -141,27 +141,27 @@ impl Machine {
             }
         }
         if terms.rigid {
-            self.hooks.add_forces(at, force);
+            self.extensions.add_forces(at, force);
         }
     }
 
-    /// Computes into `force` the generalised forces of hooks that are not part of this machine, at the poses
-    /// in `scratch`. Valid for axial laws without memory.
+    /// Computes into `force` the generalised forces of effect extensions that are not part of this machine, at the
+    /// poses in `scratch`. Valid for axial laws without memory.
     pub(super) fn forces_of(
         &self,
-        hooks: &Hooks,
+        extensions: &Extensions,
         at: &Instant<'_>,
-        (scratch, units): (&Scratch, &[[f64; PLANE_UNITS]]),
+        (scratch, units): (&Scratch, &[[f64; PLANE_COEFFICIENTS]]),
         force: &mut [f64],
     ) {
         force.fill(0.0);
-        hooks.add_forces(at, force);
+        extensions.add_forces(at, force);
         for (k, chain) in self.chains.iter().enumerate() {
-            let axial = self.axial(hooks, k, at);
+            let axial = self.axial(extensions, k, at);
             let uniform = axial.and_then(|laws| laws.uniform());
             if let (Some(pull), Some(units)) = (uniform, units.get(chain.range())) {
                 for (force, units) in force[chain.range()].iter_mut().zip(units) {
-                    *force += pull * units[PLANE_PULL];
+                    *force += pull * units[PRELOAD_INDEX];
                 }
             } else if axial.is_some() {
                 let joints = Joints {
@@ -173,12 +173,13 @@ impl Machine {
         }
     }
 
-    /// Computes into `force` the derivative of the contact forces on the selected heads with respect to `by`,
-    /// using the contact points in `scratch` that are in compression.
+    /// Computes into `force` the derivative of the contact forces on the selected heads with respect to
+    /// contact stiffness, contact damping or penetration, as `by` states, using the contact points in
+    /// `scratch` that are in compression.
     pub(super) fn contact_by(
         &self,
         at: &Instant<'_>,
-        (by, heads): (By, [bool; 2]),
+        (by, heads): (DerivativeVariable, [bool; 2]),
         scratch: &mut Scratch,
         force: &mut [f64],
     ) {
@@ -189,8 +190,10 @@ impl Machine {
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
             let (blocks, border) = force.split_at_mut(self.layout.beam());
             let state = &mut scratch.chains[k];
-            state.points.vary(&at.ropes.contact, by);
-            chain.add_pressed(&surface, state, blocks, border);
+            state
+                .points
+                .replace_forces_by_derivatives(&at.ropes.contact, by);
+            chain.add_evaluated_contact(&surface, state, blocks, border);
         }
     }
 
@@ -292,26 +295,28 @@ impl Machine {
         chain: usize,
         q: &'a [f64],
         v: &'a [f64],
-        deflection: &'a [Sum],
+        deflection: &'a [WeightedSplines],
     ) -> Surface<'a> {
         let beam = self.layout.beam();
         let face = self.faces.get(chain);
-        let bend = face.zip(deflection.get(chain)).map(|(face, sum)| Bend {
-            shapes: &face.radial,
-            sum,
-            modal_rate: &v[beam + 1..],
-        });
+        let bend = face
+            .zip(deflection.get(chain))
+            .map(|(face, sum)| Deflection {
+                shapes: &face.radial,
+                sum,
+                modal_rate: &v[beam + 1..],
+            });
         let bend = bend.filter(|_| self.layout.modes > 0);
         let mut surface = Surface::new(self.arc(chain), [q[beam], v[beam]], bend);
         if face.is_some() {
-            surface.profile = self.hooks.profile();
-            surface.reach += self.hooks.bulge();
+            surface.profile = self.extensions.profile();
+            surface.reach += self.extensions.extra_reach();
         }
         surface
     }
 
     /// Subtracts the inertia forces: `out -= M(q) a`.
-    pub(super) fn subtract_inertia<T: Entry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
+    pub(super) fn subtract_inertia<T: MatrixEntry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
         let d = &self.description;
         let rod = self.layout.rod();
         out[rod] -= a[rod] * self.rod_inertia();
@@ -369,7 +374,7 @@ impl Machine {
             let rate = v[self.layout.mode(k)];
             dissipated += 2.0 * head.damping_ratio * head.frequencies[k] * rate * rate;
         }
-        dissipated += self.hooks.lost(at);
+        dissipated += self.extensions.lost(at);
         Powers {
             input: pin.dot(&at.drive.pin[1]),
             output: at.drive.load * v[self.layout.suspension()],
@@ -381,7 +386,7 @@ impl Machine {
     pub(crate) fn touch(&self, at: &Instant<'_>, scratch: &mut Scratch) {
         for (k, chain) in self.chains.iter().enumerate() {
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
-            chain.touch(&surface, &at.ropes.contact, &mut scratch.chains[k]);
+            chain.evaluate_contact(&surface, &at.ropes.contact, &mut scratch.chains[k]);
         }
     }
 
@@ -416,19 +421,19 @@ impl Machine {
                 &scratch.chains[k],
             );
         }
-        sum + self.hooks.energy(at)
+        sum + self.extensions.energy(at)
     }
 
-    /// Returns the part of the potential at rest, added by effects, that is not stored energy \[J\].
+    /// Returns the static potential of the effects' forces minus the energy that they store \[J\].
     pub(crate) fn potential_beyond_energy(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
-        if self.hooks.is_empty() {
+        if self.extensions.is_empty() {
             return 0.0;
         }
         let chains = self.chains.iter().zip(&scratch.chains).enumerate();
         let along: f64 = chains
-            .map(|(k, (chain, state))| chain.potential_beyond_energy(&self.joints(k, at), state))
+            .map(|(k, (chain, state))| chain.non_elastic_potential(&self.joints(k, at), state))
             .sum();
-        along + self.hooks.potential_beyond_energy(at)
+        along + self.extensions.potential_beyond_energy(at)
     }
 
     fn kinetic(&self, at: &Instant<'_>) -> f64 {

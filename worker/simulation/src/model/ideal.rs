@@ -28,7 +28,8 @@ impl Machine {
         [self.bottom.beam, highest]
     }
 
-    /// Returns the inextensible mechanism with the given effective back-arc radius and path length.
+    /// Returns the machine's inextensible mechanism, given its effective back-arc radius \[m\] and its length
+    /// from crank pin to anchor along rod and rope \[m\].
     pub fn mechanism(&self, radius: f64, length: f64) -> Mechanism {
         Mechanism {
             crank: self.description.crank,
@@ -48,7 +49,7 @@ impl Machine {
 
     /// Returns the state of crank and load at time `t` under a drive.
     pub fn drive_state(&self, drive: &Drive, t: f64) -> DriveState {
-        let [turn, rate, acceleration] = self.hooks.turn(drive.turn(t));
+        let [turn, rate, acceleration] = self.extensions.turn(drive.turn(t));
         let crank = &self.description.crank;
         let angle = self.bottom.pin + crank.sense * turn;
         let (w, dw) = (crank.sense * rate, crank.sense * acceleration);

@@ -1,27 +1,27 @@
 //! Equations of motion of a machine with the ropes and the drive of one individual.
 use crate::drive::{Drive, DriveState};
-use crate::element::impact::By;
-use crate::element::plane::PLANE_UNITS;
-use crate::linear::{Bordered, Entry};
+use crate::element::impact::DerivativeVariable;
+use crate::element::plane::PLANE_COEFFICIENTS;
+use crate::linear::{Bordered, MatrixEntry};
 use crate::math::elementary::sin_cos;
+use crate::model::extension::Extensions;
 use crate::model::forces::Terms;
-use crate::model::hook::Hooks;
 use crate::model::instant::Instant;
 use crate::model::machine::Machine;
 use crate::model::ropes::Ropes;
 use crate::model::scratch::Scratch;
 use crate::norm::{ANGLE, LENGTH, MODAL, cylinders_error, cylinders_newton, square, worst};
-use crate::system::{Equations, Loaded, Loads, Powers, Shift, State, StateRef, Static};
+use crate::system::{Equations, LoadedState, Loads, Powers, State, StateRef, StateShift, Static};
 use nalgebra::{Vector2, Vector3};
 
 /// Machine, ropes and drive of one individual, with the loads of the last evaluation.
 #[derive(Debug)]
-pub struct Individual<'a> {
-    /// The machine.
+pub struct RopeMachine<'a> {
+    /// Machine that the individual's ropes and drive are combined with, shared by all individuals.
     pub machine: &'a Machine,
     /// The individual's ropes.
     pub ropes: Ropes,
-    /// Crank and load over time.
+    /// Motion of the crank and load at the suspension point over time.
     pub drive: Drive,
     /// Poses and loads of the last evaluation.
     pub scratch: Scratch,
@@ -29,7 +29,7 @@ pub struct Individual<'a> {
     at: (f64, DriveState),
 }
 
-impl<'a> Individual<'a> {
+impl<'a> RopeMachine<'a> {
     /// Combines machine, ropes and drive, and allocates the buffers.
     pub fn new(machine: &'a Machine, ropes: Ropes, drive: Drive) -> Self {
         Self::within(machine, ropes, drive, Scratch::new(machine))
@@ -74,8 +74,8 @@ impl<'a> Individual<'a> {
         instant(&self.ropes, &self.at.1, at)
     }
 
-    /// Scales the load at the suspension point by a share from now on.
-    pub fn share_load(&mut self, share: f64) {
+    /// Multiplies the load at the suspension point by a share for all later evaluations.
+    pub fn scale_load(&mut self, share: f64) {
         self.load_share = share;
         self.at.0 = f64::NAN;
     }
@@ -176,33 +176,38 @@ impl<'a> Individual<'a> {
             .posed_forces(&instant, terms, &mut self.scratch, force);
     }
 
-    /// Computes the generalised forces of hooks that are not part of this machine, using the poses of the
+    /// Computes the generalised forces of extensions that are not part of this machine, using the poses of the
     /// last evaluation. `units` are the result of [`Self::joint_units`], or empty.
     pub(crate) fn forces_of(
         &mut self,
-        hooks: &Hooks,
+        extensions: &Extensions,
         at: StateRef<'_>,
-        units: &[[f64; PLANE_UNITS]],
+        units: &[[f64; PLANE_COEFFICIENTS]],
         force: &mut [f64],
     ) {
         self.move_to(at.t);
         let instant = instant(&self.ropes, &self.at.1, at);
         self.machine
-            .forces_of(hooks, &instant, (&self.scratch, units), force);
+            .forces_of(extensions, &instant, (&self.scratch, units), force);
     }
 
     /// Computes the generalised forces of all joints between cylinders per unit of each joint coefficient, at
     /// the poses of the last evaluation in the plane; zeros for motion in space.
-    pub(crate) fn joint_units(&self, units: &mut [[f64; PLANE_UNITS]]) {
-        units.fill([0.0; PLANE_UNITS]);
+    pub(crate) fn joint_units(&self, units: &mut [[f64; PLANE_COEFFICIENTS]]) {
+        units.fill([0.0; PLANE_COEFFICIENTS]);
         for (chain, state) in self.machine.chains.iter().zip(&self.scratch.chains) {
             chain.add_plane_units(state, units);
         }
     }
 
-    /// Computes the derivative of the contact forces on the selected heads, at the contact points of the last
-    /// evaluation.
-    pub(crate) fn contact_by(&mut self, at: StateRef<'_>, by: (By, [bool; 2]), force: &mut [f64]) {
+    /// Computes the derivative of the contact forces on the selected heads with respect to a contact
+    /// quantity, at the contact points of the last evaluation.
+    pub(crate) fn contact_by(
+        &mut self,
+        at: StateRef<'_>,
+        by: (DerivativeVariable, [bool; 2]),
+        force: &mut [f64],
+    ) {
         self.move_to(at.t);
         let instant = instant(&self.ropes, &self.at.1, at);
         self.machine
@@ -210,8 +215,8 @@ impl<'a> Individual<'a> {
     }
 
     /// Updates the memory of axial laws from an accepted state.
-    pub fn remember(&mut self, state: &State) {
-        if !self.machine.hooks.has_axial() {
+    pub fn update_memory(&mut self, state: &State) {
+        if !self.machine.extensions.has_axial() {
             return;
         }
         self.move_to(state.t);
@@ -219,7 +224,7 @@ impl<'a> Individual<'a> {
         let at = instant(&self.ropes, &self.at.1, state.motion());
         for (k, chain) in self.machine.chains.iter().enumerate() {
             let joints = self.machine.joints(k, &at);
-            chain.remember(&joints, &mut self.scratch.chains[k]);
+            chain.update_memory(&joints, &mut self.scratch.chains[k]);
         }
     }
 
@@ -236,13 +241,13 @@ impl<'a> Individual<'a> {
 /// Individual whose loads on the back head are up to date at a state, as required for stress recovery.
 #[derive(Debug)]
 pub struct BackHeadLoads<'s, 'a> {
-    individual: &'s Individual<'a>,
+    individual: &'s RopeMachine<'a>,
     at: StateRef<'s>,
 }
 
 impl<'s, 'a> BackHeadLoads<'s, 'a> {
     /// Wraps a state at which all loads have been evaluated.
-    pub fn of(loads: &'s Loads<'_, 's, Individual<'a>>) -> Self {
+    pub fn of(loads: &'s Loads<'_, 's, RopeMachine<'a>>) -> Self {
         Self {
             individual: loads.equations(),
             at: loads.state(),
@@ -250,7 +255,7 @@ impl<'s, 'a> BackHeadLoads<'s, 'a> {
     }
 
     /// Returns the individual.
-    pub const fn individual(&self) -> &'s Individual<'a> {
+    pub const fn individual(&self) -> &'s RopeMachine<'a> {
         self.individual
     }
 
@@ -269,7 +274,7 @@ const fn instant<'s>(ropes: &'s Ropes, drive: &'s DriveState, at: StateRef<'s>) 
     }
 }
 
-impl Equations for Individual<'_> {
+impl Equations for RopeMachine<'_> {
     fn matrix(&self) -> Bordered {
         self.machine.layout.matrix()
     }
@@ -280,22 +285,28 @@ impl Equations for Individual<'_> {
         self.machine.forces(&instant, &mut self.scratch, force);
     }
 
-    fn subtract_inertia<T: Entry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
+    fn subtract_inertia<T: MatrixEntry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
         self.machine.subtract_inertia(q, a, out);
     }
 
-    fn tangent(&self, at: Loaded<'_>, shift: Shift, matrix: &mut Bordered) {
+    fn tangent(&self, at: LoadedState<'_>, shift: StateShift, matrix: &mut Bordered) {
         let instant = self.instant(at.state());
         self.machine.tangent(&instant, shift, &self.scratch, matrix);
     }
 
-    fn tangents(&self, at: Loaded<'_>, shift: Shift, matrices: [&mut Bordered; 2]) {
+    fn tangents(&self, at: LoadedState<'_>, shift: StateShift, matrices: [&mut Bordered; 2]) {
         let instant = self.instant(at.state());
         self.machine
             .tangents(&instant, shift, &self.scratch, matrices);
     }
 
-    fn add_spin_tangent(&self, at: StateRef<'_>, a: &[f64], damping: f64, matrix: &mut Bordered) {
+    fn add_velocity_inertia_tangent(
+        &self,
+        at: StateRef<'_>,
+        a: &[f64],
+        damping: f64,
+        matrix: &mut Bordered,
+    ) {
         for chain in &self.machine.chains {
             chain.add_spin_tangent(at, a, damping, matrix);
         }
@@ -333,14 +344,14 @@ impl Equations for Individual<'_> {
         })
     }
 
-    fn powers(&self, at: Loaded<'_>, a: &[f64]) -> Powers {
+    fn powers(&self, at: LoadedState<'_>, a: &[f64]) -> Powers {
         let instant = self.instant(at.state());
         self.machine.powers(&instant, a, &self.scratch)
     }
 }
 
-impl Static for Individual<'_> {
-    fn potential(&self, at: Loaded<'_>) -> f64 {
+impl Static for RopeMachine<'_> {
+    fn potential(&self, at: LoadedState<'_>) -> f64 {
         let at = self.instant(at.state());
         self.machine.potential(&at, &self.scratch)
             + self.machine.potential_beyond_energy(&at, &self.scratch)

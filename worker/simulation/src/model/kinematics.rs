@@ -17,7 +17,7 @@ pub struct Position {
     pub beam: f64,
     /// Tangent point on the back arc, in the beam frame \[rad\].
     pub tangent: f64,
-    /// Effective back arm \[m\].
+    /// Effective lever arm of the back rope about the pivot, `h` \[m\].
     pub arm: f64,
     /// Derivative of the beam angle with respect to the pin angle \[1\].
     pub ratio: f64,

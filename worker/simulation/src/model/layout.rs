@@ -35,7 +35,7 @@ impl Motion {
         }
     }
 
-    /// Returns which of the six coordinates a cylinder has, in their order.
+    /// Returns for each of the six spatial coordinates whether a cylinder has it in this set.
     pub const fn kept(self) -> &'static [usize] {
         match self {
             Self::Plane => &[0, 1, 5],
@@ -67,8 +67,8 @@ impl Layout {
         self.ropes > 1
     }
 
-    /// Returns the number of blocks of each chain: its cylinders, and for a single rope the rigid body at its
-    /// base end.
+    /// Returns the number of matrix blocks of each rope chain: its cylinders and, for a single rope, the
+    /// rigid body at its base end.
     pub fn chains(&self) -> Vec<usize> {
         if self.twins() {
             vec![self.back, self.back, self.front, self.front]
@@ -100,7 +100,7 @@ impl Layout {
         }
     }
 
-    /// Returns the number of blocks.
+    /// Returns the number of blocks (cylinders and their base bodies) in the state vector before the border.
     pub const fn blocks(&self) -> usize {
         if self.twins() {
             2 * (self.back + self.front)
@@ -128,8 +128,8 @@ impl Layout {
         }
     }
 
-    /// Returns whether an entry is locked: padding in the block of rod or suspension, without a degree of
-    /// freedom.
+    /// Returns whether a coordinate is locked: an unused entry in the block of rod or suspension, without a
+    /// degree of freedom.
     pub fn is_locked(&self, index: usize) -> bool {
         let width = self.motion.width();
         let base = self

@@ -3,13 +3,13 @@
 use crate::element::bushing::Marker;
 use crate::math::elementary::sin_cos;
 use crate::math::rotation::{about_z, skew};
-use crate::model::chain::parts::{Held, Joints};
+use crate::model::chain::parts::{EndJoint, Joints};
 use crate::model::description::Arc;
-use crate::model::hook::Hooks;
-use crate::model::hook::axial::{AxialLaws, Carrier};
+use crate::model::extension::Extensions;
+use crate::model::extension::axial::{AxialLaws, RopeProperties};
 use crate::model::instant::Instant;
 use crate::model::machine::Machine;
-use crate::model::strand::{BACK, Face, Strand};
+use crate::model::strand::{BACK, HeadResponse, Strand};
 use nalgebra::{Matrix3, Vector3};
 
 type V3 = Vector3<f64>;
@@ -34,47 +34,47 @@ impl Machine {
     pub(crate) fn joints<'a>(&'a self, chain: usize, at: &Instant<'a>) -> Joints<'a> {
         Joints {
             inner: &at.ropes.joint,
-            base: Some(Held {
+            base: Some(EndJoint {
                 marker: self.base_marker(&self.strands[chain], at),
                 law: &at.ropes.base,
                 pinned: self.layout.twins(),
             }),
-            head: Some(Held {
+            head: Some(EndJoint {
                 marker: self.anchor_marker(chain, at),
                 law: &at.ropes.anchor,
                 pinned: false,
             }),
-            axial: self.axial(&self.hooks, chain, at),
+            axial: self.axial(&self.extensions, chain, at),
         }
     }
 
     /// Returns the axial laws that effects have added to a chain; `None` if there are none.
     pub(crate) fn axial<'a>(
         &self,
-        hooks: &'a Hooks,
+        extensions: &'a Extensions,
         chain: usize,
         at: &Instant<'a>,
     ) -> Option<AxialLaws<'a>> {
         let pitch = self.description.rope.pitch;
-        let share = self.share();
+        let share = self.rope_share();
         // laws along a rope are of the pair, as its coefficients are
-        let carrier = Carrier {
+        let carrier = RopeProperties {
             stiffness: at.ropes.joint.stiffness[0] * pitch / share,
             share,
             length: pitch,
         };
-        hooks.axial(self.strands[chain].rope, at.drive, carrier)
+        extensions.axial(self.strands[chain].rope, at.drive, carrier)
     }
 
-    /// Returns the marker of a chain's base joint, on the crossbeam end of the rod or on the suspension
-    /// point.
+    /// Returns the attachment point (marker) of a chain's base joint, on the crossbeam end of the rod or at
+    /// the suspension point.
     fn base_marker(&self, strand: &Strand, at: &Instant<'_>) -> Marker {
         let (q, v) = (at.q, at.v);
         if strand.rope == BACK {
             let rod = self.layout.rod();
             let (s, c) = sin_cos(q[rod]);
             let [pin, pin_velocity, _] = at.drive.pin;
-            let along = V3::new(c, s, 0.0) * (self.description.rod.length + strand.longer);
+            let along = V3::new(c, s, 0.0) * (self.description.rod.length + strand.excess_length);
             return Marker {
                 p: V3::new(pin.x, pin.y, 0.0),
                 rho: along + V3::new(0.0, 0.0, strand.z),
@@ -86,7 +86,7 @@ impl Machine {
         let height = self.layout.suspension();
         Marker {
             p: V3::new(self.suspension_x, q[height], 0.0),
-            rho: V3::new(0.0, strand.longer, strand.z),
+            rho: V3::new(0.0, strand.excess_length, strand.z),
             v: V3::new(0.0, v[height], 0.0),
             w: V3::zeros(),
             R: about_z(1.0, 0.0),
@@ -143,7 +143,7 @@ impl Machine {
     /// Returns the rotation of a rope's fixed end caused by the modes; `None` for a single rope.
     pub(crate) fn end_rotation(
         &self,
-        face: &Face,
+        face: &HeadResponse,
         anchor: f64,
         at: &Instant<'_>,
     ) -> Option<EndRotation> {
@@ -170,13 +170,14 @@ impl Machine {
 pub(crate) struct EndRotation {
     tangent: V3,
     radial: V3,
-    /// Rotation angles about the tangent and about the radius \[rad\].
+    /// Rotation angles of the rope's end about the tangent and about the radius of the arc \[rad\].
     angles: [f64; 2],
     rates: [f64; 2],
 }
 
 impl EndRotation {
-    /// Returns the rotation matrix `R_t R_r`.
+    /// Returns the rotation matrix `R_t R_r` of the rope's end: about the tangent `t` after about the radius
+    /// `r`.
     fn rotation(&self) -> M3 {
         let about = |axis: &V3, angle: f64| {
             let (s, c) = sin_cos(angle);
@@ -197,13 +198,14 @@ impl EndRotation {
         t * self.rates[0] + r * self.rates[1]
     }
 
-    /// Returns the derivative of the second rotation axis with respect to the first angle.
+    /// Returns the derivative of the second rotation axis (the rotated radius) with respect to the first
+    /// angle (about the tangent).
     pub(crate) fn axis_by_tilt(&self) -> V3 {
         let (s, c) = sin_cos(self.angles[0]);
         -self.radial * s - V3::z() * c
     }
 
-    /// Returns the rate of the second angle [rad/s].
+    /// Returns the rate of the second rotation angle, about the radius [rad/s].
     pub(crate) const fn second_rate(&self) -> f64 {
         self.rates[1]
     }

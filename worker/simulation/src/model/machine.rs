@@ -3,11 +3,11 @@ use crate::math::spline::Splines;
 use crate::model::chain::parts::Chain;
 use crate::model::cycle::Cycle;
 use crate::model::description::{AddedMode, Description, RopeLaw};
-use crate::model::hook::{Effect, Hooks, Site};
+use crate::model::extension::{Effect, Extensions, Site};
 use crate::model::kinematics::{Mechanism, Position};
 use crate::model::layout::{Layout, Motion};
 use crate::model::ropes::Ropes;
-use crate::model::strand::{BACK, Face, Strand, faces, strands};
+use crate::model::strand::{BACK, HeadResponse, Strand, faces, strands};
 use crate::model::valid::{InvalidDescription, check};
 
 /// Machine under one working condition; immutable and shared by all individuals.
@@ -28,11 +28,12 @@ pub struct Machine {
     /// Rope chains: those of the back head, then those of the front head. `strands` gives their positions.
     pub(crate) chains: Vec<Chain>,
     pub(crate) strands: Vec<Strand>,
-    /// Back-head mode shapes for each back rope.
-    pub(crate) faces: Vec<Face>,
-    /// Hooks added by effects.
-    pub(crate) hooks: Hooks,
-    /// Effects, and the cycle of the ideal mechanism that they refer to.
+    /// Elastic response of the back head (mode shapes, stress influence lines) for each back rope.
+    pub(crate) faces: Vec<HeadResponse>,
+    /// Extensions added by effects.
+    pub(crate) extensions: Extensions,
+    /// Effects of the machine, and the curves of the ideal mechanism that they refer to; `None` without
+    /// effects.
     effects: Option<(Vec<std::sync::Arc<dyn Effect>>, Cycle)>,
 }
 
@@ -41,7 +42,7 @@ pub struct Machine {
     reason = "one file per term of the equations"
 )]
 impl Machine {
-    /// Checks a description and derives the constants.
+    /// Checks a machine description and derives the constants of the model.
     ///
     /// `modes` is the number of head modes to keep.
     ///
@@ -84,32 +85,33 @@ impl Machine {
         Ok(machine)
     }
 
-    /// Installs the hooks of the effects again; required after a change of the layout, since hooks hold
+    /// Installs the extensions of the effects again; required after a change of the layout, since extensions hold
     /// coordinate indices.
     fn install_effects(&mut self) {
-        let mut hooks = Hooks::default();
+        let mut extensions = Extensions::default();
         if let Some((effects, cycle)) = &self.effects {
             let site = self.site(cycle);
             for effect in effects {
-                effect.install(&site, &mut hooks);
+                effect.install(&site, &mut extensions);
             }
         }
-        self.hooks = hooks;
+        self.extensions = extensions;
     }
 
-    /// Returns the hooks that an effect would add to the machine in its present form.
+    /// Returns the extensions (forces, laws, readings) that an effect would add to the machine, without adding
+    /// them.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub(crate) fn pieces_of(&self, effect: &dyn Effect) -> Result<Hooks, InvalidDescription> {
+    pub(crate) fn pieces_of(&self, effect: &dyn Effect) -> Result<Extensions, InvalidDescription> {
         let d = &self.description;
         let own = match &self.effects {
             Some((_, cycle)) => cycle.clone(),
             None => Cycle::new(d, &Mechanism::of(d), &self.bottom)?,
         };
-        let mut hooks = Hooks::default();
-        effect.install(&self.site(&own), &mut hooks);
-        Ok(hooks)
+        let mut extensions = Extensions::default();
+        effect.install(&self.site(&own), &mut extensions);
+        Ok(extensions)
     }
 
     fn site<'a>(&'a self, cycle: &'a Cycle) -> Site<'a> {
@@ -168,7 +170,7 @@ impl Machine {
             chains: strands.iter().enumerate().map(chain).collect(),
             faces: faces(d, &layout),
             strands,
-            hooks: Hooks::default(),
+            extensions: Extensions::default(),
             effects: None,
             description,
         }
@@ -189,7 +191,7 @@ impl Machine {
     }
 
     /// Returns the share of one rope in the properties that a description states for all ropes on a head.
-    pub(crate) fn share(&self) -> f64 {
+    pub(crate) fn rope_share(&self) -> f64 {
         1.0 / self.layout.ropes as f64
     }
 
@@ -198,14 +200,15 @@ impl Machine {
         &self.chains[if rope == BACK { 0 } else { self.layout.ropes }]
     }
 
-    /// Returns an individual's coefficients scaled to the pitch of the chains and to one of the ropes on a
-    /// head.
+    /// Returns the coefficients of an individual's ropes, scaled to the cylinder pitch and to one of the
+    /// ropes on a head.
     pub fn ropes(&self, law: &RopeLaw) -> Ropes {
         Ropes::new(law, &self.description.rope, self.layout.ropes)
     }
 }
 
-/// Appends the out-of-plane modes to the in-plane modes that are kept, and returns their number.
+/// Appends the out-of-plane head modes to the in-plane modes that are kept, and returns the number of
+/// out-of-plane modes.
 fn join_families(d: &mut Description, modes: usize) -> usize {
     let Some(twins) = &d.twins else { return 0 };
     d.head.keep(modes);

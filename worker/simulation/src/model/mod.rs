@@ -1,12 +1,12 @@
-//! Model of the machine: description, coordinate layout, forces, inertia, tangent matrix, and the hooks of
+//! Model of the machine: description, coordinate layout, forces, inertia, tangent matrix, and the extensions of
 //! effects.
 mod anchor;
 pub mod chain;
 pub mod contact;
 pub(crate) mod cycle;
 pub mod description;
+pub(crate) mod extension;
 pub(crate) mod forces;
-pub(crate) mod hook;
 mod ideal;
 pub(crate) mod individual;
 pub(crate) mod instant;
@@ -23,7 +23,7 @@ mod tangent;
 pub(crate) mod tests;
 mod valid;
 
-pub use individual::{BackHeadLoads, Individual};
+pub use individual::{BackHeadLoads, RopeMachine};
 pub use instant::Instant;
 pub use machine::Machine;
 pub use ropes::Ropes;

@@ -14,19 +14,19 @@ type M3 = Matrix3<f64>;
 /// Pose and velocity of a cylinder in space, with derivatives that several forces share.
 #[derive(Clone, Copy, Debug)]
 pub struct Pose {
-    /// Centre \[m\].
+    /// Position of the cylinder's centre \[m\].
     pub p: V3,
     /// Velocity of the centre [m/s].
     pub v: V3,
-    /// Orientation; column 0 is the axis.
+    /// Rotation matrix of the cylinder (`R_WB`); column 0 is its axis.
     pub R: M3,
     /// Angular velocity in W [rad/s].
     pub w: V3,
-    /// Rates of the angles [rad/s].
+    /// Rates of the cylinder's three angles [rad/s].
     pub rate: V3,
     /// Derivatives of the axis with respect to theta and psi.
     pub axis_by: [V3; 2],
-    /// Axis `c` about which theta rotates.
+    /// Direction `c = Rz(psi) e_y`, about which the angle theta rotates.
     pub c: V3,
     /// Derivative of `c` with respect to psi.
     pub c_by_psi: V3,
@@ -118,7 +118,7 @@ impl Pose {
 /// Pose and velocity of a cylinder that moves in the machine's plane.
 #[derive(Clone, Copy, Debug)]
 pub struct PlanePose {
-    /// Centre \[m\].
+    /// Position of the cylinder's centre \[m\].
     pub p: V2,
     /// Velocity of the centre [m/s].
     pub v: V2,
@@ -126,12 +126,13 @@ pub struct PlanePose {
     pub axis: V2,
     /// Angle of the axis from +x \[rad\].
     pub angle: f64,
-    /// Rate of the angle [rad/s].
+    /// Rate of the cylinder's angle [rad/s].
     pub rate: f64,
 }
 
 impl PlanePose {
-    /// Builds a pose from the three coordinates, their rates, and the axis direction of the angle.
+    /// Builds a plane pose from the cylinder's three coordinates, their rates, and the axis direction at that
+    /// angle.
     #[inline]
     pub fn new(q: &[f64], v: &[f64], axis: V2) -> Self {
         Self {
@@ -164,7 +165,7 @@ impl PlanePose {
 /// Kinematic quantities of a cylinder needed for contact in the machine's plane; the axis depends on the last
 /// `A` coordinates.
 pub(crate) trait InPlane<const A: usize> {
-    /// Returns the centre \[m\].
+    /// Returns the position of the cylinder's centre in the plane \[m\].
     fn center(&self) -> V2;
     /// Returns the velocity of the centre [m/s].
     fn velocity(&self) -> V2;

@@ -32,8 +32,8 @@ impl Ropes {
         Self::of(joint, contact, rope, ropes)
     }
 
-    /// Builds the coefficients from those of a joint between two cylinders and of a contact; the end joints
-    /// are derived from the inner joint.
+    /// Builds the coefficients of all ropes from the laws of a joint between two cylinders and of a contact;
+    /// the laws of the end joints are derived from the inner joint.
     pub(crate) fn of(joint: Bushing, contact: Impact, rope: &Rope, ropes: usize) -> Self {
         let anchor = joint.scaled(1.0 / rope.end_pitches);
         Self {

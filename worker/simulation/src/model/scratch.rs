@@ -1,5 +1,5 @@
 //! Buffers of one evaluation of a machine's forces: poses, joint loads, contact.
-use crate::math::spline::sum::Sum;
+use crate::math::spline::sum::WeightedSplines;
 use crate::model::chain::state::ChainState;
 use crate::model::machine::Machine;
 
@@ -9,7 +9,7 @@ pub struct Scratch {
     /// Poses and loads of the back chains, then of the front chains.
     pub chains: Vec<ChainState>,
     /// Deflection of the back head's arc under each back rope.
-    pub deflection: Vec<Sum>,
+    pub deflection: Vec<WeightedSplines>,
 }
 
 impl Scratch {
@@ -17,12 +17,12 @@ impl Scratch {
     pub fn new(machine: &Machine) -> Self {
         Self {
             chains: machine.chains.iter().map(ChainState::new).collect(),
-            deflection: vec![Sum::default(); machine.faces.len()],
+            deflection: vec![WeightedSplines::default(); machine.faces.len()],
         }
     }
 
     /// Returns the deepest penetration of a rope into a head \[m\].
-    pub(crate) fn deepest(&self) -> f64 {
+    pub(crate) fn max_penetration(&self) -> f64 {
         self.chains
             .iter()
             .fold(0.0, |deepest, chain| deepest.max(chain.deepest))

@@ -1,4 +1,5 @@
-//! Rope strands: their number and position, and the back-head mode shapes for each of them.
+//! Parallel ropes (strands) on each head: their number and position, and the back-head mode shapes for each
+//! of them.
 //!
 //! One rope on each head lies in the machine's plane. Twin ropes lie side by side at `z = +b` and `z = -b`
 //! (frame W), and their lengths may differ. **All coefficients, masses and inertias that a description states
@@ -7,7 +8,7 @@
 //!
 //! The head responds to equal loads of twins as to those of a single rope, by the modes that are symmetric
 //! about the plane, whose tables are means over the width of the rim. It responds to opposite loads of twins
-//! by the antisymmetric modes ([`Sway`]), whose tables hold at `z = +b`: at `z = -b` radial and tangential
+//! by the antisymmetric modes ([`AntisymmetricHead`]), whose tables hold at `z = +b`: at `z = -b` radial and tangential
 //! displacement have the opposite sign, the lateral displacement has the same sign. Hence `u_j = sum_sym q
 //! phi + j sum_anti q psi` for the rope at side `j = +1, -1`.
 //!
@@ -35,28 +36,28 @@ pub(crate) struct Strand {
     /// Out-of-plane position (z) \[m\].
     pub(crate) z: f64,
     /// Excess of the rope's length over its nominal length, inserted before the first cylinder \[m\].
-    pub(crate) longer: f64,
+    pub(crate) excess_length: f64,
 }
 
 /// Elastic response of the back head for one rope: mode shapes along the arc and at the anchor, and influence
 /// lines of gauge stress.
 #[derive(Clone, Debug)]
-pub(crate) struct Face {
+pub(crate) struct HeadResponse {
     /// Radial mode shapes along the arc, positive outwards.
     pub(crate) radial: Splines,
-    /// Motion of the rope's fixed end for each mode.
+    /// Motion of the rope's fixed end per unit of each mode.
     pub(crate) anchor: Vec<AnchorShape>,
     /// Gauge stress per unit of inward normal force along the arc, for each gauge.
     pub(crate) normal_influence: Splines,
     /// Gauge stress per unit of tangential force along the arc, for each gauge.
     pub(crate) tangential_influence: Splines,
     /// Gauge stress caused by out-of-plane loads at the fixed end; `None` for a single rope.
-    pub(crate) beside: Option<Beside>,
+    pub(crate) beside: Option<OutOfPlaneStress>,
 }
 
 /// Gauge stress per unit of out-of-plane force and moment at the fixed end of one of two ropes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Beside {
+pub(crate) struct OutOfPlaneStress {
     /// Gauge stress per unit of force along z [Pa/N].
     pub(crate) lateral: [f64; 4],
     /// Gauge stress per unit of moment about the tangent and about the radius [Pa/(N m)].
@@ -66,7 +67,7 @@ pub(crate) struct Beside {
 /// Motion of a rope's fixed end per unit of a modal coordinate, in the beam frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct AnchorShape {
-    /// Displacement along x, y and z.
+    /// Displacement of the rope's fixed end along x, y and z per unit of the modal coordinate.
     pub(crate) moves: [f64; 3],
     /// Rotation about the tangent and about the radius of the arc at the fixed end.
     pub(crate) turns: [f64; 2],
@@ -80,14 +81,14 @@ pub(super) fn strands(d: &Description) -> Vec<Strand> {
             rope,
             side: 0.0,
             z: 0.0,
-            longer: 0.0,
+            excess_length: 0.0,
         }],
         Some(twins) => [1.0, -1.0]
             .map(|side| Strand {
                 rope,
                 side,
                 z: side * twins.offset,
-                longer: -0.5 * side * twins.longer[rope],
+                excess_length: -0.5 * side * twins.longer[rope],
             })
             .to_vec(),
     };
@@ -96,12 +97,12 @@ pub(super) fn strands(d: &Description) -> Vec<Strand> {
 
 /// Returns the elastic response of the back head for each back rope: the in-plane modes of the description
 /// that are kept, followed by the out-of-plane modes.
-pub(super) fn faces(d: &Description, layout: &Layout) -> Vec<Face> {
+pub(super) fn faces(d: &Description, layout: &Layout) -> Vec<HeadResponse> {
     let back = strands(d).into_iter().filter(|strand| strand.rope == BACK);
     back.map(|strand| face(d, layout, strand.side)).collect()
 }
 
-fn face(d: &Description, layout: &Layout, side: f64) -> Face {
+fn face(d: &Description, layout: &Layout, side: f64) -> HeadResponse {
     let (head, anchor) = (&d.head, d.back_arc.anchor);
     let sway = d.twins.as_ref().map(|twins| (twins, &twins.sway));
     // the two families' curves of this rope
@@ -143,7 +144,7 @@ fn face(d: &Description, layout: &Layout, side: f64) -> Face {
         }
         Splines::natural(head.influence_start, head.influence_step, &lines)
     };
-    Face {
+    HeadResponse {
         anchor: (0..layout.modes).map(shape).collect(),
         normal_influence: influence(
             &head.normal_influence,
@@ -158,16 +159,17 @@ fn face(d: &Description, layout: &Layout, side: f64) -> Face {
     }
 }
 
-/// Computes the gauge stress of out-of-plane loads at a fixed end. A unit force along z on one rope equals
-/// half a newton on each rope; a moment equals a pair of opposite forces at the two ends of the clamp.
-fn beside(d: &Description, twins: &Twins) -> Beside {
+/// Computes the gauge stress per unit of out-of-plane load at the fixed end of one of two ropes. By
+/// antisymmetry, a unit force along z on one rope equals half a newton on each; a moment equals a pair of
+/// opposite forces at the two ends of the clamp.
+fn beside(d: &Description, twins: &Twins) -> OutOfPlaneStress {
     let at_anchor = |curves: &[Vec<f64>]| -> [f64; 4] {
         let lines = Splines::natural(d.head.influence_start, d.head.influence_step, curves);
         [0, 1, 2, 3].map(|gauge| lines.value(d.back_arc.anchor, gauge))
     };
     let arm = -0.5 / twins.offset;
     let sway = &twins.sway;
-    Beside {
+    OutOfPlaneStress {
         lateral: at_anchor(&sway.lateral_influence).map(|x| 0.5 * x),
         turning: [
             at_anchor(&sway.normal_influence).map(|x| arm * x),

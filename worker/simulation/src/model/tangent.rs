@@ -1,9 +1,9 @@
 //! Analytic iteration matrix `S = mass M - damping D - K` with `K = dQ/dq`, `D = dQ/dv`.
 //!
-//! The integrator chooses the [`Shift`], which elements do not depend on. The derivatives of the cylinders'
-//! velocity terms and of their inertia with respect to the angles are omitted: a cylinder's moment of inertia
-//! is 1e-6 kg m2, so the omission has no measurable effect on the convergence of Newton's method and none on
-//! its solution.
+//! The integrator chooses the factors `mass` and `damping` ([`Shift`]); the element tangents do not depend on
+//! them. The derivatives of the cylinders' velocity terms and of their inertia with respect to the angles are
+//! omitted: a cylinder's moment of inertia is 1e-6 kg m2, so the omission has no measurable effect on the
+//! convergence of Newton's method and none on its solution.
 use crate::element::bushing::LinkTangent;
 use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
@@ -14,7 +14,7 @@ use crate::model::machine::Machine;
 use crate::model::pose::Pose;
 use crate::model::scratch::Scratch;
 use crate::model::strand::BACK;
-use crate::state::Shift;
+use crate::state::StateShift;
 
 #[expect(
     clippy::multiple_inherent_impl,
@@ -25,7 +25,7 @@ impl Machine {
     pub(super) fn tangent(
         &self,
         at: &Instant<'_>,
-        shift: Shift,
+        shift: StateShift,
         scratch: &Scratch,
         matrix: &mut Bordered,
     ) {
@@ -40,7 +40,7 @@ impl Machine {
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
             chain.add_contact_tangent(&surface, &at.ropes.contact, state, damping, matrix);
         }
-        self.hooks.add_tangent(at, damping, matrix);
+        self.extensions.add_tangent(at, damping, matrix);
     }
 
     /// Computes `-K` into `stiffness` and `mass M - damping D - K` into `matrix`, in a single pass for chains
@@ -48,7 +48,7 @@ impl Machine {
     pub(super) fn tangents(
         &self,
         at: &Instant<'_>,
-        shift: Shift,
+        shift: StateShift,
         scratch: &Scratch,
         [stiffness, matrix]: [&mut Bordered; 2],
     ) {
@@ -58,26 +58,28 @@ impl Machine {
         for (k, chain) in self.chains.iter().enumerate() {
             let state = &scratch.chains[k];
             let joints = self.joints(k, at);
-            if !chain.add_joint_parts(&joints, state, gamma, stiffness, matrix) {
-                self.tangent(at, Shift::NONE, scratch, stiffness);
+            if !chain.add_joint_stiffness_and_tangent(&joints, state, gamma, stiffness, matrix) {
+                self.tangent(at, StateShift::NONE, scratch, stiffness);
                 self.tangent(at, shift, scratch, matrix);
                 return;
             }
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
             let on = (&surface, &at.ropes.contact);
-            chain.add_contact_parts(on, state, gamma, [stiffness, matrix]);
+            chain.add_contact_stiffness_and_tangent(on, state, gamma, [stiffness, matrix]);
             let both = &mut [(0.0, &mut *stiffness), (gamma, &mut *matrix)];
             self.end_tangents(k, at, scratch, both);
         }
-        for (Shift { mass, damping }, matrix) in [(Shift::NONE, stiffness), (shift, matrix)] {
+        for (StateShift { mass, damping }, matrix) in
+            [(StateShift::NONE, stiffness), (shift, matrix)]
+        {
             self.inertia_blocks(at.q, mass, matrix);
             self.rigid_tangent(at, damping, matrix);
-            self.hooks.add_tangent(at, damping, matrix);
+            self.extensions.add_tangent(at, damping, matrix);
         }
     }
 
-    /// Adds the tangent of a chain's end joints to each matrix. The number paired with a matrix is the factor
-    /// by which rates change with coordinates.
+    /// Adds the tangent of a chain's end joints to each matrix. The number paired with a matrix is the
+    /// derivative of the rates with respect to the coordinates in that matrix.
     fn end_tangents(
         &self,
         chain: usize,

@@ -1,8 +1,8 @@
-use super::{Individual, Instant, Machine, Scratch};
+use super::{Instant, Machine, RopeMachine, Scratch};
 use crate::drive::{Drive, DriveState};
 use crate::math::elementary::sin_cos;
 use crate::reference;
-use crate::system::{Shift, State, StateRef, System};
+use crate::system::{State, StateRef, StateShift, System};
 use nalgebra::Vector2;
 
 fn machine() -> Machine {
@@ -55,7 +55,7 @@ fn assert_tangent(machine: &Machine) {
     assert!(scratch.chains.iter().all(|chain| touching(&chain.contact)));
     for (mu, gamma) in [(0.0, 0.0), (0.0, 40.0), (1600.0, 40.0)] {
         let mut matrix = layout.matrix();
-        let shift = Shift {
+        let shift = StateShift {
             mass: mu,
             damping: gamma,
         };
@@ -95,8 +95,8 @@ pub(crate) fn free(machine: &Machine) -> impl Iterator<Item = usize> {
     (0..layout.len()).filter(move |&i| !layout.is_locked(i))
 }
 
-/// Returns the central difference of the forces along coordinate `i`, with its rate varied by `gamma` times
-/// the step.
+/// Returns the central difference of the generalised forces along coordinate `i`, whose rate changes by
+/// `gamma` times the coordinate's step.
 fn difference(machine: &Machine, at: &Instant<'_>, i: usize, gamma: f64) -> Vec<f64> {
     let h = 1e-7;
     let step = |h: f64| {
@@ -248,8 +248,8 @@ fn plane_and_space_agree() {
     assert_plane_is_space(&machine(), "");
 }
 
-/// Checks the property stated in [`plane_and_space_agree`] for a given machine, whose laws with memory have
-/// stored a previous state.
+/// Checks for a given machine, whose laws with memory have stored a previous state, that plane and space
+/// agree as described in [`plane_and_space_agree`].
 pub(crate) fn assert_plane_is_space(plane: &Machine, name: &str) {
     let space = plane.clone().in_space();
     let place = in_space(plane);
@@ -267,12 +267,12 @@ pub(crate) fn assert_plane_is_space(plane: &Machine, name: &str) {
             ramp: 1.0,
             speed: 0.5,
         };
-        let mut at = Individual::new(machine, machine.ropes(&reference::law()), drive);
+        let mut at = RopeMachine::new(machine, machine.ropes(&reference::law()), drive);
         let before = q.iter().map(|q| q * (1.0 + 1e-6)).collect();
-        at.remember(&State::at_rest(0.6, before));
+        at.update_memory(&State::at_rest(0.6, before));
         let mut force = vec![0.0; q.len()];
         let mut matrix = machine.layout.matrix();
-        let shift = Shift {
+        let shift = StateShift {
             mass: 1600.0,
             damping: 40.0,
         };

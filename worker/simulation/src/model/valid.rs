@@ -7,32 +7,33 @@ use crate::model::layout::MAX_MODES;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InvalidDescription {
-    /// Number that must be positive and finite, but is not.
+    /// Number in the description that must be positive and finite, but is not.
     #[error("{what} is {value}; it must be a positive number")]
     NotPositive {
-        /// Name of the number.
+        /// Name of the number that is not positive.
         what: &'static str,
         /// Value of the number, in SI units.
         value: f64,
     },
-    /// Table of the wrong size.
+    /// Table in the description with the wrong number of entries.
     #[error("{what}: {found} entries found, {expected} expected")]
     Shape {
         /// Name of the table.
         what: &'static str,
-        /// Number of entries found.
+        /// Number of entries found in the table.
         found: usize,
-        /// Number of entries expected.
+        /// Number of entries expected in the table.
         expected: usize,
     },
-    /// Quantity that exceeds the maximum that a simulation supports.
+    /// Quantity in the description (for example the number of head modes) above the maximum that a simulation
+    /// supports.
     #[error("{what}: {found} given, at most {most} can be simulated")]
     TooMany {
-        /// Name of the quantity.
+        /// Name of the quantity above its maximum.
         what: &'static str,
-        /// Number of entries found.
+        /// Value of the quantity found in the description.
         found: usize,
-        /// Maximum number of entries.
+        /// Maximum of the quantity that a simulation supports.
         most: usize,
     },
     /// Mechanism whose crank cannot make a full turn.

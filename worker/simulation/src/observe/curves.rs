@@ -30,7 +30,7 @@ pub struct Shape {
     pub sample: usize,
     /// Position of the crank pin \[m\].
     pub pin: [f64; 2],
-    /// Position of the rod's rope end \[m\].
+    /// Position of the crossbeam, where the rod meets the back rope, in W \[m\].
     pub crossbeam: [f64; 2],
     /// Beam angle \[rad\].
     pub beam: f64,

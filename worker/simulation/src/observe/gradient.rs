@@ -6,28 +6,28 @@
 //! points, plus the corresponding terms of the rope's end, of the modes and of the beam. Derivatives of the
 //! end's force are differences of one joint.
 use crate::math::elementary::sin_cos;
-use crate::model::chain::contact_point::{BORDER, FEW, Reached, each_reached};
+use crate::model::chain::contact_point::{BORDER, FEW, LoadedPoint, for_each_loaded_point};
 use crate::model::description::StressRecovery;
 use crate::model::layout::{MAX_MODES, Motion};
-use crate::model::{Individual, Machine};
+use crate::model::{Machine, RopeMachine};
 use crate::system::State;
 
-/// Values at the four gauges.
+/// Values of one quantity at the four gauges.
 type Each = [f64; 4];
 
 /// Derivatives of the stress at the four gauges with respect to state and contact law.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Gradient {
-    /// Nonzero derivatives: index of the coordinate, derivatives with respect to the coordinate and to its
-    /// rate \[Pa\] per unit.
+    /// Nonzero stress derivatives: index of the coordinate, derivatives with respect to that coordinate and
+    /// to its rate \[Pa\] per unit.
     pub(crate) entries: Vec<(usize, [Each; 2])>,
-    /// Derivative with respect to the beam's acceleration.
+    /// Derivative of the gauge stress with respect to the beam's angular acceleration.
     pub(crate) by_acceleration: Each,
-    /// Derivatives with respect to stiffness and damping of the contact law.
+    /// Derivatives of the gauge stress with respect to stiffness and damping of the contact law.
     pub(crate) by_contact: [Each; 2],
     /// Derivatives with respect to the force of the rope's end along x and y of the beam frame [Pa/N].
     pub(crate) by_pull: [Each; 2],
-    /// Index in `entries` for each coordinate; `None` if the derivative is zero.
+    /// Index in `entries` of each coordinate's derivatives; `None` if they are zero.
     places: Vec<Option<usize>>,
 }
 
@@ -41,7 +41,7 @@ fn add(to: &mut Each, weight: f64, x: &Each) {
     }
 }
 
-/// Returns the gauge stress that mode `m` contributes per unit of static modal force, which mode acceleration
+/// Returns the gauge stress per unit of static force on mode `m`, which the mode acceleration method
 /// subtracts.
 fn modal(machine: &Machine, m: usize) -> Each {
     let head = &machine.description.head;
@@ -50,7 +50,7 @@ fn modal(machine: &Machine, m: usize) -> Each {
 }
 
 impl Gradient {
-    /// Allocates the derivatives for `n` coordinates.
+    /// Allocates the stress derivatives for a machine with `n` coordinates.
     pub(crate) fn new(n: usize) -> Self {
         Self {
             entries: Vec::with_capacity(n),
@@ -60,19 +60,19 @@ impl Gradient {
     }
 
     /// Returns whether analytic stress derivatives are available for a machine: motion in the plane, one back
-    /// rope, no reading hooks, mode-acceleration recovery.
-    pub(crate) fn serves(machine: &Machine) -> bool {
+    /// rope, no reading extensions, mode-acceleration recovery.
+    pub(crate) fn available_for(machine: &Machine) -> bool {
         machine.layout.motion == Motion::Plane
             && machine.faces.len() == 1
-            && !machine.hooks.has_readings()
+            && !machine.extensions.has_readings()
             && machine.description.head.recovery == StressRecovery::ModeAcceleration
     }
 
-    /// Computes the derivatives at a state for which the individual holds the loads on the back head; `room`
-    /// is workspace for a state.
+    /// Computes the stress derivatives at a state for which the individual holds the loads on the back head;
+    /// `room` is a state used as workspace.
     pub(crate) fn fill(
         &mut self,
-        individual: &mut Individual<'_>,
+        individual: &mut RopeMachine<'_>,
         state: &State,
         room: &mut State,
     ) {
@@ -107,7 +107,7 @@ impl Gradient {
         &mut self.entries[at].1
     }
 
-    /// Adds the derivatives due to the head's weight and acceleration, and due to its modes.
+    /// Adds the stress derivatives due to the head's weight and acceleration, and due to its modes.
     fn by_rigid(&mut self, machine: &Machine, state: &State) {
         let head = &machine.description.head;
         let layout = machine.layout;
@@ -132,7 +132,7 @@ impl Gradient {
         self.by_acceleration = base[2];
     }
 
-    fn by_points<const B: usize>(&mut self, individual: &Individual<'_>, state: &State) {
+    fn by_points<const B: usize>(&mut self, individual: &RopeMachine<'_>, state: &State) {
         let machine = individual.machine;
         let (face, chain) = (&machine.faces[0], &machine.chains[0]);
         let modes = machine.layout.modes;
@@ -140,10 +140,10 @@ impl Gradient {
         let deflection = &individual.scratch.deflection;
         let surface = machine.surface(0, &state.q, &state.v, deflection);
         let law = (&surface, &individual.ropes.contact);
-        each_reached(
+        for_each_loaded_point(
             law,
             &individual.scratch.chains[0],
-            |j, point: &Reached<B>| {
+            |j, point: &LoadedPoint<B>| {
                 let (mut value, mut slope) = ([0.0; 4], [0.0; 4]);
                 let place = face.normal_influence.place(point.angle);
                 face.normal_influence.slopes(&place, &mut value, &mut slope);
@@ -177,9 +177,9 @@ impl Gradient {
         );
     }
 
-    /// Adds the derivatives through the force of the rope's end with respect to coordinate `k` of `state` and
-    /// its rate, by differences.
-    fn by_end(&mut self, individual: &mut Individual<'_>, state: &mut State, k: usize) {
+    /// Adds the stress derivatives through the force of the rope's end with respect to coordinate `k` of
+    /// `state` and its rate, by finite differences.
+    fn by_end(&mut self, individual: &mut RopeMachine<'_>, state: &mut State, k: usize) {
         let by_pull = self.by_pull;
         let was = [state.q[k], state.v[k]];
         for (part, step) in STEPS.into_iter().enumerate() {

@@ -1,16 +1,16 @@
 //! Gauge readings at a state: stress of the back head, and the measuring chain from stress to recorded value.
 use super::stress::gauge_stress;
-use crate::model::Individual;
-use crate::model::hook::Sampled;
+use crate::model::RopeMachine;
+use crate::model::extension::SampleState;
 use crate::model::strand::BACK;
 use crate::system::State;
 
 /// Returns the readings of the four gauges \[Pa\] at a sample of the recorded revolution.
 ///
 /// With `part` only the loads that the head's stress depends on are computed; all other loads, needed for
-/// reading hooks and curves, are undefined. `force` is workspace for generalised forces.
+/// reading extensions and curves, are undefined. `force` is workspace for generalised forces.
 pub(crate) fn readings(
-    individual: &mut Individual<'_>,
+    individual: &mut RopeMachine<'_>,
     state: &State,
     force: &mut [f64],
     part: bool,
@@ -22,19 +22,19 @@ pub(crate) fn readings(
         individual.all_loads(at, force)
     };
     let mut stress = gauge_stress(&loads, &state.a);
-    let hooks = &individual.machine.hooks;
-    if hooks.has_readings() {
-        hooks.read(&sampled(individual, state), &mut stress);
+    let extensions = &individual.machine.extensions;
+    if extensions.has_readings() {
+        extensions.read(&sampled(individual, state), &mut stress);
     }
     stress
 }
 
 /// Returns the quantities available to readings at a state for which the individual holds all loads.
-pub(crate) fn sampled(individual: &Individual<'_>, state: &State) -> Sampled {
+pub(crate) fn sampled(individual: &RopeMachine<'_>, state: &State) -> SampleState {
     let machine = individual.machine;
-    let recorded = individual.drive.turn(state.t)[0] - machine.hooks.index_offset();
-    Sampled {
-        head_push: individual.head_push(),
+    let recorded = individual.drive.turn(state.t)[0] - machine.extensions.index_offset();
+    SampleState {
+        head_force: individual.head_push(),
         back_tension: individual.base_tensions(BACK).sum(),
         joint_stiffness: individual.ropes.joint.stiffness[0],
         beam: state.q[machine.layout.beam()],

@@ -4,7 +4,7 @@ use super::readings::readings;
 use super::shaft::crank_torque;
 use super::shape::shape;
 use crate::model::strand::{BACK, FRONT};
-use crate::model::{Individual, Instant, Machine};
+use crate::model::{Instant, Machine, RopeMachine};
 use crate::run::Observe;
 use crate::system::{State, System};
 
@@ -37,9 +37,9 @@ impl Recorder {
 }
 
 impl Observe for Recorder {
-    fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State) {
+    fn sample(&mut self, index: usize, system: &mut System<RopeMachine<'_>>, state: &State) {
         self.force.resize(state.q.len(), 0.0);
-        let part = self.gauges_only && !system.equations.machine.hooks.has_readings();
+        let part = self.gauges_only && !system.equations.machine.extensions.has_readings();
         if !part {
             system.statistics.force_evaluations += 1;
         }
@@ -90,6 +90,8 @@ impl Observe for Recorder {
     }
 
     fn complete(&mut self, machine: &Machine, spacing: f64) {
-        machine.hooks.read_series(spacing, &mut self.curves.gauge);
+        machine
+            .extensions
+            .read_series(spacing, &mut self.curves.gauge);
     }
 }

@@ -2,7 +2,7 @@
 //! shaft.
 use crate::drive::DriveState;
 use crate::math::elementary::sin_cos;
-use crate::model::{Individual, Machine};
+use crate::model::{Machine, RopeMachine};
 use crate::system::State;
 use nalgebra::Vector2;
 
@@ -25,7 +25,7 @@ fn turning(machine: &Machine, drive: &DriveState, force: &Vector2<f64>) -> f64 {
 
 /// Returns the height of the suspension point above its lowest design position \[m\] and the net crank torque
 /// [N m] at a state.
-pub(crate) fn shaft(individual: &mut Individual<'_>, state: &State) -> [f64; 2] {
+pub(crate) fn shaft(individual: &mut RopeMachine<'_>, state: &State) -> [f64; 2] {
     let pin = individual.pin_force(state);
     let machine = individual.machine;
     let drive = individual.drive_state(state.t);
@@ -34,13 +34,14 @@ pub(crate) fn shaft(individual: &mut Individual<'_>, state: &State) -> [f64; 2] 
 }
 
 /// Returns the crank torque at a state caused by the force of the back ropes alone [N m].
-pub(crate) fn turned_by_ropes(individual: &mut Individual<'_>, state: &State) -> f64 {
+pub(crate) fn turned_by_ropes(individual: &mut RopeMachine<'_>, state: &State) -> f64 {
     let pull = individual.base_pull(state.motion());
     let drive = individual.drive_state(state.t);
     turning(individual.machine, &drive, &pull.xy())
 }
 
-/// Difference steps for the torque: of coordinates, of rates, and of accelerations, in which it is linear.
+/// Difference steps for the crank torque: of coordinates, of rates, and of accelerations, in which the torque
+/// is linear.
 const STEPS: [f64; 3] = [1e-7, 1e-4, 1e-2];
 
 /// Derivatives of the torque with respect to the state: index of the coordinate, derivatives with respect to
@@ -49,11 +50,11 @@ const STEPS: [f64; 3] = [1e-7, 1e-4, 1e-2];
 pub(crate) struct TorqueBy(pub(crate) Vec<(usize, [f64; 3])>);
 
 impl TorqueBy {
-    /// Computes the derivatives at a state; `room` is workspace for a state. The torque depends on the rod
-    /// and on the first cylinders of the back ropes only.
+    /// Computes the derivatives of the crank torque at a state; `room` is a state used as workspace. The
+    /// torque depends on the rod and on the first cylinders of the back ropes only.
     pub(crate) fn fill(
         &mut self,
-        individual: &mut Individual<'_>,
+        individual: &mut RopeMachine<'_>,
         state: &State,
         room: &mut State,
     ) {

@@ -2,14 +2,14 @@
 use super::curves::Shape;
 use crate::drive::DriveState;
 use crate::math::elementary::sin_cos;
-use crate::model::Individual;
+use crate::model::RopeMachine;
 use crate::model::chain::ChainState;
 use crate::system::State;
 
 /// Returns the machine's shape and loads at a sample.
 pub(super) fn shape(
     sample: usize,
-    system: &Individual<'_>,
+    system: &RopeMachine<'_>,
     drive: &DriveState,
     state: &State,
 ) -> Shape {

@@ -3,7 +3,7 @@ use crate::math::elementary::sin_cos;
 use crate::model::chain::ChainState;
 use crate::model::description::StressRecovery;
 use crate::model::layout::MAX_MODES;
-use crate::model::strand::Face;
+use crate::model::strand::HeadResponse;
 use crate::model::{BackHeadLoads, Machine};
 use crate::system::StateRef;
 
@@ -80,12 +80,12 @@ fn mode_acceleration(loads: &BackHeadLoads<'_, '_>, a: &[f64]) -> [f64; 4] {
 /// Loads of one back rope on the head.
 struct HeadLoad<'a> {
     machine: &'a Machine,
-    face: &'a Face,
+    face: &'a HeadResponse,
     back: &'a ChainState,
     /// Force of the rope's end, in the beam frame \[N\].
     pull: [f64; 3],
-    /// Moment of the rope's end about the tangent of the arc and about the radius, where it rotates the head
-    /// [N m].
+    /// Moment of the rope's end about the tangent of the arc and about the radius [N m]; `None` for a single
+    /// rope, whose end does not rotate with the head.
     moments: Option<[f64; 2]>,
 }
 

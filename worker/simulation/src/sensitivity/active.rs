@@ -1,21 +1,21 @@
-//! Columns that must be computed: source of their derivatives, and explicit derivatives of the gauge
-//! readings.
-use super::column::{Changes, Coefficient};
+//! Columns (derivatives with respect to one unknown each) that must be computed: the terms that drive them,
+//! and the explicit derivatives of the gauge readings.
+use super::column::{Coefficient, DerivativeCurves};
 use super::differences::Difference;
-use super::plan::Way;
-use super::side::Side;
+use super::perturbed::PerturbedModel;
+use super::plan::ColumnMethod;
 use super::source::{Joints, ROPES, Source};
-use crate::element::impact::By;
+use crate::element::impact::DerivativeVariable;
 use crate::integrator::dense::interpolate;
 use crate::model::description::RopeLaw;
-use crate::model::hook::Sampled;
+use crate::model::extension::SampleState;
 use crate::model::{Machine, Scratch};
 use crate::observe::Gradient;
 use crate::run::RunSettings;
 use crate::system::State;
 use std::f64::consts::LN_10;
 
-/// Sample of the recorded revolution, as needed for the columns.
+/// Sample of the recorded revolution, with all that the columns' derivatives there require.
 pub(super) struct Sample<'s> {
     pub(super) state: &'s State,
     /// States at both ends of the step that contains the sample.
@@ -24,22 +24,23 @@ pub(super) struct Sample<'s> {
     pub(super) own: [f64; 4],
     /// Suspension height \[m\] and net crank torque [N m] at the sample.
     pub(super) shaft: [f64; 2],
-    /// Quantities available to additional reading hooks, if the machine has none of its own.
-    pub(super) known: Option<Sampled>,
+    /// Quantities that reading extensions of perturbed machines may use; present only if the simulated machine has
+    /// no reading extensions itself.
+    pub(super) known: Option<SampleState>,
     /// Run settings and index of the sample.
     pub(super) turned: (&'s RunSettings, usize),
 }
 
 /// Returns the derivative of the front head's radius with respect to a parameter, by differences.
-fn raised(own: &Machine, beside: &[Machine; 2], difference: &Difference) -> f64 {
+fn front_radius_derivative(own: &Machine, beside: &[Machine; 2], difference: &Difference) -> f64 {
     let radius = |machine: &Machine| machine.description.front_arc.radius;
     let each = beside.iter().zip(difference.weights);
     let change = each.map(|(beside, weight)| weight * radius(beside));
     difference.own * radius(own) + change.sum::<f64>()
 }
 
-/// Chooses how the derivative of the forces with respect to the decimal logarithm of a coefficient is
-/// computed.
+/// Chooses the method by which the derivative of the forces with respect to the decimal logarithm of a
+/// coefficient is computed.
 fn by_coefficient<'a>(
     (machine, law): (&'a Machine, &RopeLaw),
     settings: &RunSettings,
@@ -48,13 +49,13 @@ fn by_coefficient<'a>(
     let factor = LN_10 * *coefficient.of(&mut law.clone());
     match coefficient {
         // laws along a rope ask for its stiffness, and remember
-        _ if machine.hooks.has_axial() => Source::Difference(ROPES, false, None),
+        _ if machine.extensions.has_axial() => Source::Difference(ROPES, false, None),
         Coefficient::Kc => Source::Contact {
-            by: By::Stiffness,
+            by: DerivativeVariable::Stiffness,
             factor: LN_10 * machine.ropes(law).contact.stiffness,
         },
         Coefficient::Cc => Source::Contact {
-            by: By::Damping,
+            by: DerivativeVariable::Damping,
             factor: LN_10 * machine.ropes(law).contact.damping,
         },
         Coefficient::Kb1
@@ -66,7 +67,7 @@ fn by_coefficient<'a>(
         | Coefficient::Cb4
         | Coefficient::Cb56 => {
             let ropes = machine.ropes(&coefficient.unit(law));
-            let unit = Side::new(machine, ropes, settings.drive(machine));
+            let unit = PerturbedModel::new(machine, ropes, settings.drive(machine));
             let coefficients = unit.inner().plane_coefficients();
             let which = coefficients.iter().position(|x| *x != 0.0);
             Source::Joints(Box::new(Joints {
@@ -78,17 +79,18 @@ fn by_coefficient<'a>(
     }
 }
 
-/// Column whose derivatives must be computed.
+/// Column (derivative of the run with respect to one unknown) that must be computed.
 pub(super) struct Active<'a> {
     /// Index of the column in the plan.
     pub(super) column: usize,
     pub(super) source: Source<'a>,
-    /// Machines with perturbed parameters, from which differences are taken; two or none.
-    pub(super) sides: Vec<Side<'a>>,
+    /// Two machines with perturbed parameters, from which differences are taken; empty if the column needs no
+    /// differences.
+    pub(super) perturbed: Vec<PerturbedModel<'a>>,
     pub(super) difference: Difference,
     /// Whether the gauge readings depend on the parameter explicitly, at a fixed state.
     explicit: bool,
-    pub(super) curves: Changes,
+    pub(super) curves: DerivativeCurves,
 }
 
 impl<'a> Active<'a> {
@@ -96,64 +98,65 @@ impl<'a> Active<'a> {
     pub(super) fn new(
         (machine, law): (&'a Machine, &RopeLaw),
         settings: &RunSettings,
-        (column, way): (usize, &'a Way),
+        (column, way): (usize, &'a ColumnMethod),
     ) -> Option<Self> {
         let side = |machine: &'a Machine, law: &RopeLaw| {
-            Side::new(machine, machine.ropes(law), settings.drive(machine))
+            PerturbedModel::new(machine, machine.ropes(law), settings.drive(machine))
         };
-        let curves = Changes::default();
+        let curves = DerivativeCurves::default();
         match way {
-            Way::Coefficient(coefficient) => {
-                let difference = Difference::decades(machine.hooks.has_axial());
+            ColumnMethod::Coefficient(coefficient) => {
+                let difference = Difference::decades(machine.extensions.has_axial());
                 let moved = |step| side(machine, &coefficient.moved(law, step));
                 let source = by_coefficient((machine, law), settings, *coefficient);
                 Some(Self {
                     column,
                     source,
-                    sides: difference.steps.map(moved).to_vec(),
+                    perturbed: difference.steps.map(moved).to_vec(),
                     difference,
                     explicit: true,
                     curves,
                 })
             }
-            Way::Beside {
+            ColumnMethod::Difference {
                 machines,
                 difference,
                 differing,
             } => {
                 let raised = differing
-                    .raised
-                    .then(|| raised(machine, machines, difference));
+                    .front_radius
+                    .then(|| front_radius_derivative(machine, machines, difference));
                 let source = differing.terms.map_or(Source::Nothing, |(terms, inertia)| {
                     Source::Difference(terms, inertia, raised)
                 });
                 let mut all = machines.iter().chain([machine]);
-                let read = all.any(|machine| machine.hooks.has_readings());
+                let read = all.any(|machine| machine.extensions.has_readings());
                 let asked = machines.iter().zip(difference.weights);
                 let asked = asked.filter(|(_, weight)| *weight != 0.0);
                 let sides = asked.map(|(machine, _)| side(machine, law));
                 Some(Self {
                     column,
                     source,
-                    sides: sides.collect(),
+                    perturbed: sides.collect(),
                     difference: *difference,
                     explicit: differing.stress || read,
                     curves,
                 })
             }
-            Way::Pieces(hooks) => Some(Self {
+            ColumnMethod::Pieces(extensions) => Some(Self {
                 column,
-                source: Source::Pieces(hooks),
-                sides: Vec::new(),
+                source: Source::Pieces(extensions),
+                perturbed: Vec::new(),
                 difference: Difference::decades(false),
                 explicit: false,
                 curves,
             }),
-            Way::Nothing | Way::Missing(_) => None,
+            ColumnMethod::Nothing | ColumnMethod::Missing(_) => None,
         }
     }
 
-    /// Returns the explicit derivative of the gauge readings at a sample, at a fixed state.
+    /// Returns the derivative of the gauge readings at a sample with respect to the column's parameter, at a
+    /// fixed state.
     pub(super) fn explicit(
         &mut self,
         sample: &Sample<'_>,
@@ -175,20 +178,20 @@ impl<'a> Active<'a> {
                 }
             }
             (Source::Contact { by, factor }, Some(gradient), _) => {
-                let by_damping = usize::from(*by == By::Damping);
+                let by_damping = usize::from(*by == DerivativeVariable::Damping);
                 add(*factor, &gradient.by_contact[by_damping]);
             }
             (Source::Nothing, _, Some(known)) => {
                 add(own, &sample.own);
-                for (side, share) in self.sides.iter().zip(weights) {
+                for (side, share) in self.perturbed.iter().zip(weights) {
                     let mut read = sample.own;
-                    side.machine.hooks.read(known, &mut read);
+                    side.machine.extensions.read(known, &mut read);
                     add(share, &read);
                 }
             }
             _ if self.explicit => {
                 add(own, &sample.own);
-                for (side, share) in self.sides.iter_mut().zip(weights) {
+                for (side, share) in self.perturbed.iter_mut().zip(weights) {
                     let (settings, index) = sample.turned;
                     let t = settings.sampled(side.machine, &side.drive, index);
                     let [from, to] = sample.ends;
@@ -201,7 +204,8 @@ impl<'a> Active<'a> {
         sum
     }
 
-    /// Returns the explicit derivative of suspension height and crank torque at a sample, at a fixed state.
+    /// Returns the derivative of suspension height and crank torque at a sample with respect to the column's
+    /// parameter, at a fixed state.
     pub(super) fn explicit_shaft(
         &mut self,
         sample: &Sample<'_>,
@@ -220,7 +224,7 @@ impl<'a> Active<'a> {
                     }
                 };
                 add(own, sample.shaft);
-                for (side, share) in self.sides.iter_mut().zip(weights) {
+                for (side, share) in self.perturbed.iter_mut().zip(weights) {
                     let (settings, index) = sample.turned;
                     let t = settings.sampled(side.machine, &side.drive, index);
                     if t.to_bits() == sample.state.t.to_bits() {
@@ -239,7 +243,8 @@ impl<'a> Active<'a> {
 
     /// Returns the rank of the column in the order of computation. Contact columns and those with a changed
     /// front radius come first, because they need the machine's own contact points, which evaluations of
-    /// other machines overwrite; columns that do not move the state come last and are not in the blocks.
+    /// other machines overwrite; columns that do not affect the motion come last and are not propagated in
+    /// blocks.
     pub(super) const fn order(&self) -> u8 {
         match self.source {
             Source::Contact { .. } | Source::Difference(.., Some(_)) => 0,

@@ -13,7 +13,7 @@ pub(super) struct Motion {
     pub(super) a: Vec<Lanes>,
 }
 
-/// Columns of a state, and of the stages of the step that begins there.
+/// Block of columns, one per SIMD lane, for a state and for the stages of the step that begins there.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     /// Columns at the start and at the end of the step.
@@ -21,13 +21,13 @@ pub(super) struct Block {
     /// Columns of the rates at the intermediate stages.
     rates: Vec<Vec<Lanes>>,
     /// Whether all columns are still zero.
-    still: bool,
+    zero: bool,
 }
 
-/// Workspace for the part of a stage that is independent of its own rate: its coordinates, and `-v / c` of
-/// its rates.
+/// Workspace for the part of a stage's columns that does not depend on the rate at the same stage: columns of
+/// the coordinates, and `-v / c` of the rates.
 #[derive(Clone, Debug)]
-pub(super) struct Bases {
+pub(super) struct StagePredictor {
     q: Vec<Lanes>,
     scaled: Vec<Lanes>,
 }
@@ -42,27 +42,33 @@ impl Motion {
         }
     }
 
-    /// Returns the largest absolute derivative of a coordinate in a column.
+    /// Returns the largest absolute derivative of any coordinate in the column of one lane.
     pub(super) fn size(&self, lane: usize) -> f64 {
         self.q.iter().fold(0.0, |size, q| q.0[lane].abs().max(size))
     }
 }
 
-impl Bases {
+impl StagePredictor {
     /// Allocates the workspace for `n` coordinates.
     pub(super) fn new(n: usize) -> Self {
         let Motion { q, v, .. } = Motion::new(n);
         Self { q, scaled: v }
     }
 
-    /// Computes the part of a stage that is independent of its own rate.
+    /// Computes the part of a stage's columns that does not depend on the rate at the same stage.
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
     )]
     #[inline(always)]
-    fn fill<S: Simd>(&mut self, simd: S, parts: &Parts, from: &Motion, rates: &[Vec<Lanes>]) {
-        let Parts {
+    fn fill<S: Simd>(
+        &mut self,
+        simd: S,
+        parts: &StageWeights,
+        from: &Motion,
+        rates: &[Vec<Lanes>],
+    ) {
+        let StageWeights {
             first: [to_q, to_s],
             acceleration,
             rates: weights,
@@ -86,15 +92,16 @@ impl Bases {
 /// Maximum number of stages of a method.
 const STAGES: usize = 8;
 
-/// Weights with which the start of a step and the rates of earlier stages enter the coordinates of a stage
-/// and `-v / c` of its rates. Accelerations of stages are differences of rates and are not stored.
-struct Parts {
+/// Weights with which the start of a step and the rates of earlier stages enter the columns of a stage: of
+/// its coordinates and of `-v / c` of its rates. Accelerations of stages are differences of rates and are not
+/// stored.
+struct StageWeights {
     first: [f64; 2],
     acceleration: f64,
     rates: [[f64; 2]; STAGES],
 }
 
-impl Parts {
+impl StageWeights {
     /// Computes the weights of stage `i` of a step of size `h`.
     fn new(tableau: &Tableau, i: usize, h: f64) -> Self {
         // base_j = x_j v_0 + y_j a_0 + sum z_jk v_k, and a_j = (v_j - base_j) / c
@@ -127,16 +134,16 @@ impl Parts {
     }
 }
 
-/// Computation of one stage of a block of columns.
+/// Computation of one stage for a block of columns.
 struct Advance<'a, E> {
     block: &'a mut Block,
     equations: &'a E,
     tangents: &'a Linearized,
-    /// Method, index of the stage, size of the step.
+    /// Coefficients of the integration method, index of the stage, size of the step.
     at: (&'a Tableau, usize, f64),
-    /// Right-hand side `dR/dp`, overwritten by the solution.
+    /// Right-hand side `dR/dp` of the columns' linear system, overwritten by its solution.
     right: &'a mut [Lanes],
-    bases: &'a mut Bases,
+    bases: &'a mut StagePredictor,
 }
 
 impl<E: Equations> WithSimd for Advance<'_, E> {
@@ -162,7 +169,12 @@ impl<E: Equations> WithSimd for Advance<'_, E> {
             ..
         } = block;
         let shift = 1.0 / (tableau.diagonal * h);
-        bases.fill(simd, &Parts::new(tableau, i, h), from, &rates[..i - 1]);
+        bases.fill(
+            simd,
+            &StageWeights::new(tableau, i, h),
+            from,
+            &rates[..i - 1],
+        );
         tangents
             .stiffness
             .subtract_product_lanes(simd, &bases.q, right);
@@ -190,19 +202,19 @@ impl Block {
         Self {
             ends: [Motion::new(n), Motion::new(n)],
             rates: vec![vec![Lanes::default(); n]; stages],
-            still: true,
+            zero: true,
         }
     }
 
     /// Returns whether the columns remain zero: they are zero, and so is `dR/dp`.
-    fn stays(&mut self, right: &[Lanes]) -> bool {
-        self.still = self.still && right.iter().all(|x| *x == Lanes::default());
-        self.still
+    fn remains_zero(&mut self, right: &[Lanes]) -> bool {
+        self.zero = self.zero && right.iter().all(|x| *x == Lanes::default());
+        self.zero
     }
 
-    /// Computes the columns of an equilibrium from its `dR/dp` in `right`.
+    /// Computes the block's columns at the static equilibrium from its `dR/dp` in `right`.
     pub(super) fn rest(&mut self, tangents: &Linearized, right: &mut [Lanes]) {
-        if self.stays(right) {
+        if self.remains_zero(right) {
             return;
         }
         tangents.factor.solve_lanes(Scalar, right);
@@ -216,9 +228,9 @@ impl Block {
         tangents: &Linearized,
         at: (&Tableau, usize, f64),
         right: &mut [Lanes],
-        bases: &mut Bases,
+        bases: &mut StagePredictor,
     ) {
-        if self.stays(right) {
+        if self.remains_zero(right) {
             return;
         }
         let stage = Advance {

@@ -28,7 +28,7 @@ pub enum Coefficient {
 }
 
 impl Coefficient {
-    /// All coefficients.
+    /// All coefficients of rope and contact that the search varies.
     pub const ALL: [Self; 10] = [
         Self::Kb1,
         Self::Kb23,
@@ -72,7 +72,8 @@ impl Coefficient {
         unit
     }
 
-    /// Returns the law with this coefficient changed by `decades`, to first order.
+    /// Returns a rope law with this coefficient changed by `decades` of its decimal logarithm, to first
+    /// order.
     #[must_use]
     pub(super) fn moved(self, law: &RopeLaw, decades: f64) -> RopeLaw {
         let mut moved = *law;
@@ -101,15 +102,15 @@ pub enum Column {
 
 /// Reason why the derivative of a column is unavailable, so that differences of whole runs are required.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Missing {
+pub enum Unavailable {
     /// Change of the coordinates: with the effect the machine has coordinates that it lacks without, for
     /// example the displacement of a post that is rigid without the effect.
     #[error("the effect changes the number of coordinates of the machine")]
     Coordinates,
     /// Parameter that is rounded to a whole number.
     #[error("the parameter is rounded to a whole number and has no derivative")]
-    Whole,
-    /// Machine with a perturbed parameter that cannot be built.
+    Integer,
+    /// Parameter whose perturbation gives a machine that cannot be built.
     #[error("no valid machine can be built with the parameter slightly changed")]
     NoMachine,
     /// Integration method without stages that can be differentiated.
@@ -117,7 +118,7 @@ pub enum Missing {
         "the integration method has no stages that can be differentiated; use a Runge-Kutta method"
     )]
     Method,
-    /// Singular exact tangent at a stage.
+    /// Tangent matrix of a stage that is singular, so that the stage cannot be differentiated.
     #[error("the tangent matrix of a stage is singular")]
     Singular,
     /// Derivative that is not finite.
@@ -128,7 +129,7 @@ pub enum Missing {
 /// Derivatives of the recorded quantities at every sample, per decade of a coefficient or per declared unit
 /// of a parameter.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Changes {
+pub struct DerivativeCurves {
     /// Derivatives of the readings of gauges 1 to 4 \[Pa\].
     pub gauge: [Vec<f64>; 4],
     /// Derivatives of the suspension point's height above its lowest design position \[m\].
@@ -137,7 +138,7 @@ pub struct Changes {
     pub torque: Vec<f64>,
 }
 
-impl Changes {
+impl DerivativeCurves {
     /// Returns an iterator over all curves: gauges, suspension height, torque.
     pub(super) fn each(&self) -> impl Iterator<Item = &Vec<f64>> + Clone {
         let beside = [&self.suspension, &self.torque];
@@ -151,15 +152,15 @@ impl Changes {
     }
 }
 
-/// Result for one column.
+/// Derivative of a run with respect to one requested column, or the reason why there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Derivative {
     /// Derivative curves.
-    Curves(Box<Changes>),
+    Curves(Box<DerivativeCurves>),
     /// Zero derivative: the parameter has no influence.
-    Nothing,
+    Zero,
     /// Unavailable derivative, with the reason.
-    Missing(Missing),
+    Missing(Unavailable),
 }
 
 /// Derivatives of a completed run.

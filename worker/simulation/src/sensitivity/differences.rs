@@ -9,17 +9,17 @@ pub(super) const SMOOTH: f64 = 1e-5;
 pub(super) const TOUCHING: f64 = 1e-6;
 /// Relative difference step where axial laws may have memory: hysteresis has a kink where the strain
 /// reverses, and strains are rounded at 1e-15.
-pub(super) const REMEMBERING: f64 = 1e-7;
+pub(super) const HYSTERETIC_STEP: f64 = 1e-7;
 
 /// Finite-difference formula: steps and weights of two neighbouring values and of the central one. Values of
 /// zero weight are not evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Difference {
-    /// Steps from the current value.
+    /// Steps of the formula from the current parameter value to the two neighbouring ones.
     pub(super) steps: [f64; 2],
-    /// Weights of the function values at the steps.
+    /// Weights of the function values at the two neighbouring parameter values.
     pub(super) weights: [f64; 2],
-    /// Weight of the function value at the current point.
+    /// Weight of the function value at the current parameter value.
     pub(super) own: f64,
 }
 
@@ -55,11 +55,11 @@ impl Difference {
     /// Returns the difference with respect to the decades of a coefficient, in which forces are linear;
     /// `remembering` selects the step for axial laws with memory.
     pub(super) const fn decades(remembering: bool) -> Self {
-        Self::central(if remembering { REMEMBERING } else { SMOOTH })
+        Self::central(if remembering { HYSTERETIC_STEP } else { SMOOTH })
     }
 
-    /// Returns a difference formula for a parameter at a value that stays within its bounds, with a step that
-    /// is the given share of its scale.
+    /// Returns a difference formula for a parameter whose steps stay within the parameter's bounds; the step
+    /// is the given share of the parameter's scale.
     pub(super) fn within(parameter: &Parameter, value: f64, share: f64) -> Self {
         let step = share * parameter.scale;
         let beside = if share < SMOOTH {

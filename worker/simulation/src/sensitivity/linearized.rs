@@ -1,36 +1,37 @@
 //! Linearisation of one solved stage.
 use super::source::add;
-use crate::element::plane::PLANE_UNITS;
+use crate::element::plane::PLANE_COEFFICIENTS;
 use crate::integrator::stepper::Stages;
 use crate::linear::{Bordered, SingularPivot};
-use crate::model::{Individual, Scratch};
-use crate::system::{Equations, Shift, State, System};
+use crate::model::{RopeMachine, Scratch};
+use crate::system::{Equations, State, StateShift, System};
 
 /// Linearised stage: state, `-K'`, the factor of `S`, and the buffers of the force evaluation.
 #[derive(Debug)]
 pub(super) struct Linearized {
     /// State of the stage, including accelerations.
     pub(super) state: State,
-    /// Matrix `-K'`, which includes the derivatives of `M(q) a`.
+    /// Matrix `-K'`: derivative of the residual `M(q) a - Q` with respect to the coordinates, including that
+    /// of `M(q) a`.
     pub(super) stiffness: Bordered,
-    /// Factor of `S = M / c^2 - D / c - K'`, or of `-K` at rest.
+    /// Factorisation of the iteration matrix `S = M / c^2 - D / c - K'`, or of `-K` at rest.
     pub(super) factor: Bordered,
     /// Poses, joint loads and contact at the stage.
     pub(super) scratch: Scratch,
     /// Generalised forces of the joints per unit of each coefficient, for motion in the plane and only if a
     /// column requires them.
-    pub(super) units: Vec<[f64; PLANE_UNITS]>,
+    pub(super) units: Vec<[f64; PLANE_COEFFICIENTS]>,
 }
 
 impl Linearized {
     /// Allocates the buffers; `units` is the number of coordinates with unit joint forces, or zero.
-    pub(super) fn new(equations: &Individual<'_>, state: &State, units: usize) -> Self {
+    pub(super) fn new(equations: &RopeMachine<'_>, state: &State, units: usize) -> Self {
         Self {
             state: state.clone(),
             stiffness: equations.matrix(),
             factor: equations.matrix(),
             scratch: Scratch::new(equations.machine),
-            units: vec![[0.0; PLANE_UNITS]; units],
+            units: vec![[0.0; PLANE_COEFFICIENTS]; units],
         }
     }
 
@@ -40,12 +41,12 @@ impl Linearized {
     /// [`SingularPivot`] naming the unknown whose pivot vanished.
     pub(super) fn rest(
         &mut self,
-        system: &mut System<Individual<'_>>,
+        system: &mut System<RopeMachine<'_>>,
         state: &State,
         force: &mut [f64],
     ) -> Result<(), SingularPivot> {
         self.state.clone_from(state);
-        self.linearize(system, Shift::NONE, force)
+        self.linearize(system, StateShift::NONE, force)
     }
 
     /// Linearises and factorises stage `i` of the step between two states.
@@ -54,7 +55,7 @@ impl Linearized {
     /// [`SingularPivot`] naming the unknown whose pivot vanished.
     pub(super) fn stage(
         &mut self,
-        system: &mut System<Individual<'_>>,
+        system: &mut System<RopeMachine<'_>>,
         (i, stages): (usize, Stages<'_>),
         [from, to]: [&State; 2],
         force: &mut [f64],
@@ -75,7 +76,7 @@ impl Linearized {
             self.state.clone_from(to);
         }
         let damping = 1.0 / c;
-        let shift = Shift {
+        let shift = StateShift {
             mass: damping * damping,
             damping,
         };
@@ -84,8 +85,8 @@ impl Linearized {
 
     fn linearize(
         &mut self,
-        system: &mut System<Individual<'_>>,
-        shift: Shift,
+        system: &mut System<RopeMachine<'_>>,
+        shift: StateShift,
         force: &mut [f64],
     ) -> Result<(), SingularPivot> {
         // what columns cost is no work of the run's

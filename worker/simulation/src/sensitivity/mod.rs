@@ -16,12 +16,12 @@ mod between;
 mod block;
 mod column;
 mod differences;
-mod follow;
 mod linearized;
+mod observer;
+mod perturbed;
 mod plan;
-mod side;
 mod source;
 
-pub use column::{Changes, Coefficient, Column, Columns, Derivative, Missing};
-pub use follow::{simulate, simulate_on};
-pub use plan::{Origin, Plan, Refused};
+pub use column::{Coefficient, Column, Columns, Derivative, DerivativeCurves, Unavailable};
+pub use observer::{simulate, simulate_on};
+pub use plan::{ColumnOrigin, DerivativePlan, PlanError};

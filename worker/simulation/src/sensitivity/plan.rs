@@ -1,94 +1,94 @@
 //! Plan of the requested columns: validation, and construction of the perturbed machines for effect
 //! parameters.
-use super::column::{Coefficient, Column, Missing};
-use super::differences::{Difference, REMEMBERING, SMOOTH, TOUCHING};
-use super::source::Differing;
-use crate::effect::{Asked, Chosen, Role, chosen};
+use super::column::{Coefficient, Column, Unavailable};
+use super::differences::{Difference, HYSTERETIC_STEP, SMOOTH, TOUCHING};
+use super::source::ChangedTerms;
+use crate::effect::{EffectRequest, ResolvedEffect, Role, chosen};
 use crate::model::Machine;
 use crate::model::description::Description;
-use crate::model::hook::Hooks;
+use crate::model::extension::Extensions;
 use crate::model::layout::Motion;
 
 /// Constituents of a machine: description, number of modes, effects.
 #[derive(Clone, Copy, Debug)]
-pub struct Origin<'a> {
+pub struct ColumnOrigin<'a> {
     /// Description without effects.
     pub description: &'a Description,
     /// Number of head modes that are kept.
     pub modes: usize,
     /// Effects with their values.
-    pub effects: &'a [Asked<'a>],
+    pub effects: &'a [EffectRequest<'a>],
 }
 
 /// Error: a column that cannot be computed as requested; `column` is its position.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Refused {
+pub enum PlanError {
     /// Invalid effect or parameter value.
     #[error("column {column}: {refused}")]
     Effect {
-        /// Position of the column.
+        /// Position of the column in the request.
         column: usize,
-        /// Reason of the refusal.
-        refused: crate::effect::Refused,
+        /// Reason why the column's effect or value is invalid.
+        refused: crate::effect::SelectionError,
     },
-    /// Effect that the machine already has, requested with further values.
+    /// Column that states values for an effect that the machine already has.
     #[error(
         "column {column}: the machine already has the effect `{effect}`; leave the values of the column empty"
     )]
     Present {
-        /// Position of the column.
+        /// Position of the column in the request.
         column: usize,
         /// Identifier of the effect.
         effect: String,
     },
     /// Invalid effects of the machine itself.
     #[error(transparent)]
-    Machine(#[from] crate::effect::Refused),
+    Machine(#[from] crate::effect::SelectionError),
 }
 
 /// Validated columns that a run is to compute.
 #[derive(Debug)]
-pub struct Plan {
-    pub(super) ways: Vec<Way>,
+pub struct DerivativePlan {
+    pub(super) methods: Vec<ColumnMethod>,
 }
 
 /// Method by which a column is computed.
 #[derive(Debug)]
-pub(super) enum Way {
+pub(super) enum ColumnMethod {
     /// Derivative with respect to a coefficient of rope or contact.
     Coefficient(Coefficient),
-    /// Difference of two machines with perturbed parameters.
-    Beside {
+    /// Difference of two machines that are built with perturbed parameter values.
+    Difference {
         machines: Box<[Machine; 2]>,
         difference: Difference,
-        differing: Differing,
+        differing: ChangedTerms,
     },
-    /// Hooks of a force that is linear in its amplitude, at amplitude 1.
-    Pieces(Box<Hooks>),
+    /// Extensions of an effect whose force is linear in its amplitude, at amplitude 1.
+    Pieces(Box<Extensions>),
     Nothing,
-    Missing(Missing),
+    Missing(Unavailable),
 }
 
-impl Plan {
+impl DerivativePlan {
     /// Validates the columns and builds the machines that they require; `machine` is the one that will be
     /// simulated, built from `origin`.
     ///
     /// # Errors
-    /// [`Refused`] for the first invalid column.
+    /// [`PlanError`] for the first invalid column.
     pub fn new(
-        origin: &Origin<'_>,
+        origin: &ColumnOrigin<'_>,
         machine: &Machine,
         columns: &[Column],
-    ) -> Result<Self, Refused> {
+    ) -> Result<Self, PlanError> {
         let own = chosen(origin.effects)?;
         let ways = columns.iter().enumerate().map(|(at, column)| match column {
             // nothing is twisted in the plane
             Column::Coefficient(Coefficient::Kb4 | Coefficient::Cb4)
                 if machine.layout.motion == Motion::Plane =>
             {
-                Ok(Way::Nothing)
+                Ok(ColumnMethod::Nothing)
             }
-            Column::Coefficient(coefficient) => Ok(Way::Coefficient(*coefficient)),
+            Column::Coefficient(coefficient) => Ok(ColumnMethod::Coefficient(*coefficient)),
             Column::Parameter {
                 effect,
                 parameter,
@@ -97,115 +97,115 @@ impl Plan {
                 let (effects, varied) = with(&own, at, effect, values)?;
                 let descriptor = effects[varied].descriptor();
                 let Some(k) = descriptor.parameter(parameter) else {
-                    let refused = crate::effect::Refused::UnknownParameter {
+                    let refused = crate::effect::SelectionError::UnknownParameter {
                         effect: varied,
                         id: effect.clone(),
                         name: parameter.clone(),
                     };
-                    return Err(Refused::Effect {
+                    return Err(PlanError::Effect {
                         column: at,
                         refused,
                     });
                 };
-                Ok(way(origin, machine, &effects, (varied, k)))
+                Ok(choose_method(origin, machine, &effects, (varied, k)))
             }
         });
         Ok(Self {
-            ways: ways.collect::<Result<_, _>>()?,
+            methods: ways.collect::<Result<_, _>>()?,
         })
     }
 
     /// Returns the number of columns.
     pub const fn len(&self) -> usize {
-        self.ways.len()
+        self.methods.len()
     }
 
     /// Returns whether the plan has no columns.
     pub const fn is_empty(&self) -> bool {
-        self.ways.is_empty()
+        self.methods.is_empty()
     }
 }
 
-/// Returns the machine's effects including the given one, and the index of that effect.
+/// Returns the machine's effects together with the effect of a column, and the index of that effect in the
+/// list.
 fn with(
-    own: &[Chosen],
+    own: &[ResolvedEffect],
     column: usize,
     effect: &str,
     values: &[(String, f64)],
-) -> Result<(Vec<Chosen>, usize), Refused> {
-    let has = |one: &Chosen| one.descriptor().id == effect;
+) -> Result<(Vec<ResolvedEffect>, usize), PlanError> {
+    let has = |one: &ResolvedEffect| one.descriptor().id == effect;
     let mut effects = own.to_vec();
     if let Some(at) = effects.iter().position(|one| has(one) && !one.is_absent()) {
         return if values.is_empty() {
             Ok((effects, at))
         } else {
-            Err(Refused::Present {
+            Err(PlanError::Present {
                 column,
                 effect: effect.to_owned(),
             })
         };
     }
     effects.retain(|one| !has(one));
-    let asked = Asked {
+    let asked = EffectRequest {
         id: effect,
         parameters: values.iter().map(|(name, x)| (&**name, *x)).collect(),
     };
-    let refused = |refused| Refused::Effect { column, refused };
+    let refused = |refused| PlanError::Effect { column, refused };
     effects.extend(chosen(&[asked]).map_err(refused)?);
-    effects.sort_by_key(Chosen::place);
+    effects.sort_by_key(ResolvedEffect::place);
     let at = effects.iter().position(has).unwrap_or(0);
     Ok((effects, at))
 }
 
 /// Chooses the method for the column of parameter `k` of the effect at index `varied`.
-fn way(
-    origin: &Origin<'_>,
+fn choose_method(
+    origin: &ColumnOrigin<'_>,
     machine: &Machine,
-    effects: &[Chosen],
+    effects: &[ResolvedEffect],
     (varied, k): (usize, usize),
-) -> Way {
+) -> ColumnMethod {
     let one = &effects[varied];
     let parameter = &one.descriptor().parameters[k];
     if parameter.role == Role::Shape && one.is_absent() {
-        return Way::Nothing;
+        return ColumnMethod::Nothing;
     }
     if parameter.whole {
-        return Way::Missing(Missing::Whole);
+        return ColumnMethod::Missing(Unavailable::Integer);
     }
     // what is beside laws with a past changes what they remember
-    if one.descriptor().generic && !machine.hooks.has_axial() {
+    if one.descriptor().generic && !machine.extensions.has_axial() {
         let mut unit = one.clone();
         unit.values[k] = 1.0;
-        return machine
-            .pieces_of(&*unit.build())
-            .map_or(Way::Missing(Missing::NoMachine), |hooks| {
-                Way::Pieces(Box::new(hooks))
-            });
+        return machine.pieces_of(&*unit.build()).map_or(
+            ColumnMethod::Missing(Unavailable::NoMachine),
+            |extensions| ColumnMethod::Pieces(Box::new(extensions)),
+        );
     }
     let built = |share: f64| {
         let difference = Difference::within(parameter, one.values[k], share);
         let machines = difference.steps.map(|step| {
             let mut effects = effects.to_vec();
             effects[varied].values[k] += step;
-            beside(origin, machine, &effects, varied)
+            build_perturbed(origin, machine, &effects, varied)
         });
         let [Some(first), Some(second)] = machines else {
-            return Err(Missing::NoMachine);
+            return Err(Unavailable::NoMachine);
         };
         if first.layout != machine.layout || second.layout != machine.layout {
-            return Err(Missing::Coordinates);
+            return Err(Unavailable::Coordinates);
         }
-        let differing = Differing::between(machine, &first, one.descriptor().place);
+        let differing = ChangedTerms::between(machine, &first, one.descriptor().place);
         Ok((Box::new([first, second]), difference, differing))
     };
     let made = built(SMOOTH).and_then(|smooth| match smooth.2.terms {
         Some((terms, _)) if terms.contact.contains(&true) => built(TOUCHING),
-        Some((terms, _)) if terms.joints || terms.pulls => built(REMEMBERING),
+        Some((terms, _)) if terms.joints || terms.pulls => built(HYSTERETIC_STEP),
         _ => Ok(smooth),
     });
     match made {
-        Err(missing) => Way::Missing(missing),
-        Ok((machines, difference, differing)) => Way::Beside {
+        Err(missing) => ColumnMethod::Missing(missing),
+        Ok((machines, difference, differing)) => ColumnMethod::Difference {
             machines,
             difference,
             differing,
@@ -213,12 +213,12 @@ fn way(
     }
 }
 
-/// Builds a machine with the effects that are present and with effect `stays`, even if it is absent. Returns
-/// `None` if the machine is invalid.
-fn beside(
-    origin: &Origin<'_>,
+/// Builds a machine with all effects that are present and with the effect at index `stays`, even if that one
+/// is absent. Returns `None` if the machine is invalid.
+fn build_perturbed(
+    origin: &ColumnOrigin<'_>,
     machine: &Machine,
-    effects: &[Chosen],
+    effects: &[ResolvedEffect],
     stays: usize,
 ) -> Option<Machine> {
     let present = effects.iter().enumerate();

@@ -1,20 +1,21 @@
-//! Computation of the right-hand side `dR/dp` of a column at a stage, at fixed state.
+//! Right-hand side `dR/dp` of a column at a stage: derivative of the residual with respect to the column's
+//! parameter at a fixed state.
 //!
 //! Closed form: coefficients of the ropes, in which forces are linear, and generic forces, which are linear
 //! in their amplitude. Finite differences: those terms of the residual in which the perturbed machine
 //! differs.
 use super::differences::Difference;
-use super::side::Side;
+use super::perturbed::PerturbedModel;
 use crate::effect::Place;
-use crate::element::impact::By;
-use crate::element::plane::PLANE_UNITS;
+use crate::element::impact::DerivativeVariable;
+use crate::element::plane::PLANE_COEFFICIENTS;
 use crate::model::description::{Arc, Head};
+use crate::model::extension::Extensions;
 use crate::model::forces::Terms;
-use crate::model::hook::Hooks;
-use crate::model::{Individual, Machine};
+use crate::model::{Machine, RopeMachine};
 use crate::system::State;
 
-/// Method of computing `dR/dp`.
+/// Method of computing the right-hand side `dR/dp` of a column.
 #[derive(Clone, Debug)]
 pub(super) enum Source<'a> {
     /// Forces of rope joints with one coefficient equal to 1 and all others zero.
@@ -22,14 +23,15 @@ pub(super) enum Source<'a> {
     /// Derivative of the contact forces with respect to contact stiffness or damping, times a factor.
     Contact {
         /// Contact coefficient: stiffness or damping.
-        by: By,
-        /// Factor of the derivative.
+        by: DerivativeVariable,
+        /// Factor that converts the derivative into that with respect to the coefficient's decimal logarithm.
         factor: f64,
     },
-    /// Forces of hooks at amplitude 1.
-    Pieces(&'a Hooks),
-    /// Difference between machines: selected terms, whether inertia is included, and the derivative of the
-    /// front head's radius that multiplies the derivative of the contact forces with respect to that radius.
+    /// Generalised forces of an effect's extensions at amplitude 1.
+    Pieces(&'a Extensions),
+    /// Difference of residuals between perturbed machines: force terms to evaluate, whether inertia is
+    /// included, and the derivative of the front head's radius with respect to the parameter, by which the
+    /// contact forces are differentiated in closed form.
     Difference(Terms, bool, Option<f64>),
     /// Zero: the parameter does not influence the motion.
     Nothing,
@@ -38,26 +40,27 @@ pub(super) enum Source<'a> {
 /// Ropes with one joint coefficient equal to 1 and all others zero.
 #[derive(Clone, Debug)]
 pub(super) struct Joints<'a> {
-    pub(super) unit: Side<'a>,
-    /// Factor of the forces.
+    pub(super) unit: PerturbedModel<'a>,
+    /// Factor that converts the unit forces into the derivative with respect to the coefficient's decimal
+    /// logarithm.
     pub(super) factor: f64,
-    /// Motion in the plane: index of the unit joint force and its factor, for the joints between cylinders;
-    /// `None` if the coefficient has no effect in the plane.
+    /// Index of the unit joint force and its factor for the joints between cylinders, for motion in the
+    /// plane; `None` if the coefficient has no effect in the plane.
     pub(super) inner: Option<(usize, f64)>,
 }
 
 /// Differences of a perturbed machine from the simulated one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Differing {
+pub(super) struct ChangedTerms {
     /// Terms of the forces that differ, and whether the inertia differs; `None` if the motion is the same.
     pub(super) terms: Option<(Terms, bool)>,
-    /// Whether the front head's arc differs in its radius only.
-    pub(super) raised: bool,
-    /// Whether the gauge stress at a given state differs, or the time of a sample.
+    /// Whether the front head's arc differs in its radius and in nothing else.
+    pub(super) front_radius: bool,
+    /// Whether the machines differ in the gauge stress at a given state, or in the time of a sample.
     pub(super) stress: bool,
 }
 
-impl Differing {
+impl ChangedTerms {
     /// Determines the differences between two machines; `place` is the part of the model that the varied
     /// effect changes.
     pub(super) fn between(own: &Machine, beside: &Machine, place: Place) -> Self {
@@ -70,10 +73,12 @@ impl Differing {
         };
         let head = d.head != head;
         let built = arcs || d.rod != o.rod || head || d.twins != o.twins;
-        let any = |has: fn(&Hooks) -> bool| has(&own.hooks) || has(&beside.hooks);
-        let driven = place == Place::Drive || any(Hooks::has_warps);
+        let any = |has: fn(&Extensions) -> bool| has(&own.extensions) || has(&beside.extensions);
+        let driven = place == Place::Drive || any(Extensions::has_warps);
         let both = d.twins != o.twins || d.rope != o.rope;
-        let back = d.back_arc != o.back_arc || head || !own.hooks.digs_as(&beside.hooks);
+        let back = d.back_arc != o.back_arc
+            || head
+            || !own.extensions.has_same_profile(&beside.extensions);
         let moved = Arc {
             radius: d.front_arc.radius,
             ..o.front_arc
@@ -86,7 +91,7 @@ impl Differing {
             weights: d.rope != o.rope,
             ends: built || driven,
             joints,
-            pulls: any(Hooks::has_axial) && !joints,
+            pulls: any(Extensions::has_axial) && !joints,
             contact,
         };
         let touching = contact.contains(&true);
@@ -95,7 +100,7 @@ impl Differing {
         let still = place == Place::Gauge && !built && !joints && !terms.pulls && !touching;
         Self {
             terms: (!still).then_some((terms, inertia)),
-            raised: !front && d.front_arc != o.front_arc,
+            front_radius: !front && d.front_arc != o.front_arc,
             stress: back || both || driven,
         }
     }
@@ -112,11 +117,15 @@ pub(super) const ROPES: Terms = Terms {
 impl Source<'_> {
     /// Computes `dR/dp` into `sum`, at a state whose poses and contact points `individual` holds; `units` are
     /// the result of [`Individual::joint_units`], empty in space.
-    pub(super) fn right(
+    pub(super) fn right_hand_side(
         &mut self,
-        individual: &mut Individual<'_>,
-        (state, units): (&State, &[[f64; PLANE_UNITS]]),
-        (own, sides, difference): (&mut Side<'_>, &mut [Side<'_>], &Difference),
+        individual: &mut RopeMachine<'_>,
+        (state, units): (&State, &[[f64; PLANE_COEFFICIENTS]]),
+        (own, sides, difference): (
+            &mut PerturbedModel<'_>,
+            &mut [PerturbedModel<'_>],
+            &Difference,
+        ),
         [one, sum]: [&mut [f64]; 2],
     ) {
         let at = state.motion();
@@ -149,7 +158,7 @@ impl Source<'_> {
                 individual.contact_by(at, (*by, [true; 2]), sum);
                 scale(sum, *factor);
             }
-            Self::Pieces(hooks) => individual.forces_of(hooks, at, units, sum),
+            Self::Pieces(extensions) => individual.forces_of(extensions, at, units, sum),
             Self::Difference(terms, inertia, raised) => {
                 sum.fill(0.0);
                 let asked = (*terms, *inertia);
@@ -163,7 +172,11 @@ impl Source<'_> {
                     add(sum, weight, one);
                 }
                 if let Some(factor) = raised {
-                    individual.contact_by(at, (By::Penetration, [false, true]), one);
+                    individual.contact_by(
+                        at,
+                        (DerivativeVariable::Penetration, [false, true]),
+                        one,
+                    );
                     add(sum, *factor, one);
                 }
             }

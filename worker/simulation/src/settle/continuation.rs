@@ -5,11 +5,11 @@
 //! logarithms, from values for which the rope is taut, flexible and lies on its arc, to the given ones, and
 //! the equilibrium is tracked by Newton's method. The path depends on the individual alone, not on a start or
 //! a damping.
+use super::feasibility::StaticTension;
 use super::guess::guess;
 use super::minimize::{CONVERGED, Damping, minimize, minimize_within};
-use super::overload::Hanging;
 use crate::math::elementary::powf;
-use crate::model::{Individual, Machine, Ropes};
+use crate::model::{Machine, RopeMachine, Ropes};
 use crate::system::{StateRef, Static, System};
 
 /// Maximum number of iterations (factorisations) of a continuation.
@@ -17,7 +17,7 @@ pub(super) const BUDGET: u64 = 1200;
 
 /// Solves the equilibrium of an individual at time 0 by continuation and writes its coordinates to `q`.
 /// Returns whether it was reached.
-pub fn follow(system: &mut System<Individual<'_>>, q: &mut [f64]) -> bool {
+pub fn follow(system: &mut System<RopeMachine<'_>>, q: &mut [f64]) -> bool {
     let target = system.equations.ropes;
     let reached = Path::new(system, &target).is_some_and(|path| path.walk(system, q));
     system.equations.ropes = target;
@@ -34,12 +34,12 @@ struct Path<'a> {
 
 impl<'a> Path<'a> {
     /// Prepares the path; returns `None` if the mechanism does not close even with compliant ropes.
-    fn new(system: &mut System<Individual<'a>>, to: &Ropes) -> Option<Self> {
+    fn new(system: &mut System<RopeMachine<'a>>, to: &Ropes) -> Option<Self> {
         let drive = system.equations.drive_state(0.0);
         let machine = system.equations.machine;
-        let hanging = Hanging::new(machine, &drive).ok()?;
+        let hanging = StaticTension::new(machine, &drive).ok()?;
         let tightest = hanging.tension[0].max(hanging.tension[1]);
-        let from = compliant(machine, to, tightest * machine.share());
+        let from = compliant(machine, to, tightest * machine.rope_share());
         let start = guess(machine, &from, &drive).ok()?;
         Some(Self {
             machine,
@@ -49,7 +49,7 @@ impl<'a> Path<'a> {
         })
     }
 
-    /// Returns the ropes at a position on the path, from 0 (compliant) to 1 (given).
+    /// Returns the rope coefficients at a position on the continuation path, from 0 (compliant) to 1 (given).
     fn at(&self, place: f64) -> Ropes {
         let mix = |a: f64, b: f64| powf(a, 1.0 - place) * powf(b, place);
         let pair = |a: [f64; 2], b: [f64; 2]| [mix(a[0], b[0]), mix(a[1], b[1])];
@@ -68,7 +68,7 @@ impl<'a> Path<'a> {
         )
     }
 
-    fn walk(&self, system: &mut System<Individual<'_>>, q: &mut [f64]) -> bool {
+    fn walk(&self, system: &mut System<RopeMachine<'_>>, q: &mut [f64]) -> bool {
         let begun = system.statistics.newton_iterations;
         q.copy_from_slice(&self.start);
         system.equations.ropes = self.at(0.0);
@@ -161,11 +161,11 @@ fn newton<E: Static>(system: &mut System<E>, q: &mut [f64]) -> bool {
 
 const FIRST_STRIDE: f64 = 0.25;
 const SHORTEST_STRIDE: f64 = 2e-3;
-/// Stride below which a minimisation of at most [`PATIENCE`] iterations is tried if Newton's method fails,
-/// because a cylinder snaps onto or off its arc there.
+/// Step length on the continuation path below which a minimisation of at most [`PATIENCE`] iterations is
+/// tried where Newton's method fails, because a cylinder snaps onto or off its arc there.
 const CAREFUL: f64 = 0.02;
 const PATIENCE: u32 = 40;
-/// Number of times a Newton step may fail to be clearly shorter than all previous ones.
+/// Number of Newton steps of one solution that may fail to be clearly shorter than all previous steps.
 const SETBACKS: u32 = 3;
 /// Maximum length of a Newton step (0.2 m), in units of Newton's tolerance; at [`LOST`] (20 m) Newton's
 /// method has diverged.

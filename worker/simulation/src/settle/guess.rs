@@ -23,10 +23,10 @@ pub fn guess(
     let layout = machine.layout;
     let pull = drive.load + d.suspension_mass * d.gravity;
     let rigid = rigid_position(machine, drive.pin_angle)?;
-    let share = machine.share();
-    let front = Taut::new(machine, ropes, FRONT, pull * share);
+    let share = machine.rope_share();
+    let front = TautRope::new(machine, ropes, FRONT, pull * share);
     let lever = pull * d.front_arc.radius + d.beam_moment(sin_cos(rigid.beam));
-    let back = Taut::new(machine, ropes, BACK, lever / rigid.arm * share);
+    let back = TautRope::new(machine, ropes, BACK, lever / rigid.arm * share);
     let pitches = |count: usize| count as f64 - 1.0 + 2.0 * d.rope.end_pitches;
     let mechanism = machine.mechanism(
         back.radius,
@@ -51,7 +51,7 @@ pub fn guess(
             (front, [0.0; 2], d.front_arc.anchor, 0.0)
         };
         let count = machine.chains[chain].count;
-        let own = taut.longer(strand.longer / pitches(count));
+        let own = taut.longer(strand.excess_length / pitches(count));
         let tip = own.place(
             machine,
             chain,
@@ -80,34 +80,35 @@ pub(super) fn rigid_position(machine: &Machine, pin: f64) -> Result<Position, Do
     Ok(at)
 }
 
-/// Rope under a tension: radius on the arc and extension of its joints.
+/// Rope under a tension: its radius on the arc and the extension of its joints.
 #[derive(Clone, Copy)]
-struct Taut {
+struct TautRope {
     radius: f64,
     extension: f64,
     /// Extension at zero tension \[m\]; negative for a preloaded joint.
     slack: f64,
 }
 
-impl Taut {
+impl TautRope {
     fn new(machine: &Machine, ropes: &Ropes, rope: usize, tension: f64) -> Self {
         let d = &machine.description;
         let pitch = d.rope.pitch;
         let radius = [d.back_arc, d.front_arc][rope].radius;
         let joint = &ropes.joint;
-        let slack = joint.stretch(0.0).max(-0.5 * pitch);
+        let slack = joint.extension_under(0.0).max(-0.5 * pitch);
         let depth = ropes
             .contact
             .depth_under(tension * pitch / radius)
             .min(0.05);
         Self {
             radius: radius - depth,
-            extension: joint.stretch(tension).min(0.5 * pitch).max(slack),
+            extension: joint.extension_under(tension).min(0.5 * pitch).max(slack),
             slack,
         }
     }
 
-    /// Returns the rope with the extension of every joint reduced by `by`.
+    /// Returns the same rope with a greater unstretched length: the extension of every joint is reduced by
+    /// `by` \[m\].
     fn longer(self, by: f64) -> Self {
         Self {
             extension: (self.extension - by).max(self.slack),

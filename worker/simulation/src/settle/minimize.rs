@@ -96,8 +96,8 @@ pub fn minimize_within<E: Static>(
     false
 }
 
-/// Starts an iteration by factorising the damped stiffness matrix. Returns whether the factorisation
-/// succeeded, or `None` if no iteration is left.
+/// Starts an iteration of the minimisation by factorising the damped stiffness matrix. Returns whether the
+/// factorisation succeeded, or `None` if no iteration is left.
 fn factorize<E: Static>(mut loads: Loads<'_, '_, E>, lambda: f64, left: &mut u32) -> Option<bool> {
     *left = left.checked_sub(1)?;
     loads.statistics().newton_iterations += 1;

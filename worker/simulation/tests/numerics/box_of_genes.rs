@@ -10,7 +10,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use simulation::drive::Drive;
 use simulation::model::description::RopeLaw;
-use simulation::model::{Individual, Machine};
+use simulation::model::{Machine, RopeMachine};
 use simulation::observe::Recorder;
 use simulation::reference;
 use simulation::run::{RunResult, RunSettings, settle, simulate};
@@ -82,7 +82,7 @@ fn statics(
         speed: machine.description.crank.speed,
     };
     let ropes = machine.ropes(law);
-    let mut system = System::new(Individual::new(machine, ropes, drive));
+    let mut system = System::new(RopeMachine::new(machine, ropes, drive));
     let at = system.equations.drive_state(0.0);
     let layout = machine.layout;
     let width = layout.motion.width();
@@ -219,8 +219,8 @@ fn close_to_the_recommended_values_nearly_all_complete() {
     assert!(verdicts["complete"].len() >= 11, "{verdicts:?}");
 }
 
-/// Runs the checks with a thousand individuals on the real unit's discretisation: `cargo test --release -p
-/// simulation --test numerics -- --ignored --nocapture thousand`.
+/// Runs the checks of statics and of whole runs with a thousand individuals on the real unit's
+/// discretisation: `cargo test --release -p simulation --test numerics -- --ignored --nocapture thousand`.
 #[test]
 #[ignore = "minutes in a release build"]
 fn a_thousand_individuals() {

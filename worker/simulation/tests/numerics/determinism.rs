@@ -2,7 +2,9 @@
 //!
 //! `tests/determinism.sh` builds this test for several instruction sets and optimisation levels; each build
 //! must reproduce the digests below.
-use simulation::flexible::{Family, Gauge, Mesh, Pair, Reduction, Request, Steel, Wrap, reduce};
+use simulation::flexible::{
+    Family, Gauge, Mesh, Pair, Reduction, ReductionRequest, Steel, Wrap, reduce,
+};
 use simulation::reference;
 use std::process::Command;
 
@@ -69,7 +71,8 @@ fn sector() -> Mesh {
                 }
             }
             let corners = [(j, k), (j + 1, k), (j + 1, k + 1), (j, k + 1)];
-            mesh.rim.extend(corners.map(|(j, k)| node(across, j, k)));
+            mesh.rope_faces
+                .extend(corners.map(|(j, k)| node(across, j, k)));
         }
     }
     mesh
@@ -80,7 +83,7 @@ fn reduced() -> Reduction {
         position: [-1.7, 0.1, z],
         length: 0.02,
     };
-    reduce(&Request {
+    reduce(&ReductionRequest {
         mesh: &sector(),
         steel: Steel {
             young: 206.0e9,

@@ -1,5 +1,5 @@
 //! Tests of effects in motion: the energy balance closes with each of them, and laws with history converge.
-use simulation::effect::{Asked, Descriptor, Place, Selection, catalogue};
+use simulation::effect::{Descriptor, EffectRequest, Place, Selection, catalogue};
 use simulation::integrator::{method::Method, tableau::ESDIRK4};
 use simulation::model::Machine;
 use simulation::observe::Recorder;
@@ -7,16 +7,17 @@ use simulation::reference;
 use simulation::run::{RunResult, RunSettings, simulate};
 use simulation::verdict::Verdict;
 
-/// Returns an effect whose parameters lie at a share of the way from absent to their typical values.
-fn asked(d: &Descriptor, share: f64) -> Asked<'_> {
+/// Returns an effect each of whose parameters is interpolated between its value for the absent effect
+/// (`share` 0) and its typical value (`share` 1).
+fn asked(d: &Descriptor, share: f64) -> EffectRequest<'_> {
     let value = |p: &simulation::effect::Parameter| p.absent + share * (p.typical - p.absent);
-    Asked {
+    EffectRequest {
         id: &d.id,
         parameters: d.parameters.iter().map(|p| (p.name, value(p))).collect(),
     }
 }
 
-fn run(asked: &[Asked<'_>], tolerance: f64) -> (RunResult, [Vec<f64>; 4]) {
+fn run(asked: &[EffectRequest<'_>], tolerance: f64) -> (RunResult, [Vec<f64>; 4]) {
     let selection = Selection::new(asked).unwrap();
     let machine = Machine::with_effects(reference::description(), 2, selection.effects()).unwrap();
     let settings = RunSettings {
@@ -33,7 +34,7 @@ fn run(asked: &[Asked<'_>], tolerance: f64) -> (RunResult, [Vec<f64>; 4]) {
 }
 
 /// Returns the defect of the energy balance over one revolution, relative to the crank's work.
-fn defect(asked: &[Asked<'_>], tolerance: f64) -> f64 {
+fn defect(asked: &[EffectRequest<'_>], tolerance: f64) -> f64 {
     let (result, _) = run(asked, tolerance);
     let gained = result.work.input - result.work.output - result.work.dissipated;
     (result.stored - gained).abs() / result.work.input
@@ -51,7 +52,7 @@ const BOUND: f64 = 1e-4;
 #[test]
 fn ledger_closes_with_every_effect() {
     let acts = |d: &&Descriptor| d.place != Place::Gauge && !d.generic;
-    let mut groups: Vec<(String, Vec<Asked<'_>>)> = catalogue()
+    let mut groups: Vec<(String, Vec<EffectRequest<'_>>)> = catalogue()
         .iter()
         .filter(acts)
         .map(|d| (d.id.to_string(), vec![asked(d, 1.0)]))

@@ -70,7 +70,7 @@ fn defect(example: &Example, method: Method, tolerance: f64) -> f64 {
     let mut q = system.equations.straight(example.start, 0.0);
     // joints at rest: one that jumps together rings along the rope all the while
     for (j, q) in q.chunks_exact_mut(6).enumerate() {
-        q[0] += (j + 1) as f64 * setup.joint.stretch(0.0);
+        q[0] += (j + 1) as f64 * setup.joint.extension_under(0.0);
     }
     let v = vec![0.0; q.len()];
     let mut state = started(&mut system, q, v);

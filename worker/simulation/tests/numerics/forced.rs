@@ -1,6 +1,6 @@
 //! Forced nonlinear equations of motion with a known solution, for orders of convergence.
-use simulation::linear::{BLOCK, Bordered, Entry};
-use simulation::system::{Equations, Loaded, Powers, Shift, State, StateRef};
+use simulation::linear::{BLOCK, Bordered, MatrixEntry};
+use simulation::system::{Equations, LoadedState, Powers, State, StateRef, StateShift};
 
 /// Test equations `m(q) a = m(x) x'' + k (x - q) + l (x^3 - q^3) + c (x' - v)` in six coordinates, with `m(q)
 /// = 1 + cos(q_0) / 8` and the exact solution `q = x(t)`, `x_i = sin(w_i t + i)`.
@@ -44,14 +44,14 @@ impl Equations for Forced {
         }
     }
 
-    fn subtract_inertia<T: Entry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
+    fn subtract_inertia<T: MatrixEntry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
         let m = inertia(q);
         for (out, a) in out.iter_mut().zip(a) {
             *out -= *a * m;
         }
     }
 
-    fn tangent(&self, at: Loaded<'_>, shift: Shift, matrix: &mut Bordered) {
+    fn tangent(&self, at: LoadedState<'_>, shift: StateShift, matrix: &mut Bordered) {
         let q = at.state().q;
         matrix.clear();
         let m = inertia(q);
@@ -61,7 +61,13 @@ impl Equations for Forced {
         }
     }
 
-    fn add_spin_tangent(&self, at: StateRef<'_>, a: &[f64], _: f64, matrix: &mut Bordered) {
+    fn add_velocity_inertia_tangent(
+        &self,
+        at: StateRef<'_>,
+        a: &[f64],
+        _: f64,
+        matrix: &mut Bordered,
+    ) {
         for i in 0..BLOCK {
             matrix.add(i, 0, -0.125 * at.q[0].sin() * a[i]);
         }
@@ -75,7 +81,7 @@ impl Equations for Forced {
         error.iter().map(|x| x.abs()).fold(0.0, f64::max)
     }
 
-    fn powers(&self, _: Loaded<'_>, _: &[f64]) -> Powers {
+    fn powers(&self, _: LoadedState<'_>, _: &[f64]) -> Powers {
         Powers::default()
     }
 }

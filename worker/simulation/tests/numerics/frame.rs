@@ -4,8 +4,8 @@ use nalgebra::Rotation3;
 use simulation::rig::{Drum, End, Rig, Setup};
 use simulation::system::{StateRef, System};
 
-/// Checks that for a rig in motion, with contact and dead loads, turned about z and moved, the forces on the
-/// centres turn along while the forces on the angles and the energy are unchanged.
+/// Checks that turning a moving rig, with contact and dead loads, about z and shifting it turns the forces on
+/// the cylinder centres by the same angle and leaves the forces on the angles and the energy unchanged.
 #[test]
 fn rig_turns_with_the_world() {
     let (alpha, shift) = (0.7_f64, V3::new(3.0, -2.0, 1.0));

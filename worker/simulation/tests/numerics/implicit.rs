@@ -5,7 +5,7 @@
 use crate::rope::*;
 use simulation::element::bushing::Bushing;
 use simulation::rig::{End, Rig, Setup};
-use simulation::system::{Equations, Shift, StateRef, System};
+use simulation::system::{Equations, StateRef, StateShift, System};
 use std::f64::consts::LN_10;
 
 /// Joint without stiffness, damping and preload.
@@ -17,7 +17,7 @@ const NONE: Bushing = Bushing {
     preload: 0.0,
 };
 
-/// Returns a setup with the laws of its joints replaced and its loads scaled by `share`.
+/// Returns the setup of a rig with its joint laws mapped by `law` and its loads scaled by `share`.
 fn with(setup: &Setup, law: fn(&Bushing) -> Bushing, share: f64) -> Setup {
     let end = |end: &End| match *end {
         End::Held {
@@ -64,8 +64,8 @@ fn bending(law: &Bushing) -> Bushing {
     }
 }
 
-/// Returns the derivative of an equilibrium's coordinates per decade of the factor that scales the forces of
-/// `part`.
+/// Returns the derivative of an equilibrium's coordinates with respect to the decimal logarithm of a factor
+/// that scales those forces of the rig that the setup `part` contains.
 fn column(system: &mut System<Rig>, q: &[f64], part: &Setup) -> Vec<f64> {
     let still = vec![0.0; q.len()];
     let at = StateRef::new(0.0, q, &still);
@@ -99,7 +99,7 @@ fn solved(system: &mut System<Rig>, at: StateRef<'_>, mut right: Vec<f64>) -> Ve
     let mut factor = system.equations.matrix();
     let mut loads = system.forces(at, &mut force);
     let still = vec![0.0; right.len()];
-    loads.exact_tangent(&still, Shift::NONE, &mut factor);
+    loads.exact_tangent(&still, StateShift::NONE, &mut factor);
     factor.factorize().unwrap();
     factor.solve(&mut right);
     right

@@ -42,7 +42,8 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Checks that halving the step divides the error by `2^order`, within 0.3 of the order.
+/// Checks that halving the step divides the error by `2^order`, with an observed order within 0.3 of the
+/// given one.
 fn judge(name: &str, order: usize, errors: &[f64]) {
     for pair in errors.windows(2) {
         let found = (pair[0] / pair[1]).log2();
@@ -311,8 +312,8 @@ fn chosen(highest: usize) -> (usize, usize) {
     (steps, most)
 }
 
-/// Checks that higher orders are chosen where they pay, never above the cap, and that they reduce the number
-/// of steps.
+/// Checks that backward differentiation chooses higher orders where they save steps, and never exceeds the
+/// maximum order.
 #[test]
 fn backward_differentiation_chooses_the_order_that_pays() {
     let [first, second, fifth] = [1, 2, 5].map(chosen);

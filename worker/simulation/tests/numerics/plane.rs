@@ -1,7 +1,7 @@
 //! Tests of planar motion (three coordinates per cylinder) against spatial motion (six): a symmetric machine
 //! stays in its plane exactly.
 use crate::rope::{optimised, recommended};
-use simulation::effect::{Asked, Selection};
+use simulation::effect::{EffectRequest, Selection};
 use simulation::model::Machine;
 use simulation::model::description::RopeLaw;
 use simulation::observe::Recorder;
@@ -35,9 +35,9 @@ fn a_run_with_effects_in_the_plane_is_the_run_in_space() {
         vec![toe, hysteresis, wear, drag, post],
     ] {
         let names: Vec<&str> = effects.iter().map(|(id, _)| *id).collect();
-        let asked: Vec<Asked<'_>> = effects
+        let asked: Vec<EffectRequest<'_>> = effects
             .iter()
-            .map(|(id, parameters)| Asked {
+            .map(|(id, parameters)| EffectRequest {
                 id,
                 parameters: parameters.clone(),
             })
@@ -49,9 +49,10 @@ fn a_run_with_effects_in_the_plane_is_the_run_in_space() {
     }
 }
 
-/// Checks that preloaded joints give the same results in the plane and in space, and act on a machine like
-/// another length of its back rope (the front rope's preload moves the suspension point alone). Cylinders
-/// that lie closer together touch the head at other points, which leaves a fifteenth of the difference.
+/// Checks that preloaded joints give the same results in the plane and in space, and affect a machine as a
+/// different length of its back rope does (the front rope's preload moves the suspension point alone). The
+/// two cases agree to a fifteenth of the effect, because cylinders that lie closer together touch the head at
+/// other points.
 #[test]
 fn a_preload_is_another_length_of_rope() {
     let mut preloaded = recommended();
@@ -62,7 +63,7 @@ fn a_preload_is_another_length_of_rope() {
     let rope = &description.rope;
     // joints of coarser cylinders are softer and under the same preload
     let joint = preloaded.bushing.scaled(rope.reference_pitch / rope.pitch);
-    description.rod.length += rope.back as f64 * joint.stretch(0.0);
+    description.rod.length += rope.back as f64 * joint.extension_under(0.0);
     let shorter = Machine::new(description, 2).unwrap();
     let gauges = |machine: &Machine, law: &RopeLaw| {
         let mut recorder = Recorder::gauges_only();

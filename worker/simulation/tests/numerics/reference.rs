@@ -204,8 +204,8 @@ pub(crate) fn laid_on_drum(count: usize, wrap: f64) -> Vec<f64> {
     q
 }
 
-/// Returns tension, shear and moment that joint `j` of a rig exerts on the body before it, and the contact
-/// force of its cylinder.
+/// Returns tension, shear and moment of joint `j` of a rig, acting on the body before it, and the contact
+/// force of cylinder `j`.
 fn carried(system: &System<Rig>, law: &RopeLaw, q: &[f64], j: usize) -> [f64; 4] {
     let state = &system.equations.state;
     // on J acts the opposite of the load on I; J is the ground or the cylinder before

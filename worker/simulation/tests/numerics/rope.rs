@@ -3,7 +3,7 @@ use nalgebra::Vector3;
 use simulation::element::{bushing::Bushing, impact::Impact};
 use simulation::integrator::adaptive::Adaptive;
 use simulation::integrator::method::Method;
-use simulation::integrator::stepper::Step;
+use simulation::integrator::stepper::TimeStep;
 use simulation::integrator::tableau::ESDIRK4;
 use simulation::model::chain::Chain;
 use simulation::model::description::RopeLaw;
@@ -80,8 +80,8 @@ pub(crate) fn chain(count: usize) -> Chain {
     Chain::solid(0, count, 0.01, 0.05, 7850.0)
 }
 
-/// Returns a pin that lets a rope rotate in the plane but holds its twist; a chain free to twist at both ends
-/// has no unique equilibrium.
+/// Returns the law of an end joint that lets a rope rotate in the plane but prevents twist; a chain free to
+/// twist at both ends has no unique equilibrium.
 pub(crate) fn pinned(law: &Bushing) -> Bushing {
     let mut pin = law.revolute();
     pin.rotational_stiffness[0] = law.rotational_stiffness[0];
@@ -158,7 +158,7 @@ pub(crate) fn settled_straight(setup: &Setup) -> (System<Rig>, Vec<f64>) {
     settled(setup, q)
 }
 
-/// Integration settings of a rig.
+/// Settings of the time integration of a rig.
 #[derive(Clone, Copy)]
 pub(crate) struct Course {
     pub(crate) method: Method,
@@ -191,7 +191,7 @@ pub(crate) fn advance(
     course: &Course,
     state: &mut State,
     until: f64,
-    mut each: impl FnMut(&State, &State, &Step),
+    mut each: impl FnMut(&State, &State, &TimeStep),
 ) {
     let mut method = Adaptive::new(course.method, system, course.tolerance, course.longest);
     let mut to = state.clone();

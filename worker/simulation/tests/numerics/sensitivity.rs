@@ -2,15 +2,17 @@
 //! the same list of steps, whose stages are solved to rounding.
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use simulation::effect::{Asked, Parameter, Role, Selection, catalogue};
+use simulation::effect::{EffectRequest, Parameter, Role, Selection, catalogue};
 use simulation::integrator::method::Method;
 use simulation::integrator::stepper::Stages;
 use simulation::model::description::{Description, RopeLaw};
-use simulation::model::{Individual, Machine};
+use simulation::model::{Machine, RopeMachine};
 use simulation::observe::Recorder;
 use simulation::reference;
 use simulation::run::{Observe, RunSettings, simulate, simulate_on};
-use simulation::sensitivity::{self, Coefficient, Column, Derivative, Missing, Origin, Plan};
+use simulation::sensitivity::{
+    self, Coefficient, Column, ColumnOrigin, Derivative, DerivativePlan, Unavailable,
+};
 use simulation::system::{State, System};
 use simulation::verdict::Verdict;
 use std::f64::consts::LN_10;
@@ -20,9 +22,9 @@ use std::f64::consts::LN_10;
 struct Steps(Vec<f64>);
 
 impl Observe for Steps {
-    fn sample(&mut self, _: usize, _: &mut System<Individual<'_>>, _: &State) {}
+    fn sample(&mut self, _: usize, _: &mut System<RopeMachine<'_>>, _: &State) {}
 
-    fn step(&mut self, _: &mut System<Individual<'_>>, ends: [&State; 2], _: Option<Stages<'_>>) {
+    fn step(&mut self, _: &mut System<RopeMachine<'_>>, ends: [&State; 2], _: Option<Stages<'_>>) {
         self.0.push(ends[1].t);
     }
 }
@@ -36,10 +38,10 @@ struct Subject {
     settings: RunSettings,
 }
 
-fn asked(effects: &[(String, Vec<(String, f64)>)]) -> Vec<Asked<'_>> {
+fn asked(effects: &[(String, Vec<(String, f64)>)]) -> Vec<EffectRequest<'_>> {
     effects
         .iter()
-        .map(|(id, values)| Asked {
+        .map(|(id, values)| EffectRequest {
             id,
             parameters: values.iter().map(|(name, x)| (&**name, *x)).collect(),
         })
@@ -52,17 +54,17 @@ impl Subject {
         Machine::with_effects(self.description.clone(), 2, selection.effects()).unwrap()
     }
 
-    /// Computes the columns and the list of steps that they belong to; `None` where the run fails or its
-    /// stages cannot be solved to rounding.
+    /// Computes the derivatives (columns) of a run and the end times of its steps; `None` if the run fails or
+    /// its stages cannot be solved to rounding.
     fn columns(&self, columns: &[Column]) -> Option<(Vec<Derivative>, Vec<f64>)> {
         let machine = self.machine();
         let effects = asked(&self.effects);
-        let origin = Origin {
+        let origin = ColumnOrigin {
             description: &self.description,
             modes: 2,
             effects: &effects,
         };
-        let plan = Plan::new(&origin, &machine, columns).unwrap();
+        let plan = DerivativePlan::new(&origin, &machine, columns).unwrap();
         let mut steps = Steps::default();
         let (law, settings) = (&self.law, &self.settings);
         sensitivity::simulate(&machine, law, settings, &plan, &mut steps).1?;
@@ -73,8 +75,8 @@ impl Subject {
         Some((found?.columns, steps))
     }
 
-    /// Returns gauges, height and torque of a run on given steps with a column's unknown changed by `by`; NaN
-    /// where contact that closes or opens prevents a stage from being solved to rounding.
+    /// Returns gauge, height and torque curves of a run on given steps, with the unknown of a column changed
+    /// by `by`; NaN where contact that closes or opens prevents a stage from being solved to rounding.
     fn moved(&self, column: &Column, by: f64, steps: &[f64]) -> Vec<f64> {
         let mut own = self.clone();
         match column {
@@ -110,8 +112,8 @@ impl Subject {
         gauges.chain(height).chain(recorder.curves.torque).collect()
     }
 
-    /// Returns the direction of a one-sided difference if the parameter's bounds rule out a central one with
-    /// this step.
+    /// Returns the direction of a one-sided difference with respect to a column's parameter if the
+    /// parameter's bounds rule out a central difference with this step; otherwise `None`.
     fn side(&self, column: &Column, step: f64) -> Option<f64> {
         let Column::Parameter {
             effect, parameter, ..
@@ -133,7 +135,8 @@ impl Subject {
         }
     }
 
-    /// Returns the derivative by extrapolated differences, and the plain differences of the finer step size.
+    /// Returns the derivative curves by extrapolated differences of whole runs, and the plain differences
+    /// with the finer of the two steps.
     fn differenced(&self, column: &Column, step: f64, steps: &[f64]) -> [Vec<f64>; 2] {
         let side = self.side(column, step);
         let step = side.unwrap_or(1.0) * step;
@@ -201,7 +204,7 @@ fn fast() -> Subject {
     }
 }
 
-/// Returns the coarser step size of the differences for a column.
+/// Returns the coarser of the two difference steps for a column.
 fn step(column: &Column) -> f64 {
     match column {
         Column::Coefficient(_) => 2e-4,
@@ -222,9 +225,9 @@ fn usual(column: &Column) -> f64 {
     }
 }
 
-/// Summary of the comparison: number of curves above 0.05 `MPa` for a typical change (`of`), number of those
-/// that differences resolve well enough to test (`able`), largest deviation, and the list of curves that
-/// deviate by more than permitted.
+/// Summary of the comparison of derivative curves with differences: number of curves above 0.05 `MPa` for a
+/// typical change (`of`), number of those that differences resolve well enough to test (`able`), largest
+/// deviation, and the list of curves that deviate by more than permitted.
 #[derive(Default)]
 struct Judged {
     able: usize,
@@ -260,9 +263,9 @@ const READ: [(&str, std::ops::Range<usize>, f64); 3] =
 
 /// Columns that are expected to be missing, by effect, parameter and reason; any other missing column is an
 /// error.
-const MISSING: &[(&str, &str, Missing)] = &[
+const MISSING: &[(&str, &str, Unavailable)] = &[
     // a post that does not yield has no displacement
-    ("post_compliance", "compliance", Missing::Coordinates),
+    ("post_compliance", "compliance", Unavailable::Coordinates),
 ];
 
 /// Checks a column without curves: either a run on the same steps with the unknown changed is identical, or
@@ -276,7 +279,7 @@ fn check_without_curves(
 ) {
     let is_right = match found {
         Derivative::Curves(_) => return,
-        Derivative::Nothing => {
+        Derivative::Zero => {
             let [_, fine] = subject.differenced(column, step(column), steps);
             fine.iter().all(|x| *x == 0.0)
         }
@@ -364,7 +367,7 @@ fn individual(seed: u64) -> Subject {
     subject
 }
 
-/// Returns columns for every `stride`-th of the size parameters of all effects.
+/// Returns columns for every `stride`-th size parameter in the list of those of all effects.
 fn sizes(stride: usize) -> Vec<Column> {
     let sizes = catalogue().iter().flat_map(|d| {
         let sizes = d.parameters.iter().filter(|p| p.role == Role::Size);
@@ -394,7 +397,8 @@ fn present(id: &str) -> (Subject, Vec<Column>) {
     (subject, own)
 }
 
-/// Checks 39 of the 562 columns that `every_column_agrees_with_differences_on_the_same_steps` covers.
+/// Checks 39 derivatives against differences, a quick selection of the 562 that
+/// `every_column_agrees_with_differences_on_the_same_steps` covers.
 #[test]
 fn columns_agree_with_differences_on_the_same_steps() {
     let mut judged = Judged::default();
@@ -409,8 +413,8 @@ fn columns_agree_with_differences_on_the_same_steps() {
     judged.verdict();
 }
 
-/// Checks thirty random individuals, and every effect both absent and at its typical size: `cargo test -p
-/// simulation --test numerics -- --ignored --nocapture every_column`.
+/// Checks the derivatives of thirty random individuals against differences, with every effect both absent and
+/// at its typical size: `cargo test -p simulation --test numerics -- --ignored --nocapture every_column`.
 #[test]
 #[ignore = "minutes"]
 fn every_column_agrees_with_differences_on_the_same_steps() {
@@ -438,7 +442,7 @@ fn every_column_agrees_with_differences_on_the_same_steps() {
 fn columns_change_no_bit_of_the_run_nor_of_each_other() {
     let subject = fast();
     let machine = subject.machine();
-    let origin = Origin {
+    let origin = ColumnOrigin {
         description: &subject.description,
         modes: 2,
         effects: &[],
@@ -451,7 +455,7 @@ fn columns_change_no_bit_of_the_run_nor_of_each_other() {
     ]
     .concat();
     let found = |columns: &[Column]| {
-        let plan = Plan::new(&origin, &machine, columns).unwrap();
+        let plan = DerivativePlan::new(&origin, &machine, columns).unwrap();
         let mut recorder = Recorder::gauges_only();
         let (law, settings) = (&subject.law, &subject.settings);
         let (result, found) = sensitivity::simulate(&machine, law, settings, &plan, &mut recorder);
@@ -467,11 +471,7 @@ fn columns_change_no_bit_of_the_run_nor_of_each_other() {
             "{column:?}"
         );
     }
-    assert_eq!(
-        together[2],
-        Derivative::Nothing,
-        "nothing twists in the plane"
-    );
+    assert_eq!(together[2], Derivative::Zero, "nothing twists in the plane");
     let post = Column::Parameter {
         effect: "post_compliance".to_owned(),
         parameter: "compliance".to_owned(),
@@ -483,8 +483,8 @@ fn columns_change_no_bit_of_the_run_nor_of_each_other() {
         values: Vec::new(),
     };
     let [post, shape] = found(&[post, shape]).try_into().unwrap();
-    assert_eq!(post, Derivative::Missing(Missing::Coordinates));
-    assert_eq!(shape, Derivative::Nothing, "the shape of an absent size");
+    assert_eq!(post, Derivative::Missing(Unavailable::Coordinates));
+    assert_eq!(shape, Derivative::Zero, "the shape of an absent size");
 }
 
 /// Checks that a failing run has the verdict of the run without columns and returns no columns, and that a
@@ -494,13 +494,13 @@ fn a_run_that_fails_has_no_columns() {
     let mut subject = fast();
     subject.settings.budget = 400;
     let machine = subject.machine();
-    let origin = Origin {
+    let origin = ColumnOrigin {
         description: &subject.description,
         modes: 2,
         effects: &[],
     };
     let columns = [Column::Coefficient(Coefficient::Kb1)];
-    let plan = Plan::new(&origin, &machine, &columns).unwrap();
+    let plan = DerivativePlan::new(&origin, &machine, &columns).unwrap();
     let run = |settings: &RunSettings| {
         let mut recorder = Recorder::gauges_only();
         sensitivity::simulate(&machine, &subject.law, settings, &plan, &mut recorder)
@@ -514,6 +514,6 @@ fn a_run_that_fails_has_no_columns() {
         method: Method::Rosenbrock,
         ..fast().settings
     };
-    let missing = Derivative::Missing(Missing::Method);
+    let missing = Derivative::Missing(Unavailable::Method);
     assert_eq!(run(&method).1.unwrap().columns, [missing]);
 }

@@ -2,12 +2,12 @@
 use simulation::drive::Drive;
 use simulation::linear::Bordered;
 use simulation::model::description::RopeLaw;
-use simulation::model::{Individual, Machine};
+use simulation::model::{Machine, RopeMachine};
 use simulation::observe::Recorder;
 use simulation::reference;
 use simulation::run::{RunSettings, settle, simulate};
 use simulation::settle::swing_rate;
-use simulation::system::{Equations, Shift, StateRef, System};
+use simulation::system::{Equations, StateRef, StateShift, System};
 
 fn machine() -> Machine {
     Machine::new(reference::description(), 2).unwrap()
@@ -20,14 +20,14 @@ fn stretched(factor: f64) -> RopeLaw {
     law
 }
 
-fn settled<'a>(machine: &'a Machine, law: &RopeLaw) -> (System<Individual<'a>>, Vec<f64>) {
+fn settled<'a>(machine: &'a Machine, law: &RopeLaw) -> (System<RopeMachine<'a>>, Vec<f64>) {
     let settings = RunSettings::default();
     let drive = Drive {
         start: -settings.lead_in,
         ramp: settings.ramp,
         speed: machine.description.crank.speed,
     };
-    let mut system = System::new(Individual::new(machine, machine.ropes(law), drive));
+    let mut system = System::new(RopeMachine::new(machine, machine.ropes(law), drive));
     let q = settle(&mut system, &settings, None).unwrap();
     (system, q)
 }
@@ -36,20 +36,20 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Computes `M x`.
-fn momentum(system: &System<Individual<'_>>, q: &[f64], x: &[f64]) -> Vec<f64> {
+/// Computes the product of the mass matrix with a vector, `M x`.
+fn momentum(system: &System<RopeMachine<'_>>, q: &[f64], x: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; x.len()];
     system.equations.subtract_inertia(q, x, &mut out);
     out.iter().map(|x| -x).collect()
 }
 
 /// Returns the static tangent stiffness matrix, not factorised.
-fn stiffness(system: &mut System<Individual<'_>>, q: &[f64]) -> Bordered {
+fn stiffness(system: &mut System<RopeMachine<'_>>, q: &[f64]) -> Bordered {
     let still = vec![0.0; q.len()];
     let mut force = still.clone();
     let mut matrix = system.equations.matrix();
     let mut loads = system.forces(StateRef::new(0.0, q, &still), &mut force);
-    loads.tangent(Shift::NONE, &mut matrix);
+    loads.tangent(StateShift::NONE, &mut matrix);
     matrix
 }
 
@@ -91,8 +91,8 @@ fn softer_ropes_swing_slower() {
     assert!((1.3..3.2).contains(&ratio), "{ratio}");
 }
 
-/// Checks that steps shrink in proportion where the beam swings faster than the settings permit, and are
-/// unchanged elsewhere.
+/// Checks that the time steps shrink in inverse proportion to the swing rate where the beam swings faster
+/// than the settings permit, and are unchanged elsewhere.
 #[test]
 fn steps_are_cut_to_the_swing() {
     let machine = machine();

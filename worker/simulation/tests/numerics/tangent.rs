@@ -2,12 +2,12 @@
 //! machine's stage against each computed separately.
 use crate::rope::*;
 use simulation::drive::Drive;
-use simulation::effect::{Asked, Selection};
-use simulation::model::{Individual, Machine};
+use simulation::effect::{EffectRequest, Selection};
+use simulation::model::{Machine, RopeMachine};
 use simulation::reference;
 use simulation::rig::{Drum, End, Rig, Setup};
 use simulation::settle::guess;
-use simulation::system::{Equations, Shift, StateRef, System};
+use simulation::system::{Equations, StateRef, StateShift, System};
 
 /// Checks `mu M - gamma D - K` against central differences, coordinate by coordinate, for a disturbed, moving
 /// chain on a drum with a revolute base and a loaded free end.
@@ -45,7 +45,7 @@ fn tangent_is_the_derivative_of_the_forces() {
     let mut force = vec![0.0; n];
     for (mu, gamma) in [(0.0, 0.0), (1600.0, 40.0)] {
         let mut matrix = system.equations.matrix();
-        let shift = Shift {
+        let shift = StateShift {
             mass: mu,
             damping: gamma,
         };
@@ -101,7 +101,7 @@ fn tangents_of_a_stage_are_those_of_each_alone() {
         speed: 0.5,
     };
     let plane = Machine::new(reference::description(), 2).unwrap();
-    let toe = Asked {
+    let toe = EffectRequest {
         id: "rope_toe",
         parameters: vec![("strain", 7.5e-4), ("tension", 6e4)],
     };
@@ -109,7 +109,7 @@ fn tangents_of_a_stage_are_those_of_each_alone() {
     let toe = Machine::with_effects(reference::description(), 2, toe.effects()).unwrap();
     for machine in [plane.clone(), plane.in_space(), toe] {
         let ropes = machine.ropes(&reference::law());
-        let mut system = System::new(Individual::new(&machine, ropes, drive));
+        let mut system = System::new(RopeMachine::new(&machine, ropes, drive));
         let state = system.equations.drive_state(0.0);
         let mut q = guess(&machine, &ropes, &state).unwrap();
         let n = q.len();
@@ -120,14 +120,14 @@ fn tangents_of_a_stage_are_those_of_each_alone() {
         let v: Vec<f64> = (0..n).map(|i| 0.05 * wave(i, 78.233)).collect();
         let a: Vec<f64> = (0..n).map(|i| wave(i, 3.7)).collect();
         let mut force = vec![0.0; n];
-        let shift = Shift {
+        let shift = StateShift {
             mass: 1600.0,
             damping: 40.0,
         };
         let mut matrices: [_; 4] = std::array::from_fn(|_| system.equations.matrix());
         let mut loads = system.forces(StateRef::new(0.0, &q, &v), &mut force);
         let [alone, both, pair @ ..] = &mut matrices;
-        loads.exact_tangent(&a, Shift::NONE, alone);
+        loads.exact_tangent(&a, StateShift::NONE, alone);
         loads.exact_tangent(&a, shift, both);
         // one that was used is filled as a new one is
         let [stiffness, matrix] = pair;

@@ -1,12 +1,12 @@
 //! Tests of the beam's own weight with its centre of mass off the line through the pivot.
 use simulation::drive::Drive;
-use simulation::model::{Individual, Machine, description::Description};
+use simulation::model::{Machine, RopeMachine, description::Description};
 use simulation::reference;
 use simulation::run::{RunSettings, settle};
-use simulation::system::{Equations as _, Shift, State, StateRef, System};
+use simulation::system::{Equations as _, State, StateRef, StateShift, System};
 
-/// Weight times horizontal distance of the centre of mass from the pivot at beam angle 0, towards the well
-/// \[N m\]; `UP` is the same for the height.
+/// Moment of the beam's weight at beam angle 0: weight times horizontal distance of the centre of mass from
+/// the pivot, towards the well \[N m\]; `UP` is weight times its height above the pivot.
 const ACROSS: f64 = 9.0e3;
 const UP: f64 = 4.0e4;
 
@@ -20,13 +20,13 @@ fn machine([across, up]: [f64; 2]) -> Machine {
     Machine::new(description, 2).unwrap()
 }
 
-/// Returns the forces, the stiffness of the beam's coordinate alone, and the energy at rest.
-fn at_rest(system: &mut System<Individual<'_>>, q: &[f64], beam: usize) -> (Vec<f64>, f64, f64) {
+/// Returns the generalised forces at rest, the diagonal stiffness of the beam's coordinate, and the energy.
+fn at_rest(system: &mut System<RopeMachine<'_>>, q: &[f64], beam: usize) -> (Vec<f64>, f64, f64) {
     let still = vec![0.0; q.len()];
     let mut force = still.clone();
     let mut matrix = system.equations.matrix();
     let mut loads = system.forces(StateRef::new(0.0, q, &still), &mut force);
-    loads.tangent(Shift::NONE, &mut matrix);
+    loads.tangent(StateShift::NONE, &mut matrix);
     let mut unit = still;
     unit[beam] = 1.0;
     let stiffness = matrix.product(&unit)[beam];
@@ -50,7 +50,7 @@ fn a_heavy_beam_is_a_pendulum() {
             speed: plain.description.crank.speed,
         };
         let system = |machine| {
-            System::new(Individual::new(
+            System::new(RopeMachine::new(
                 machine,
                 Machine::ropes(machine, &law),
                 drive,

@@ -39,7 +39,7 @@ pub(super) fn groups(control: &Control) -> Vec<Group> {
             value,
             weight,
         };
-        let (channel, is_measured) = (plain(group), weight > 0.0);
+        let (channel, is_measured) = (sanitized(group), weight > 0.0);
         match all
             .iter_mut()
             .find(|own| own.name == channel && own.is_measured == is_measured)
@@ -67,7 +67,7 @@ pub(super) fn groups(control: &Control) -> Vec<Group> {
 }
 
 /// Replaces every character other than ASCII letters, digits, `_` and `-` by `_`.
-fn plain(name: &str) -> String {
+fn sanitized(name: &str) -> String {
     let letter = |letter: char| {
         let is_plain = letter.is_ascii_alphanumeric() || matches!(letter, '_' | '-');
         if is_plain { letter } else { '_' }

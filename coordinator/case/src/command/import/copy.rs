@@ -5,7 +5,7 @@ use std::{fs, io, path::Path};
 /// Copies the contents of a folder; returns the names of the copied entries and notes on those left out.
 /// Hidden entries and folders that are themselves cases are skipped, because a case may lie in the folder of
 /// its control file.
-pub(super) fn all(from: &Path, to: &Path) -> io::Result<(Vec<String>, Vec<String>)> {
+pub(super) fn copy_contents(from: &Path, to: &Path) -> io::Result<(Vec<String>, Vec<String>)> {
     let (mut names, mut notes, mut bytes) = (Vec::new(), Vec::new(), 0);
     let mut entries = fs::read_dir(from)?.collect::<io::Result<Vec<_>>>()?;
     entries.sort_by_key(fs::DirEntry::file_name);
@@ -24,7 +24,7 @@ pub(super) fn all(from: &Path, to: &Path) -> io::Result<(Vec<String>, Vec<String
         if name.starts_with('.') || is_case {
             continue;
         }
-        if !copied(&path, &to.join(&name), &mut bytes)? {
+        if !copy_entry(&path, &to.join(&name), &mut bytes)? {
             notes.push(format!(
                 "{name} was not copied: it is neither a file nor a folder, or exceeds the size limit for files sent to workers"
             ));
@@ -37,13 +37,13 @@ pub(super) fn all(from: &Path, to: &Path) -> io::Result<(Vec<String>, Vec<String
 
 /// Copies a file or folder; returns false if it is neither, or exceeds the size limit for files that travel
 /// with a case.
-fn copied(from: &Path, to: &Path, bytes: &mut u64) -> io::Result<bool> {
+fn copy_entry(from: &Path, to: &Path, bytes: &mut u64) -> io::Result<bool> {
     let found = fs::symlink_metadata(from)?;
     if found.is_dir() {
         fs::create_dir(to)?;
         for entry in fs::read_dir(from)? {
             let entry = entry?;
-            if !copied(&entry.path(), &to.join(entry.file_name()), bytes)? {
+            if !copy_entry(&entry.path(), &to.join(entry.file_name()), bytes)? {
                 fs::remove_dir_all(to)?;
                 return Ok(false);
             }

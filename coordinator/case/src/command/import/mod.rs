@@ -71,10 +71,10 @@ pub fn import(control: &Path, to: Option<&Path>) -> Result<Imported, ImportError
     if folder.exists() {
         return Err(ImportError::Exists(folder));
     }
-    let name = named(control);
+    let name = case_name(control);
     let groups = channels::groups(&read);
     fs::create_dir_all(&folder).map_err(|source| io(&folder, source))?;
-    let written = copy::all(beside, &folder).and_then(|(files, notes)| {
+    let written = copy::copy_contents(beside, &folder).and_then(|(files, notes)| {
         read.notes.extend(notes);
         let file = control.file_name().unwrap_or_default().to_string_lossy();
         let case = text_of(&read, &groups, (&name, &file), &files);
@@ -99,7 +99,7 @@ pub fn import(control: &Path, to: Option<&Path>) -> Result<Imported, ImportError
 
 /// Returns the name for the case and its allow-list entry: the folder's name and the control file's name,
 /// because many control files have the same name.
-fn named(control: &Path) -> String {
+fn case_name(control: &Path) -> String {
     let full = std::path::absolute(control).unwrap_or_else(|_| control.to_owned());
     let folder = full.parent().and_then(Path::file_name);
     let parts = folder.into_iter().chain(control.file_stem());
@@ -147,7 +147,7 @@ fn model(control: &Control, name: &str, files: &[String]) -> Table {
     model.insert("command", list(&command(&control.commands)));
     model.insert("files", list(files));
     model.insert("deadline_s", value(DEADLINE_S));
-    let pair = |own: &'static str, pair: &exchange::pest::Pair| {
+    let pair = |own: &'static str, pair: &exchange::pest::FilePair| {
         let parts = [
             ("file", plain_path(&pair.program)),
             (own, plain_path(&pair.own)),

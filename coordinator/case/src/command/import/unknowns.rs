@@ -94,7 +94,8 @@ fn difference(own: &Parameter, group: &ParameterGroup, logarithmic: bool) -> Opt
     (share > 0.0 && share <= most).then_some(share)
 }
 
-/// Returns the factor and offset with which a parameter is written; `None` for factor 1 and offset 0.
+/// Returns the factor and offset with which a parameter is written to the program's input files, as an entry
+/// of the case file; `None` for factor 1 and offset 0.
 pub(super) fn written(own: &Parameter) -> Option<(String, Value)> {
     let is_plain = own.scale.total_cmp(&1.0).is_eq() && own.offset.total_cmp(&0.0).is_eq();
     if is_plain {

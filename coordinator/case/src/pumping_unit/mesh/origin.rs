@@ -4,15 +4,15 @@ use crate::error::{CaseError, contradiction};
 use std::path::Path;
 
 /// Remedy for tables computed from another mesh.
-const ANOTHER: &str =
+const OUTDATED_TABLES_HELP: &str =
     "the tables belong to another mesh: `horsehead head CASE --write` computes them again";
 
-/// Input whose content hash is stated in the head's tables.
+/// Input of the head's reduction whose content hash the head's tables state.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) enum Origin {
     /// Mesh file.
     Mesh,
-    /// All inputs of a reduction: mesh, material, arc, stations and gauges.
+    /// All inputs of the reduction of the head: mesh, material, arc, stations and gauges.
     Source,
 }
 
@@ -33,7 +33,11 @@ pub(in super::super) fn check_origin(
         return Ok(());
     }
     let (field, has, remedy) = match origin {
-        Origin::Mesh => ("mesh_blake3", "flexible_head.mesh_file has", ANOTHER),
+        Origin::Mesh => (
+            "mesh_blake3",
+            "flexible_head.mesh_file has",
+            OUTDATED_TABLES_HELP,
+        ),
         Origin::Source => (
             "source_blake3",
             "mesh, material, arc and gauges have",
@@ -66,13 +70,13 @@ pub(in super::super) fn check_hash(
             "the content of the mesh (blake3)",
             hash,
             format!("{}: mesh_blake3 = {stated}", modes_file.display()),
-            ANOTHER,
+            OUTDATED_TABLES_HELP,
         )),
         Some(_) | None => Ok(()),
     }
 }
 
-/// Checks that the mesh has the mass that belongs to the modes.
+/// Checks that the mass of the mesh equals the mass stated with the head's modes.
 ///
 /// # Errors
 /// Returns an error if volume times density differs from the modes' mass by more than 1 %.

@@ -72,7 +72,8 @@ fn tetrahedron(nodes: &[[f64; 3]]) -> Option<f64> {
 /// End nodes of the edges on which nodes 4 to 9 of a tetrahedron lie.
 const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
 
-/// Returns the derivatives of the position with respect to each volume coordinate, at a point.
+/// Returns the derivatives of the position with respect to each volume coordinate, at a point of a
+/// tetrahedron.
 fn slopes(nodes: &[[f64; 3]], point: &[f64; 4]) -> [[f64; 3]; 4] {
     let mut slopes = [[0.0; 3]; 4];
     let mut add = |k: usize, factor: f64, node: &[f64; 3]| {
@@ -99,8 +100,8 @@ fn determinant([[a, b, c], [d, e, f], [g, h, i]]: &[[f64; 3]; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Returns the nodes of the unit tetrahedron under a quadratic map with determinant `1 - 2 a b x z`,
-    /// whose volume is `1/6 - 2 a b / 120`.
+    /// Returns the nodes of a curved test tetrahedron: the unit tetrahedron under a quadratic map with
+    /// determinant `1 - 2 a b x z`, so that its volume is `1/6 - 2 a b / 120`.
     fn bent(a: f64, b: f64) -> Vec<[f64; 3]> {
         let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let middles = EDGES.map(|[i, j]| [0, 1, 2].map(|k| 0.5 * (corners[i][k] + corners[j][k])));

@@ -11,17 +11,17 @@ use std::path::{Path, PathBuf};
 /// Values of the case with which a record must agree.
 #[derive(Debug, Clone, Copy)]
 pub(in super::super) struct Expected<'a> {
-    /// Position of the condition in the case.
+    /// Index of the condition in the case.
     pub(in super::super) index: usize,
-    /// Name of the condition, for messages.
+    /// Name of the condition that the record belongs to, for messages.
     pub(in super::super) condition: &'a str,
-    /// Speed of the condition [1/min].
+    /// Crank speed that the case states for the condition [1/min].
     pub(in super::super) speed_rpm: f64,
     /// Path of the case file, for messages.
     pub(in super::super) case_file: &'a Path,
-    /// Step of the output grid \[deg\].
+    /// Angular step of the grid on which curves are compared \[deg\].
     pub(in super::super) step_deg: f64,
-    /// Sense in which the case's crank turns.
+    /// Direction of rotation of the crank as stated in the case.
     pub(in super::super) sense: TurnSense,
 }
 
@@ -36,11 +36,11 @@ pub struct RecordFacts {
     pub lost: u64,
     /// Sampling rate \[Hz\].
     pub rate_hz: f64,
-    /// Mean speed between the first and the last index pulse [1/min].
+    /// Mean crank speed between the first and the last index pulse [1/min].
     pub speed_rpm: f64,
     /// Noise that the data sheet states, per sample \[MPa\].
     pub stated_noise_mpa: Option<f64>,
-    /// Names of the columns that are not used.
+    /// Names of the record's columns that are not used.
     pub unused: Vec<String>,
 }
 
@@ -84,7 +84,7 @@ pub(super) fn check_stated(
     Ok(())
 }
 
-/// Returns a phrase with the case's speed, for messages.
+/// Returns a phrase that states condition, case file and crank speed, for messages.
 pub(super) fn speed_of(expected: &Expected<'_>) -> String {
     format!(
         "condition `{}` of {} has speed_rpm = {}",
@@ -94,7 +94,8 @@ pub(super) fn speed_of(expected: &Expected<'_>) -> String {
     )
 }
 
-/// Collects the facts about a record; the speed is measured between index pulses if there are at least two.
+/// Collects facts about a record, such as its sampling rate and crank speed; the speed is measured between
+/// index pulses if there are at least two.
 pub(super) fn facts(path: &Path, samples: &Samples, sheet: &Sheet) -> RecordFacts {
     let speed_rpm = match samples.pulses_s.as_slice() {
         [first, .., last] => 60.0 * (samples.pulses_s.len() - 1) as f64 / (last - first),
@@ -186,7 +187,7 @@ pub(super) fn check_sheet(
 }
 
 /// Adds notes for the user: unused columns, few cycles, lost samples and a deviating speed.
-pub(super) fn remark(
+pub(super) fn add_notes(
     path: &Path,
     cycles: &resample::Cycles,
     samples: &Samples,

@@ -1,6 +1,6 @@
 //! Reading of a record, from its files to the averaged turn.
 use super::{
-    agreement::{Expected, RecordFacts, check_sheet, check_speed, check_stated, facts, remark},
+    agreement::{Expected, RecordFacts, add_notes, check_sheet, check_speed, check_stated, facts},
     resample,
     samples::Samples,
     sheet::Sheet,
@@ -26,7 +26,7 @@ pub fn count_samples(path: &Path, csv: &[u8]) -> Result<usize, CaseError> {
 
 /// Record as read from its files.
 #[derive(Debug)]
-pub(in super::super) struct Read {
+pub(in super::super) struct GaugeRecord {
     /// Channels of all sensors of the condition, with the measured records of the gauges.
     pub(in super::super) channels: Vec<Channel>,
     /// Record with each cycle separate, including channels recorded in addition to the gauges.
@@ -39,7 +39,10 @@ pub(in super::super) struct Read {
 ///
 /// # Errors
 /// Returns everything that makes the record unusable or contradicts its sheet or the case.
-pub(in super::super) fn read(path: &Path, expected: &Expected<'_>) -> Result<Read, CaseError> {
+pub(in super::super) fn read(
+    path: &Path,
+    expected: &Expected<'_>,
+) -> Result<GaugeRecord, CaseError> {
     let role = format!(
         "the gauge record of condition `{}` in {}",
         expected.condition,
@@ -82,7 +85,7 @@ pub(in super::super) fn read(path: &Path, expected: &Expected<'_>) -> Result<Rea
         channel.noise = sheet.noise(sensor);
     }
     average(path, &cycles, &mut channels, expected.step_deg)?;
-    remark(path, &cycles, &samples, &facts, expected, &mut notes);
+    add_notes(path, &cycles, &samples, &facts, expected, &mut notes);
     let places = Sensor::ALL.iter().zip(&channels).enumerate();
     let recorded = places
         .filter(|(_, (sensor, _))| cycles.channels.contains(sensor))
@@ -90,7 +93,7 @@ pub(in super::super) fn read(path: &Path, expected: &Expected<'_>) -> Result<Rea
             correlation: sheet.correlation(samples.step_deg / expected.step_deg),
             ..Recorded::new(curve, channel)
         });
-    Ok(Read {
+    Ok(GaugeRecord {
         cycles: Record {
             condition: expected.index,
             channels: recorded.collect(),
@@ -155,7 +158,7 @@ fn average(
     Ok(())
 }
 
-/// Returns the difference between the last and the first angle.
+/// Returns the difference between the last and the first of a list of angles.
 fn span(angles: &[f64]) -> f64 {
     match (angles.first(), angles.last()) {
         (Some(first), Some(last)) => last - first,

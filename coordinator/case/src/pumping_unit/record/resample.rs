@@ -16,9 +16,9 @@ use protocol::pumping_unit::Sensor;
 /// Cycles resampled on the output grid, with their mean and spread.
 #[derive(Debug)]
 pub(super) struct Cycles {
-    /// Indices of the whole cycles.
+    /// Indices of the cycles that cover the whole turn.
     pub(super) whole: Vec<usize>,
-    /// Mean per gauge and grid angle; absent where no cycle has a value.
+    /// Mean over the cycles, per gauge and grid angle; `None` where no cycle has a value.
     pub(super) mean: Vec<Vec<Option<f64>>>,
     /// Standard deviation between cycles, per gauge and grid angle.
     pub(super) spread: Vec<Vec<f64>>,
@@ -31,10 +31,10 @@ pub(super) struct Cycles {
     pub(super) single: Vec<Curves>,
 }
 
-/// Minimum share of the grid that a whole cycle covers.
-const WHOLE: f64 = 0.9;
+/// Minimum share of the grid angles with values for a cycle to count as whole.
+const MIN_COVERAGE: f64 = 0.9;
 
-/// Resamples every cycle and averages the whole ones.
+/// Resamples every cycle of a record on the output grid and averages the whole ones.
 pub(super) fn cycles(samples: &Samples, step_deg: f64) -> Cycles {
     let count = grid_count(step_deg);
     let half_width = (1.5 * step_deg).max(2.5 * samples.step_deg);
@@ -46,7 +46,7 @@ pub(super) fn cycles(samples: &Samples, step_deg: f64) -> Cycles {
             .map(|center| Window::new(&samples.angle_deg, center, half_width))
             .collect();
         let covered = windows.iter().flatten().count() as f64;
-        if covered < WHOLE * count as f64 {
+        if covered < MIN_COVERAGE * count as f64 {
             continue;
         }
         whole.push(cycle);
@@ -129,8 +129,8 @@ struct Window {
 }
 
 impl Window {
-    /// Computes the regression weights at an angle; `None` if there are fewer than three samples or all are
-    /// on one side.
+    /// Computes the regression weights at a grid angle; `None` if there are fewer than three samples or all
+    /// are on one side of it.
     fn new(angles: &[f64], center: f64, half_width: f64) -> Option<Self> {
         let first = angles.partition_point(|angle| *angle <= center - half_width);
         let end = angles.partition_point(|angle| *angle < center + half_width);
@@ -170,7 +170,7 @@ impl Window {
         Some(Self { first, weights })
     }
 
-    /// Returns the grid value of one curve.
+    /// Returns the value of a curve at the grid angle: the weighted sum of its samples.
     fn apply(&self, stress: &[f64]) -> f64 {
         let run = stress.iter().skip(self.first);
         run.zip(&self.weights)

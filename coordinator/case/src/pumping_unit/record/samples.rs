@@ -2,7 +2,7 @@
 use crate::{
     document::nearest,
     error::{CaseError, damaged},
-    table::{Table, clip},
+    table::{CsvTable, clip},
 };
 use protocol::pumping_unit::Sensor;
 use std::path::Path;
@@ -21,8 +21,9 @@ const CURVES: [(&str, Sensor); 6] = [
     ("crank_torque_nm", Sensor::Torque),
 ];
 
-/// Columns that are accepted but not used: the load drives the model and so is not an output to compare with.
-const FOR_READERS: [&str; 1] = ["polished_rod_load_n"];
+/// Columns of a record that are accepted but not used: the load is an input of the model and not an output to
+/// compare with.
+const IGNORED_COLUMNS: [&str; 1] = ["polished_rod_load_n"];
 
 /// Record as sampled.
 #[derive(Debug)]
@@ -31,7 +32,7 @@ pub(super) struct Samples {
     pub(super) angle_deg: Vec<f64>,
     /// Sensor and values of each recorded curve (MPa, m, N m), gauges first.
     pub(super) curves: Vec<(Sensor, Vec<f64>)>,
-    /// Names of the unused columns, each with the most similar known column that is absent.
+    /// Names of the record's unused columns, each with the most similar known column that the record lacks.
     pub(super) unused: Vec<(String, Option<&'static str>)>,
     /// Time of the first sample after each index pulse \[s\].
     pub(super) pulses_s: Vec<f64>,
@@ -50,7 +51,7 @@ impl Samples {
     /// Returns an error for any fault of the table; times that repeat or decrease; angles outside 0 to 360 or
     /// decreasing; no gauge; stress that is not in MPa judging by its magnitude; a gauge without signal.
     pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Self, CaseError> {
-        let table = Table::read_with(path, bytes, &COLUMNS, &CURVES.map(|(name, _)| name))?;
+        let table = CsvTable::read_with(path, bytes, &COLUMNS, &CURVES.map(|(name, _)| name))?;
         let [time, crank, rest @ ..] = table.columns.as_slice() else {
             return Err(damaged(path, "no columns", "copy it again"));
         };
@@ -84,7 +85,7 @@ impl Samples {
         let absent = || CURVES.iter().map(|(name, _)| *name);
         let absent = || absent().filter(|name| !table.names.iter().any(|read| read == name));
         let unused = table.others.iter();
-        let unused = unused.filter(|name| !FOR_READERS.contains(&name.as_str()));
+        let unused = unused.filter(|name| !IGNORED_COLUMNS.contains(&name.as_str()));
         let unused = unused.map(|name| (clip(name, 40), nearest(name, absent())));
         let step_s = median(time.iter().zip(time.iter().skip(1)).map(|(a, b)| b - a));
         let step_deg = median(
@@ -111,7 +112,7 @@ impl Samples {
 }
 
 /// Checks that times ascend strictly.
-fn check_time(path: &Path, table: &Table, time: &[f64]) -> Result<(), CaseError> {
+fn check_time(path: &Path, table: &CsvTable, time: &[f64]) -> Result<(), CaseError> {
     for (row, (before, after)) in time.iter().zip(time.iter().skip(1)).enumerate() {
         if after <= before {
             let (what, help) = if after < before {
@@ -141,7 +142,7 @@ fn check_time(path: &Path, table: &Table, time: &[f64]) -> Result<(), CaseError>
 /// returns the angles and the times of the pulses.
 fn unwrap_angle(
     path: &Path,
-    table: &Table,
+    table: &CsvTable,
     time: &[f64],
     crank: &[f64],
 ) -> Result<(Vec<f64>, Vec<f64>), CaseError> {
@@ -180,7 +181,7 @@ fn unwrap_angle(
 /// Checks that stress has the magnitude of MPa and varies.
 fn check_stress(
     path: &Path,
-    table: &Table,
+    table: &CsvTable,
     column: usize,
     values: &[f64],
 ) -> Result<(), CaseError> {

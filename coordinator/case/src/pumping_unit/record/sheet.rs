@@ -2,7 +2,7 @@
 //! chain.
 use super::tolerance::Tolerance;
 use crate::{
-    document::{Document, Step},
+    document::{Document, DocumentStep},
     error::CaseError,
     note::Note,
 };
@@ -100,7 +100,7 @@ impl Sheet {
             .find(|sense| sense.to_string() == *stated);
         sense.map(Some).ok_or_else(|| {
             document.field(
-                &[Step::Key("crank"), Step::Key("sense")],
+                &[DocumentStep::Key("crank"), DocumentStep::Key("sense")],
                 format!("\"{stated}\""),
                 SENSES.map(|sense| format!("\"{sense}\"")).join(" or "),
                 "write one of the two: how the crank turns while crank_deg grows, seen with the \
@@ -126,8 +126,8 @@ impl Sheet {
         stated.map(|rho| libm::pow(rho, 1.0 / grid))
     }
 
-    /// Converts the tolerances and input scatter of the sheet to the form that a diagnosis uses, for channels
-    /// of the given sensors.
+    /// Converts the instrument tolerances and the scatter of the inputs that the sheet states to the form
+    /// that a diagnosis uses, for channels of the given sensors.
     pub(super) fn stated(&self, recorded: &[Sensor]) -> Stated {
         let positive = |value: &f64| *value > 0.0;
         let turned = self.crank.index_tolerance_deg.filter(positive);
@@ -210,7 +210,7 @@ impl Sheet {
         check_tolerance(&document, &sheet.tolerance)?;
         if sheet.gauges.unit != "MPa" {
             return Err(document.field(
-                &[Step::Key("gauges"), Step::Key("unit")],
+                &[DocumentStep::Key("gauges"), DocumentStep::Key("unit")],
                 format!("\"{}\"", sheet.gauges.unit),
                 "\"MPa\" (elastic modulus times vertical strain)",
                 "convert the columns stress_1_mpa .. stress_4_mpa to MPa",
@@ -234,7 +234,7 @@ fn check_tolerance(document: &Document, tolerance: &Tolerance) -> Result<(), Cas
     for (name, value) in tolerance.stated() {
         if !(value.is_finite() && value >= 0.0) {
             return Err(document.field(
-                &[Step::Key("tolerance"), Step::Key(name)],
+                &[DocumentStep::Key("tolerance"), DocumentStep::Key(name)],
                 value,
                 "a standard deviation: a finite number, 0 or greater",
                 "state how good the instrument is, or leave the key out",

@@ -1,5 +1,5 @@
-//! Tolerances of the instruments of a test, as stated in its data sheet, and the model error that each
-//! represents: an effect of the library or the gain of a channel.
+//! Tolerances of the instruments of a test, as stated in its data sheet, and the model parameter that
+//! represents each instrument's error: that of a library effect or the gain of a channel.
 use discrepancy::record::{Acts, Nuisance};
 use protocol::pumping_unit::Sensor;
 use serde::Deserialize;
@@ -28,7 +28,7 @@ pub(super) struct Tolerance {
 }
 
 /// Model parameter that represents an instrument's error.
-enum Means {
+enum ErrorModel {
     /// Size parameter of a library effect: effect identifier, parameter name.
     Effect(&'static str, &'static str),
     /// Size parameter of a library effect that only one sensor shows: sensor, effect identifier, parameter
@@ -41,7 +41,7 @@ enum Means {
 /// Key of the `[tolerance]` table: name, default standard deviation where the sheet states none, unit,
 /// whether the error is never negative, and the model parameters that represent the error. The defaults are
 /// those of a good foil gauge, an index mark set by hand and a load cell of class 0.3.
-type Key = (&'static str, f64, &'static str, bool, &'static [Means]);
+type Key = (&'static str, f64, &'static str, bool, &'static [ErrorModel]);
 
 /// All keys of the `[tolerance]` table, in its order.
 const KEYS: [Key; 8] = [
@@ -51,10 +51,10 @@ const KEYS: [Key; 8] = [
         "1",
         false,
         &[
-            Means::Seen(Sensor::Gauge(1), "gauge_gain", "gain_1"),
-            Means::Seen(Sensor::Gauge(2), "gauge_gain", "gain_2"),
-            Means::Seen(Sensor::Gauge(3), "gauge_gain", "gain_3"),
-            Means::Seen(Sensor::Gauge(4), "gauge_gain", "gain_4"),
+            ErrorModel::Seen(Sensor::Gauge(1), "gauge_gain", "gain_1"),
+            ErrorModel::Seen(Sensor::Gauge(2), "gauge_gain", "gain_2"),
+            ErrorModel::Seen(Sensor::Gauge(3), "gauge_gain", "gain_3"),
+            ErrorModel::Seen(Sensor::Gauge(4), "gauge_gain", "gain_4"),
         ],
     ),
     (
@@ -62,54 +62,55 @@ const KEYS: [Key; 8] = [
         0.06,
         "deg",
         false,
-        &[Means::Effect("crank_angle_offset", "angle")],
+        &[ErrorModel::Effect("crank_angle_offset", "angle")],
     ),
     (
         "load_cell",
         0.003,
         "1",
         false,
-        &[Means::Effect("load_cell_gain", "gain")],
+        &[ErrorModel::Effect("load_cell_gain", "gain")],
     ),
     (
         "amplifier_lag_s",
         0.002,
         "s",
         true,
-        &[Means::Effect("amplifier_lag", "lag")],
+        &[ErrorModel::Effect("amplifier_lag", "lag")],
     ),
     (
         "position",
         0.002,
         "1",
         false,
-        &[Means::Gain(Sensor::Position, "position_gain")],
+        &[ErrorModel::Gain(Sensor::Position, "position_gain")],
     ),
     (
         "torque",
         0.005,
         "1",
         false,
-        &[Means::Gain(Sensor::Torque, "torque_gain")],
+        &[ErrorModel::Gain(Sensor::Torque, "torque_gain")],
     ),
     (
         "bearing_friction_nm",
         50.0,
         "N.m",
         true,
-        &[Means::Effect("pivot_friction", "moment")],
+        &[ErrorModel::Effect("pivot_friction", "moment")],
     ),
     (
         "balance_nm",
         200.0,
         "N.m",
         false,
-        &[Means::Effect("beam_balance", "moment")],
+        &[ErrorModel::Effect("beam_balance", "moment")],
     ),
 ];
 
 impl Tolerance {
-    /// Returns the stated standard deviation of each key, in the order of [`KEYS`].
+    /// Returns the standard deviation of each key of the `[tolerance]` table, in the order of [`KEYS`];
+    /// `None` where the sheet states none.
     const fn values(&self) -> [Option<f64>; KEYS.len()] {
         [
             self.gauge_factor,
@@ -123,7 +124,7 @@ impl Tolerance {
         ]
     }
 
-    /// Returns the stated standard deviations with the names of their keys.
+    /// Returns the standard deviations that the sheet states, with the names of their keys.
     pub(super) fn stated(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let stated = |((name, ..), value): (Key, Option<f64>)| Some((name, value?));
         KEYS.into_iter().zip(self.values()).filter_map(stated)
@@ -135,11 +136,11 @@ impl Tolerance {
         let of_key = |((_, usual, unit, never_negative, means), stated): (Key, Option<f64>)| {
             means.iter().filter_map(move |means| {
                 let (id, parameter, sensor, acts) = match *means {
-                    Means::Effect(id, parameter) => (id, parameter, None, Acts::Effect),
-                    Means::Seen(sensor, id, parameter) => {
+                    ErrorModel::Effect(id, parameter) => (id, parameter, None, Acts::Effect),
+                    ErrorModel::Seen(sensor, id, parameter) => {
                         (id, parameter, Some(sensor), Acts::Effect)
                     }
-                    Means::Gain(sensor, id) => {
+                    ErrorModel::Gain(sensor, id) => {
                         let curve = Sensor::ALL.iter().position(|own| *own == sensor)?;
                         (id, "gain", Some(sensor), Acts::Gain { curve })
                     }

@@ -13,7 +13,7 @@ pub(crate) enum Roughness {
     Exact,
     /// Ripple on every gauge with the usual discretisation (MPa).
     Ripple(f64),
-    /// Ripple on every gauge while the named effect is on: MPa per size of the effect.
+    /// Ripple on every gauge while the named effect is on (MPa per unit of the effect's size).
     RippleOf(&'static str, f64),
     /// Every simulation with a finer discretisation fails.
     NothingFiner,
@@ -36,7 +36,7 @@ pub(crate) fn ripple(gauges: &mut [Vec<f64>], size: f64) {
 
 /// Laboratory that simulates at once; a share of its runs may be lost, and its effects may have other labels
 /// outside than in the machine.
-pub(crate) struct AtOnce<'a> {
+pub(crate) struct ImmediateLaboratory<'a> {
     machine: &'a Machine,
     /// Loss of one run in this many, spread by a hash of the run counter; 0 loses none.
     lost_every: u64,
@@ -50,7 +50,7 @@ pub(crate) struct AtOnce<'a> {
     pub(crate) lost: u64,
 }
 
-impl<'a> AtOnce<'a> {
+impl<'a> ImmediateLaboratory<'a> {
     pub(crate) const fn new(
         machine: &'a Machine,
         lost_every: u64,
@@ -92,7 +92,7 @@ impl<'a> AtOnce<'a> {
     fn simulated(&self, spec: &SimulateSpec) -> Option<Observation> {
         let shorter = is_shorter(&spec.numerics);
         let ripples = match self.numerics {
-            Roughness::NothingFiner if spec.numerics != Numerics::OF_THE_CASE => {
+            Roughness::NothingFiner if spec.numerics != Numerics::FROM_CASE => {
                 return None;
             }
             Roughness::NoShorterCylinders if shorter => return None,
@@ -182,8 +182,8 @@ impl<'a> AtOnce<'a> {
         }
     }
 
-    /// Returns the simulation with the number that a column varies and its step; `None` if the machine has no
-    /// number of that name.
+    /// Returns the simulation with the value that a derivative column varies, and its finite-difference step;
+    /// `None` if the machine has no value of that name.
     fn varied(&self, spec: &SimulateSpec, column: &Column) -> Option<Varied> {
         let mut spec = spec.clone();
         if let Some(k) = column
@@ -228,7 +228,7 @@ impl<'a> AtOnce<'a> {
 const STEP: f64 = 2e-3;
 const AGREE: f64 = 1e-4;
 
-/// Simulation of which one number is varied.
+/// Simulation of which one value is varied for a finite difference.
 struct Varied {
     spec: SimulateSpec,
     place: Place,
@@ -254,7 +254,7 @@ impl Varied {
     }
 }
 
-impl Laboratory for AtOnce<'_> {
+impl Laboratory for ImmediateLaboratory<'_> {
     type Error = Infallible;
 
     fn differentiates(&self) -> bool {

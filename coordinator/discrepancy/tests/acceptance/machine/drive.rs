@@ -1,7 +1,7 @@
-//! The drive, and the clock of a crank whose speed ripples.
+//! Motion of the drive, and the conversion between time and crank angle where the crank's speed ripples.
 use super::amounts::{Amounts, C};
 use super::lags::Lags;
-use super::turn::Turn;
+use super::turn::FourierTable;
 use crate::case::{SAMPLES, grid};
 
 /// Motion of the drive on the grid: height (m), speed (m/t), acceleration (m/t^2), slope (m/rad).
@@ -48,7 +48,7 @@ pub(super) fn drive(amounts: &Amounts<'_>, ratio: f64) -> Drive {
 pub(super) struct Warp(pub(super) Option<[Vec<f64>; 2]>);
 
 impl Warp {
-    pub(super) fn new(turn: &Turn, amounts: &Amounts<'_>) -> Self {
+    pub(super) fn new(turn: &FourierTable, amounts: &Amounts<'_>) -> Self {
         let (a, b) = (
             amounts.get("crank_speed_ripple", 0),
             amounts.get("crank_speed_ripple", 1),
@@ -66,18 +66,23 @@ impl Warp {
     }
 
     /// Returns the spectrum over time of a curve given over the crank angle.
-    pub(super) fn enter(&self, turn: &Turn, curve: &[f64]) -> Vec<C> {
+    pub(super) fn enter(&self, turn: &FourierTable, curve: &[f64]) -> Vec<C> {
         let spectrum = turn.transform(curve);
         match &self.0 {
             None => spectrum,
-            Some([from, _]) => turn.transform(&Turn::at(&spectrum, from)),
+            Some([from, _]) => turn.transform(&FourierTable::at(&spectrum, from)),
         }
     }
 
     /// Converts the spectra of a solution from time to crank angle, in place.
-    pub(super) fn leave(&self, turn: &Turn, lags: &mut Lags, tensions: &mut (Vec<C>, Vec<C>)) {
+    pub(super) fn leave(
+        &self,
+        turn: &FourierTable,
+        lags: &mut Lags,
+        tensions: &mut (Vec<C>, Vec<C>),
+    ) {
         let Some([_, to]) = &self.0 else { return };
-        let back = |spectrum: &[C]| turn.transform(&Turn::at(spectrum, to));
+        let back = |spectrum: &[C]| turn.transform(&FourierTable::at(spectrum, to));
         tensions.0 = back(&tensions.0);
         tensions.1 = back(&tensions.1);
         let rod = back(&lags.0.iter().map(|y| y[0]).collect::<Vec<C>>());

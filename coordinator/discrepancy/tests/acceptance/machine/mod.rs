@@ -8,6 +8,6 @@ pub(crate) mod library;
 mod stand_in;
 mod turn;
 
-pub(crate) use at_once::{AtOnce, Roughness, ripple};
+pub(crate) use at_once::{ImmediateLaboratory, Roughness, ripple};
 pub(crate) use fineness::finer;
 pub(crate) use stand_in::Machine;

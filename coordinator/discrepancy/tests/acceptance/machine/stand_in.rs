@@ -8,7 +8,7 @@ use super::amounts::{Amounts, C, HIGHEST, MASSES};
 use super::drive::{Drive, Warp, drive};
 use super::lags::{Genes, Lags, solve};
 use super::library;
-use super::turn::Turn;
+use super::turn::FourierTable;
 use crate::case::{SAMPLES, SPEED, card, grid};
 use nalgebra::Vector3;
 use protocol::announce::EffectDescriptor;
@@ -25,7 +25,7 @@ const WEAR: [f64; 4] = [1.0, 0.6, -0.4, 0.2];
 
 /// Stand-in machine with its load cards and its effect library.
 pub(crate) struct Machine {
-    turn: Turn,
+    turn: FourierTable,
     cards: [Vec<C>; 2],
     library: Vec<EffectDescriptor>,
 }
@@ -42,7 +42,7 @@ const BY_MOTION: [&str; 5] = [
 impl Machine {
     /// Creates the machine with its whole effect library.
     pub(crate) fn new() -> Self {
-        let turn = Turn::new();
+        let turn = FourierTable::new();
         let spectrum =
             |condition| turn.transform(&grid().map(|a| card(condition, a)).collect::<Vec<f64>>());
         let cards = [spectrum(0), spectrum(1)];
@@ -214,8 +214,8 @@ impl Machine {
         sum
     }
 
-    /// Returns the stretches imposed by pin clearance and rope toe, as equivalent forces across pin and back
-    /// rope.
+    /// Returns the stretches imposed by pin clearance and by the rope's soft initial range (toe), as
+    /// equivalent forces across pin and back rope.
     fn stretch(
         &self,
         amounts: &Amounts<'_>,

@@ -4,9 +4,9 @@ use crate::case::SAMPLES;
 use std::f64::consts::TAU;
 
 /// Table of the unit phasors at the grid's angles.
-pub(super) struct Turn(pub(super) Vec<C>);
+pub(super) struct FourierTable(pub(super) Vec<C>);
 
-impl Turn {
+impl FourierTable {
     pub(super) fn new() -> Self {
         let unit = |i: usize| C::from_polar(1.0, TAU * i as f64 / SAMPLES as f64);
         Self((0..SAMPLES).map(unit).collect())

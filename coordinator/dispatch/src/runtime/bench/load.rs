@@ -6,7 +6,7 @@ use protocol::{id::JobId, job::Job};
 const JOB_BYTES: usize = 1000;
 /// Jobs queued per worker, enough to keep workers busy.
 const AHEAD: u64 = 4;
-/// Jobs between two readings of the clock, as a multiple of the queued jobs.
+/// Number of jobs between two clock readings, as a multiple of the number of queued jobs.
 const ROUND: u64 = 16;
 
 /// Generator of consecutively numbered empty jobs.

@@ -17,7 +17,7 @@ const ALONE: u64 = 1000;
 const JOINING: Duration = Duration::from_mins(3);
 /// Subfolder of the coordinator's key folder with the certificate that benchmark sessions use.
 const WORKER: &str = "worker-01";
-/// Number of parts of the measurement whose costs are compared.
+/// Number of equal parts of the full-rate measurement; the first and the last are compared.
 const PARTS: u64 = 10;
 
 /// Measures round trip, job rate and cost of the run described by `options`; the run should be new.

@@ -6,11 +6,11 @@ mod meter;
 mod plan;
 mod sessions;
 mod silent;
-mod slept;
+mod sleeping_jobs;
 
 pub use measure::bench;
 pub use meter::processor_time;
-pub use plan::{BenchPlan, BenchResult, BenchWorkers, Silence, SilentPlan, SilentResult};
+pub use plan::{BenchPlan, BenchResult, BenchWorkers, SilentPlan, SilentResult, SilentStage};
 pub use sessions::connect;
 pub use silent::keep_silent;
-pub use slept::{Slept, sleep_through};
+pub use sleeping_jobs::{SleepingJobsResult, sleep_through};

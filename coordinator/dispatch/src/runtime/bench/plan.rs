@@ -5,11 +5,11 @@
 pub enum BenchWorkers {
     /// Worker processes with one slot process each, over TCP on loopback.
     Processes,
-    /// Sessions in one other process, over TCP on loopback, or QUIC if the run has key material; everything
-    /// but the slots is real.
+    /// Sessions (worker connections without slots) in one other process, over TCP on loopback, or QUIC if the
+    /// run has key material; everything but the slots is real.
     Connections,
-    /// Sessions on one thread of this process, over the memory link; frames, core and journal are real,
-    /// transport and slots are absent.
+    /// Sessions (worker connections without slots) on one thread of this process, over the memory link;
+    /// frames, core and journal are real, transport and slots are absent.
     Sessions,
 }
 
@@ -58,7 +58,7 @@ pub struct BenchResult {
 
 /// Stage of connecting at which silent peers stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Silence {
+pub enum SilentStage {
     /// Peers open a connection only; the coordinator closes it when no session is opened in time.
     Connection,
     /// Peers open a bus session, which exchanges keep-alives indefinitely, but never announce themselves.
@@ -69,10 +69,10 @@ pub enum Silence {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SilentPlan {
     /// Stage at which the silent peers stop.
-    pub silence: Silence,
+    pub silence: SilentStage,
     /// Number of simultaneous silent connections.
     pub connections: usize,
-    /// Number of pairs of blocks, without and with silent connections; at least one.
+    /// Number of pairs of measurement blocks, one without and one with silent connections; at least one.
     pub turns: usize,
 }
 
@@ -85,7 +85,7 @@ pub struct SilentResult {
     pub held: usize,
     /// Number of times a closed connection was reopened, over all blocks.
     pub reopened: u64,
-    /// Number of pairs of blocks, without and with silent connections.
+    /// Number of pairs of measurement blocks, one without and one with silent connections.
     pub turns: usize,
     /// Jobs per second without silent connections, median of the blocks.
     pub jobs_per_s_without: f64,

@@ -5,12 +5,12 @@
 //! empty job at once, or after the delay it requests. They never resend: the memory link loses nothing, and
 //! over the bus an unanswered job is offered again.
 use super::meter::SESSIONS;
-use crate::simulated::{Running, Worker, outcome};
+use crate::simulated::{Running, SimulatedWorker, outcome};
 use link::{
     Blob, LinkError, WorkerEnd,
-    keys::{Keys, Role},
+    keys::{KeyRole, Keys},
     locator::Locator,
-    memory::{Faults, Hub, MemoryCoordinator},
+    memory::{FaultInjection, Hub, MemoryCoordinator},
     zenoh::ZenohWorker,
 };
 use protocol::{
@@ -18,9 +18,9 @@ use protocol::{
     id::{ContentHash, RunId, WorkerId},
     job::{Job, kind},
     key::Lane,
-    message::{Attempt, Beat, Cost, Done, FromWorker, Order, ToWorker},
-    proof::Proof,
-    wire::{self, Kind},
+    message::{Assignment, Attempt, Cost, Done, FromWorker, Heartbeat, ToWorker},
+    proof::ReferenceResult,
+    wire::{self, FrameKind},
 };
 use std::{
     env, io,
@@ -50,7 +50,7 @@ pub(super) struct Sessions(Option<thread::JoinHandle<()>>);
 impl Sessions {
     /// Starts a number of sessions and returns the coordinator's end of their link.
     pub(super) fn start(count: usize, blob: Blob) -> (MemoryCoordinator, Self) {
-        let (end, hub) = Hub::new(Faults::NONE, blob);
+        let (end, hub) = Hub::new(FaultInjection::NONE, blob);
         let work = move || {
             let runtime = tokio::runtime::Builder::new_current_thread()
                 .enable_time()
@@ -86,7 +86,7 @@ impl Drop for Sessions {
     }
 }
 
-/// Child process with sessions over the bus, killed on drop.
+/// Child process whose sessions connect as workers over the bus; killed on drop.
 pub(super) struct Connections(Child);
 
 impl Connections {
@@ -119,7 +119,7 @@ impl Drop for Connections {
 /// Unusable key material, or the first connection that cannot be opened for a reason that retrying does not
 /// cure.
 pub async fn connect(to: &Locator, count: usize, tls: Option<&Path>) -> Result<(), LinkError> {
-    let keys = tls.map(|folder| Keys::read(folder, Role::Worker));
+    let keys = tls.map(|folder| Keys::read(folder, KeyRole::Worker));
     let keys = keys.transpose()?.map(Arc::new);
     let opening = Arc::new(Semaphore::new(OPENING));
     let mut sessions = JoinSet::new();
@@ -130,7 +130,7 @@ pub async fn connect(to: &Locator, count: usize, tls: Option<&Path>) -> Result<(
             let link = loop {
                 match ZenohWorker::open(&to, keys.as_deref(), process).await {
                     Ok(link) => break link,
-                    Err(error) if error.may_pass() => sleep(AGAIN).await,
+                    Err(error) if error.is_retryable() => sleep(AGAIN).await,
                     Err(error) => return Err(error),
                 }
             };
@@ -156,7 +156,7 @@ async fn serve<L: WorkerEnd>(mut link: L, id: WorkerId) {
     beats.set_missed_tick_behavior(MissedTickBehavior::Delay);
     let begun = Instant::now();
     // the slot of jobs that sleep, with what is in it and until when
-    let mut sleeper = Worker::new(0, 1, 1.0);
+    let mut sleeper = SimulatedWorker::new(0, 1, 1.0);
     let mut asleep: Option<(Attempt, Instant)> = None;
     loop {
         if asleep.is_none()
@@ -169,7 +169,7 @@ async fn serve<L: WorkerEnd>(mut link: L, id: WorkerId) {
         let message = tokio::select! {
             frame = link.receive() => {
                 let Some(frame) = frame else { return };
-                let Ok((of, message)) = wire::unseal::<ToWorker>(Kind::ToWorker, &frame) else {
+                let Ok((of, message)) = wire::decode_frame::<ToWorker>(FrameKind::ToWorker, &frame) else {
                     continue;
                 };
                 match message {
@@ -178,7 +178,7 @@ async fn serve<L: WorkerEnd>(mut link: L, id: WorkerId) {
                         beat(&mut number, case, &sleeper)
                     }
                     ToWorker::Run(order) if sleeps(&order.job) => {
-                        sleeper.take(*order);
+                        sleeper.enqueue(*order);
                         continue;
                     }
                     ToWorker::Run(order) => FromWorker::Done(Box::new(answer(*order))),
@@ -213,7 +213,7 @@ async fn serve<L: WorkerEnd>(mut link: L, id: WorkerId) {
                 Lane::Control
             }
         };
-        match wire::seal(Kind::FromWorker, run, &message) {
+        match wire::encode_frame(FrameKind::FromWorker, run, &message) {
             Ok(frame) => link.send(run, lane, frame),
             Err(error) => tracing::error!(%error, "a message cannot be sent"),
         }
@@ -234,21 +234,21 @@ fn announce(id: WorkerId) -> FromWorker {
 }
 
 /// Builds a heartbeat; jobs answered at once never appear as running.
-fn beat(number: &mut u64, case: Option<ContentHash>, sleeper: &Worker) -> FromWorker {
+fn beat(number: &mut u64, case: Option<ContentHash>, sleeper: &SimulatedWorker) -> FromWorker {
     *number += 1;
-    let proof = Proof::Bits(ContentHash::of(b"sessions compute nothing"));
-    FromWorker::Beat(Beat {
+    let proof = ReferenceResult::Bits(ContentHash::of(b"sessions compute nothing"));
+    FromWorker::Beat(Heartbeat {
         number: *number,
         ..sleeper.beat(case, proof)
     })
 }
 
-/// Returns whether a job requests a delay.
+/// Returns whether a job asks the session to delay its answer.
 const fn sleeps(job: &Job) -> bool {
     matches!(job, Job::Nothing { delay_ms, .. } if *delay_ms > 0)
 }
 
-fn answer(Order { attempt, job, .. }: Order) -> Done {
+fn answer(Assignment { attempt, job, .. }: Assignment) -> Done {
     Done {
         attempt,
         work: job.work_hash(),

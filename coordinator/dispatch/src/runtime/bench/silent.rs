@@ -7,7 +7,7 @@
 use super::{
     load::Load,
     meter::cost,
-    plan::{Silence, SilentPlan, SilentResult},
+    plan::{SilentPlan, SilentResult, SilentStage},
 };
 use crate::runtime::{dispatch::Dispatch, error::DispatchError, listen::allow_connections};
 use link::{WorkerEnd as _, locator::Locator, zenoh::ZenohWorker};
@@ -29,9 +29,9 @@ use tokio::{
     time::sleep,
 };
 
-/// Duration of a block, twice the time for which the coordinator tolerates silent connections.
+/// Duration of a measurement block, twice the time for which the coordinator tolerates silent connections.
 const BLOCK: Duration = Duration::from_secs(8);
-/// Time limit for the connections to open, and to close.
+/// Time limit for all silent connections to open, and to close.
 const SETTLING: Duration = Duration::from_secs(30);
 /// Maximum number of connections being opened at a time.
 const OPENING: usize = 64;
@@ -45,7 +45,7 @@ struct Block {
     cpu_s_per_job: f64,
 }
 
-/// Measures an open run in alternating blocks without and with silent connections.
+/// Measures an open run in blocks of time, alternately without and with silent connections.
 pub(super) async fn measure(
     dispatch: &mut Dispatch,
     load: &mut Load,
@@ -132,10 +132,10 @@ struct Silent {
 
 impl Silent {
     /// Starts this program as a child process with a number of silent connections to an address.
-    fn start(silence: Silence, count: usize, connect: &str) -> io::Result<Self> {
+    fn start(silence: SilentStage, count: usize, connect: &str) -> io::Result<Self> {
         let mut command = Command::new(env::current_exe()?);
         command.args(["bench", "silent", connect, &count.to_string()]);
-        if silence == Silence::Session {
+        if silence == SilentStage::Session {
             command.arg("--opened");
         }
         let mut process = command
@@ -148,19 +148,19 @@ impl Silent {
 
     /// Waits until all connections are open.
     async fn opened(mut self) -> io::Result<Self> {
-        self.word().await?;
+        self.next_line().await?;
         Ok(self)
     }
 
     /// Closes the connections; returns how many were reopened.
     async fn end(mut self) -> io::Result<u64> {
         drop(self.process.stdin.take());
-        let word = self.word().await?;
+        let word = self.next_line().await?;
         word.trim().parse().map_err(io::Error::other)
     }
 
     /// Reads the next line of the child's standard output.
-    async fn word(&mut self) -> io::Result<String> {
+    async fn next_line(&mut self) -> io::Result<String> {
         let Some(mut said) = self.said.take() else {
             return Err(io::ErrorKind::BrokenPipe.into());
         };
@@ -189,7 +189,7 @@ impl Drop for Silent {
 ///
 /// # Errors
 /// If standard output cannot be written.
-pub async fn keep_silent(to: &Locator, silence: Silence, count: usize) -> io::Result<()> {
+pub async fn keep_silent(to: &Locator, silence: SilentStage, count: usize) -> io::Result<()> {
     allow_connections();
     let opening = Arc::new(Semaphore::new(OPENING));
     let (opened, all) = (Arc::new(AtomicU64::new(0)), Arc::new(Notify::new()));
@@ -232,13 +232,13 @@ enum Held {
 
 impl Held {
     /// Opens a silent peer; `None` if the connection fails.
-    async fn open(silence: Silence, to: &Locator, process: u64) -> Option<Self> {
+    async fn open(silence: SilentStage, to: &Locator, process: u64) -> Option<Self> {
         match silence {
-            Silence::Connection => {
+            SilentStage::Connection => {
                 let address = format!("{}:{}", to.bare_host(), to.port);
                 Some(Self::Connection(TcpStream::connect(address).await.ok()?))
             }
-            Silence::Session => {
+            SilentStage::Session => {
                 let session = ZenohWorker::open(to, None, process).await.ok()?;
                 Some(Self::Session(Box::new(session)))
             }

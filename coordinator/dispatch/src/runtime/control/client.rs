@@ -1,7 +1,7 @@
 //! Client of a run's control socket.
 use super::{
-    path::{SOCKET, through},
-    words::{Question, Reply, Worker},
+    messages::{ControlReply, ControlRequest, WorkerReport},
+    path::{SOCKET, short_path},
 };
 use std::{
     io::{self, BufRead, BufReader, Read, Write},
@@ -10,9 +10,9 @@ use std::{
     time::Duration,
 };
 
-/// Time limit for an answer.
-const PATIENCE: Duration = Duration::from_secs(5);
-/// Maximum length of an answer (bytes), enough for thousands of workers.
+/// Time limit for the coordinator's answer to a control request.
+const TIMEOUT: Duration = Duration::from_secs(5);
+/// Maximum length of the coordinator's answer (bytes), enough for thousands of workers.
 const LONGEST: u64 = 64 << 20;
 
 /// Reason why a run does not answer a control request.
@@ -20,7 +20,7 @@ const LONGEST: u64 = 64 << 20;
 pub enum ControlError {
     /// No coordinator process works on the run.
     #[error("no `horsehead` process is working on the run {}: {reason}", folder.display())]
-    Nobody {
+    NotRunning {
         /// Run folder.
         folder: PathBuf,
         /// Error of the operating system.
@@ -40,26 +40,29 @@ pub enum ControlError {
 ///
 /// # Errors
 /// [`ControlError`] if no process works on the run, or it refuses the request.
-pub fn ask(folder: &Path, question: &Question) -> Result<Vec<Worker>, ControlError> {
-    let reply = exchange(folder, question).map_err(|reason| ControlError::Nobody {
+pub fn send_request(
+    folder: &Path,
+    question: &ControlRequest,
+) -> Result<Vec<WorkerReport>, ControlError> {
+    let reply = exchange(folder, question).map_err(|reason| ControlError::NotRunning {
         folder: folder.to_owned(),
         reason,
     })?;
     match reply {
-        Reply::Workers(workers) => Ok(workers),
-        Reply::Error(reason) => Err(ControlError::Refused {
+        ControlReply::Workers(workers) => Ok(workers),
+        ControlReply::Error(reason) => Err(ControlError::Refused {
             folder: folder.to_owned(),
             reason,
         }),
     }
 }
 
-fn exchange(folder: &Path, question: &Question) -> io::Result<Reply> {
-    let (_open, path) = through(folder)?;
+fn exchange(folder: &Path, question: &ControlRequest) -> io::Result<ControlReply> {
+    let (_open, path) = short_path(folder)?;
     let mut stream = UnixStream::connect(path)
         .map_err(|error| io::Error::new(error.kind(), format!("{SOCKET}: {error}")))?;
-    stream.set_read_timeout(Some(PATIENCE))?;
-    stream.set_write_timeout(Some(PATIENCE))?;
+    stream.set_read_timeout(Some(TIMEOUT))?;
+    stream.set_write_timeout(Some(TIMEOUT))?;
     let mut line = serde_json::to_vec(question)?;
     line.push(b'\n');
     stream.write_all(&line)?;

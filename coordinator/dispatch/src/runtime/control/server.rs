@@ -1,7 +1,7 @@
 //! Server of a run's control socket.
 use super::{
-    path::{SOCKET, through},
-    words::{Question, Reply},
+    messages::{ControlReply, ControlRequest},
+    path::{SOCKET, short_path},
 };
 use std::{
     fs::{self, Permissions},
@@ -22,11 +22,11 @@ use tokio::{
 const LONGEST: u64 = 64 << 10;
 /// Time limit for a client to send its request and read the answer.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// Maximum number of simultaneous clients.
-const ASKERS: usize = 16;
+/// Maximum number of simultaneous clients of the control socket.
+const MAX_CLIENTS: usize = 16;
 
 /// Request with the channel for its reply.
-pub(in crate::runtime) type Asked = (Question, oneshot::Sender<Reply>);
+pub(in crate::runtime) type PendingRequest = (ControlRequest, oneshot::Sender<ControlReply>);
 
 /// Open control socket, removed on drop.
 #[derive(Debug)]
@@ -36,18 +36,18 @@ pub(in crate::runtime) struct Control {
 }
 
 impl Control {
-    /// Opens the socket in a run folder that this process has locked; an existing socket is left over from an
-    /// earlier process and is replaced. `ask` passes a request on; it returns `false` once the run has ended.
+    /// Opens the control socket in a run folder that this process has locked, replacing one left over from an
+    /// earlier process. `ask` passes a request on; it returns `false` once the run has ended.
     pub(in crate::runtime) fn open(
         folder: &Path,
-        ask: impl Fn(Asked) -> bool + Clone + Send + Sync + 'static,
+        ask: impl Fn(PendingRequest) -> bool + Clone + Send + Sync + 'static,
     ) -> io::Result<Self> {
         let path = folder.join(SOCKET);
         match fs::remove_file(&path) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
             Ok(()) | Err(_) => {}
         }
-        let (_open, short) = through(folder)?;
+        let (_open, short) = short_path(folder)?;
         let listener = UnixListener::bind(short)?;
         fs::set_permissions(&path, Permissions::from_mode(0o600))?;
         let task = tokio::spawn(serve(listener, ask));
@@ -66,9 +66,9 @@ impl Drop for Control {
 #[expect(clippy::infinite_loop, reason = "it ends when its task is aborted")]
 async fn serve(
     listener: UnixListener,
-    ask: impl Fn(Asked) -> bool + Clone + Send + Sync + 'static,
+    ask: impl Fn(PendingRequest) -> bool + Clone + Send + Sync + 'static,
 ) {
-    let places = std::sync::Arc::new(Semaphore::new(ASKERS));
+    let places = std::sync::Arc::new(Semaphore::new(MAX_CLIENTS));
     let own = rustix::process::geteuid().as_raw();
     loop {
         let Ok((stream, _)) = listener.accept().await else {
@@ -93,21 +93,21 @@ async fn serve(
     }
 }
 
-async fn answer(stream: UnixStream, ask: impl Fn(Asked) -> bool) -> io::Result<()> {
+async fn answer(stream: UnixStream, ask: impl Fn(PendingRequest) -> bool) -> io::Result<()> {
     let mut stream = BufReader::new(stream);
     let mut line = String::new();
     (&mut stream).take(LONGEST).read_line(&mut line).await?;
     let reply = match serde_json::from_str(&line) {
         Ok(question) => {
             let (to, reply) = oneshot::channel();
-            let over = || Reply::Error("the run has just ended".to_owned());
+            let over = || ControlReply::Error("the run has just ended".to_owned());
             if ask((question, to)) {
                 reply.await.unwrap_or_else(|_| over())
             } else {
                 over()
             }
         }
-        Err(error) => Reply::Error(format!("the request is not valid: {error}")),
+        Err(error) => ControlReply::Error(format!("the request is not valid: {error}")),
     };
     let mut line = serde_json::to_vec(&reply)?;
     line.push(b'\n');

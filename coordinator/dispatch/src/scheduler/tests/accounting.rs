@@ -1,13 +1,14 @@
 //! Slot-time accounting, compared with the simulated workers' own clocks.
 use super::{
-    simulated::{Cluster, Fault, Generations, Setting},
+    simulated::{Cluster, ClusterSetting, Fault, Generations},
     *,
 };
 use protocol::event::{Event, WorkerAccount};
 
 const LIMIT: Duration = Duration::from_hours(2);
 
-/// Returns the slot time of the cluster after checking that the kinds add up to the connected time.
+/// Returns the slot time of all workers of the cluster, after checking that its kinds of use add up to the
+/// connected time.
 fn balanced(cluster: &Cluster) -> Spent {
     let spent = cluster.core.snapshot(cluster.now).spent;
     let share = spent.sum_us() as f64 / spent.connected_us as f64;
@@ -18,9 +19,9 @@ fn balanced(cluster: &Cluster) -> Spent {
 #[test]
 fn the_kinds_add_up_and_useful_time_is_what_workers_computed() {
     for slots in [1, 3] {
-        let setting = Setting {
+        let setting = ClusterSetting {
             slots,
-            ..Setting::even(7)
+            ..ClusterSetting::even(7)
         };
         let mut cluster = Cluster::new(setting);
         cluster.run(&mut Generations::new(80, 20), LIMIT);
@@ -35,9 +36,9 @@ fn the_kinds_add_up_and_useful_time_is_what_workers_computed() {
 /// Checks that network latency counts as starved, neither as barrier nor as useful time.
 #[test]
 fn time_on_the_way_counts_as_starved() {
-    let mut policy_of_one = Cluster::new(Setting {
+    let mut policy_of_one = Cluster::new(ClusterSetting {
         delay: Duration::from_millis(400),
-        ..Setting::even(4)
+        ..ClusterSetting::even(4)
     });
     policy_of_one.core.options.policy.jobs_per_slot = 1;
     policy_of_one.run(&mut Generations::new(100, 3), LIMIT);
@@ -49,7 +50,7 @@ fn time_on_the_way_counts_as_starved() {
 
 #[test]
 fn killed_and_frozen_workers_show_as_lost_time() {
-    let mut cluster = Cluster::new(Setting::even(8));
+    let mut cluster = Cluster::new(ClusterSetting::even(8));
     for n in 0..10 {
         cluster.fault(Duration::from_secs(10 + 7 * n), n % 8, Fault::Kill);
     }
@@ -64,7 +65,7 @@ fn killed_and_frozen_workers_show_as_lost_time() {
 
 #[test]
 fn accounts_of_all_workers_are_in_the_journal_and_are_the_same_as_the_live_one() {
-    let mut cluster = Cluster::new(Setting::even(3));
+    let mut cluster = Cluster::new(ClusterSetting::even(3));
     cluster.fault(Duration::from_secs(20), 1, Fault::Kill);
     cluster.run(&mut Generations::new(30, 20), LIMIT);
     let live = cluster.core.snapshot(cluster.now).spent;
@@ -108,7 +109,7 @@ fn waiting_for_workers_and_for_them_to_get_ready_is_not_computing() {
     scene.wait(60, &[]);
     let computing = |scene: &Scene| scene.core.snapshot(scene.now).computing;
     scene.announce(1, 1, "m");
-    scene.hear(1, FromWorker::Beat(Beat::default()));
+    scene.hear(1, FromWorker::Beat(Heartbeat::default()));
     scene.wait(2, &[]);
     assert_eq!(computing(&scene), Duration::ZERO);
     scene.beat(1, &[]);

@@ -1,8 +1,8 @@
 //! Admission of workers.
 use super::*;
 use protocol::{
-    case::Repeats,
-    proof::{MOST_SAMPLES, Proof, Sample},
+    case::Reproducibility,
+    proof::{MAX_SAMPLES, ReferenceResult, Sample},
 };
 
 #[test]
@@ -166,17 +166,17 @@ fn whoever_differs_is_refused_by_the_name_of_the_field() {
     assert_eq!(refusal(&scene, 99), None);
 }
 
-fn bits(byte: u8) -> Proof {
-    Proof::Bits(ContentHash([byte; 32]))
+fn bits(byte: u8) -> ReferenceResult {
+    ReferenceResult::Bits(ContentHash([byte; 32]))
 }
 
-fn prove(scene: &mut Scene, id: u64, proof: Proof) {
+fn prove(scene: &mut Scene, id: u64, proof: ReferenceResult) {
     scene.hear(
         id,
-        FromWorker::Beat(Beat {
+        FromWorker::Beat(Heartbeat {
             case: Some(CASE),
             proof: Some(proof),
-            ..Beat::default()
+            ..Heartbeat::default()
         }),
     );
 }
@@ -190,9 +190,9 @@ fn another_result_of_the_reference_individual_is_refused() {
     scene.submit(0..3);
     scene.hear(
         1,
-        FromWorker::Beat(Beat {
+        FromWorker::Beat(Heartbeat {
             case: Some(CASE),
-            ..Beat::default()
+            ..Heartbeat::default()
         }),
     );
     assert_eq!(scene.given(), [], "nothing before the proof");
@@ -210,17 +210,18 @@ fn another_result_of_the_reference_individual_is_refused() {
     assert_eq!(scene.given().len(), 1);
 }
 
-/// Checks that for models without bitwise repeatability the values decide, within the tolerance of the case,
-/// and that a machine on which the program fails is refused once another machine has succeeded.
+/// Checks that, for models without bitwise repeatable results, a worker is admitted if its result of the
+/// reference individual agrees within the case's tolerance, and that a worker on which the program fails is
+/// refused once another one has succeeded.
 #[test]
 fn values_of_the_reference_individual_may_differ_by_what_the_case_allows() {
-    let values = |value: f64| Proof::Values(vec![Sample { value, scale: 2.0 }]);
+    let values = |value: f64| ReferenceResult::Values(vec![Sample { value, scale: 2.0 }]);
     let mut scene = Scene::new();
-    scene.core.options.repeats = Repeats::Within(0.01);
+    scene.core.options.repeats = Reproducibility::Within(0.01);
     for id in 1..5 {
         scene.announce(id, 1, "m");
     }
-    prove(&mut scene, 1, Proof::Failed);
+    prove(&mut scene, 1, ReferenceResult::Failed);
     assert_eq!(refusal(&scene, 1), None, "nobody has done better");
     prove(&mut scene, 2, values(1.0));
     prove(&mut scene, 3, values(1.019));
@@ -232,7 +233,7 @@ fn values_of_the_reference_individual_may_differ_by_what_the_case_allows() {
         "{told}"
     );
     assert!(told.contains("reference_tolerance"), "{told}");
-    prove(&mut scene, 1, Proof::Failed);
+    prove(&mut scene, 1, ReferenceResult::Failed);
     let told = refusal(&scene, 1).unwrap();
     assert!(told.starts_with("proof is a failure"), "{told}");
     let many = vec![
@@ -240,15 +241,16 @@ fn values_of_the_reference_individual_may_differ_by_what_the_case_allows() {
             value: 1.0,
             scale: 1.0
         };
-        MOST_SAMPLES + 1
+        MAX_SAMPLES + 1
     ];
-    prove(&mut scene, 3, Proof::Values(many));
+    prove(&mut scene, 3, ReferenceResult::Values(many));
     assert!(refusal(&scene, 3).unwrap().contains("65 values"));
     scene.submit(0..1);
     assert_eq!(scene.given().len(), 1);
 }
 
-/// Checks that a worker refused while holding jobs gives them back without a failure counted against them.
+/// Checks that a worker refused while holding jobs, because its proof changed, loses these jobs without a
+/// failure counted against them.
 #[test]
 fn a_worker_that_changes_its_proof_loses_its_jobs() {
     let mut scene = Scene::new();
@@ -265,7 +267,8 @@ fn a_worker_that_changes_its_proof_loses_its_jobs() {
     assert_eq!(scene.given().len(), 1);
 }
 
-/// Checks that a worker reporting another case is refused at once; a worker between two runs reports no case.
+/// Checks that a worker whose heartbeat reports another case than that of the run is refused at once, with
+/// both cases named; a worker between two runs reports no case.
 #[test]
 fn another_case_is_refused_at_once_and_by_name() {
     let mut scene = Scene::new();
@@ -273,10 +276,10 @@ fn another_case_is_refused_at_once_and_by_name() {
     scene.submit(0..1);
     scene.hear(
         1,
-        FromWorker::Beat(Beat {
+        FromWorker::Beat(Heartbeat {
             case: Some(ContentHash([9; 32])),
             proof: Some(PROOF),
-            ..Beat::default()
+            ..Heartbeat::default()
         }),
     );
     let told = refusal(&scene, 1).unwrap();

@@ -25,11 +25,11 @@ fn a_drained_worker_finishes_what_it_holds_and_gets_no_more() {
     }
     assert_eq!(scene.given(), []);
     assert_eq!(scene.cancelled, []);
-    let hand = &scene.core.crew(scene.now)[0];
+    let hand = &scene.core.worker_statuses(scene.now)[0];
     assert!(hand.is_drained && hand.jobs.is_empty());
     assert_eq!(hand.done, given.len() as u64);
     // also when it comes again
-    scene.tell(Input::Gone {
+    scene.tell(Input::Disconnected {
         worker: WorkerId(1),
     });
     scene.join(1, 1);
@@ -72,9 +72,9 @@ fn a_worker_that_is_to_end_is_told_so_once_it_holds_nothing_and_whenever_it_come
     assert!(!told_to_end(&mut scene, 1), "it holds a job");
     scene.finish(1, attempt);
     assert!(told_to_end(&mut scene, 1));
-    assert!(scene.core.crew(scene.now).is_empty());
+    assert!(scene.core.worker_statuses(scene.now).is_empty());
     // it did not hear
     scene.announce(1, 1, "m");
     assert!(told_to_end(&mut scene, 1));
-    assert!(scene.core.crew(scene.now).is_empty());
+    assert!(scene.core.worker_statuses(scene.now).is_empty());
 }

@@ -1,6 +1,6 @@
-//! Failed attempts: retried, given up, recorded or not.
+//! Tests of failed attempts: when a job is retried, given up, and recorded.
 use super::{
-    simulated::{Cluster, Generations, Setting},
+    simulated::{Cluster, ClusterSetting, Generations},
     *,
 };
 
@@ -19,8 +19,8 @@ fn a_job_that_crashes_twice_is_given_up_and_recorded() {
     assert_eq!(scene.given(), []);
 }
 
-/// Checks that each job failed by a bad worker is tried once more elsewhere, even if that means waiting; the
-/// bad worker fails all jobs at once and is therefore always the least loaded.
+/// Checks that a job failed by one worker is retried on another, even if it must wait for that; a bad worker
+/// that fails all jobs at once is always the least loaded.
 #[test]
 fn what_fails_at_one_worker_is_tried_again_at_another() {
     let mut scene = Scene::new();
@@ -54,7 +54,7 @@ fn what_fails_at_one_worker_is_tried_again_at_another() {
     let (first, attempt) = scene.given()[0];
     scene.fail(first, attempt, crash());
     for other in (1..=3).filter(|other| *other != first) {
-        scene.tell(Input::Gone {
+        scene.tell(Input::Disconnected {
             worker: WorkerId(other),
         });
     }
@@ -106,7 +106,10 @@ fn if_everything_fails_the_run_stops_with_one_message() {
         .collect();
     assert_eq!(
         stops,
-        [&Command::Stop(Stop::EverythingFails { jobs: 8, last: bad })]
+        [&Command::Stop(StopReason::EverythingFails {
+            jobs: 8,
+            last: bad
+        })]
     );
 }
 
@@ -145,12 +148,12 @@ fn a_worker_that_does_not_end_an_overdue_job_loses_it() {
 fn jobs_that_kill_their_workers_are_found_whatever_else_those_held() {
     const KILLERS: &[u64] = &[3, 11, 12];
     for seed in 1..=60 {
-        let setting = Setting {
+        let setting = ClusterSetting {
             seed,
             slots: 1 + usize::try_from(seed % 3).unwrap(),
             delay: Duration::from_millis(if seed % 2 == 0 { 2 } else { 700 }),
             killers: KILLERS,
-            ..Setting::even(1 + seed % 6)
+            ..ClusterSetting::even(1 + seed % 6)
         };
         let mut cluster = Cluster::new(setting);
         cluster.run(&mut Generations::new(80, 1), Duration::from_hours(1));

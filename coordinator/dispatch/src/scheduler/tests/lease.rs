@@ -151,8 +151,8 @@ fn people_are_told_once_that_nobody_is_there() {
     );
 }
 
-/// Checks that a disk slower than the workers pauses dispatch; before, the coordinator grew by a hundred
-/// megabytes.
+/// Checks that dispatch pauses while the disk is slower than the workers. Regression: unstored results made
+/// the coordinator grow by a hundred megabytes.
 #[test]
 fn a_disk_that_falls_behind_holds_up_the_workers_and_does_not_fill_the_memory() {
     let mut scene = Scene::new();

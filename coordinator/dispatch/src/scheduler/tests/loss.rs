@@ -63,12 +63,12 @@ fn connections_that_broke_while_the_coordinator_stood_still_are_no_losses() {
         scene.submit(0..2);
         let given = scene.given();
         if slept {
-            scene.tell(Input::Slept { time });
+            scene.tell(Input::Suspended { time });
         } else {
             scene.now += time;
         }
         for worker in 1..=2 {
-            scene.tell(Input::Gone {
+            scene.tell(Input::Disconnected {
                 worker: WorkerId(worker),
             });
         }
@@ -82,7 +82,7 @@ fn connections_that_broke_while_the_coordinator_stood_still_are_no_losses() {
         assert_eq!(lost(&scene), 1, "the other one never does");
         assert_eq!(scene.given().len(), 1, "and its job is offered again");
         // the excuse is over
-        scene.tell(Input::Gone {
+        scene.tell(Input::Disconnected {
             worker: WorkerId(1),
         });
         assert_eq!(lost(&scene), 2);
@@ -97,7 +97,7 @@ fn a_job_that_killed_two_workers_runs_alone_and_two_more_are_the_end() {
     for worker in 1..=2 {
         scene.join(worker, 2);
         assert_eq!(scene.given().len(), 1);
-        scene.tell(Input::Gone {
+        scene.tell(Input::Disconnected {
             worker: WorkerId(worker),
         });
     }
@@ -112,13 +112,13 @@ fn a_job_that_killed_two_workers_runs_alone_and_two_more_are_the_end() {
     assert_eq!(given[0].1.job, JobId(0));
     scene.join(4, 2);
     assert_eq!(scene.given().len(), 4, "others go on elsewhere");
-    scene.tell(Input::Gone {
+    scene.tell(Input::Disconnected {
         worker: WorkerId(3),
     });
     assert_eq!(scene.given(), [], "it waits for a worker of its own");
     scene.join(5, 1);
     assert_eq!(scene.given()[0].1.job, JobId(0));
-    scene.tell(Input::Gone {
+    scene.tell(Input::Disconnected {
         worker: WorkerId(5),
     });
     assert_eq!(
@@ -145,7 +145,7 @@ fn a_suspect_is_not_kept_waiting_by_jobs_that_keep_coming() {
             scene.join(2, 1);
             assert_eq!(scene.given()[0].1.job, JobId(0));
         }
-        scene.tell(Input::Gone {
+        scene.tell(Input::Disconnected {
             worker: WorkerId(worker),
         });
     }
@@ -171,7 +171,7 @@ fn what_waited_on_lost_workers_is_suspected_too_and_clears_itself_alone() {
     for worker in 1..=2 {
         scene.join(worker, 1);
         assert_eq!(scene.given().len(), 2, "worker {worker}");
-        scene.tell(Input::Gone {
+        scene.tell(Input::Disconnected {
             worker: WorkerId(worker),
         });
     }
@@ -185,7 +185,7 @@ fn what_waited_on_lost_workers_is_suspected_too_and_clears_itself_alone() {
         let given = scene.given();
         assert_eq!(given.len(), 1, "alone: {given:?}");
         assert_eq!(given[0].1.job, JobId(0));
-        scene.tell(Input::Gone {
+        scene.tell(Input::Disconnected {
             worker: WorkerId(worker),
         });
     }
@@ -218,7 +218,7 @@ fn a_job_that_was_taken_from_a_worker_may_still_be_what_it_dies_of() {
         // nobody had begun it
         assert_eq!(scene.core.snapshot(scene.now).repeated, 0);
         scene.wait(seconds, &[1, 2]);
-        scene.tell(Input::Gone {
+        scene.tell(Input::Disconnected {
             worker: WorkerId(1),
         });
         scene.core.jobs[&taken].failures.losses
@@ -241,7 +241,7 @@ fn leaving_blames_no_job() {
         message: ToWorker::Ended,
     };
     assert!(scene.other.contains(&answer), "it waits for an answer");
-    scene.tell(Input::Gone {
+    scene.tell(Input::Disconnected {
         worker: WorkerId(1),
     });
     assert_eq!(scene.core.snapshot(scene.now).lost, 0);
@@ -323,7 +323,7 @@ fn the_reason_of_a_loss_tells_an_end_from_a_silence() {
             scene.now += Duration::from_millis(250);
             scene.tell(Input::Tick);
         }
-        scene.tell(Input::Gone {
+        scene.tell(Input::Disconnected {
             worker: WorkerId(1),
         });
         let lost = scene.notices().into_iter().find_map(|notice| match notice {

@@ -3,11 +3,11 @@ use super::*;
 use crate::simulated::{self, CASE, MODEL, PROOF, announcement, cost, job};
 use protocol::{
     announce::Announcement,
-    case::Repeats,
+    case::Reproducibility,
     event::{Event, Spent},
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
     job::{Answer, Failure, Outcome},
-    message::{Attempt, Beat, Done, FromWorker, Order, ToWorker},
+    message::{Assignment, Attempt, Done, FromWorker, Heartbeat, ToWorker},
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -28,7 +28,7 @@ mod window;
 struct Scene {
     core: Core,
     now: Duration,
-    orders: Vec<(WorkerId, Order)>,
+    orders: Vec<(WorkerId, Assignment)>,
     acknowledged: Vec<(WorkerId, Attempt)>,
     cancelled: Vec<(WorkerId, Attempt)>,
     delivered: Vec<(u64, Outcome)>,
@@ -51,7 +51,7 @@ impl Scene {
             case_bytes: 10,
             model: MODEL.to_owned(),
             model_digest: None,
-            repeats: Repeats::Bits,
+            repeats: Reproducibility::Bits,
             proof: None,
             finished,
             expected: BTreeSet::new(),
@@ -131,7 +131,7 @@ impl Scene {
     }
 
     fn hear(&mut self, from: u64, message: FromWorker) {
-        self.tell(Input::Heard {
+        self.tell(Input::Message {
             from: WorkerId(from),
             message,
         });
@@ -154,11 +154,11 @@ impl Scene {
         let running = running.to_vec();
         self.hear(
             id,
-            FromWorker::Beat(Beat {
+            FromWorker::Beat(Heartbeat {
                 case: Some(CASE),
                 proof: Some(PROOF),
                 running,
-                ..Beat::default()
+                ..Heartbeat::default()
             }),
         );
     }
@@ -196,7 +196,7 @@ impl Scene {
         self.tell(Input::Stored { jobs });
     }
 
-    /// Returns the orders sent since the last call, as (worker, attempt).
+    /// Returns the orders sent to workers since the last call, as pairs of worker and attempt.
     fn given(&mut self) -> Vec<(u64, Attempt)> {
         let orders = self.orders.drain(..);
         orders.map(|(to, order)| (to.0, order.attempt)).collect()

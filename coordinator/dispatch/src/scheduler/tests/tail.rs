@@ -1,6 +1,6 @@
 //! Straggler handling at the end of a generation: waiting jobs are moved, slow ones copied.
 use super::{
-    simulated::{Cluster, Fault, Generations, Setting},
+    simulated::{Cluster, ClusterSetting, Fault, Generations},
     *,
 };
 
@@ -29,10 +29,10 @@ fn an_idle_worker_takes_what_waits_elsewhere() {
 #[test]
 fn without_faults_copies_cost_at_most_five_percent() {
     for (seed, slow_one_in) in [(1, 0), (2, 0), (3, 10), (4, 10)] {
-        let setting = Setting {
+        let setting = ClusterSetting {
             seed,
             slow_one_in,
-            ..Setting::even(16)
+            ..ClusterSetting::even(16)
         };
         let mut cluster = Cluster::new(setting);
         cluster.run(&mut Generations::new(80, 25), LIMIT);
@@ -47,13 +47,13 @@ fn without_faults_copies_cost_at_most_five_percent() {
     }
 }
 
-/// Checks that an idle worker takes over from a frozen one (one of sixteen, frozen in the middle of a
-/// generation) long before its silence is detected.
+/// Checks that idle workers take over the jobs of a worker frozen in mid-generation (one of sixteen) long
+/// before its silence is detected.
 #[test]
 fn a_frozen_worker_does_not_hold_up_its_generation() {
-    let mut clean = Cluster::new(Setting::even(16));
+    let mut clean = Cluster::new(ClusterSetting::even(16));
     clean.run(&mut Generations::new(80, 1), LIMIT);
-    let mut frozen = Cluster::new(Setting::even(16));
+    let mut frozen = Cluster::new(ClusterSetting::even(16));
     frozen.fault(Duration::from_millis(4100), 7, Fault::Freeze);
     frozen.run(&mut Generations::new(80, 1), LIMIT);
     let ratio = frozen.now.as_secs_f64() / clean.now.as_secs_f64();
@@ -102,7 +102,7 @@ fn the_loser_of_two_copies_is_cancelled_at_once() {
 #[test]
 fn one_frozen_worker_of_sixty_four_costs_the_others_nothing() {
     let run = |freeze: bool| {
-        let mut cluster = Cluster::new(Setting::even(64));
+        let mut cluster = Cluster::new(ClusterSetting::even(64));
         if freeze {
             for n in 0..3 {
                 cluster.fault(Duration::from_millis(4100 + 9000 * n), 7, Fault::Freeze);

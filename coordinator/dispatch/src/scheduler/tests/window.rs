@@ -1,7 +1,7 @@
 //! Steady-state search (without generations) on simulated clusters: bitwise equal results under all faults,
 //! and the share of the cluster's capacity used.
 use super::{
-    simulated::{Cluster, Fault, Generations, Search, Setting},
+    simulated::{Cluster, ClusterSetting, Fault, Generations, SimulatedSearch},
     *,
 };
 use search::{
@@ -31,7 +31,7 @@ fn settings(window: usize, generations: u32) -> Settings {
 fn run(settings: &Settings, mut cluster: Cluster) -> (String, Cluster) {
     let space = CLIFF.space();
     let tell = |genes: &[f64]| CLIFF.tell(&space, genes);
-    let mut source = Search::new(build(settings, &space, 11).unwrap(), &tell);
+    let mut source = SimulatedSearch::new(build(settings, &space, 11).unwrap(), &tell);
     cluster.run(&mut source, LIMIT);
     (source.digest(), cluster)
 }
@@ -42,7 +42,7 @@ fn one_three_seven_and_forty_workers_with_delays_losses_and_kills_make_the_same_
     let space = CLIFF.space();
     let tell = |genes: &[f64]| CLIFF.tell(&space, genes);
     // the reference is told in id order, without any cluster
-    let mut alone = Search::new(build(&settings, &space, 11).unwrap(), &tell);
+    let mut alone = SimulatedSearch::new(build(&settings, &space, 11).unwrap(), &tell);
     while alone.strategy.finished().is_none() {
         for proposal in alone.strategy.ask() {
             alone.strategy.tell(proposal.id, tell(&proposal.genes));
@@ -52,13 +52,13 @@ fn one_three_seven_and_forty_workers_with_delays_losses_and_kills_make_the_same_
     let links = [(0.0, 0.0), (0.2, 0.2)];
     let places = links.map(|link| [1, 3, 7, 40].map(|workers| (link, workers)));
     for (seed, ((loss, duplication), workers)) in (1..).zip(places.into_iter().flatten()) {
-        let setting = Setting {
+        let setting = ClusterSetting {
             seed,
             slow_one_in: 10,
             delay: Duration::from_millis(700),
             loss,
             duplication,
-            ..Setting::even(workers)
+            ..ClusterSetting::even(workers)
         };
         let mut cluster = Cluster::new(setting);
         for n in 0..10 {
@@ -79,15 +79,18 @@ fn one_three_seven_and_forty_workers_with_delays_losses_and_kills_make_the_same_
             "{snapshot:?}"
         );
     }
-    let (other, _) = run(&self::settings(25, 12), Cluster::new(Setting::even(3)));
+    let (other, _) = run(
+        &self::settings(25, 12),
+        Cluster::new(ClusterSetting::even(3)),
+    );
     assert_ne!(other, expected, "the window is part of what decides");
 }
 
 /// Builds a cluster of mixed speed: computing times spread by 30 %, one worker in ten half as fast.
 fn mixed(workers: u64) -> Cluster {
-    Cluster::new(Setting {
+    Cluster::new(ClusterSetting {
         slow_one_in: 10,
-        ..Setting::even(workers)
+        ..ClusterSetting::even(workers)
     })
 }
 
@@ -117,7 +120,7 @@ fn a_window_uses_what_a_barrier_leaves_idle() {
     assert!(window > 0.9, "{window}");
 }
 
-/// Regenerates the table of capacity shares in `tests/README.md`.
+/// Prints the table in `tests/README.md`: share of the cluster's capacity that searches use.
 #[test]
 #[ignore = "a study, not a test"]
 fn share_of_capacity_used() {

@@ -1,10 +1,10 @@
 //! Report section on the effects added to the model: their estimated sizes and the entry for the case file.
 use crate::diagnosis::effects::effects_toml;
-use crate::diagnosis::subject::Subject;
+use crate::diagnosis::subject::DiagnosisInput;
 use crate::diagnosis::table as tables;
 use crate::document::{Block, Section};
 
-pub(super) fn section(subject: &Subject<'_>) -> Section {
+pub(super) fn section(subject: &DiagnosisInput<'_>) -> Section {
     let mut blocks: Vec<Block> = tables::sizes(subject)
         .map(Block::Table)
         .into_iter()

@@ -1,11 +1,11 @@
 //! Report section on the reliability of the verdict: numerical error, noise, convergence, parameters and
 //! cost.
-use crate::diagnosis::subject::Subject;
+use crate::diagnosis::subject::DiagnosisInput;
 use crate::diagnosis::table as tables;
 use crate::document::{Block, Fact, Section};
-use crate::number::{figure, percent};
+use crate::number::{percent, significant};
 
-pub(super) fn section(subject: &Subject<'_>) -> Section {
+pub(super) fn section(subject: &DiagnosisInput<'_>) -> Section {
     let mut blocks = Vec::new();
     let facts = facts(subject);
     if !facts.is_empty() {
@@ -34,8 +34,9 @@ pub(super) fn section(subject: &Subject<'_>) -> Section {
     }
 }
 
-/// Returns the facts about noise, convergence and dispersion; empty where the recalibration did not finish.
-fn facts(subject: &Subject<'_>) -> Vec<Fact> {
+/// Lists facts about the noise, the convergence of the recalibration and the dispersion of its residual;
+/// empty if the recalibration did not finish.
+fn facts(subject: &DiagnosisInput<'_>) -> Vec<Fact> {
     let diagnosis = subject.diagnosis();
     let Some(fit) = &diagnosis.before else {
         return Vec::new();
@@ -48,7 +49,7 @@ fn facts(subject: &Subject<'_>) -> Vec<Fact> {
     let recalibration = format!(
         "one more step promises to lower the misfit by {}; the tests look at the residual after that \
          step",
-        percent(fit.search.promised_decrease())
+        percent(fit.search.predicted_decrease())
     );
     let mut facts = vec![
         Fact::new("noise", noise),
@@ -59,14 +60,14 @@ fn facts(subject: &Subject<'_>) -> Vec<Fact> {
         after
             .filter(|after| !after.model.added.is_empty())
             .map(|after| {
-                let promised = percent(after.search.promised_decrease());
+                let promised = percent(after.search.predicted_decrease());
                 Fact::new("fit with the answer", format!("the same: {promised}"))
             }),
     );
     facts.extend(diagnosis.rounds.first().map(|round| {
         let left = format!(
             "{} by the best model, per degree of freedom; intervals are as many times as wide",
-            figure(round.dispersion.sqrt())
+            significant(round.dispersion.sqrt())
         );
         Fact::new("times the noise", left)
     }));

@@ -3,25 +3,26 @@
 //! A section turns the diagnosis into blocks, or returns no blocks where the diagnosis holds no data for it.
 //! A section depends neither on its position, nor on other sections, nor on the output format.
 mod addition;
+mod candidates;
 mod certainty;
+mod localisation;
 mod origin;
-mod place;
-mod proof;
-mod suspect;
+mod parameter_drift;
+mod validation;
 mod verdict;
-mod wander;
 
-use super::subject::Subject;
+use super::subject::DiagnosisInput;
 use crate::document::Section;
 
-/// All sections of the diagnosis report, in the order of the argument.
-pub(super) const SECTIONS: &[fn(&Subject<'_>) -> Section] = &[
+/// All sections of the diagnosis report, in the order of the report's argument: from the verdict to its
+/// evidence and provenance.
+pub(super) const SECTIONS: &[fn(&DiagnosisInput<'_>) -> Section] = &[
     verdict::section,
-    place::section,
-    wander::section,
-    suspect::section,
+    localisation::section,
+    parameter_drift::section,
+    candidates::section,
     addition::section,
-    proof::section,
+    validation::section,
     certainty::section,
     origin::section,
 ];

@@ -1,11 +1,11 @@
 //! Report section on the provenance of the diagnosis: everything needed to reproduce it.
-use crate::diagnosis::subject::{Subject, channels};
+use crate::diagnosis::subject::{DiagnosisInput, channels};
 use crate::document::{Block, Fact, Section};
 use crate::number::duration;
 use crate::section::origin;
 use crate::words::condition_name;
 
-pub(super) fn section(subject: &Subject<'_>) -> Section {
+pub(super) fn section(subject: &DiagnosisInput<'_>) -> Section {
     let mut facts = origin::facts(&subject.origin, subject.case);
     facts.extend(subject.records.iter().map(|record| {
         let name = condition_name(subject.case, record.condition);

@@ -1,11 +1,11 @@
 //! Report section with the verdict: one sentence, the effect sizes, the confidence and the recommended next
 //! steps.
-use crate::diagnosis::subject::Subject;
+use crate::diagnosis::subject::DiagnosisInput;
 use crate::diagnosis::words;
 use crate::document::{Block, Section};
 use crate::words::SYNTHETIC;
 
-pub(super) fn section(subject: &Subject<'_>) -> Section {
+pub(super) fn section(subject: &DiagnosisInput<'_>) -> Section {
     let diagnosis = subject.diagnosis();
     let mut blocks = vec![Block::Lead(words::verdict(subject))];
     let reason = diagnosis.reason.iter();

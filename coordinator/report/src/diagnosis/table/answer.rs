@@ -1,13 +1,14 @@
-//! Tables of the answer: parameters of its effects, and parameters of the calibration.
-use crate::diagnosis::subject::Subject;
+//! Tables of a diagnosis' answer: parameters of the added effects, and unknowns of the case before and after
+//! adding them.
+use crate::diagnosis::subject::DiagnosisInput;
 use crate::diagnosis::words::interval;
 use crate::document::{Row, Table};
-use crate::number::{NONE, figure, quantity};
+use crate::number::{MISSING, quantity, significant};
 use crate::words::at_bound;
 use protocol::announce::{ParameterDescriptor, Role};
 
-/// Builds the table of the parameters of the answer's effects; `None` if no effect was added.
-pub(in crate::diagnosis) fn sizes(subject: &Subject<'_>) -> Option<Table> {
+/// Builds the table of the parameters of the added effects; `None` if no effect was added.
+pub(in crate::diagnosis) fn sizes(subject: &DiagnosisInput<'_>) -> Option<Table> {
     let diagnosis = subject.diagnosis();
     // a suspect without a verdict is no answer
     subject.added().first()?;
@@ -18,7 +19,7 @@ pub(in crate::diagnosis) fn sizes(subject: &Subject<'_>) -> Option<Table> {
             let (name, unit) = (&own.name, &own.unit);
             let known = subject.parameter(&effect.id, name);
             let of = |value: Option<f64>| {
-                value.map_or_else(|| NONE.to_owned(), |value| quantity(value, unit))
+                value.map_or_else(|| MISSING.to_owned(), |value| quantity(value, unit))
             };
             rows.push(Row::new(
                 name.replace('_', " "),
@@ -26,7 +27,10 @@ pub(in crate::diagnosis) fn sizes(subject: &Subject<'_>) -> Option<Table> {
                     quantity(own.value, unit),
                     interval(own.interval, unit),
                     of(known.map(usual)),
-                    known.map_or_else(|| NONE.to_owned(), |p| interval([p.lower, p.upper], unit)),
+                    known.map_or_else(
+                        || MISSING.to_owned(),
+                        |p| interval([p.lower, p.upper], unit),
+                    ),
                     known
                         .and_then(|p| edge(own.value, p.lower, p.upper))
                         .unwrap_or("")
@@ -47,14 +51,15 @@ pub(in crate::diagnosis) fn sizes(subject: &Subject<'_>) -> Option<Table> {
         ],
         rows,
     )
-    .noted([
+    .with_notes([
         "Intervals are those of the linearised fit with all genes free, as wide as its dispersion and the colour of what is left make them; \
              they hold if the name is right.",
     ])
-    .unless_empty()
+    .non_empty()
 }
 
-/// Returns the usual value of a parameter: the scale of a size, the typical value of a shape.
+/// Returns a typical value of an effect's parameter: its scale if it is a size, its typical value if it is a
+/// shape.
 fn usual(parameter: &ParameterDescriptor) -> f64 {
     match parameter.role {
         Role::Size => parameter.scale,
@@ -72,8 +77,8 @@ fn edge(value: f64, lower: f64, upper: f64) -> Option<&'static str> {
     }
 }
 
-/// Builds the table of the case's unknowns before and after the answer, with their bounds.
-pub(in crate::diagnosis) fn genes(subject: &Subject<'_>) -> Option<Table> {
+/// Builds the table of the case's unknowns, fitted without and with the added effects, with their bounds.
+pub(in crate::diagnosis) fn genes(subject: &DiagnosisInput<'_>) -> Option<Table> {
     let diagnosis = subject.diagnosis();
     let before = diagnosis
         .before
@@ -81,13 +86,14 @@ pub(in crate::diagnosis) fn genes(subject: &Subject<'_>) -> Option<Table> {
         .map(|fit| fit.model.genes(fit.x()))?;
     let after = diagnosis.after.as_ref().map(|fit| fit.model.genes(fit.x()));
     let rows = subject.case.unknowns.iter().enumerate().map(|(k, gene)| {
-        let of = |value: Option<&f64>| value.map_or_else(|| NONE.to_owned(), |v| figure(*v));
+        let of =
+            |value: Option<&f64>| value.map_or_else(|| MISSING.to_owned(), |v| significant(*v));
         let last = after.as_ref().unwrap_or(&before).get(k);
         let edge = last.and_then(|v| at_bound(gene, *v));
         Row::of(
             gene,
             [
-                figure(gene.start),
+                significant(gene.start),
                 of(before.get(k)),
                 of(after.as_ref().and_then(|after| after.get(k))),
                 interval([gene.lower, gene.upper], &gene.unit),

@@ -1,13 +1,13 @@
 //! Tables of the instrument errors (nuisance parameters) and of the effects that the record cannot show.
-use crate::diagnosis::subject::Subject;
+use crate::diagnosis::subject::DiagnosisInput;
 use crate::document::{Row, Table};
 use crate::number::{percent, quantity};
-use discrepancy::diagnose::NeverExact;
+use discrepancy::diagnose::NuisanceEstimate;
 
 /// Builds the table of the estimated instrument errors, with their intervals and tolerances.
-pub(in crate::diagnosis) fn instruments(subject: &Subject<'_>) -> Option<Table> {
+pub(in crate::diagnosis) fn instruments(subject: &DiagnosisInput<'_>) -> Option<Table> {
     let nuisances = &subject.diagnosis().nuisances;
-    let row = |own: &NeverExact| {
+    let row = |own: &NuisanceEstimate| {
         let of = |x: f64| quantity(x, &own.unit);
         let [low, high] = own.interval.map(of);
         let tolerance = of(own.tolerance);
@@ -30,15 +30,15 @@ pub(in crate::diagnosis) fn instruments(subject: &Subject<'_>) -> Option<Table> 
         ["", "off by", "95 % interval", "good to", "within 3 standard deviations"],
         nuisances.iter().map(row).collect(),
     )
-    .noted([
+    .with_notes([
         "Each is a parameter of every fit, with its tolerance (one standard deviation, from the data \
          sheet) as prior. An error within three standard deviations is no finding.",
     ])
-    .unless_empty()
+    .non_empty()
 }
 
 /// Builds the table of effects absorbed by the unknowns, with the measurement that would reveal each.
-pub(in crate::diagnosis) fn absorbed(subject: &Subject<'_>) -> Option<Table> {
+pub(in crate::diagnosis) fn absorbed(subject: &DiagnosisInput<'_>) -> Option<Table> {
     let absorbed = subject.diagnosis().absorbed.iter();
     let rows = absorbed.map(|own| {
         Row::new(
@@ -51,5 +51,5 @@ pub(in crate::diagnosis) fn absorbed(subject: &Subject<'_>) -> Option<Table> {
         ["", "taken up", "what would show it"],
         rows.collect(),
     )
-    .unless_empty()
+    .non_empty()
 }

@@ -1,14 +1,14 @@
 //! Tables of a diagnosis: their content, not their layout.
 mod answer;
-mod ground;
+mod candidates;
 mod instruments;
-mod proof;
-mod suspicion;
-mod wander;
+mod parameter_drift;
+mod reliability;
+mod validation;
 
 pub(super) use answer::{genes, sizes};
-pub(super) use ground::{numerics, stages};
+pub(super) use candidates::{candidate_effects, generics, limits, look_alikes};
 pub(super) use instruments::{absorbed, instruments};
-pub(super) use proof::{gaps, paper};
-pub(super) use suspicion::{generics, limits, look_alikes, suspects};
-pub(super) use wander::{Wandering, wander};
+pub(super) use parameter_drift::{VariationUnderModel, wander};
+pub(super) use reliability::{numerics, stages};
+pub(super) use validation::{gaps, paper};

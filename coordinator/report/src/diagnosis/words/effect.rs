@@ -1,15 +1,15 @@
 //! Sentences about effects and generic forces: their names and estimated sizes.
 use super::value::interval;
-use crate::diagnosis::subject::Subject;
+use crate::diagnosis::subject::DiagnosisInput;
 use crate::number::quantity;
-use crate::words::{listed, lower};
+use crate::words::{join_words, lower};
 use discrepancy::diagnose::Estimate;
 use discrepancy::verdict::Verdict;
 use protocol::announce::Role;
 
 /// Names an effect by its title followed by its identifier; the identifier alone if no worker describes the
 /// effect.
-pub(super) fn named(subject: &Subject<'_>, id: &str) -> String {
+pub(super) fn named(subject: &DiagnosisInput<'_>, id: &str) -> String {
     subject.effect(id).map_or_else(
         || id.to_owned(),
         |effect| format!("{} ({id})", lower(&effect.title)),
@@ -17,15 +17,15 @@ pub(super) fn named(subject: &Subject<'_>, id: &str) -> String {
 }
 
 /// Names a generic force by its title (kind and place of action) followed by its identifier.
-pub(in crate::diagnosis) fn generic(subject: &Subject<'_>, id: &str) -> String {
+pub(in crate::diagnosis) fn generic(subject: &DiagnosisInput<'_>, id: &str) -> String {
     subject.effect(id).map_or_else(
         || id.to_owned(),
         |force| format!("a {} ({id})", lower(&force.title)),
     )
 }
 
-/// Lists the sizes of an effect with their 95 % intervals, without its shape parameters.
-fn sizes(subject: &Subject<'_>, effect: &Estimate) -> String {
+/// Lists the size parameters of an effect with their 95 % intervals; shape parameters are left out.
+fn sizes(subject: &DiagnosisInput<'_>, effect: &Estimate) -> String {
     let is_size = |name: &str| {
         let known = subject.parameter(&effect.id, name);
         known.is_none_or(|known| known.role == Role::Size)
@@ -43,12 +43,12 @@ fn sizes(subject: &Subject<'_>, effect: &Estimate) -> String {
             )
         })
         .collect();
-    listed(&each, "and")
+    join_words(&each, "and")
 }
 
-/// Lists the effects of the answer with their sizes, one item each; those of an unresolved verdict are marked
-/// as suspected.
-pub(in crate::diagnosis) fn effects(subject: &Subject<'_>) -> Vec<String> {
+/// Lists the added effects with their sizes, one item each; effects of an unresolved verdict are marked as
+/// suspected.
+pub(in crate::diagnosis) fn effects(subject: &DiagnosisInput<'_>) -> Vec<String> {
     let unresolved = subject.diagnosis().verdict == Verdict::Unresolved;
     let suspected = if unresolved {
         "suspected, not named: "

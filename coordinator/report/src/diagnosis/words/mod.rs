@@ -2,13 +2,13 @@
 //!
 //! Formats only: every number is taken from the diagnosis.
 mod effect;
-mod ground;
 mod next;
+mod reliability;
 mod value;
 mod verdict;
 
 pub(super) use effect::{effects, generic};
-pub(super) use ground::{confidence, role};
 pub(super) use next::next;
+pub(super) use reliability::{confidence, data_role};
 pub(super) use value::{equals, interval, nats, p_value};
 pub(super) use verdict::{outcome, verdict};

@@ -1,13 +1,13 @@
 //! Sentences that recommend the next steps after a diagnosis.
-use crate::diagnosis::subject::Subject;
+use crate::diagnosis::subject::DiagnosisInput;
 use crate::number::percent;
-use crate::words::{command, listed};
+use crate::words::{command, join_words};
 use discrepancy::diagnose::Diagnosis;
-use discrepancy::record::noise::Known;
+use discrepancy::record::noise::NoiseSource;
 use discrepancy::verdict::Verdict;
 
 /// Lists the recommended next steps, one sentence each.
-pub(in crate::diagnosis) fn next(subject: &Subject<'_>) -> Vec<String> {
+pub(in crate::diagnosis) fn next(subject: &DiagnosisInput<'_>) -> Vec<String> {
     let diagnosis = subject.diagnosis();
     let mut steps = vec![by_verdict(diagnosis)];
     if !diagnosis.noise.is_seen() {
@@ -17,7 +17,7 @@ pub(in crate::diagnosis) fn next(subject: &Subject<'_>) -> Vec<String> {
     if !missing.is_empty() && diagnosis.verdict != Verdict::NothingDetected {
         steps.push(format!(
             "Record {} too: the more places a record has, the fewer effects look alike in it.",
-            listed(&missing, "and")
+            join_words(&missing, "and")
         ));
     }
     if diagnosis.verdict == Verdict::Unresolved
@@ -72,7 +72,7 @@ fn unresolved(diagnosis: &Diagnosis) -> String {
             command::SIMULATE,
             command::CHECK
         )
-    } else if diagnosis.noise == Known::Guessed {
+    } else if diagnosis.noise == NoiseSource::Estimated {
         "State `noise` for every channel in case.toml, or record several cycles: no effect is named on guessed noise."
             .to_owned()
     } else if diagnosis.rounds.is_empty() {
@@ -88,7 +88,7 @@ fn unresolved(diagnosis: &Diagnosis) -> String {
 }
 
 /// Returns the titles of the channels that the case defines for the condition but the record lacks.
-fn missing_channels(subject: &Subject<'_>) -> Vec<String> {
+fn missing_channels(subject: &DiagnosisInput<'_>) -> Vec<String> {
     let Some(record) = subject.calibrated() else {
         return Vec::new();
     };

@@ -1,5 +1,5 @@
 //! Formatting of statistical numbers for sentences and tables.
-use crate::number::{NONE, figure, fixed, quantity};
+use crate::number::{MISSING, fixed, quantity, significant};
 
 /// Formats a p-value; values below 10⁻¹² are given as a bound, since their distribution is not accurate
 /// there.
@@ -7,7 +7,7 @@ pub(in crate::diagnosis) fn p_value(p: f64) -> String {
     if p.is_finite() && p < 1e-12 {
         "< 10⁻¹²".to_owned()
     } else {
-        figure(p)
+        significant(p)
     }
 }
 
@@ -28,8 +28,8 @@ pub(in crate::diagnosis) fn nats(value: f64) -> String {
 /// Formats an interval, with its unit written once.
 pub(in crate::diagnosis) fn interval([low, high]: [f64; 2], unit: &str) -> String {
     if low.is_finite() && high.is_finite() {
-        format!("{} to {}", figure(low), quantity(high, unit))
+        format!("{} to {}", significant(low), quantity(high, unit))
     } else {
-        NONE.to_owned()
+        MISSING.to_owned()
     }
 }

@@ -1,7 +1,7 @@
 //! Verdict of a diagnosis as a keyword and as a sentence.
 use super::effect::{generic, named};
-use crate::diagnosis::subject::Subject;
-use crate::words::listed;
+use crate::diagnosis::subject::DiagnosisInput;
+use crate::words::join_words;
 use discrepancy::diagnose::Round;
 use discrepancy::verdict::Verdict;
 
@@ -17,7 +17,7 @@ pub(in crate::diagnosis) const fn outcome(verdict: Verdict) -> &'static str {
 }
 
 /// Returns the verdict as one sentence, without the effect sizes.
-pub(in crate::diagnosis) fn verdict(subject: &Subject<'_>) -> String {
+pub(in crate::diagnosis) fn verdict(subject: &DiagnosisInput<'_>) -> String {
     let diagnosis = subject.diagnosis();
     match diagnosis.verdict {
         Verdict::NothingDetected if diagnosis.limits.is_empty() => {
@@ -33,11 +33,11 @@ pub(in crate::diagnosis) fn verdict(subject: &Subject<'_>) -> String {
         Verdict::Named => {
             let added = subject.added().into_iter();
             let names: Vec<String> = added.map(|effect| named(subject, &effect.id)).collect();
-            format!("The simulation lacks {}.", listed(&names, "and"))
+            format!("The simulation lacks {}.", join_words(&names, "and"))
         }
         Verdict::Ambiguous => format!(
             "The simulation lacks {}; this record does not tell which.",
-            listed(&choices(subject), "and")
+            join_words(&choices(subject), "and")
         ),
         Verdict::Unlisted => format!(
             "The simulation lacks something that the library does not have; it acts like {}.",
@@ -53,12 +53,12 @@ pub(in crate::diagnosis) fn verdict(subject: &Subject<'_>) -> String {
 }
 
 /// Lists the additions round by round: an effect's name, or the members of an ambiguity set joined by "or".
-fn choices(subject: &Subject<'_>) -> Vec<String> {
+fn choices(subject: &DiagnosisInput<'_>) -> Vec<String> {
     let rounds = subject.diagnosis().rounds.iter();
     let choice = |round: &Round| {
         let members: Vec<String> = round.set.iter().map(|id| named(subject, id)).collect();
         let of = if members.len() > 1 { "one of " } else { "" };
-        format!("{of}{}", listed(&members, "or"))
+        format!("{of}{}", join_words(&members, "or"))
     };
     let found = rounds.filter(|round| round.added.is_some());
     found.map(choice).collect()

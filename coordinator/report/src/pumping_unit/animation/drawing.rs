@@ -37,7 +37,7 @@ fn arc(center: (f64, f64), radius: f64, from_deg: f64, to_deg: f64) -> Vec<(f64,
         .collect()
 }
 
-/// Extents of the drawing \[m\], and the lower end of the front arc \[deg\].
+/// Extents of the machine drawing \[m\], and the lower end of the front head's arc \[deg\].
 struct Frame {
     left: f64,
     right: f64,
@@ -303,7 +303,7 @@ fn beam_and_heads(machine: &Machine, frame: &Frame) -> Markup {
     }
 }
 
-/// Draws a dimension label, rotated counter-clockwise, on its part.
+/// Draws a text label on a part of the machine, rotated counter-clockwise by an angle in degrees.
 fn dimension(x_m: f64, y_m: f64, turned_deg: f64, text: &str) -> Markup {
     let place = format!("translate({}) rotate({:.0})", xy(x_m, y_m), -turned_deg);
     html! { text transform=(place) text-anchor="middle" dominant-baseline="middle" { (text) } }

@@ -2,11 +2,11 @@
 //!
 //! Lengths are whole millimetres, forces tenths of kilonewtons: finer than a pixel, and compact in the file.
 use crate::color::{Color, Ramp};
-use crate::number::{NONE, fixed};
+use crate::number::{MISSING, fixed};
 use maud::{Markup, html};
 use protocol::{
     case::Case,
-    pumping_unit::{Machine, Motion, Sensor, Simulation},
+    pumping_unit::{Machine, MachineSnapshot, Sensor, Simulation},
 };
 use serde::Serialize;
 use support::quantile;
@@ -40,7 +40,8 @@ pub(super) struct Readout {
 /// Path and tension of one rope in one frame.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct RopeFrame {
-    /// Centres of the cylinders, delta-encoded: first x, y, then differences to the previous cylinder \[mm\].
+    /// Centres of the rope's cylinders, delta-encoded: first x, y, then differences to the previous cylinder
+    /// \[mm\].
     pub path: Vec<i32>,
     /// Axial force in the joint before each cylinder [0.1 kN].
     pub tension: Vec<i32>,
@@ -59,13 +60,13 @@ pub(super) struct Film {
     pub beam: Vec<f64>,
     /// Crank pin x, y \[mm\].
     pub pin: Vec<[i32; 2]>,
-    /// Crossbeam end of the rod x, y \[mm\].
+    /// Position x, y of the rod's end at the crossbeam in each frame \[mm\].
     pub crossbeam: Vec<[i32; 2]>,
     /// Suspension point x, y \[mm\].
     pub suspension: Vec<[i32; 2]>,
-    /// Frames of the back rope.
+    /// Path and tension of the back rope in each frame.
     pub back: Vec<RopeFrame>,
-    /// Frames of the front rope.
+    /// Path and tension of the front rope in each frame.
     pub front: Vec<RopeFrame>,
     /// Back head: arc centre x, y in the beam frame \[mm\], anchor x, y in the beam frame \[mm\].
     pub back_head: [i32; 4],
@@ -86,7 +87,7 @@ pub(super) struct Film {
 }
 
 /// Returns whether all coordinates of a snapshot are finite; other snapshots are left out.
-fn is_finite(motion: &Motion) -> bool {
+fn is_finite(motion: &MachineSnapshot) -> bool {
     let single = [
         motion.crank_pin_m,
         motion.crossbeam_m,
@@ -163,13 +164,13 @@ impl Film {
         condition: usize,
         simulation: &Simulation,
     ) -> Option<Self> {
-        let usable: Vec<&Motion> = simulation
+        let usable: Vec<&MachineSnapshot> = simulation
             .motion
             .iter()
             .filter(|motion| is_finite(motion))
             .collect();
         let every = usable.len().div_ceil(FRAMES).max(1);
-        let frames: Vec<&Motion> = usable.iter().copied().step_by(every).collect();
+        let frames: Vec<&MachineSnapshot> = usable.iter().copied().step_by(every).collect();
         frames.first()?;
         let speed_rpm = machine.conditions.get(condition)?.speed_rpm;
         let sorted = |values: &mut dyn Iterator<Item = f32>| {
@@ -260,7 +261,7 @@ impl Film {
                             th scope="row" { (readout.label) }
                             td id=(format!("machine-value-{index}")) {
                                 (readout.values.first().copied().flatten().map_or_else(
-                                    || NONE.to_owned(),
+                                    || MISSING.to_owned(),
                                     |value| fixed(value, readout.decimals)
                                 ))
                             }
@@ -279,7 +280,7 @@ fn head((x, y): (f64, f64), radius_m: f64, anchor_deg: f64) -> [i32; 4] {
     [mm(x), mm(y), mm(x + radius_m * cos), mm(y + radius_m * sin)]
 }
 
-fn readouts(case: &Case, simulation: &Simulation, frames: &[&Motion]) -> Vec<Readout> {
+fn readouts(case: &Case, simulation: &Simulation, frames: &[&MachineSnapshot]) -> Vec<Readout> {
     let sampled = |label: String, unit, decimals, factor: f64, values: &[f64]| Readout {
         label,
         unit,

@@ -1,5 +1,5 @@
-//! Chromosomes: one code of `bits` bits per gene, and what they stand for.
-use super::settings::{Encoding, MemeticSettings, Scale};
+//! Chromosomes (one code of `bits` bits per gene) and their conversion to gene values.
+use super::settings::{CodeScale, Encoding, MemeticSettings};
 use crate::{
     random::Stream,
     space::{Interval, Space},
@@ -16,7 +16,7 @@ pub(super) struct Codec {
     /// Interval that the codes of each gene cover (coordinate).
     intervals: Vec<Interval>,
     encoding: Encoding,
-    scale: Scale,
+    scale: CodeScale,
     bits: u32,
 }
 
@@ -78,8 +78,8 @@ impl Codec {
                 };
                 let share = f64::from(number) / f64::from(self.largest());
                 match self.scale {
-                    Scale::Logarithmic => axis.value(interval.from + share * interval.length()),
-                    Scale::Linear => {
+                    CodeScale::Logarithmic => axis.value(interval.from + share * interval.length()),
+                    CodeScale::Linear => {
                         let (low, high) = (axis.value(interval.from), axis.value(interval.to));
                         let bounds = &axis.unknown;
                         (low + share * (high - low)).clamp(bounds.lower, bounds.upper)
@@ -90,8 +90,8 @@ impl Codec {
         self.space.expand(&own)
     }
 
-    /// Returns the chromosome nearest to the starting point of that index; `None` if the space has no such
-    /// starting point.
+    /// Returns the chromosome nearest to the starting point `index` of the space; `None` if the space has
+    /// fewer starting points.
     pub(super) fn start(&self, index: usize) -> Option<Chromosome> {
         let point = self.space.starts().get(index)?;
         Some(self.encode(point))
@@ -102,8 +102,8 @@ impl Codec {
         let genes = point.iter().zip(&self.intervals).zip(self.space.axes());
         let codes = genes.map(|((&x, interval), axis)| {
             let share = match self.scale {
-                Scale::Logarithmic => (x - interval.from) / interval.length(),
-                Scale::Linear => {
+                CodeScale::Logarithmic => (x - interval.from) / interval.length(),
+                CodeScale::Linear => {
                     let (low, high) = (axis.value(interval.from), axis.value(interval.to));
                     (axis.value(x) - low) / (high - low)
                 }
@@ -159,7 +159,7 @@ mod tests {
     use super::*;
     use crate::test_function;
 
-    fn codec(encoding: Encoding, scale: Scale) -> (Space, Codec) {
+    fn codec(encoding: Encoding, scale: CodeScale) -> (Space, Codec) {
         let space = test_function::SPHERE.space();
         let settings = MemeticSettings {
             encoding,
@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn codes_cover_the_interval_and_come_back() {
         for encoding in [Encoding::Binary, Encoding::Gray, Encoding::Real] {
-            let (space, codec) = codec(encoding, Scale::Logarithmic);
+            let (space, codec) = codec(encoding, CodeScale::Logarithmic);
             for x in [-4.0, -1.234, 0.0, 2.5, 4.0] {
                 let point = vec![x; space.dimension()];
                 let back = space.point(&codec.decode(&codec.encode(&point)));
@@ -191,7 +191,7 @@ mod tests {
 
     #[test]
     fn neighbours_in_gray_code_differ_in_one_bit() {
-        let (_, codec) = codec(Encoding::Gray, Scale::Logarithmic);
+        let (_, codec) = codec(Encoding::Gray, CodeScale::Logarithmic);
         for code in [0_u32, 7, 255, 32767] {
             let low = codec.encode(&[8.0 * f64::from(code) / 65535.0 - 4.0]);
             let high = codec.encode(&[8.0 * f64::from(code + 1) / 65535.0 - 4.0]);
@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn a_linear_scale_is_linear_in_the_value() {
-        let (space, codec) = codec(Encoding::Binary, Scale::Linear);
+        let (space, codec) = codec(Encoding::Binary, CodeScale::Linear);
         let half = Chromosome(vec![32768; space.dimension()]);
         for (value, axis) in codec.decode(&half).iter().zip(space.axes()) {
             assert!((value / (0.5 * (axis.unknown.lower + axis.unknown.upper)) - 1.0).abs() < 1e-4);

@@ -6,24 +6,24 @@
 //! elite. The path of the elite is therefore that of the sequential climb, bit for bit.
 use super::{
     chromosome::Chromosome,
-    craft::{At, Craft},
+    operators::{DrawAddress, Operators},
     population::{Individual, best, diversity},
+    roulette::RouletteWheel,
     settings::{Acceptance, Climbers},
-    wheel::Wheel,
 };
 use crate::{
     random::Phase,
-    strategy::{proposal::Purpose, told::Told},
+    strategy::{evaluation_result::EvaluationResult, proposal::Purpose},
 };
 
-/// Planned trial; the index is part of its random address.
+/// Hill-climbing trial that is planned; its index selects its random stream.
 #[derive(Clone, Copy, Debug)]
 struct Trial {
     purpose: Purpose,
     index: usize,
 }
 
-/// Trial being evaluated.
+/// Hill-climbing trial being evaluated.
 #[derive(Clone, Debug)]
 pub(super) struct Attempt {
     pub(super) purpose: Purpose,
@@ -32,11 +32,11 @@ pub(super) struct Attempt {
     target: usize,
 }
 
-/// Hill climbs of one generation.
+/// State of the hill climbs of one generation.
 #[derive(Debug)]
 pub(super) struct Climb {
     generation: u32,
-    /// Trials still to be done, in order.
+    /// Trials whose outcome is still undecided, in order.
     trials: Vec<Trial>,
     /// Diversity of the population relative to its elite when the climb began [0 to 1].
     diversity: f64,
@@ -44,7 +44,7 @@ pub(super) struct Climb {
 }
 
 impl Climb {
-    pub(super) fn new(craft: &Craft, generation: u32, population: &[Individual]) -> Self {
+    pub(super) fn new(craft: &Operators, generation: u32, population: &[Individual]) -> Self {
         let settings = &craft.settings;
         let trials = match settings.climbers {
             Climbers::Elite => {
@@ -75,7 +75,7 @@ impl Climb {
     }
 
     /// Plans the next trials to evaluate at once; empty when the climb is over.
-    pub(super) fn plan(&mut self, craft: &Craft, population: &[Individual]) -> &[Attempt] {
+    pub(super) fn plan(&mut self, craft: &Operators, population: &[Individual]) -> &[Attempt] {
         let width = self.width(craft);
         let elite = best(population);
         let wheel = craft.wheel(population);
@@ -97,7 +97,12 @@ impl Climb {
 
     /// Absorbs the results of the planned trials and replaces improved individuals of the population in
     /// place.
-    pub(super) fn absorb(&mut self, craft: &Craft, population: &mut [Individual], told: &[Told]) {
+    pub(super) fn absorb(
+        &mut self,
+        craft: &Operators,
+        population: &mut [Individual],
+        told: &[EvaluationResult],
+    ) {
         let attempts = std::mem::take(&mut self.attempts);
         let mut successes = attempts
             .iter()
@@ -128,8 +133,8 @@ impl Climb {
         self.trials.drain(..decided.min(self.trials.len()));
     }
 
-    /// Returns how many trials may be evaluated at once.
-    fn width(&self, craft: &Craft) -> usize {
+    /// Returns how many trials may be evaluated concurrently.
+    fn width(&self, craft: &Operators) -> usize {
         let all = self.trials.len();
         match (craft.settings.climbers, craft.settings.acceptance) {
             (Climbers::All, _) => {
@@ -147,12 +152,12 @@ impl Climb {
 
     fn draw(
         &self,
-        craft: &Craft,
+        craft: &Operators,
         population: &[Individual],
-        wheel: &Wheel,
+        wheel: &RouletteWheel,
         (trial, target): (Trial, usize),
     ) -> Chromosome {
-        let at = At {
+        let at = DrawAddress {
             generation: self.generation,
             index: trial.index,
         };
@@ -183,10 +188,10 @@ fn plan(purpose: Purpose, count: usize) -> impl Iterator<Item = Trial> {
 
 /// Plans the trials of the paper's literal text: each individual in turn starts a crossover trial, with the
 /// crossover probability, and a mutation trial.
-fn literal_trials(craft: &Craft, generation: u32, population: usize) -> Vec<Trial> {
+fn literal_trials(craft: &Operators, generation: u32, population: usize) -> Vec<Trial> {
     let mut trials = Vec::with_capacity(2 * population);
     for index in 0..population {
-        let mut stream = craft.stream(At { generation, index }, Phase::Crossover);
+        let mut stream = craft.stream(DrawAddress { generation, index }, Phase::Crossover);
         if stream.chance(craft.settings.crossover_probability) {
             trials.push(Trial {
                 purpose: Purpose::CrossoverTrial,

@@ -5,7 +5,7 @@
 use super::{
     chromosome::Chromosome,
     climb::{Attempt, Climb},
-    craft::{At, Craft},
+    operators::{DrawAddress, Operators},
     population::{Individual, best, worst},
     settings::{Climbers, MemeticSettings, SETTINGS, Survival},
 };
@@ -13,30 +13,31 @@ use crate::{
     random::{Phase, Streams},
     space::{Axis, Interval, Space},
     strategy::{
-        archive::{Archive, Evaluated},
+        archive::{Archive, EvaluatedIndividual},
         ask_tell::Strategy,
-        conductor::Conductor,
-        offer::{Group, Preset, Promise},
-        piece::{Batch, Draft, Piece},
+        definition::{Expectations, Preset, SettingGroup},
+        evaluation_result::EvaluationResult,
         proposal::Purpose,
+        sequencer::Conductor,
         setting::SettingsError,
-        settings::{Recipe, Settings, build_as},
-        told::Told,
+        settings::{Settings, StrategySettings, build_as},
+        stage::{Batch, Piece, ProposalDraft},
     },
 };
 
-/// Preset of the paper's settings.
+/// Preset of the memetic algorithm with the paper's settings.
 pub const PAPER: Preset = Preset {
     name: "paper",
     summary: "the reference paper's memetic algorithm: 80 individuals, 60 generations",
     strategy: MemeticSettings::STRATEGY,
     settings: |_| Settings::of(&MemeticSettings::paper()),
-    groups: &[Group::whole(SETTINGS)],
-    promise: PROMISE,
+    groups: &[SettingGroup::whole(SETTINGS)],
+    expectations: PROMISE,
     build: build_as::<MemeticSettings>,
 };
 
-/// Preset of the paper's settings, with trials in batches.
+/// Preset of the memetic algorithm with the paper's settings, where the trials of a hill climb are evaluated
+/// in batches.
 pub const PAPER_BATCH: Preset = Preset {
     name: "paper-batch",
     summary: "the paper's algorithm with the best of 40 + 40 climbing trials at once",
@@ -44,20 +45,21 @@ pub const PAPER_BATCH: Preset = Preset {
     ..PAPER
 };
 
-/// Accuracy that the operators with the paper's settings are expected to reach, with or without generations.
-pub(super) const PROMISE: Promise = Promise {
+/// Accuracy that tests demand of presets with the paper's settings, both with generations and with a sliding
+/// window.
+pub(super) const PROMISE: Expectations = Expectations {
     one_basin: 0.1,
     many_basins: 1.1,
     distance: 0.3,
-    opens_at_recommended: false,
-    valley: None,
-    chance: true,
+    starts_at_recommended: false,
+    valley_evaluations: None,
+    seed_dependent: true,
 };
 
-impl Recipe for MemeticSettings {
+impl StrategySettings for MemeticSettings {
     const STRATEGY: &'static str = "memetic";
 
-    /// Builds the memetic algorithm alone, over the whole space.
+    /// Builds a search that consists of the memetic algorithm alone, over the whole space.
     fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
         let intervals = space.axes().iter().map(Axis::interval).collect();
         let streams = Streams::new(seed, 0);
@@ -67,19 +69,19 @@ impl Recipe for MemeticSettings {
     }
 }
 
-/// Stage of the algorithm: the content of the running batch.
+/// Stage of the memetic algorithm, which tells what the running batch contains.
 enum Stage {
     /// Nothing has been planned.
     Start,
-    /// The initial population, or the children of a generation.
+    /// The initial population or the children of a generation are being evaluated.
     Evaluating(Vec<Chromosome>),
-    /// Children are evaluated; the hill climb is in progress.
+    /// The children are evaluated, and the hill climb is in progress.
     Climbing(Climb),
 }
 
-/// Memetic algorithm as a piece of a strategy.
+/// Memetic algorithm as one batch-wise part (piece) of a strategy.
 pub struct Memetic {
-    craft: Craft,
+    craft: Operators,
     /// First chromosomes of the initial population; the others are random.
     start: Vec<Chromosome>,
     population: Vec<Individual>,
@@ -99,7 +101,7 @@ impl Memetic {
         start: &[Vec<f64>],
         streams: Streams,
     ) -> Result<Self, SettingsError> {
-        let craft = Craft::new(settings, space, intervals, streams)?;
+        let craft = Operators::new(settings, space, intervals, streams)?;
         let start = start.iter().map(|point| craft.codec.encode(point));
         Ok(Self {
             start: start.collect(),
@@ -142,9 +144,10 @@ impl Memetic {
         drawn.collect()
     }
 
-    /// Returns the random address of an operation of this generation.
-    const fn at(&self, index: usize) -> At {
-        At {
+    /// Returns the generation and index that select the random stream of operation `index` in the current
+    /// generation.
+    const fn at(&self, index: usize) -> DrawAddress {
+        DrawAddress {
             generation: self.generation,
             index,
         }
@@ -176,7 +179,7 @@ impl Memetic {
     }
 
     /// Starts the next generation and returns its first batch; `None` after the last generation.
-    fn next_generation(&mut self) -> Option<Vec<Draft>> {
+    fn next_generation(&mut self) -> Option<Vec<ProposalDraft>> {
         if self.generation >= self.craft.settings.bred_generations() {
             return None;
         }
@@ -191,8 +194,8 @@ impl Memetic {
         Some(self.evaluate(self.breed(), Purpose::Offspring))
     }
 
-    fn evaluate(&mut self, chromosomes: Vec<Chromosome>, purpose: Purpose) -> Vec<Draft> {
-        let decode = |chromosome| Draft {
+    fn evaluate(&mut self, chromosomes: Vec<Chromosome>, purpose: Purpose) -> Vec<ProposalDraft> {
+        let decode = |chromosome| ProposalDraft {
             genes: self.craft.codec.decode(chromosome),
             purpose,
         };
@@ -210,11 +213,11 @@ impl Piece for Memetic {
                 Stage::Evaluating(_) => self.next_generation(),
                 Stage::Climbing(climb) => {
                     let attempts = climb.plan(&self.craft, &self.population);
-                    let draft = |attempt: &Attempt| Draft {
+                    let draft = |attempt: &Attempt| ProposalDraft {
                         genes: self.craft.codec.decode(&attempt.chromosome),
                         purpose: attempt.purpose,
                     };
-                    let drafts: Vec<Draft> = attempts.iter().map(draft).collect();
+                    let drafts: Vec<ProposalDraft> = attempts.iter().map(draft).collect();
                     if drafts.is_empty() {
                         self.next_generation()
                     } else {
@@ -231,8 +234,8 @@ impl Piece for Memetic {
         }
     }
 
-    fn absorb(&mut self, results: &[Evaluated]) {
-        let told: Vec<Told> = results.iter().map(|result| result.told).collect();
+    fn absorb(&mut self, results: &[EvaluatedIndividual]) {
+        let told: Vec<EvaluationResult> = results.iter().map(|result| result.result).collect();
         match &mut self.stage {
             Stage::Start => {}
             Stage::Evaluating(chromosomes) => {

@@ -5,17 +5,17 @@
 //! the paper's algorithm, [`window`] the same operators without generations.
 mod chromosome;
 mod climb;
-mod craft;
 pub mod generations;
+mod operators;
 mod population;
+mod roulette;
 pub mod settings;
 #[cfg(test)]
 mod tests;
 mod variation;
-mod wheel;
 pub mod window;
 
 pub use settings::{
-    Acceptance, Climbers, Crossover, Encoding, MemeticSettings, MutationUnit, Roulette, Scale,
+    Acceptance, Climbers, CodeScale, Crossover, Encoding, MemeticSettings, MutationUnit, Roulette,
     SpecialCrossover, Survival,
 };

@@ -1,17 +1,17 @@
 //! Individuals with their results: best, worst, and diversity.
 use super::chromosome::{Chromosome, Codec, distance};
-use crate::strategy::told::Told;
+use crate::strategy::evaluation_result::EvaluationResult;
 
-/// Individual: a chromosome with its result.
+/// Member of a population: a chromosome with its result.
 #[derive(Clone, Debug)]
 pub(super) struct Individual {
     pub(super) chromosome: Chromosome,
-    pub(super) told: Told,
+    pub(super) told: EvaluationResult,
 }
 
 /// Returns the position of the best individual; the first on ties.
 pub(super) fn best(population: &[Individual]) -> usize {
-    extreme(population, Told::beats)
+    extreme(population, EvaluationResult::beats)
 }
 
 /// Returns the position of the worst individual; the first on ties.
@@ -19,7 +19,10 @@ pub(super) fn worst(population: &[Individual]) -> usize {
     extreme(population, |one, other| other.beats(one))
 }
 
-fn extreme(population: &[Individual], wins: impl Fn(Told, Told) -> bool) -> usize {
+fn extreme(
+    population: &[Individual],
+    wins: impl Fn(EvaluationResult, EvaluationResult) -> bool,
+) -> usize {
     let mut found = 0;
     for (index, one) in population.iter().enumerate() {
         if wins(one.told, population[found].told) {
@@ -48,7 +51,7 @@ mod tests {
     fn population(told: &[(f64, bool)]) -> Vec<Individual> {
         let one = |&(fitness, complete): &(f64, bool)| Individual {
             chromosome: Chromosome(vec![]),
-            told: Told { fitness, complete },
+            told: EvaluationResult { fitness, complete },
         };
         told.iter().map(one).collect()
     }

@@ -1,5 +1,5 @@
 //! Settings of the memetic algorithm: the paper's numbers, and every point that the paper leaves open.
-use crate::strategy::setting::{Setting, SettingsError, Values, check};
+use crate::strategy::setting::{AllowedValues, Setting, SettingsError, check};
 use serde::{Deserialize, Serialize};
 
 /// Encoding of genes in a chromosome.
@@ -15,10 +15,10 @@ pub enum Encoding {
     Real,
 }
 
-/// Distribution of the codes over a gene's interval.
+/// Scale on which the codes of a gene are evenly spaced over its interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Scale {
+pub enum CodeScale {
     /// Evenly in the logarithm: the recommended value is the centre, as the paper says. Default.
     Logarithmic,
     /// Evenly in the value: 90 % of the initial population lies in the highest decade.
@@ -29,13 +29,13 @@ pub enum Scale {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Roulette {
-    /// 1 / f: independent of the unit of f. Default.
+    /// Weight 1 / f, with f the fitness; selection does not depend on the unit of f. Default.
     Inverse,
-    /// 1 / (1 + f).
+    /// Weight 1 / (1 + f), with f the fitness.
     InversePlusOne,
-    /// (largest f) - f.
+    /// Weight (largest f in the population) - f, with f the fitness.
     Difference,
-    /// Linear in the rank: the best of n weighs n, the worst 1.
+    /// Weight linear in the rank: the best of n individuals weighs n, the worst 1.
     Rank,
 }
 
@@ -55,9 +55,9 @@ pub enum Crossover {
 pub enum MutationUnit {
     /// Every bit flips with this probability. Default.
     Bit,
-    /// In every gene one random bit flips with this probability.
+    /// One random bit of every gene flips with this probability.
     Gene,
-    /// In every individual one random bit flips with this probability.
+    /// One random bit of every individual flips with this probability.
     Individual,
 }
 
@@ -68,11 +68,11 @@ pub enum SpecialCrossover {
     /// A bit comes from the partner with probability 0.1 to 0.6, the more the population differs
     /// from its elite. Default.
     EliteBiased,
-    /// A bit comes from either with probability 1/2.
+    /// A bit comes from the elite or the partner with probability 1/2 each.
     Even,
 }
 
-/// Interpretation of the paper's steps 6 to 8.
+/// Interpretation of the paper's steps 6 to 8: which individuals climb, and from which offspring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Climbers {
@@ -87,7 +87,7 @@ pub enum Climbers {
     Literal,
 }
 
-/// Order of the trials of a hill climb.
+/// Acceptance rule of a hill climb, which sets the order of its trials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Acceptance {
@@ -136,7 +136,7 @@ pub struct MemeticSettings {
     /// Standard deviation of a mutation of the real encoding, as a share of the interval.
     pub real_step: f64,
     /// Distribution of the codes over a gene's interval.
-    pub scale: Scale,
+    pub scale: CodeScale,
     /// Weight of an individual on the roulette wheel.
     pub roulette: Roulette,
     /// Crossover of two parents.
@@ -148,9 +148,9 @@ pub struct MemeticSettings {
     /// Number of random bits that the second hill climb flips; `None`, the default: 1 to 4, more in a more
     /// diverse population.
     pub flipped_bits: Option<usize>,
-    /// Interpretation of the paper's steps 6 to 8.
+    /// Interpretation of the paper's steps 6 to 8: which individuals climb.
     pub climbers: Climbers,
-    /// Order of the trials of a hill climb.
+    /// Acceptance rule of a hill climb.
     pub acceptance: Acceptance,
     /// Survivor selection.
     pub survival: Survival,
@@ -179,7 +179,7 @@ impl MemeticSettings {
             encoding: Encoding::Binary,
             bits_per_gene: 16,
             real_step: 0.05,
-            scale: Scale::Logarithmic,
+            scale: CodeScale::Logarithmic,
             roulette: Roulette::Inverse,
             crossover: Crossover::Uniform,
             mutation_unit: MutationUnit::Bit,
@@ -203,7 +203,7 @@ impl MemeticSettings {
         }
     }
 
-    /// Returns the number of generations after the initial one.
+    /// Returns the number of generations bred after the initial population.
     pub(super) const fn bred_generations(&self) -> u32 {
         if self.initial_counts {
             self.generations.saturating_sub(1)
@@ -225,115 +225,115 @@ impl MemeticSettings {
 pub(in crate::strategy) const SETTINGS: &[Setting] = &[
     Setting::new(
         "population",
-        Values::Whole(4, u64::MAX),
+        AllowedValues::Whole(4, u64::MAX),
         "individuals per generation",
     ),
     Setting::new(
         "generations",
-        Values::Whole(0, 1_000_000),
+        AllowedValues::Whole(0, 1_000_000),
         "maximum number of generations",
     ),
     Setting::new(
         "initial_counts",
-        Values::Switch,
+        AllowedValues::Switch,
         "whether the initial population is the first of the generations",
     ),
     Setting::new(
         "threshold",
-        Values::Real(0.0, f64::MAX),
+        AllowedValues::Real(0.0, f64::MAX),
         "fitness at or below which the search ends",
     )
-    .or("none"),
+    .optional("none"),
     Setting::new(
         "crossover_probability",
-        Values::Real(0.0, 1.0),
+        AllowedValues::Real(0.0, 1.0),
         "probability that a pair is crossed",
     ),
     Setting::new(
         "mutation_probability",
-        Values::Real(0.0, 1.0),
+        AllowedValues::Real(0.0, 1.0),
         "probability of a mutation per mutation_unit",
     ),
     Setting::new(
         "crossover_trials",
-        Values::Whole(0, 1_000_000),
+        AllowedValues::Whole(0, 1_000_000),
         "trials of the crossover-based hill climb per generation",
     ),
     Setting::new(
         "mutation_trials",
-        Values::Whole(0, 1_000_000),
+        AllowedValues::Whole(0, 1_000_000),
         "trials of the mutation-based hill climb per generation",
     ),
     Setting::new(
         "encoding",
-        Values::Words(&["binary", "gray", "real"]),
+        AllowedValues::Words(&["binary", "gray", "real"]),
         "encoding of genes in a chromosome",
     ),
     Setting::new(
         "bits_per_gene",
-        Values::Whole(2, 30),
+        AllowedValues::Whole(2, 30),
         "bits per gene of the binary and Gray encodings",
     ),
     Setting::new(
         "real_step",
-        Values::Real(1e-6, 1.0),
+        AllowedValues::Real(1e-6, 1.0),
         "deviation of a mutation of the real encoding, as a share of the interval",
     ),
     Setting::new(
         "scale",
-        Values::Words(&["logarithmic", "linear"]),
+        AllowedValues::Words(&["logarithmic", "linear"]),
         "distribution of the codes over a gene's interval",
     ),
     Setting::new(
         "roulette",
-        Values::Words(&["inverse", "inverse_plus_one", "difference", "rank"]),
+        AllowedValues::Words(&["inverse", "inverse_plus_one", "difference", "rank"]),
         "weight on the roulette wheel: 1/f, 1/(1+f), largest f - f, by rank",
     ),
     Setting::new(
         "crossover",
-        Values::Words(&["uniform", "one_point"]),
+        AllowedValues::Words(&["uniform", "one_point"]),
         "crossover of two parents",
     ),
     Setting::new(
         "mutation_unit",
-        Values::Words(&["bit", "gene", "individual"]),
+        AllowedValues::Words(&["bit", "gene", "individual"]),
         "unit to which mutation_probability applies",
     ),
     Setting::new(
         "special_crossover",
-        Values::Words(&["elite_biased", "even"]),
+        AllowedValues::Words(&["elite_biased", "even"]),
         "share of the partner in the first hill climb: 0.1 to 0.6 by diversity, or half",
     ),
     Setting::new(
         "flipped_bits",
-        Values::Whole(1, 1000),
+        AllowedValues::Whole(1, 1000),
         "random bits that the second hill climb flips: 1 to 4 by diversity, or a fixed number",
     )
-    .or("adaptive"),
+    .optional("adaptive"),
     Setting::new(
         "climbers",
-        Values::Words(&["elite", "all", "literal"]),
+        AllowedValues::Words(&["elite", "all", "literal"]),
         "individuals that climb: the elite, all, or the paper's literal steps",
     ),
     Setting::new(
         "acceptance",
-        Values::Words(&["first", "best_of_batch"]),
+        AllowedValues::Words(&["first", "best_of_batch"]),
         "start of a trial: the last winner, or one elite for the whole batch",
     ),
     Setting::new(
         "survival",
-        Values::Words(&["generational", "plus"]),
+        AllowedValues::Words(&["generational", "plus"]),
         "survivors: children and one elite, or the best of parents and children",
     ),
     Setting::new(
         "speculation",
-        Values::Whole(1, 1_000_000),
+        AllowedValues::Whole(1, 1_000_000),
         "trials evaluated ahead; same result, fewer batches and more evaluations the more there are",
     )
-    .or("all"),
+    .optional("all"),
     Setting::new(
         "reuse_clones",
-        Values::Switch,
+        AllowedValues::Switch,
         "whether a repeated individual reuses its result; the search is the same either way",
     ),
 ];

@@ -8,10 +8,10 @@ use crate::{
     test_function::{self, SPHERE, TestFunction},
 };
 
-/// Change of the settings to another interpretation of the paper.
+/// Function that changes the settings to another interpretation of the paper.
 type Change = fn(&mut MemeticSettings);
 
-/// Runs the paper's algorithm with changed settings.
+/// Runs a small search of the paper's algorithm with settings modified by `change`.
 fn search(
     change: impl Fn(&mut MemeticSettings),
     function: &TestFunction,
@@ -153,7 +153,7 @@ const READINGS: &[(&str, Change)] = &[
     ("plus", |s| s.survival = Survival::Plus),
 ];
 
-/// Checks the hash of a short run for each entry of [`READINGS`], in its order.
+/// Checks that the hash of a short run is unchanged for each interpretation in [`READINGS`].
 #[test]
 fn the_bits_of_every_reading_stay() {
     let frozen: &[u64] = &[
@@ -206,7 +206,7 @@ fn every_reading_of_the_paper_finds_the_sphere() {
 
 #[test]
 fn a_linear_scale_starts_in_the_highest_decade() {
-    let (record, settings) = search(|s| s.scale = Scale::Linear, &SPHERE, 1);
+    let (record, settings) = search(|s| s.scale = CodeScale::Linear, &SPHERE, 1);
     let space = SPHERE.space();
     let first = &record.asked[..settings.population];
     let points = first

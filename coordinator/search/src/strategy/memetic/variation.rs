@@ -5,7 +5,7 @@ use super::{
 };
 use crate::random::Stream;
 
-/// Exchanges parts of two chromosomes by the crossover rule.
+/// Exchanges parts of two chromosomes by the given crossover rule.
 pub(super) fn cross(
     codec: &Codec,
     rule: Crossover,
@@ -44,7 +44,7 @@ pub(super) fn elite_crossover(
     child
 }
 
-/// Mutates in place with a probability per bit, gene or individual.
+/// Mutates a chromosome in place, with a probability per bit, gene or individual.
 pub(super) fn mutate(
     codec: &Codec,
     chromosome: &mut Chromosome,
@@ -115,7 +115,8 @@ fn shift(codec: &Codec, chromosome: &mut Chromosome, gene: usize, step: f64) {
     }
 }
 
-/// Returns the mask of a gene's bits for which `chosen` holds; all bits or none for the real encoding.
+/// Returns the mask of those bits of a gene for which `chosen` returns true; with the real encoding all bits
+/// or none.
 fn mask(codec: &Codec, gene: usize, chosen: &mut impl FnMut(usize) -> bool) -> u32 {
     let bits = codec.bits() as usize;
     if codec.encoding() == Encoding::Real {

@@ -32,8 +32,8 @@
 //! smallest windows are two to four times worse than generations.
 use super::{
     chromosome::Chromosome,
-    craft::{At, Craft},
     generations::PROMISE,
+    operators::{DrawAddress, Operators},
     population::{Individual, best, diversity, worst},
     settings::{MemeticSettings, SETTINGS},
 };
@@ -41,14 +41,14 @@ use crate::{
     random::{Phase, Streams},
     space::{Axis, Space},
     strategy::{
-        archive::{Archive, Evaluated},
+        archive::{Archive, EvaluatedIndividual},
         ask_tell::Strategy,
-        offer::{Group, Preset},
+        definition::{Preset, SettingGroup},
+        evaluation_result::EvaluationResult,
         outcome::{Best, Finish, Progress},
         proposal::{Proposal, Purpose},
-        setting::{Setting, SettingsError, Values, check},
-        settings::{Recipe, Settings, build_as},
-        told::Told,
+        setting::{AllowedValues, Setting, SettingsError, check},
+        settings::{Settings, StrategySettings, build_as},
     },
 };
 use serde::{Deserialize, Serialize};
@@ -61,12 +61,12 @@ pub const WINDOW: Preset = Preset {
     strategy: WindowSettings::STRATEGY,
     settings: |plan| Settings::of(&WindowSettings::for_workers(plan.workers)),
     groups: &[
-        Group::whole(WINDOWED),
-        Group {
-            named: "",
-            place: "/memetic",
+        SettingGroup::whole(WINDOWED),
+        SettingGroup {
+            prefix: "",
+            pointer: "/memetic",
             table: SETTINGS,
-            without: &[
+            excluded: &[
                 "climbers",
                 "acceptance",
                 "survival",
@@ -75,14 +75,14 @@ pub const WINDOW: Preset = Preset {
             ],
         },
     ],
-    promise: PROMISE,
+    expectations: PROMISE,
     build: build_as::<WindowSettings>,
 };
 
-/// Settings that can be set by name in addition to those of the memetic algorithm.
+/// Table of the settings that the sliding window adds to those of the memetic algorithm.
 const WINDOWED: &[Setting] = &[Setting::new(
     "window",
-    Values::Whole(1, 1_000_000),
+    AllowedValues::Whole(1, 1_000_000),
     "lag in results of the population that an individual is bred from; 3 per planned worker",
 )
 .following_workers()];
@@ -114,7 +114,7 @@ impl WindowSettings {
     }
 }
 
-impl Recipe for WindowSettings {
+impl StrategySettings for WindowSettings {
     const STRATEGY: &'static str = "window";
 
     fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
@@ -124,14 +124,14 @@ impl Recipe for WindowSettings {
 
 /// Memetic search with a sliding window instead of generations, as a strategy.
 pub struct Window {
-    /// Window L.
+    /// Window L: individual k is bred from results 0 to k - L.
     lag: usize,
-    craft: Craft,
+    craft: Operators,
     population: Vec<Individual>,
     /// Chromosomes of proposals whose results have not been consumed, in id order.
     open: VecDeque<Chromosome>,
     outbox: Vec<Proposal>,
-    early: BTreeMap<u64, Told>,
+    early: BTreeMap<u64, EvaluationResult>,
     archive: Archive,
     next: u64,
     finish: Option<Finish>,
@@ -148,7 +148,7 @@ impl Window {
         let streams = Streams::new(seed, 0);
         let mut window = Self {
             lag: settings.window,
-            craft: Craft::new(settings.memetic.clone(), space, intervals, streams)?,
+            craft: Operators::new(settings.memetic.clone(), space, intervals, streams)?,
             population: Vec::new(),
             open: VecDeque::new(),
             outbox: Vec::new(),
@@ -161,13 +161,14 @@ impl Window {
         Ok(window)
     }
 
-    /// Returns the number of random first individuals.
+    /// Returns the number of random individuals proposed before the first child is bred.
     fn first(&self) -> u64 {
         let population = self.craft.settings.population;
         population.max(self.lag + population / 2) as u64
     }
 
-    /// Returns the period of the plan: population plus trials.
+    /// Returns the number of individuals after which the pattern of children and trials repeats: population
+    /// plus trials.
     const fn cycle(&self) -> u64 {
         (self.craft.settings.population + self.trials()) as u64
     }
@@ -182,7 +183,7 @@ impl Window {
         self.first() + generations * self.cycle()
     }
 
-    /// Returns the equivalent generation of an individual, for progress reports.
+    /// Returns the generation to which an individual would belong, for progress reports.
     fn generation(&self, id: u64) -> u32 {
         let bred = id.checked_sub(self.first());
         bred.map_or(0, |bred| {
@@ -190,7 +191,8 @@ impl Window {
         })
     }
 
-    /// Returns the purpose of an individual: trials are spread evenly, alternating between both kinds.
+    /// Returns the purpose of individual `id`: initial, child or hill-climbing trial; trials are spread
+    /// evenly over both kinds.
     fn purpose(&self, id: u64) -> Purpose {
         let Some(bred) = id.checked_sub(self.first()) else {
             return Purpose::Initial;
@@ -239,7 +241,7 @@ impl Window {
             return self.craft.first(index);
         }
         let (craft, population) = (&self.craft, &self.population);
-        let at = At {
+        let at = DrawAddress {
             generation: 1,
             index,
         };
@@ -263,11 +265,11 @@ impl Window {
     }
 
     /// Consumes the next result in index order and updates the population.
-    fn consume(&mut self, id: u64, chromosome: Chromosome, told: Told) {
-        self.archive.push(Evaluated {
+    fn consume(&mut self, id: u64, chromosome: Chromosome, told: EvaluationResult) {
+        self.archive.push(EvaluatedIndividual {
             id,
             genes: self.craft.codec.decode(&chromosome),
-            told,
+            result: told,
             residual: None,
         });
         let threshold = self.craft.settings.threshold;
@@ -292,7 +294,7 @@ impl Strategy for Window {
         std::mem::take(&mut self.outbox)
     }
 
-    fn tell(&mut self, id: u64, result: Told) {
+    fn tell(&mut self, id: u64, result: EvaluationResult) {
         let consumed = self.archive.entries().len() as u64;
         if id < consumed || id >= self.next {
             return;
@@ -325,13 +327,13 @@ impl Strategy for Window {
             Some(_) => evaluations,
             None => self.planned(),
         };
-        let best = self.archive.best().filter(|best| best.told.survived());
+        let best = self.archive.best().filter(|best| best.result.survived());
         Progress {
             generation: self.generation(evaluations.saturating_sub(1)),
             generations: self.craft.settings.bred_generations(),
             evaluations,
             expected_evaluations: planned,
-            best_fitness: best.map(|best| best.told.fitness),
+            best_fitness: best.map(|best| best.result.fitness),
         }
     }
 

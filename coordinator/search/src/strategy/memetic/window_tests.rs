@@ -16,8 +16,7 @@ fn settings(window: usize) -> WindowSettings {
     }
 }
 
-/// Runs a search to its end; in each step the result of one open proposal, the first or one at random, is
-/// told.
+/// Runs a search to its end, answering one open proposal per step: the first, or one at random.
 fn run(settings: &WindowSettings, function: &TestFunction, order: Option<u64>) -> Window {
     let space = function.space();
     let mut window = Window::new(settings, &space, 3).unwrap();
@@ -126,7 +125,7 @@ fn a_threshold_ends_the_search_at_the_same_individual_whatever_has_arrived() {
     }
 }
 
-/// Prints the table of the module documentation; takes a minute in a release build.
+/// Prints the table of costs in the documentation of the module `window`; takes a minute in a release build.
 #[test]
 #[ignore = "a study, not a test"]
 fn cost_of_the_window() {
@@ -150,8 +149,8 @@ fn cost_of_the_window() {
                     .archive()
                     .entries()
                     .iter()
-                    .filter(|e| e.told.complete);
-                best.map(|e| e.told.fitness).fold(f64::INFINITY, f64::min)
+                    .filter(|e| e.result.complete);
+                best.map(|e| e.result.fitness).fold(f64::INFINITY, f64::min)
             })
             .collect();
         found.sort_by(f64::total_cmp);

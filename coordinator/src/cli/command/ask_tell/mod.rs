@@ -1,16 +1,16 @@
 //! `horsehead ask-tell`: lets an external program drive a search strategy over standard input and output.
-mod talk;
-mod words;
+mod messages;
+mod session;
 
 use crate::cli::output::{
     problem::{EXIT_CODES, Problem},
     terminal,
 };
 use clap::{Args, builder::PossibleValuesParser};
+use messages::Line;
 use search::strategy::CATALOGUE;
+use session::{Dialogue, Opening};
 use std::io::{self, BufRead as _};
-use talk::{Opening, Talk};
-use words::Line;
 
 /// Let another program evaluate what a strategy asks for.
 #[derive(Debug, Args)]
@@ -46,7 +46,7 @@ pub(super) struct Arguments {
 
 /// Runs the dialogue until the strategy finishes, the input ends, or a line is rejected.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let mut talk: Option<Talk> = None;
+    let mut talk: Option<Dialogue> = None;
     for (number, line) in (1..).zip(io::stdin().lock().lines()) {
         let line = line?;
         if line.trim().is_empty() {
@@ -65,13 +65,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                     return Ok(());
                 }
             }
-            Err(refused) => return end(talk.as_ref(), words::at(refused, number)),
+            Err(refused) => return end(talk.as_ref(), messages::with_line_number(refused, number)),
         }
     }
-    match talk.as_ref().map(Talk::close) {
+    match talk.as_ref().map(Dialogue::close) {
         Some(Ok(said)) => say(&said),
         Some(Err(refused)) => end(talk.as_ref(), refused),
-        None => end(None, words::silent()),
+        None => end(None, messages::empty_input()),
     }
 }
 
@@ -83,8 +83,8 @@ fn say(line: &Line) -> anyhow::Result<()> {
 
 /// Writes the last line of a dialogue that ends with an error: the error, and the best point found until
 /// then.
-fn end(talk: Option<&Talk>, problem: Problem) -> anyhow::Result<()> {
-    let (evaluations, best) = talk.map_or((0, None), Talk::found);
+fn end(talk: Option<&Dialogue>, problem: Problem) -> anyhow::Result<()> {
+    let (evaluations, best) = talk.map_or((0, None), Dialogue::summary);
     say(&Line::Error {
         error: problem.message.clone(),
         help: problem.remedy.clone(),

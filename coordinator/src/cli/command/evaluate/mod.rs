@@ -1,5 +1,5 @@
 //! `horsehead evaluate`: scores the individuals of an external program on workers, one JSON line each.
-mod words;
+mod messages;
 
 use crate::cli::{
     argument::{
@@ -11,14 +11,15 @@ use crate::cli::{
         terminal,
     },
     run::{
-        begun::Run,
         folder::RunFolder,
-        manifest::{Decides, EVALUATE, Manifest},
+        manifest::{EVALUATE, Manifest, RunIdentity},
+        opened::Run,
         session::Session,
     },
 };
 use case::require_record;
 use clap::Args;
+use messages::{Line, Tag};
 use search::space::Space;
 use serde::{Deserialize, Serialize};
 use std::{
@@ -29,9 +30,8 @@ use std::{
         atomic::{AtomicUsize, Ordering},
     },
 };
-use study::{Request, evaluate};
+use study::{EvaluationRequest, evaluate};
 use tokio::sync::mpsc;
-use words::{Line, Tag};
 
 /// Score individuals that another program asks for, on workers.
 #[derive(Debug, Args)]
@@ -65,15 +65,15 @@ pub(super) struct Arguments {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Individuals {}
 
-impl Decides for Individuals {
+impl RunIdentity for Individuals {
     const KIND: &'static str = EVALUATE;
     const SEEDED: bool = false;
 }
 
-/// Maximum number of input lines that wait to be evaluated.
+/// Maximum number of input lines that are read ahead and wait to be evaluated.
 const WAITING: usize = 4096;
 
-/// Scores individuals until the input ends.
+/// Scores the individuals read from standard input until the input ends.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let session = Session::begin(&arguments.workers);
     let run = begin(arguments)?;
@@ -84,7 +84,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     // it blocks on the input, and is left behind when the work is over
     std::thread::spawn(move || read(&space, &asking, &counted));
     session.work(&run, async |bus, stop| {
-        let answer = &mut |tag: Tag, scored: &_| say(&Line::of(&tag, scored));
+        let answer = &mut |tag: Tag, scored: &_| say(&Line::scored(&tag, scored));
         evaluate(bus, &run.case, &mut requests, answer, stop).await
     })?;
     match refused.load(Ordering::SeqCst) {
@@ -124,13 +124,13 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Individuals>> {
 
 /// Reads input lines and sends the evaluation requests they contain, until the input ends or the receiver is
 /// closed; answers each malformed line with an error.
-fn read(space: &Space, asking: &mpsc::Sender<Request<Tag>>, refused: &AtomicUsize) {
+fn read(space: &Space, asking: &mpsc::Sender<EvaluationRequest<Tag>>, refused: &AtomicUsize) {
     for (number, line) in (1..).zip(io::stdin().lock().lines()) {
         let Ok(line) = line else { return };
         if line.trim().is_empty() {
             continue;
         }
-        match words::read(&line, space) {
+        match messages::read(&line, space) {
             Ok(request) => {
                 if asking.blocking_send(request).is_err() {
                     return;

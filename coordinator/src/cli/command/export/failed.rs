@@ -2,11 +2,11 @@
 //! into folders for inspection.
 use crate::cli::{output::problem::Problem, run::folder::RunFolder};
 use anyhow::Context as _;
-use dispatch::journal::{self, Recording};
+use dispatch::journal::{self, JournalSnapshot};
 use protocol::{
     event::{Event, Finished},
     file::is_below,
-    job::{Failure, Left, Outcome},
+    job::{Failure, FailureFiles, Outcome},
 };
 use serde::Serialize;
 use std::{
@@ -18,7 +18,7 @@ use std::{
 
 /// Name of the folder for failed jobs within the run folder.
 const FOLDER: &str = "failed";
-/// File in each folder that states the reason of the failure.
+/// Name of the file in each job's folder that states why the job failed.
 const WHY: &str = "why.txt";
 
 /// JSON object printed by `export --failed --output json`.
@@ -34,25 +34,25 @@ pub(super) struct FailedOutput {
     pub(super) notes: Vec<String>,
 }
 
-/// A job that was given up.
+/// Job that was given up after failed attempts.
 #[derive(Debug, Serialize)]
 struct OneFailed {
-    /// Job number, as in the table `results`.
+    /// Number of the job, as in the table `results`.
     job: u64,
-    /// Kind of failure.
+    /// Kind of the job's failure.
     kind: &'static str,
-    /// Description of the failure.
+    /// Description of the job's failure.
     why: String,
     /// Folder of this job; null if the worker sent no files.
     folder: Option<String>,
-    /// Paths of the files in the folder, relative to the program's working folder.
+    /// Paths of the files in the job's folder, relative to the external program's working folder.
     files: Vec<String>,
-    /// Paths of files of which only the end, or nothing, was sent.
+    /// Paths of the files of which the worker sent only the end, or nothing.
     shortened: Vec<String>,
 }
 
-/// Writes the folders of failed jobs into `to` or into the run folder, and returns a list of all given-up
-/// jobs.
+/// Writes the files of failed jobs into folders below `to`, or below the run folder, and returns a list of
+/// all given-up jobs.
 pub(super) fn fetch(run: &Path, to: Option<&Path>, force: bool) -> anyhow::Result<FailedOutput> {
     let folder = RunFolder::at(run)?;
     let journal = folder.file(journal::FILE);
@@ -66,7 +66,7 @@ pub(super) fn fetch(run: &Path, to: Option<&Path>, force: bool) -> anyhow::Resul
         .into());
     }
     let mut failures: Vec<(u64, Failure)> = Vec::new();
-    let recording = Recording::read(&journal, |_, event| {
+    let recording = JournalSnapshot::read(&journal, |_, event| {
         if let Event::Finished(finished) = event
             && let Finished {
                 attempt,
@@ -80,13 +80,13 @@ pub(super) fn fetch(run: &Path, to: Option<&Path>, force: bool) -> anyhow::Resul
     failures.sort_by_key(|(job, _)| *job);
     let any = failures
         .iter()
-        .any(|(_, failure)| failure.left().is_some_and(|left| !left.is_empty()));
+        .any(|(_, failure)| failure.files().is_some_and(|left| !left.is_empty()));
     let place = to.map_or_else(|| folder.file(FOLDER), Path::to_path_buf);
     if any {
         prepare(&place, to.is_none(), force)?;
     }
     let one = |(job, failure): (u64, Failure)| -> anyhow::Result<OneFailed> {
-        let left = failure.left().filter(|left| !left.is_empty());
+        let left = failure.files().filter(|left| !left.is_empty());
         let folder = place.join(job.to_string());
         let why = failure.to_string();
         if let Some(left) = left {
@@ -109,12 +109,12 @@ pub(super) fn fetch(run: &Path, to: Option<&Path>, force: bool) -> anyhow::Resul
         run: run.display().to_string(),
         folder: any.then(|| place.display().to_string()),
         failed: failures.into_iter().map(one).collect::<Result<_, _>>()?,
-        notes: journal::words(&recording.report().damage),
+        notes: journal::describe_damage(&recording.report().damage),
     })
 }
 
-/// Creates an empty folder: replaces the run's own; a folder chosen by the user must be empty unless `force`
-/// is set.
+/// Creates an empty folder for the export: the run's own folder of failed jobs is replaced; a folder chosen
+/// by the user must be empty unless `force` is set.
 fn prepare(place: &Path, is_own: bool, force: bool) -> anyhow::Result<()> {
     let is_empty = fs::read_dir(place).map_or(true, |mut entries| entries.next().is_none());
     if !is_empty {
@@ -134,7 +134,7 @@ fn prepare(place: &Path, is_own: bool, force: bool) -> anyhow::Result<()> {
 
 /// Writes the files that a failed job left; paths that would lead outside `folder` are skipped, since they
 /// come from a worker.
-fn unpack(folder: &Path, why: &str, left: &Left) -> anyhow::Result<()> {
+fn unpack(folder: &Path, why: &str, left: &FailureFiles) -> anyhow::Result<()> {
     fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     for file in &left.files {
         // a worker says what it likes
@@ -180,7 +180,7 @@ pub(super) fn text(object: &FailedOutput) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use protocol::{file::File, job::Shortened};
+    use protocol::{file::File, job::TruncatedFile};
 
     #[test]
     fn what_was_left_is_written_below_its_folder_and_nowhere_else() {
@@ -191,13 +191,13 @@ mod tests {
             content: b"x".to_vec(),
             executable: false,
         };
-        let left = Left {
+        let left = FailureFiles {
             files: vec![
                 file("work/deep/log"),
                 file("../outside"),
                 file("/tmp/absolute"),
             ],
-            shortened: vec![Shortened {
+            shortened: vec![TruncatedFile {
                 path: "work/long".to_owned(),
                 bytes: 100,
                 kept: 10,

@@ -81,15 +81,15 @@ impl From<Form> for Format {
 struct ExportOutput {
     /// Path of the run folder.
     run: String,
-    /// Format of the tables.
+    /// Format of the exported tables.
     format: &'static str,
-    /// Paths of the files that were written.
+    /// Paths of the exported files.
     files: Vec<String>,
-    /// Number of rows of each table.
+    /// Number of rows of each exported table.
     rows: BTreeMap<&'static str, u64>,
     /// Whether the results of all simulations that the run requested are exported.
     complete: bool,
-    /// Descriptions of missing data, each with its reason.
+    /// Notes on data missing from the export, each with the reason.
     notes: Vec<String>,
 }
 
@@ -123,11 +123,11 @@ fn export(arguments: &Arguments) -> anyhow::Result<ExportOutput> {
     let source = Source {
         folder: &folder,
         case: &case,
-        facts: tables::facts(&manifest)?,
+        facts: tables::run_properties(&manifest)?,
     };
-    let (exported, notes) = tables::make(&source, target, async |recorded, labels, stop| {
+    let (exported, notes) = tables::export(&source, target, async |recorded, labels, stop| {
         let run = AnyRun::open(path)?;
-        run.repeat(recorded, labels, stop).await.map(drop)
+        run.replay(recorded, labels, stop).await.map(drop)
     })?;
     let files = exported.files.iter();
     Ok(ExportOutput {

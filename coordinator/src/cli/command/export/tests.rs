@@ -4,15 +4,15 @@ use crate::cli::{
     argument::output::Output,
     output::{problem::Problem, progress::Silent},
     run::{
-        begun::Run,
         bus,
         calibration::calibrate,
         manifest::{CALIBRATE, FORMAT},
+        opened::Run,
     },
 };
-use crate::oracle::{Oracle, case, physics};
 use crate::read_back::{self, Tables, Value};
-use dispatch::journal::{self, Entry, Journal};
+use crate::test_evaluator::{TestEvaluator, case, physics};
+use dispatch::journal::{self, Journal, JournalEntry};
 use protocol::{
     event::{Event, Finished, RunHeader},
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
@@ -21,25 +21,25 @@ use protocol::{
 };
 use search::{
     space::Space,
-    strategy::{Plan, preset},
+    strategy::{SearchPlan, preset},
 };
 use std::{
     fs,
     io::{Read as _, Seek as _, SeekFrom, Write as _},
     path::Path,
 };
-use study::{Completed, Crew, EvaluationLog, Evaluator, EvaluatorError};
+use study::{Completed, EvaluationLog, Evaluator, EvaluatorError, WorkersSnapshot};
 
 /// Evaluator that simulates with the test oracle and writes every result to a journal as a run does; fails
 /// after `left` results to interrupt the run.
-struct Scribe {
-    oracle: Oracle,
+struct JournalingEvaluator {
+    oracle: TestEvaluator,
     journal: Journal,
     jobs: BTreeMap<JobId, Job>,
     left: usize,
 }
 
-impl Evaluator for Scribe {
+impl Evaluator for JournalingEvaluator {
     fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError> {
         self.jobs.insert(id, job.clone());
         self.oracle.submit(id, job)
@@ -73,14 +73,14 @@ impl Evaluator for Scribe {
         Ok(completed)
     }
 
-    fn crew(&self) -> Crew {
-        Crew::default()
+    fn workers_status(&self) -> WorkersSnapshot {
+        WorkersSnapshot::default()
     }
 }
 
 /// Calibrates until the journal holds the given number of results; returns the evaluation log if the run
 /// finished.
-fn run_with(folder: &Path, results: usize) -> (Scribe, Option<EvaluationLog>) {
+fn run_with(folder: &Path, results: usize) -> (JournalingEvaluator, Option<EvaluationLog>) {
     let case = case();
     let space = Space::new(&case.unknowns).unwrap();
     let manifest = Manifest {
@@ -91,7 +91,7 @@ fn run_with(folder: &Path, results: usize) -> (Scribe, Option<EvaluationLog>) {
         preset: "memetic".to_owned(),
         seed: 3,
         set: Vec::new(),
-        settings: (preset("memetic").unwrap().settings)(&Plan {
+        settings: (preset("memetic").unwrap().settings)(&SearchPlan {
             space: &space,
             workers: 1,
         }),
@@ -105,15 +105,15 @@ fn run_with(folder: &Path, results: usize) -> (Scribe, Option<EvaluationLog>) {
     };
     fs::create_dir_all(folder).unwrap();
     let run = Run::begin(&folder.join("."), manifest, case).unwrap();
-    run.remember(1.5).unwrap();
+    run.save(1.5).unwrap();
     let header = RunHeader {
         kind: CALIBRATE.to_owned(),
         case: ContentHash::of(b"case"),
         settings: run.manifest.settings_json().unwrap(),
     };
     let (journal, _) = Journal::open(folder, &header, RunId(1), 5, |_| {}).unwrap();
-    let mut scribe = Scribe {
-        oracle: Oracle::new(&run.case, 11, physics),
+    let mut scribe = JournalingEvaluator {
+        oracle: TestEvaluator::new(&run.case, 11, physics),
         journal,
         jobs: BTreeMap::new(),
         left: results,
@@ -161,7 +161,7 @@ fn integers(tables: &Tables, table: &str, name: &str) -> Vec<i64> {
 }
 
 /// Returns the results in a journal, in file order, read with `journal::fold`.
-fn results(folder: &Path) -> Vec<(Entry, Finished)> {
+fn results(folder: &Path) -> Vec<(JournalEntry, Finished)> {
     let mut found = Vec::new();
     journal::fold(&folder.join(journal::FILE), |entry, event| {
         if let Event::Finished(finished) = event {
@@ -272,7 +272,7 @@ fn the_query_of_the_manual_finds_the_best_individuals() {
     let log = log.unwrap();
     let complete = log
         .entries()
-        .filter(|entry| entry.ending == study::Ending::Complete);
+        .filter(|entry| entry.ending == study::EvaluationOutcome::Complete);
     let mut expected: Vec<f64> = complete.map(|entry| entry.fitness).collect();
     expected.sort_by(f64::total_cmp);
     expected.truncate(best.len());

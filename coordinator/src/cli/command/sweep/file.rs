@@ -17,13 +17,13 @@ use crate::cli::{
         terminal,
     },
     run::{
-        begun::Run,
         bus,
         folder::{RESULT, RunFolder},
         manifest::Manifest,
+        opened::Run,
         searches::Searches,
         session::Session,
-        swept::{Holds, Swept},
+        sweep_file::{FileContent, SweptFile},
     },
 };
 use case::{document::Document, require_record};
@@ -61,13 +61,14 @@ pub(super) fn run(arguments: &FileArguments) -> anyhow::Result<()> {
     let session = Session::begin(&arguments.workers);
     let (run, all) = begin(arguments)?;
     match (&run.manifest.settings.holds, all) {
-        (Holds::Grid(searches), _) => search(&session, &run, searches, arguments.output),
-        (Holds::Individuals(_), all) => score(&session, &run, &all, arguments.output),
+        (FileContent::Grid(searches), _) => search(&session, &run, searches, arguments.output),
+        (FileContent::Individuals(_), all) => score(&session, &run, &all, arguments.output),
     }
 }
 
-/// Creates or opens the run, and reads the individuals of a table; the list is empty for a grid.
-fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<Swept>, Individuals)> {
+/// Creates or opens the run of a sweep, and reads the individuals if the file is a table; for a grid the list
+/// is empty.
+fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<SweptFile>, Individuals)> {
     let file = arguments.file.clone().unwrap_or_default();
     let ends = file.extension().and_then(|end| end.to_str());
     let grid = match ends {
@@ -107,11 +108,11 @@ fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<Swept>, Individuals)>
     let space = Space::new(&case.unknowns)?;
     let (holds, all) = if let Some((grid, document)) = grid {
         let searches = grid.searches(&document, &space)?;
-        (Holds::Grid(searches), Individuals::default())
+        (FileContent::Grid(searches), Individuals::default())
     } else {
         let all = Individuals::read(&file, &space)?;
         let hash = bus::content_hash(&all.rows)?.to_string();
-        (Holds::Individuals(hash), all)
+        (FileContent::Individuals(hash), all)
     };
     let path = if let Some(path) = &arguments.run {
         path.clone()
@@ -119,7 +120,7 @@ fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<Swept>, Individuals)>
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
         RunFolder::default_path(&case, "sweep", &[stem.into_owned()], measured, 0)?
     };
-    let settings = Swept {
+    let settings = SweptFile {
         file: std::path::absolute(&file)?,
         holds,
     };
@@ -135,7 +136,7 @@ fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<Swept>, Individuals)>
 /// Runs every search of a grid.
 fn search(
     session: &Session,
-    run: &Run<Swept>,
+    run: &Run<SweptFile>,
     searches: &Searches,
     output: OutputChoice,
 ) -> anyhow::Result<()> {
@@ -166,7 +167,7 @@ fn search(
 /// Scores every individual of a table and writes the result table.
 fn score(
     session: &Session,
-    run: &Run<Swept>,
+    run: &Run<SweptFile>,
     all: &Individuals,
     output: OutputChoice,
 ) -> anyhow::Result<()> {

@@ -2,9 +2,9 @@
 use crate::cli::{
     argument::settings::SettingsChoice,
     output::problem::Problem,
-    run::{searches::Searches, swept::combinations},
+    run::{searches::Searches, sweep_file::combinations},
 };
-use case::document::{Document, Step};
+use case::document::{Document, DocumentStep};
 use search::{
     space::Space,
     strategy::{CATALOGUE, preset},
@@ -14,7 +14,7 @@ use std::{collections::BTreeMap, path::PathBuf};
 use study::orthogonal::Factor;
 
 /// Maximum number of searches in one sweep.
-const MOST: usize = 100_000;
+const MAX_SEARCHES: usize = 100_000;
 
 /// Contents of a grid file, as parsed from TOML.
 #[derive(Debug, Deserialize)]
@@ -26,7 +26,7 @@ pub(super) struct Grid {
     /// Fixed settings shared by all searches.
     #[serde(default)]
     set: BTreeMap<String, toml::Value>,
-    /// Values of every varied setting, by name.
+    /// Levels of every varied setting, by its name.
     #[serde(rename = "grid")]
     varied: BTreeMap<String, Vec<toml::Value>>,
     seeds: Option<Vec<u64>>,
@@ -43,7 +43,7 @@ impl Grid {
         let name = self.preset.as_deref().unwrap_or("paper");
         let Some(preset) = preset(name) else {
             let names: Vec<&str> = CATALOGUE.iter().map(|preset| preset.name).collect();
-            let way = [Step::Key("preset")];
+            let way = [DocumentStep::Key("preset")];
             let help = "`horsehead calibrate --help` says what each does";
             return Err(document.field(&way, name, names.join(", "), help).into());
         };
@@ -55,17 +55,17 @@ impl Grid {
         if seeds.is_empty() || twice {
             let value = format!("{seeds:?}");
             let help = "as seeds = [1, 2, 3]";
-            let way = [Step::Key("seeds")];
+            let way = [DocumentStep::Key("seeds")];
             return Err(document
                 .field(&way, value, "different seeds, one at least", help)
                 .into());
         }
         if self.evaluations == Some(0) {
             let help = "a search needs one at least";
-            let way = [Step::Key("evaluations")];
+            let way = [DocumentStep::Key("evaluations")];
             return Err(document.field(&way, 0, "1 or more", help).into());
         }
-        let word = |way: &[Step<'_>], value: &toml::Value| match value {
+        let word = |way: &[DocumentStep<'_>], value: &toml::Value| match value {
             toml::Value::String(word) => Ok(word.clone()),
             toml::Value::Integer(_) | toml::Value::Float(_) | toml::Value::Boolean(_) => {
                 Ok(value.to_string())
@@ -77,7 +77,7 @@ impl Grid {
         };
         let mut factors = Vec::new();
         for (key, values) in &self.varied {
-            let way = [Step::Key("grid"), Step::Key(key)];
+            let way = [DocumentStep::Key("grid"), DocumentStep::Key(key)];
             if values.is_empty() {
                 let help = "as population = [40, 80]";
                 return Err(document
@@ -86,12 +86,12 @@ impl Grid {
             }
             let levels = values.iter().enumerate().map(|(index, value)| {
                 let [table, key] = way;
-                word(&[table, key, Step::Index(index)], value)
+                word(&[table, key, DocumentStep::Index(index)], value)
             });
             factors.push(Factor::new(key, levels.collect::<Result<Vec<_>, _>>()?));
         }
         let set = self.set.iter().map(|(key, value)| {
-            let way = [Step::Key("set"), Step::Key(key)];
+            let way = [DocumentStep::Key("set"), DocumentStep::Key(key)];
             Ok((key.clone(), word(&way, value)?))
         });
         let choice = SettingsChoice {
@@ -106,10 +106,10 @@ impl Grid {
             .map(|factor| factor.levels.len())
             .chain([seeds.len()]);
         let count = counts.fold(1_usize, usize::saturating_mul);
-        if count > MOST {
+        if count > MAX_SEARCHES {
             return Err(named(Problem {
                 message: format!("{count} searches are too many"),
-                remedy: format!("at most {MOST}: take fewer values or seeds"),
+                remedy: format!("at most {MAX_SEARCHES}: take fewer values or seeds"),
             })
             .into());
         }
@@ -121,7 +121,7 @@ impl Grid {
     }
 }
 
-/// Returns every combination of level indices of the varied settings.
+/// Returns every combination of level indices of the varied settings, one row per combination.
 pub(super) fn rows(searches: &Searches) -> Vec<Vec<usize>> {
     let levels = searches.factors.iter().map(|factor| factor.levels.len());
     combinations(&levels.collect::<Vec<_>>())

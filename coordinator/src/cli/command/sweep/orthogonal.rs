@@ -15,9 +15,9 @@ use crate::cli::{
         terminal,
     },
     run::{
-        begun::Run,
         folder::{RESULT, RunFolder},
-        manifest::{Decides as _, Manifest},
+        manifest::{Manifest, RunIdentity as _},
+        opened::Run,
         orthogonal::{Orthogonal, test},
         searches::Searches,
         session::Session,
@@ -36,7 +36,7 @@ use search::{
 };
 use std::path::PathBuf;
 use study::Watch as _;
-use study::orthogonal::{Array, Factor, Tested};
+use study::orthogonal::{Array, Factor, TestResult};
 
 /// Test settings of a search by an orthogonal array; the same command resumes.
 #[derive(Debug, Args)]
@@ -104,9 +104,9 @@ fn arrays() -> impl clap::builder::TypedValueParser<Value = Array> {
     })
 }
 
-/// Returns the default factors: those of the paper, with climbing trials in place of generations, because
-/// generations would determine the budget.
-fn usual(array: Array) -> Vec<Factor> {
+/// Returns the default factors of an orthogonal array: the paper's, with hill-climbing trials in place of
+/// generations, because generations would determine the budget.
+fn default_factors(array: Array) -> Vec<Factor> {
     // L9 takes the first three of each, with what the paper found best among them
     const LEVELS: [(&str, [&str; 5]); 4] = [
         ("population", ["40", "80", "120", "20", "160"]),
@@ -133,7 +133,7 @@ fn usual(array: Array) -> Vec<Factor> {
 fn factors(arguments: &Arguments) -> Result<Vec<Factor>, Problem> {
     let array = arguments.array;
     let chosen = match arguments.factor.as_slice() {
-        [] => usual(array),
+        [] => default_factors(array),
         some => some.to_vec(),
     };
     let holds = format!(
@@ -211,10 +211,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     show(&run, &tested, arguments.output)
 }
 
-/// Writes the files of a finished test and prints its result.
-fn show(run: &Run<Orthogonal>, tested: &Tested, output: OutputChoice) -> anyhow::Result<()> {
+/// Writes the result files of a finished orthogonal test and prints its result.
+fn show(run: &Run<Orthogonal>, tested: &TestResult, output: OutputChoice) -> anyhow::Result<()> {
     let object = OrthogonalOutput::from(tested);
-    let subject = report::Subject {
+    let subject = report::SweepInput {
         case: &run.case,
         tested,
         origin: run.origin(String::new())?,

@@ -12,12 +12,12 @@ use crate::cli::{
         terminal,
     },
     run::{
-        begun::Run,
         bus,
         folder::{RESULT, RunFolder},
         interrupt,
-        manifest::{Decides as _, Manifest},
-        scaled::{Scaling, scale},
+        manifest::{Manifest, RunIdentity as _},
+        opened::Run,
+        scaling::{ScalingSettings, scale},
     },
 };
 use ::report::{scaling as report, text};
@@ -26,7 +26,7 @@ use case::require_record;
 use clap::{Args, builder::PossibleValuesParser};
 use search::{space::Space, strategy::CATALOGUE};
 use std::{fs, path::PathBuf};
-use study::scaling::Scaled;
+use study::scaling::ScalingResult;
 
 /// Measure how searches scale with slots, and project it to more; the same command resumes.
 #[derive(Debug, Args)]
@@ -92,7 +92,7 @@ fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Sorts counts, removes duplicates, and drops zeros, which stand for none.
+/// Sorts the numbers of an option, removes duplicates, and drops zeros, which stand for none.
 fn counts(all: &[u64]) -> Vec<u64> {
     let mut counts: Vec<u64> = all.iter().copied().filter(|count| *count > 0).collect();
     counts.sort_unstable();
@@ -100,7 +100,7 @@ fn counts(all: &[u64]) -> Vec<u64> {
     counts
 }
 
-fn begin(arguments: &Arguments) -> anyhow::Result<Run<Scaling>> {
+fn begin(arguments: &Arguments) -> anyhow::Result<Run<ScalingSettings>> {
     let LoadedCase {
         case,
         measured,
@@ -112,7 +112,7 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Scaling>> {
         [] => vec![1, cores() as u64],
         some => some.to_vec(),
     };
-    let settings = Scaling {
+    let settings = ScalingSettings {
         presets: arguments.presets.clone(),
         populations: counts(&arguments.populations),
         evaluations: arguments.evaluations,
@@ -124,7 +124,7 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Scaling>> {
     // every search can be made before anything runs
     let space = Space::new(&case.unknowns)?;
     for search in settings.searches() {
-        Scaling::settings(search, &space, 1).map_err(|error| Problem {
+        ScalingSettings::settings(search, &space, 1).map_err(|error| Problem {
             message: error.to_string(),
             remedy:
                 "choose presets that have a population, as paper, paper-batch, window and l-shade"
@@ -152,7 +152,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let run = begin(arguments)?;
     let folder = run.folder.path();
     fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
-    run.remember(0.0)?;
+    run.save(0.0)?;
     let scaled = bus::block_on(async {
         let mut stop = interrupt::listen();
         let mut display = Display::counting("searches done", run.case.objective_unit());
@@ -170,9 +170,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     show(&run, &scaled, arguments.output)
 }
 
-/// Writes the files of a finished sweep and prints its result.
-fn show(run: &Run<Scaling>, scaled: &Scaled, output: OutputChoice) -> anyhow::Result<()> {
-    let subject = report::Subject {
+/// Writes the result files of a finished scaling sweep and prints its result.
+fn show(
+    run: &Run<ScalingSettings>,
+    scaled: &ScalingResult,
+    output: OutputChoice,
+) -> anyhow::Result<()> {
+    let subject = report::ScalingInput {
         case: &run.case,
         scaled,
         origin: run.origin(String::new())?,

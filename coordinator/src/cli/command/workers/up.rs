@@ -2,12 +2,12 @@
 use crate::cli::{
     argument::nodes::HostsChoice,
     output::terminal,
-    run::launch::{carry, programs},
+    run::launch::{execute, programs},
 };
 use clap::{ArgGroup, Args};
-use launch::{Plan, WorkerOptions, k8s, keys, slurm, ssh, systemd};
+use launch::{LaunchPlan, WorkerOptions, k8s, keys, slurm, ssh, systemd};
 use link::{
-    keys::{Keys, Role},
+    keys::{KeyRole, Keys},
     locator::{Locator, Protocol},
 };
 use std::{
@@ -111,10 +111,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.dry_run {
         return terminal::write(&plan.to_string());
     }
-    carry(&plan)
+    execute(&plan)
 }
 
-fn plan(arguments: &Arguments) -> Result<Plan, Problem> {
+fn plan(arguments: &Arguments) -> Result<LaunchPlan, Problem> {
     let tls = match (arguments.connect.protocol, &arguments.tls) {
         (Protocol::Tcp, _) => None,
         (Protocol::Quic, Some(folder)) => Some(absolute(folder)),
@@ -140,7 +140,7 @@ fn plan(arguments: &Arguments) -> Result<Plan, Problem> {
         owner: String::new(),
     };
     if let Some(options) = &arguments.k8s {
-        return k8s::up(&order, options, one_for_all(&order)?.as_deref());
+        return k8s::up(&order, options, shared_key_folder(&order)?.as_deref());
     }
     let programs = programs(&arguments.worker_program)?;
     let own = programs.first().ok_or_else(|| Problem {
@@ -148,14 +148,14 @@ fn plan(arguments: &Arguments) -> Result<Plan, Problem> {
         remedy: "name one with --worker-program ARCH=PATH".to_owned(),
     })?;
     if let Some(options) = &arguments.slurm {
-        let name = one_for_all(&order)?;
+        let name = shared_key_folder(&order)?;
         return slurm::up(&order, options, &arguments.sbatch_arg, own, name.as_deref());
     }
     if let Some(options) = &arguments.systemd {
         let home = env::var_os("HOME").map_or_else(PathBuf::new, PathBuf::from);
         let usual = home.join(".config");
         let configuration = env::var_os("XDG_CONFIG_HOME").map_or(usual, PathBuf::from);
-        let name = one_for_all(&order)?;
+        let name = shared_key_folder(&order)?;
         return systemd::up(&order, options, own, name.as_deref(), &configuration);
     }
     ssh::up(&order, &arguments.hosts.read()?, &programs, arguments.wait)
@@ -163,11 +163,11 @@ fn plan(arguments: &Arguments) -> Result<Plan, Problem> {
 
 /// Returns the name of the worker key folder that all workers of a launch share, for launches with a common
 /// file system or secret; `None` without TLS.
-fn one_for_all(order: &WorkerOptions) -> Result<Option<String>, Problem> {
+fn shared_key_folder(order: &WorkerOptions) -> Result<Option<String>, Problem> {
     let Some(folder) = &order.tls else {
         return Ok(None);
     };
-    let read = Keys::read(folder, Role::Coordinator);
+    let read = Keys::read(folder, KeyRole::Coordinator);
     let name = read.map(|keys| {
         keys.workers()
             .iter()

@@ -1,5 +1,5 @@
 //! JSON objects of `horsehead calibrate` and `horsehead verify`.
-use super::score::{Both, ConditionOutput, ScoreOutput, Unknowns};
+use super::score::{ConditionOutput, RecommendedAndOptimised, ScoreOutput, Unknowns};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -25,13 +25,13 @@ pub(crate) struct CalibrateOutput<'a> {
     pub(crate) unknowns: Unknowns,
     /// Objective of both parameter sets, summed over the calibrated conditions, in the square of the unit
     /// that its channels share.
-    pub(crate) objective: Both<Option<f64>>,
+    pub(crate) objective: RecommendedAndOptimised<Option<f64>>,
     /// Agreement with the measurement by channel, of both parameter sets, at the first calibrated condition.
-    pub(crate) channels: BTreeMap<String, Both<Option<ScoreOutput>>>,
-    /// Scores at the other conditions with a measured record, by name, including further calibrated
-    /// conditions.
+    pub(crate) channels: BTreeMap<String, RecommendedAndOptimised<Option<ScoreOutput>>>,
+    /// Scores of both parameter sets at all other conditions with a measured record, calibrated or not, by
+    /// condition name.
     pub(crate) other_conditions: BTreeMap<String, ConditionOutput>,
-    /// Hash of the evaluation log in index order.
+    /// Hash of the evaluation log of the search, in id order.
     pub(crate) log_digest: String,
     /// Paths of the files that were written.
     pub(crate) files: Vec<String>,
@@ -44,11 +44,11 @@ pub(crate) struct VerifyOutput<'a> {
     pub(crate) run: String,
     /// Name of the case.
     pub(crate) case: &'a str,
-    /// Name of the condition.
+    /// Name of the condition that took no part in the fit.
     pub(crate) condition: &'a str,
-    /// Wall time (s).
+    /// Wall time of the verification (s).
     pub(crate) wall_s: f64,
-    /// Scores of both parameter sets at the condition.
+    /// Scores of the recommended and the optimised parameters at the condition.
     #[serde(flatten)]
     pub(crate) scores: ConditionOutput,
 }

@@ -1,20 +1,21 @@
 //! JSON objects of `horsehead sweep orthogonal` and of a sweep of a grid.
 use serde::Serialize;
 use serde_json::{Map, Value};
-use study::orthogonal::{Anova, Confirmation, Factor, Source, Tested, Tried};
+use study::orthogonal::{Anova, Confirmation, Factor, TestResult, TrialRun, VarianceSource};
 
 /// JSON object printed by `horsehead sweep orthogonal`, also written as `result.json` in the run folder.
 /// Responses are log10 of the best objective, in the objective's unit.
 #[derive(Debug, Serialize)]
 pub(crate) struct OrthogonalOutput {
-    /// Name of the array: `L9`, `L16` or `L25`.
+    /// Name of the orthogonal array: `L9`, `L16` or `L25`.
     array: &'static str,
     factors: Vec<FactorOutput>,
-    /// Searches, row by row of the array, each row with every seed.
-    runs: Vec<TriedOutput>,
-    /// Range analysis, one entry per factor; null if a search found no complete individual.
+    /// Results of the searches, row by row of the array, each row with every seed.
+    runs: Vec<SearchOutput>,
+    /// Range analysis of the responses, one entry per factor; null if a search found no complete individual.
     ranges: Option<Vec<RangeOutput>>,
-    /// Analysis of variance; null if a search found no complete individual or the design is saturated.
+    /// Analysis of variance of the responses; null if a search found no complete individual or the design is
+    /// saturated.
     anova: Option<Vec<TermOutput>>,
     confirmation: Option<ConfirmationOutput>,
 }
@@ -25,13 +26,13 @@ struct FactorOutput {
     levels: Vec<Value>,
 }
 
-/// Search with one combination of levels and one seed.
+/// Result of a search with one combination of factor levels and one seed.
 #[derive(Debug, Serialize)]
-struct TriedOutput {
-    /// Level of each factor, by factor name.
+struct SearchOutput {
+    /// Level of each factor in this search, by factor name.
     levels: Map<String, Value>,
     seed: u64,
-    /// Best objective; null if no individual completed its simulation.
+    /// Best objective of the search; null if no individual completed its simulation.
     objective: Option<f64>,
     evaluations: u64,
 }
@@ -39,7 +40,7 @@ struct TriedOutput {
 #[derive(Debug, Serialize)]
 struct RangeOutput {
     factor: String,
-    /// Mean response at each level.
+    /// Mean response at each level of the factor.
     means: Vec<f64>,
     range: f64,
     best: Value,
@@ -60,13 +61,13 @@ struct TermOutput {
 struct ConfirmationOutput {
     levels: Map<String, Value>,
     predicted: f64,
-    /// Mean response of the confirmation runs.
+    /// Mean response of the confirmation runs, for comparison with the predicted one; null if there is none.
     obtained: Option<f64>,
-    runs: Vec<TriedOutput>,
+    runs: Vec<SearchOutput>,
 }
 
-impl From<&Tested> for OrthogonalOutput {
-    fn from(tested: &Tested) -> Self {
+impl From<&TestResult> for OrthogonalOutput {
+    fn from(tested: &TestResult) -> Self {
         let factors = &tested.factors;
         let analysis = tested.analysis.as_ref();
         let ranges = analysis.map(|analysis| {
@@ -101,12 +102,12 @@ impl From<&Tested> for OrthogonalOutput {
 pub(crate) struct GridOutput {
     factors: Vec<FactorOutput>,
     /// Searches, combination by combination with the last factor varying fastest, each with every seed.
-    runs: Vec<TriedOutput>,
+    runs: Vec<SearchOutput>,
 }
 
 impl GridOutput {
-    /// Builds the object from the searches of a grid.
-    pub(crate) fn new(factors: &[Factor], runs: &[Tried]) -> Self {
+    /// Builds the JSON object from the results of the searches of a grid.
+    pub(crate) fn new(factors: &[Factor], runs: &[TrialRun]) -> Self {
         Self {
             factors: listed(factors),
             runs: tried(factors, runs),
@@ -119,7 +120,7 @@ impl GridOutput {
 ///
 /// # Errors
 /// If a row cannot be written.
-pub(crate) fn runs_table(factors: &[Factor], runs: &[Tried]) -> anyhow::Result<String> {
+pub(crate) fn runs_table(factors: &[Factor], runs: &[TrialRun]) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let names = factors.iter().map(|factor| factor.name.as_str());
     writer.write_record(names.chain(["seed", "objective", "evaluations"]))?;
@@ -142,11 +143,11 @@ fn listed(factors: &[Factor]) -> Vec<FactorOutput> {
 }
 
 fn terms(factors: &[Factor], anova: &Anova) -> Vec<TermOutput> {
-    let one = |term: &study::orthogonal::Term| TermOutput {
+    let one = |term: &study::orthogonal::AnovaTerm| TermOutput {
         source: match term.source {
-            Source::Factor(number) => factors[number].name.clone(),
-            Source::Block => "seed".to_owned(),
-            Source::Error => "error".to_owned(),
+            VarianceSource::Factor(number) => factors[number].name.clone(),
+            VarianceSource::Block => "seed".to_owned(),
+            VarianceSource::Error => "error".to_owned(),
         },
         sum_of_squares: term.squares,
         freedom: term.freedom,
@@ -158,8 +159,8 @@ fn terms(factors: &[Factor], anova: &Anova) -> Vec<TermOutput> {
 }
 
 /// Converts searches to their JSON form, with levels by factor name.
-fn tried(factors: &[Factor], runs: &[Tried]) -> Vec<TriedOutput> {
-    let one = |run: &Tried| TriedOutput {
+fn tried(factors: &[Factor], runs: &[TrialRun]) -> Vec<SearchOutput> {
+    let one = |run: &TrialRun| SearchOutput {
         levels: levels(factors, &run.levels),
         seed: run.seed,
         objective: run.objective,

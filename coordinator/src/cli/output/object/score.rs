@@ -1,6 +1,6 @@
 //! JSON forms of unknowns and of the agreement with measured records, shared by all objects.
 use crate::kind;
-use discrepancy::identify::{Seen, UnknownEstimate};
+use discrepancy::identify::{Determination, UnknownEstimate};
 use protocol::{
     case::Case,
     job::{ChannelScore, Evaluation, Verdict},
@@ -8,7 +8,7 @@ use protocol::{
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};
-use study::Curves;
+use study::ComparedCurves;
 
 /// Unknown with its value and bounds, in its declared unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -20,29 +20,31 @@ pub(crate) struct GeneOutput {
     upper: f64,
     /// First-order identifiability of the unknown; absent if it was not computed.
     #[serde(flatten)]
-    seen: Option<SeenOutput>,
+    seen: Option<IdentifiabilityOutput>,
 }
 
 /// Identifiability of an unknown from the measured record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-struct SeenOutput {
-    /// 95 % interval; null for an open end, and null as a whole if both ends are open.
+struct IdentifiabilityOutput {
+    /// 95 % confidence interval of the unknown; null for an open end, and null as a whole if both ends are
+    /// open.
     ci95: Option<[Option<f64>; 2]>,
-    seen: Seen,
+    seen: Determination,
 }
 
-/// Scores of both parameter sets under one condition.
+/// Scores of the recommended and the optimised parameters under one condition.
 #[derive(Debug, Serialize)]
 pub(crate) struct ConditionOutput {
-    /// Objective of both parameter sets, in the square of the unit that its channels share.
-    pub(crate) objective: Both<Option<f64>>,
-    /// Agreement by channel, of both parameter sets.
-    pub(crate) channels: BTreeMap<String, Both<Option<ScoreOutput>>>,
+    /// Objective of the recommended and the optimised parameters, in the square of the unit that its channels
+    /// share.
+    pub(crate) objective: RecommendedAndOptimised<Option<f64>>,
+    /// Agreement with the record by channel, for the recommended and the optimised parameters.
+    pub(crate) channels: BTreeMap<String, RecommendedAndOptimised<Option<ScoreOutput>>>,
 }
 
-/// Pair of values, one for each parameter set.
+/// Pair of values, for the recommended and the optimised parameters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Both<T> {
+pub(crate) struct RecommendedAndOptimised<T> {
     /// Value for the recommended parameters.
     pub(crate) recommended: T,
     /// Value for the optimised parameters.
@@ -55,12 +57,12 @@ pub(crate) struct Both<T> {
 pub(crate) struct Unknowns(BTreeMap<&'static str, BTreeMap<String, GeneOutput>>);
 
 impl Unknowns {
-    /// Adds to every unknown its interval and identifiability from the given estimates.
-    pub(crate) fn say(&mut self, seen: &[UnknownEstimate]) {
+    /// Adds confidence interval and identifiability to every unknown that the given estimates contain.
+    pub(crate) fn add_identifiability(&mut self, seen: &[UnknownEstimate]) {
         for (name, own) in self.0.values_mut().flatten() {
             let said = seen.iter().find(|one| one.name == *name);
-            own.seen = said.map(|one| SeenOutput {
-                ci95: (one.seen != Seen::NotSeen).then_some(one.interval),
+            own.seen = said.map(|one| IdentifiabilityOutput {
+                ci95: (one.seen != Determination::NotSeen).then_some(one.interval),
                 seen: one.seen,
             });
         }
@@ -83,7 +85,10 @@ pub(crate) fn unknowns(case: &Case, values: &[f64]) -> Unknowns {
             (gene.name.clone(), output)
         })
         .collect();
-    Unknowns(BTreeMap::from([(case::kind::of(case).unknowns(), named)]))
+    Unknowns(BTreeMap::from([(
+        case::kind::of(case).unknowns_key(),
+        named,
+    )]))
 }
 
 /// Agreement between simulation and record in one channel, in its unit.
@@ -96,12 +101,12 @@ pub(crate) struct ScoreOutput {
     rmse_over_half_range: f64,
     relative_error: f64,
     peak_to_peak_error: f64,
-    /// Scores under the names that the kind of model uses.
+    /// Further scores of the channel, under names that depend on the kind of model.
     #[serde(flatten)]
     own: Map<String, Value>,
 }
 
-/// Returns the agreement of each channel, by the key that the kind of model uses for the channel.
+/// Returns the agreement with the record by channel; the kind of model determines the key of each channel.
 pub(crate) fn channels(
     case: &Case,
     evaluation: Option<&Evaluation>,
@@ -132,12 +137,16 @@ pub(crate) fn objective(evaluation: Option<&Evaluation>) -> Option<f64> {
 }
 
 /// Pairs the scores of the recommended and the optimised parameters under one condition.
-pub(crate) fn condition(case: &Case, recommended: &Curves, optimised: &Curves) -> ConditionOutput {
+pub(crate) fn condition(
+    case: &Case,
+    recommended: &ComparedCurves,
+    optimised: &ComparedCurves,
+) -> ConditionOutput {
     let [before, after] =
         [recommended, optimised].map(|one| channels(case, one.evaluation.as_ref()));
     let names: BTreeSet<&String> = before.keys().chain(after.keys()).collect();
     let both = names.into_iter().map(|name| {
-        let scores = Both {
+        let scores = RecommendedAndOptimised {
             recommended: before.get(name).cloned(),
             optimised: after.get(name).cloned(),
         };
@@ -145,7 +154,7 @@ pub(crate) fn condition(case: &Case, recommended: &Curves, optimised: &Curves) -
     });
     let channels = both.collect();
     ConditionOutput {
-        objective: Both {
+        objective: RecommendedAndOptimised {
             recommended: objective(recommended.evaluation.as_ref()),
             optimised: objective(optimised.evaluation.as_ref()),
         },

@@ -12,11 +12,11 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use study::Scored;
 
-/// Result of an individual.
+/// JSON form of the result of one individual.
 #[derive(Debug, Serialize)]
 pub(crate) struct ScoredOutput {
-    /// Objective; for a failed simulation a graded value above that of every complete one; null if it could
-    /// not be computed.
+    /// Objective of the individual; for a failed simulation a graded value above that of every complete one;
+    /// null if it could not be computed.
     objective: Option<f64>,
     complete: bool,
     /// How the simulation ended, or why there was none.
@@ -48,18 +48,18 @@ impl From<&Scored> for ScoredOutput {
 /// JSON object printed by `horsehead sweep FILE.csv`, also written as `result.json` in the run folder.
 #[derive(Debug, Serialize)]
 pub(crate) struct IndividualsOutput {
-    /// Results, in the order of the table.
+    /// Results of the individuals, in the order of the table.
     individuals: Vec<IndividualOutput>,
 }
 
-/// Result of one row of the table.
+/// Result of the individual in one row of the table.
 #[derive(Debug, Serialize)]
 struct IndividualOutput {
     /// Values of the unknowns in the row, by name.
     genes: BTreeMap<String, f64>,
     #[serde(flatten)]
     scored: ScoredOutput,
-    /// Agreement by channel; empty if the simulation did not complete.
+    /// Agreement with the record by channel; empty if the simulation did not complete.
     channels: BTreeMap<String, ScoreOutput>,
 }
 
@@ -129,6 +129,6 @@ pub(crate) fn table(
 fn ended(verdict: &Verdict) -> String {
     match verdict {
         Verdict::Complete => "complete".to_owned(),
-        Verdict::Failed { kind, .. } => kind.spoken(),
+        Verdict::Failed { kind, .. } => kind.with_spaces(),
     }
 }

@@ -9,7 +9,7 @@ use protocol::{
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
-use study::Curves;
+use study::ComparedCurves;
 
 /// JSON object printed by `horsehead simulate CASE --output json`.
 #[derive(Debug, Serialize)]
@@ -23,7 +23,7 @@ pub(crate) struct SimulateOutput<'a> {
     pub(crate) verdict: VerdictOutput,
     /// Wall time of the simulation on the worker (s).
     pub(crate) wall_s: f64,
-    /// Counters of the solver's work.
+    /// Counters of the solver's work in the simulation.
     pub(crate) counters: Counters,
     /// Values of the unknowns by name.
     #[serde(flatten)]
@@ -31,18 +31,18 @@ pub(crate) struct SimulateOutput<'a> {
     /// Objective, in the square of the unit that its channels share; null if there is no record or the
     /// simulation did not complete.
     pub(crate) objective: Option<f64>,
-    /// Agreement by channel; empty without a record.
+    /// Agreement with the record by channel; empty without a record.
     pub(crate) channels: BTreeMap<String, ScoreOutput>,
     /// Curves and further results, under keys that depend on the kind of model.
     #[serde(flatten)]
     pub(crate) drawn: Map<String, Value>,
-    /// Derivatives of the curves by requested name; absent if none were requested.
+    /// Derivatives of the curves, by name of the unknown or effect parameter; absent if none were requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) derivatives: Option<Map<String, Value>>,
     /// Wall time on the worker including all derivatives (s); absent if none were requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) derivatives_wall_s: Option<f64>,
-    /// Hash of all bits of the result.
+    /// Hash of all bits of the simulation's result.
     pub(crate) digest: String,
 }
 
@@ -76,12 +76,13 @@ impl From<Verdict> for VerdictOutput {
     }
 }
 
-/// Converts the derivatives of the curves to their JSON form, by name: zeros with `nothing` where the curves
-/// do not depend on the name, `missing` with the reason where there is no derivative.
+/// Converts the derivatives of the curves to their JSON form, by name of the unknown or effect parameter:
+/// zeros with `nothing` where the curves do not depend on it, `missing` with the reason where there is no
+/// derivative.
 fn derivatives(
     case: &Case,
     condition: usize,
-    curves: &Curves,
+    curves: &ComparedCurves,
     derived: &[String],
 ) -> Map<String, Value> {
     let kind = kind::of(case);
@@ -113,7 +114,7 @@ fn derivatives(
 /// If the answer cannot be decoded for this kind of model.
 pub(crate) fn simulation<'a>(
     (case, condition): (&'a Case, usize),
-    curves: &'a Curves,
+    curves: &'a ComparedCurves,
     derived: &[String],
     digest: String,
 ) -> Result<SimulateOutput<'a>, WireError> {

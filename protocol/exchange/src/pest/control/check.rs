@@ -1,5 +1,5 @@
 //! Consistency checks of a control file; violations that PEST++ tolerates become notes.
-use super::said::{Control, Parameter, Transform};
+use super::model::{Control, Parameter, Transform};
 use crate::Problem;
 use std::collections::BTreeSet;
 

@@ -1,11 +1,12 @@
 //! Conversion of the sections of a control file to [`Control`].
 use super::{
     lines::{Lines, Section},
+    model::{
+        Control, FilePair, IncrementKind, IncrementMethod, Observation, Parameter, ParameterGroup,
+        Transform,
+    },
     prior,
     rows::{Row, rows},
-    said::{
-        Control, IncrementKind, Method, Observation, Pair, Parameter, ParameterGroup, Transform,
-    },
 };
 use crate::{Problem, problem::clip};
 
@@ -32,7 +33,7 @@ const PARAMETER: [&str; 10] = [
 ];
 const OBSERVATION: [&str; 4] = ["obsnme", "obsval", "weight", "obgnme"];
 
-/// Names of the sections that are read.
+/// Names of the control file sections that are read; others are ignored with a note.
 const KNOWN: [&str; 12] = [
     "control data",
     "control data keyword",
@@ -50,7 +51,8 @@ const KNOWN: [&str; 12] = [
 
 type Open<'a> = &'a dyn Fn(&str) -> Result<String, String>;
 
-/// Numbers of items stated in `control data` of the older format.
+/// Numbers of parameters, observations and files that `control data` of the older format states, to be
+/// compared with those found.
 #[derive(Default)]
 struct Counts {
     parameters: usize,
@@ -127,7 +129,7 @@ pub(super) fn read(lines: &Lines, open: Open<'_>) -> Result<Control, Problem> {
     Ok(control)
 }
 
-/// Reads the numbers of `control data` in the older format, by position.
+/// Reads the stated numbers of items from `control data` of the older format, by position.
 fn counts(lines: &Lines, section: &Section, control: &mut Control) -> Result<Counts, Problem> {
     let word = |line: usize, place: usize, name: &str| {
         let found = section.lines.get(line);
@@ -202,9 +204,9 @@ fn group(row: &Row) -> Result<ParameterGroup, Problem> {
         _ => IncrementKind::Relative,
     };
     let method = match row.word_or("forcen", "switch").as_str() {
-        "always_2" => Method::Two,
-        "always_3" | "always_5" => Method::Three,
-        _ => Method::Switch,
+        "always_2" => IncrementMethod::Two,
+        "always_3" | "always_5" => IncrementMethod::Three,
+        _ => IncrementMethod::Switch,
     };
     Ok(ParameterGroup {
         name: row.word("pargpnme")?,
@@ -259,7 +261,8 @@ fn parameters(
     Ok(())
 }
 
-/// Reads the pairs of template and instruction files with the program's files.
+/// Reads the pairs of files: a template with a model input file, or an instruction file with a model output
+/// file.
 fn pairs(
     lines: &Lines,
     counts: Option<&Counts>,
@@ -267,13 +270,13 @@ fn pairs(
     control: &mut Control,
 ) -> Result<(), Problem> {
     let pair = |row: &Row| {
-        Ok(Pair {
+        Ok(FilePair {
             own: row.plain("pest_file")?,
             program: row.plain("model_file")?,
         })
     };
     let columns = ["pest_file", "model_file"];
-    let of = |name: &str| -> Result<Vec<Pair>, Problem> {
+    let of = |name: &str| -> Result<Vec<FilePair>, Problem> {
         rows(lines, name, &columns, open)?
             .iter()
             .map(pair)

@@ -7,15 +7,15 @@
 mod check;
 mod data;
 mod lines;
+mod model;
 mod prior;
 mod rows;
-mod said;
 #[cfg(test)]
 mod tests;
 
-pub use said::{
-    Control, IncrementKind, Method, Observation, Pair, Parameter, ParameterGroup, PriorInformation,
-    PriorTerm, Transform,
+pub use model::{
+    Control, FilePair, IncrementKind, IncrementMethod, Observation, Parameter, ParameterGroup,
+    PriorInformation, PriorTerm, Transform,
 };
 
 use crate::Problem;

@@ -1,9 +1,9 @@
 //! Parser of prior information: `name factor * log(parameter) + factor * parameter = value weight group`.
-use super::said::{PriorInformation, PriorTerm};
+use super::model::{PriorInformation, PriorTerm};
 use crate::{Problem, number, problem::clip};
 
-/// Parses one item of prior information, including its name; `refused` builds the problem from the text found
-/// and the text allowed.
+/// Parses one item of prior information, including its name; `refused` builds the error from the text found
+/// and a description of the allowed text.
 pub(super) fn read(
     text: &str,
     refused: &dyn Fn(String, &str) -> Problem,

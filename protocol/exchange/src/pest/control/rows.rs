@@ -11,7 +11,7 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// Creates a row from the words of a line and the column names of their positions.
+    /// Creates a row that assigns the words of a line to the column names in order.
     pub(super) fn of(file: &str, line: usize, names: &[&str], words: &[&str]) -> Self {
         let cells = names.iter().zip(words);
         Self {

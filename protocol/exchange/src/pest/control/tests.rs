@@ -35,7 +35,7 @@ fn models_that_other_programs_have_run_are_read() {
         assert_eq!(control.commands, ["python3 model.py"]);
         assert!(control.notes.is_empty(), "{:?}", control.notes);
         // what the templates ask for is there, and instructions give what the control file knows
-        let text = |pair: &Pair| fs::read_to_string(folder(model).join(&pair.own)).unwrap();
+        let text = |pair: &FilePair| fs::read_to_string(folder(model).join(&pair.own)).unwrap();
         for pair in &control.inputs {
             let template = Template::parse(&pair.own, &text(pair)).unwrap();
             let known = |name: &String| control.parameters.iter().any(|own| own.name == *name);
@@ -79,7 +79,7 @@ fn models_that_other_programs_have_run_are_read() {
         (cantilever.prior[0].value, cantilever.prior[0].weight),
         (2.30103, 20.0)
     );
-    assert_eq!(shipped("tanks").groups[0].method, Method::Three);
+    assert_eq!(shipped("tanks").groups[0].method, IncrementMethod::Three);
 }
 
 const NEW: &str = "pcf version=2
@@ -128,7 +128,7 @@ fn the_newer_form_is_read_and_what_pest_accepts_is_noted() {
     let group = &control.groups[0];
     assert_eq!(
         (group.increment_kind, group.increment, group.method),
-        (IncrementKind::Absolute, 0.5, Method::Two)
+        (IncrementKind::Absolute, 0.5, IncrementMethod::Two)
     );
     assert_eq!(
         control.parameters[1].transform,

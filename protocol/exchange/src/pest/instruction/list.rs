@@ -7,7 +7,8 @@ pub struct Instructions {
     pub(super) lines: Vec<Line>,
 }
 
-/// Instructions applied to one line of the file that is read, unless an instruction advances to a later line.
+/// Line of an instruction file: instructions applied to one line of the model output file, unless one of them
+/// advances to a later line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Line {
     /// Line number in the instruction file, from 1.
@@ -18,7 +19,7 @@ pub(super) struct Line {
 /// Single instruction; columns count from 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Instruction {
-    /// Search for a text: as the first instruction in the following lines, otherwise in the rest of the
+    /// Search for a text: in the following lines if it is the first instruction, otherwise in the rest of the
     /// current line.
     Marker(String),
     /// Advance by a number of lines.
@@ -27,16 +28,17 @@ pub(super) enum Instruction {
     Word,
     /// Advance to a column.
     Tab(usize),
-    /// Number that lies between two columns, with the name of its observation.
+    /// Read the number that lies exactly between two columns, for the named observation.
     Fixed(String, usize, usize),
-    /// Number that overlaps the range between two columns, with the name of its observation.
+    /// Read the whole number, of any length, that overlaps the range between two columns, for the named
+    /// observation.
     SemiFixed(String, usize, usize),
-    /// Next number in the line, with the name of its observation.
+    /// Read the next number in the line, for the named observation.
     Free(String),
 }
 
 /// Observation name whose value is read and discarded.
-pub(super) const NOBODY: &str = "dum";
+pub(super) const DUMMY: &str = "dum";
 
 impl Instruction {
     /// Returns the name of the observation that the instruction reads, if any.

@@ -8,7 +8,7 @@ mod tests;
 pub use list::Instructions;
 
 use crate::Problem;
-use list::{Instruction, NOBODY};
+use list::{DUMMY, Instruction};
 
 impl Instructions {
     /// Parses an instruction file: `pif` and a delimiter in the first line, then lines of instructions.
@@ -24,7 +24,7 @@ impl Instructions {
         let all = self.lines.iter().flat_map(|line| &line.all);
         let named = all.filter_map(Instruction::observation);
         named
-            .filter(|name| *name != NOBODY)
+            .filter(|name| *name != DUMMY)
             .map(str::to_owned)
             .collect()
     }

@@ -1,18 +1,18 @@
 //! Parser of instruction files.
-use super::super::mark::Marked;
-use super::list::{Instruction, Instructions, Line, NOBODY};
+use super::super::first_line::FirstLine;
+use super::list::{DUMMY, Instruction, Instructions, Line};
 use crate::{Problem, problem::clip};
 use std::collections::BTreeSet;
 
 /// Requirements on the first line of an instruction file.
-const FIRST: Marked = Marked {
+const FIRST: FirstLine = FirstLine {
     word: "pif",
-    barred: "!:&[](),",
+    forbidden_delimiters: "!:&[](),",
     allowed: "`pif` and one delimiter that is no letter, no digit and none of ! : & [ ] ( ) ,",
     remedy: "write it as the first line of the instructions",
 };
 
-/// Maximum column, and maximum number of lines of one advance.
+/// Maximum column number, and maximum number of lines that one instruction may advance.
 const FARTHEST: usize = 100_000_000;
 
 pub(super) fn parse(file: &str, text: &str) -> Result<Instructions, Problem> {
@@ -35,7 +35,7 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Instructions, Problem> {
             .iter()
             .filter_map(|token| token.as_ref().ok()?.observation())
         {
-            if name != NOBODY && !names.insert(name.to_owned()) {
+            if name != DUMMY && !names.insert(name.to_owned()) {
                 return Err(refused(
                     format!("`{name}` once more"),
                     "a name that no other observation has",

@@ -1,5 +1,5 @@
 //! Execution of instructions on a model output file.
-use super::list::{Instruction, Instructions, Line, NOBODY};
+use super::list::{DUMMY, Instruction, Instructions, Line};
 use crate::{Problem, number, problem::clip};
 
 /// Reading position in a file.
@@ -14,7 +14,7 @@ struct Reader<'a> {
 }
 
 /// Failure of an instruction: the text found, and a description of what is allowed.
-struct Miss {
+struct Mismatch {
     found: String,
     allowed: String,
 }
@@ -49,7 +49,7 @@ fn carry_out(
     line: &Line,
     reader: &mut Reader<'_>,
     values: &mut Vec<(String, f64)>,
-) -> Result<(), Miss> {
+) -> Result<(), Mismatch> {
     let mut at = 0;
     while let Some(instruction) = line.all.get(at) {
         let keep = match instruction {
@@ -68,7 +68,7 @@ fn carry_out(
                         at = 0;
                         continue;
                     }
-                    return Err(Miss {
+                    return Err(Mismatch {
                         found: format!("no `{}` in the rest of the line", clip(text)),
                         allowed: "a line with that text".to_owned(),
                     });
@@ -99,8 +99,8 @@ fn carry_out(
                 Some((name, reader.free(next)))
             }
         };
-        if let Some((name, text)) = keep.filter(|(name, _)| *name != NOBODY) {
-            let value = number(&text).ok_or_else(|| Miss {
+        if let Some((name, text)) = keep.filter(|(name, _)| *name != DUMMY) {
+            let value = number(&text).ok_or_else(|| Mismatch {
                 found: if text.trim().is_empty() {
                     "nothing".to_owned()
                 } else {
@@ -116,8 +116,8 @@ fn carry_out(
 }
 
 impl Reader<'_> {
-    fn advance(&mut self) -> Result<(), Miss> {
-        let line = self.lines.next().ok_or_else(|| Miss {
+    fn advance(&mut self) -> Result<(), Mismatch> {
+        let line = self.lines.next().ok_or_else(|| Mismatch {
             found: "the end".to_owned(),
             allowed: "a file with further lines".to_owned(),
         })?;
@@ -128,9 +128,9 @@ impl Reader<'_> {
     }
 
     /// Advances to the next line that contains a text, and to the character after the text.
-    fn search(&mut self, text: &str) -> Result<(), Miss> {
+    fn search(&mut self, text: &str) -> Result<(), Mismatch> {
         loop {
-            self.advance().map_err(|_| Miss {
+            self.advance().map_err(|_| Mismatch {
                 found: format!("no line with `{}`", clip(text)),
                 allowed: "a file with such a line".to_owned(),
             })?;
@@ -156,14 +156,14 @@ impl Reader<'_> {
         Some(self.at + before.chars().count())
     }
 
-    fn word(&mut self) -> Result<(), Miss> {
+    fn word(&mut self) -> Result<(), Mismatch> {
         let ahead = self.line.get(self.at..).unwrap_or_default();
         let blank = ahead.iter().position(|letter| letter.is_whitespace());
         let word = blank.and_then(|blank| {
             let from = ahead.get(blank..)?;
             Some(blank + from.iter().position(|letter| !letter.is_whitespace())?)
         });
-        let word = word.ok_or_else(|| Miss {
+        let word = word.ok_or_else(|| Mismatch {
             found: "no further word".to_owned(),
             allowed: "a line with another word".to_owned(),
         })?;
@@ -171,9 +171,9 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn tab(&mut self, column: usize) -> Result<(), Miss> {
+    fn tab(&mut self, column: usize) -> Result<(), Mismatch> {
         if column > self.line.len() || column - 1 < self.at {
-            return Err(Miss {
+            return Err(Mismatch {
                 found: format!("no column {column} ahead"),
                 allowed: "a line that is long enough, and columns in their order".to_owned(),
             });
@@ -218,7 +218,8 @@ impl Reader<'_> {
         text
     }
 
-    /// Returns the next word, cut at `next`, the marker that follows, if that begins inside the word.
+    /// Returns the next word of the current line; the word ends before the marker text `next` if it contains
+    /// this.
     fn free(&mut self, next: Option<&str>) -> String {
         let is_between = |letter: &char| letter.is_whitespace() || *letter == ',';
         let ahead = self.line.get(self.at..).unwrap_or_default();

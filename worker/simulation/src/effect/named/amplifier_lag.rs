@@ -6,13 +6,13 @@
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::math::elementary::{exp, powf};
-use crate::model::hook::{Effect, Hooks, Reading, Site};
+use crate::model::extension::{Effect, Extensions, Reading, Site};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("amplifier_lag", "Lag of the gauges' amplifier")
-        .at("gauge", Place::Gauge)
+        .with_location("gauge", Place::Gauge)
         .size("lag", Unit::Second, 0.05, [0.0, 0.5])
-        .builds(|v| Lag { lag: v.get("lag") })
+        .with_constructor(|v| Lag { lag: v.get("lag") })
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -21,8 +21,8 @@ struct Lag {
 }
 
 impl Effect for Lag {
-    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
-        hooks.add_reading(*self);
+    fn install(&self, _: &Site<'_>, extensions: &mut Extensions) {
+        extensions.add_reading(*self);
     }
 }
 

@@ -8,7 +8,7 @@ use crate::effect::unit::Unit;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("beam_balance", "Balance of beam and heads")
-        .at("saddle", Place::Dynamics)
+        .with_location("saddle", Place::Dynamics)
         .size("moment", Unit::NewtonMetre, 5000.0, [-5e4, 5e4])
-        .edits(|v, d| d.beam_gravity_moment += v.get("moment"))
+        .with_edit(|v, d| d.beam_gravity_moment += v.get("moment"))
 }

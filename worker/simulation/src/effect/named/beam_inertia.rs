@@ -6,7 +6,7 @@ use crate::effect::unit::Unit;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("beam_inertia", "Inertia of beam and heads")
-        .at("saddle", Place::Dynamics)
+        .with_location("saddle", Place::Dynamics)
         .size("share", Unit::One, 0.2, [-0.8, 2.0])
-        .edits(|v, d| d.beam_inertia *= 1.0 + v.get("share"))
+        .with_edit(|v, d| d.beam_inertia *= 1.0 + v.get("share"))
 }

@@ -13,7 +13,7 @@ use crate::effect::unit::Unit;
 use crate::math::elementary::{exp, sin_cos};
 use crate::math::harmonics::low_pass;
 use crate::model::description::Description;
-use crate::model::hook::Effect;
+use crate::model::extension::Effect;
 use std::f64::consts::TAU;
 
 pub(super) fn descriptor() -> Descriptor {
@@ -21,7 +21,7 @@ pub(super) fn descriptor() -> Descriptor {
         "card_smoothing",
         "Rod-string vibrations removed from the card by smoothing",
     )
-    .at("load_cell", Place::Load)
+    .with_location("load_cell", Place::Load)
     .size("restored", Unit::One, 0.5, [-1.0, 5.0])
     .size("ring_sine", Unit::Newton, 1500.0, [-2e4, 2e4])
     .size("ring_cosine", Unit::Newton, 1500.0, [-2e4, 2e4])
@@ -29,7 +29,7 @@ pub(super) fn descriptor() -> Descriptor {
     .whole()
     .shape("frequency", Unit::Hertz, 0.739, [0.2, 3.0])
     .shape("decay", Unit::PerSecond, 0.3, [0.05, 3.0])
-    .builds(|v| Smoothing {
+    .with_constructor(|v| Smoothing {
         restored: v.get("restored"),
         ring: v.each(["ring_sine", "ring_cosine"]),
         harmonics: v.get("harmonics"),

@@ -12,9 +12,9 @@ pub(super) fn descriptor() -> Descriptor {
         "card_time_shift",
         "Time shift of the load card against the crank",
     )
-    .at("load_cell", Place::Load)
+    .with_location("load_cell", Place::Load)
     .size("time", Unit::Second, 0.1, [-1.0, 1.0])
-    .edits(|v, d| {
+    .with_edit(|v, d| {
         let step = std::f64::consts::TAU / d.card.len() as f64;
         let card = Splines::periodic(0.0, step, std::slice::from_ref(&d.card));
         // by how much the card is later than the load

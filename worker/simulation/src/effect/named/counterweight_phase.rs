@@ -9,17 +9,17 @@
 use super::crank_speed_ripple::{RATED, sampled, warp};
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
-use crate::model::hook::{Effect, Hooks, Site};
+use crate::model::extension::{Effect, Extensions, Site};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new(
         "counterweight_phase",
         "Phase or moment of the counterweight, visible through the slip of the motor",
     )
-    .at("crank", Place::Drive)
+    .with_location("crank", Place::Drive)
     .size("phase", Unit::Degree, 5.0, [-45.0, 45.0])
     .size("moment", Unit::NewtonMetre, 5000.0, [-5e4, 5e4])
-    .builds(|v| Counterweight {
+    .with_constructor(|v| Counterweight {
         phase: v.get("phase"),
         moment: v.get("moment"),
     })
@@ -35,7 +35,7 @@ struct Counterweight {
 const SLIP: f64 = 0.0267;
 
 impl Effect for Counterweight {
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
         let crank = &site.description.crank;
         let (phase, moment) = (crank.counterweight_phase, crank.counterweight_moment);
         let slow = sampled(|turn| {
@@ -44,6 +44,6 @@ impl Effect for Counterweight {
                 .torque(turn, phase + self.phase, moment + self.moment);
             SLIP / RATED * (now - site.cycle.torque(turn, phase, moment))
         });
-        hooks.add_warp(warp(&slow));
+        extensions.add_warp(warp(&slow));
     }
 }

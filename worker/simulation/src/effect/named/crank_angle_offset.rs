@@ -3,16 +3,16 @@
 //! Source: angles of a pumping unit: Svinos, "Exact Kinematic Analysis of Pumping Units", SPE 12201 (1983).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
-use crate::model::hook::{Effect, Hooks, Site};
+use crate::model::extension::{Effect, Extensions, Site};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new(
         "crank_angle_offset",
         "Zero offset of the recorded crank angle",
     )
-    .at("crank", Place::Drive)
+    .with_location("crank", Place::Drive)
     .size("angle", Unit::Degree, 2.0, [-15.0, 15.0])
-    .builds(|v| Offset {
+    .with_constructor(|v| Offset {
         angle: v.get("angle"),
     })
 }
@@ -23,7 +23,7 @@ struct Offset {
 }
 
 impl Effect for Offset {
-    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
-        hooks.move_index(self.angle);
+    fn install(&self, _: &Site<'_>, extensions: &mut Extensions) {
+        extensions.move_index(self.angle);
     }
 }

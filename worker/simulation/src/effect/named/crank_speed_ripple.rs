@@ -12,18 +12,18 @@ use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::math::harmonics::filter;
 use crate::math::spline::Splines;
-use crate::model::hook::{Effect, Hooks, Site};
+use crate::model::extension::{Effect, Extensions, Site};
 use std::f64::consts::TAU;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("crank_speed_ripple", "Ripple of the crank speed by the slip of the motor")
-        .at("crank", Place::Drive)
+        .with_location("crank", Place::Drive)
         .size("slip", Unit::One, 0.0267, [0.0, 0.12])
         // of a motor of normal design; large: slip in proportion to torque
         .shape("breakdown", Unit::One, 2.1, [1.5, 20.0])
         // a rotor of 1 kg m2 behind 146 : 1, cranks and counterweights
         .shape("inertia", Unit::KilogramSquareMetre, 2.5e4, [0.0, 1e6])
-        .builds(|v| Ripple {
+        .with_constructor(|v| Ripple {
             slip: v.get("slip"),
             breakdown: v.get("breakdown"),
             inertia: v.get("inertia"),
@@ -45,13 +45,13 @@ struct Ripple {
 }
 
 /// Share of the breakdown torque to which the load of the quasi-static motor is limited.
-const MOST: f64 = 0.98;
+const MAX_TORQUE_SHARE: f64 = 0.98;
 
 impl Ripple {
     /// Computes the slip at a load torque, on the stable branch of the motor characteristic.
     fn holding(&self, torque: f64) -> f64 {
         let k = self.breakdown;
-        let share = (torque / (k * RATED)).clamp(-MOST, MOST);
+        let share = (torque / (k * RATED)).clamp(-MAX_TORQUE_SHARE, MAX_TORQUE_SHARE);
         // slip at breakdown, from that at rated torque
         let breakdown = self.slip * (k + (k * k - 1.0).sqrt());
         breakdown * share / (1.0 + (1.0 - share * share).sqrt())
@@ -71,18 +71,18 @@ impl Ripple {
 }
 
 impl Effect for Ripple {
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
         let crank = &site.description.crank;
         let torque = |turn| {
             site.cycle
                 .torque(turn, crank.counterweight_phase, crank.counterweight_moment)
         };
-        hooks.add_warp(warp(&self.loss(crank.speed, torque)));
+        extensions.add_warp(warp(&self.loss(crank.speed, torque)));
     }
 }
 
 /// Upper limit of the relative deviation of the crank speed from its mean.
-const SLOWEST: f64 = 0.9;
+const MAX_SPEED_DEVIATION: f64 = 0.9;
 
 /// Number of samples per crank revolution.
 const NODES: usize = 720;
@@ -101,7 +101,7 @@ pub(super) fn warp(slow: &[f64]) -> Splines {
     let mean = slow.iter().sum::<f64>() / NODES as f64;
     let lasting: Vec<f64> = slow
         .iter()
-        .map(|slow| 1.0 / (1.0 - (slow - mean).min(SLOWEST)))
+        .map(|slow| 1.0 / (1.0 - (slow - mean).min(MAX_SPEED_DEVIATION)))
         .collect();
     let whole = lasting.iter().sum::<f64>() / NODES as f64;
     // by the trapezoidal rule: uniform angle less turn, over the turn
@@ -148,8 +148,8 @@ mod tests {
         }
     }
 
-    /// Checks that Kloss's formula returns the torque, and that a time constant of 0.25 crank radians delays
-    /// a first-order load by its arc tangent.
+    /// Checks that Kloss's formula at the computed slip returns the load torque, and that with a time
+    /// constant of 0.25 crank radians the response to a load of the first harmonic lags by `atan 0.25`.
     #[test]
     fn a_motor_holds_its_torque_and_a_heavy_crank_follows() {
         let motor = Ripple {

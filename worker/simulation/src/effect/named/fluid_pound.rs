@@ -8,7 +8,7 @@
 //! Source: Takacs, *Sucker-Rod Pumping Handbook* (2015); the impact's wave: Gibbs, JPT 15 (1963).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
-use crate::effect::value::Values;
+use crate::effect::value::ParameterValues;
 use crate::math::elementary::{exp, sin_cos};
 use crate::math::spline::Splines;
 use crate::model::cycle::Cycle;
@@ -20,24 +20,27 @@ pub(super) fn descriptor() -> Descriptor {
         "fluid_pound",
         "Fluid pound: the pump does not fill completely",
     )
-    .at("suspension", Place::Load)
+    .with_location("suspension", Place::Load)
     .size("held", Unit::One, 1.0, [0.0, 1.5])
     .size("impact", Unit::Newton, 3000.0, [0.0, 3e4])
     .shape("fillage", Unit::One, 0.85, [0.3, 0.99])
     .shape("fall", Unit::Degree, 8.0, [1.0, 60.0])
     .shape("frequency", Unit::Hertz, 0.739, [0.2, 3.0])
-    .edits(pound)
+    .with_edit(pound)
 }
 
 /// Time constant of the decay of the impact's ringing \[s\].
 const DECAY: f64 = 3.0;
 
-fn pound(v: &Values, d: &mut Description) {
+fn pound(v: &ParameterValues, d: &mut Description) {
     let [held, impact] = v.each(["held", "impact"]);
     let [fillage, fall, frequency] = v.each(["fillage", "fall", "frequency"]);
     // a mechanism that does not close is refused when the machine is built
     let Ok(cycle) = Cycle::of(d) else { return };
-    let (top, blow) = (cycle.descent(0.0), cycle.descent(1.0 - fillage));
+    let (top, blow) = (
+        cycle.turn_at_descent(0.0),
+        cycle.turn_at_descent(1.0 - fillage),
+    );
     let n = d.card.len();
     let step = TAU / n as f64;
     let card = Splines::periodic(0.0, step, std::slice::from_ref(&d.card));

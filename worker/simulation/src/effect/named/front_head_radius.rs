@@ -9,10 +9,10 @@ use crate::effect::unit::Unit;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("front_head_radius", "Radius or centre of the front head")
-        .at("front_head", Place::Dynamics)
+        .with_location("front_head", Place::Dynamics)
         .size("radius", Unit::Metre, 0.02, [-0.1, 0.1])
         .size("centre", Unit::Metre, 0.02, [-0.1, 0.1])
-        .edits(|v, d| {
+        .with_edit(|v, d| {
             d.front_arc.radius += v.get("radius");
             d.front_arc.center[1] -= v.get("centre");
         })

@@ -7,15 +7,15 @@
 use crate::drive::DriveState;
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
-use crate::model::hook::{Along, Effect, Hooks, LineForce, Site, dry_friction};
+use crate::model::extension::{Effect, Extensions, LineForce, LineForceValue, Site, dry_friction};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("front_rope_bending_loss", "Bending loss of the front rope on its head")
-        .at("front_rope", Place::Dynamics)
+        .with_location("front_rope", Place::Dynamics)
         .size("loss", Unit::One, 0.005, [0.0, 0.1])
         // at which three quarters of the loss are there; the beam reaches 0.3 rad/s
         .shape("creep", Unit::RadianPerSecond, 2e-3, [5e-4, 0.1])
-        .builds(|v| Loss {
+        .with_constructor(|v| Loss {
             loss: v.get("loss"),
             creep: v.get("creep"),
         })
@@ -28,14 +28,14 @@ struct Loss {
 }
 
 impl Effect for Loss {
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
         let d = &site.description;
         let couple = Couple {
             arm: self.loss * d.front_arc.radius,
             creep: self.creep,
             weight: d.suspension_mass * d.gravity,
         };
-        hooks.on(site.layout.beam(), couple);
+        extensions.add_line_force(site.layout.beam(), couple);
     }
 }
 
@@ -47,7 +47,7 @@ struct Couple {
 }
 
 impl LineForce for Couple {
-    fn along(&self, drive: &DriveState, _: f64, rate: f64) -> Along {
+    fn along(&self, drive: &DriveState, _: f64, rate: f64) -> LineForceValue {
         dry_friction(self.arm * (drive.load + self.weight), rate, self.creep)
     }
 }

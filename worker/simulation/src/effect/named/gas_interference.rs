@@ -7,7 +7,7 @@
 //! Source: Takacs, *Sucker-Rod Pumping Handbook* (2015).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
-use crate::effect::value::Values;
+use crate::effect::value::ParameterValues;
 use crate::math::elementary::sin_cos;
 use crate::math::spline::Splines;
 use crate::model::cycle::Cycle;
@@ -16,18 +16,18 @@ use std::f64::consts::{PI, TAU};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("gas_interference", "Gas interference in the pump")
-        .at("suspension", Place::Load)
+        .with_location("suspension", Place::Load)
         .size("delay", Unit::Degree, 12.0, [0.0, 35.0])
-        .edits(late)
+        .with_edit(late)
 }
 
 /// Crank angle from top dead centre over which the load is delayed \[rad\].
 const LATE: f64 = 120.0 * PI / 180.0;
 
-fn late(v: &Values, d: &mut Description) {
+fn late(v: &ParameterValues, d: &mut Description) {
     // a mechanism that does not close is refused when the machine is built
     let Ok(cycle) = Cycle::of(d) else { return };
-    let top = cycle.descent(0.0);
+    let top = cycle.turn_at_descent(0.0);
     let step = TAU / d.card.len() as f64;
     let card = Splines::periodic(0.0, step, std::slice::from_ref(&d.card));
     for (i, load) in d.card.iter_mut().enumerate() {

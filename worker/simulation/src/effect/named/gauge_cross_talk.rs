@@ -10,14 +10,14 @@ pub(super) fn descriptor() -> Descriptor {
         "gauge_cross_talk",
         "Cross-talk between the gauges of the two pins",
     )
-    .at("gauge", Place::Gauge)
+    .with_location("gauge", Place::Gauge)
     .sizes(
         ["into_1", "into_2", "into_3", "into_4"],
         Unit::One,
         0.05,
         [-0.5, 0.5],
     )
-    .reads(|v, _, stress| {
+    .with_reading(|v, _, stress| {
         let own = *stress;
         for (k, into) in v.in_order().enumerate() {
             stress[k] += into * own[(k + 2) % 4];

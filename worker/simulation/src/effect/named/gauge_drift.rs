@@ -8,14 +8,14 @@ use crate::effect::unit::Unit;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("gauge_drift", "Drift of the gauges over a revolution")
-        .at("gauge", Place::Gauge)
+        .with_location("gauge", Place::Gauge)
         .sizes(
             ["drift_1", "drift_2", "drift_3", "drift_4"],
             Unit::MegapascalPerRevolution,
             0.5,
             [-20.0, 20.0],
         )
-        .reads(|v, at, stress| {
+        .with_reading(|v, at, stress| {
             for (stress, drift) in stress.iter_mut().zip(v.in_order()) {
                 *stress += drift * at.elapsed;
             }

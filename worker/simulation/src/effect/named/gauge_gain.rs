@@ -6,14 +6,14 @@ use crate::effect::unit::Unit;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("gauge_gain", "Gain of the gauges")
-        .at("gauge", Place::Gauge)
+        .with_location("gauge", Place::Gauge)
         .sizes(
             ["gain_1", "gain_2", "gain_3", "gain_4"],
             Unit::One,
             0.05,
             [-0.5, 0.5],
         )
-        .reads(|v, _, stress| {
+        .with_reading(|v, _, stress| {
             for (stress, gain) in stress.iter_mut().zip(v.in_order()) {
                 *stress *= 1.0 + gain;
             }

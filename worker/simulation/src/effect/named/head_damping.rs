@@ -6,7 +6,7 @@ use crate::effect::unit::Unit;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("head_damping", "Structural damping of the back head")
-        .at("back_head", Place::Dynamics)
+        .with_location("back_head", Place::Dynamics)
         .size("ratio", Unit::One, 0.01, [0.0, 0.2])
-        .edits(|v, d| d.head.damping_ratio += v.get("ratio"))
+        .with_edit(|v, d| d.head.damping_ratio += v.get("ratio"))
 }

@@ -6,15 +6,15 @@
 //! Source: the lever arm is geometry; arms of pumping units: Svinos, SPE 12201 (1983).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
-use crate::model::hook::{Effect, Hollow, Hooks, Site};
+use crate::model::extension::{Effect, Extensions, Hollow, Site};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("head_profile_wear", "Local wear of the back head's surface")
-        .at("back_head", Place::Dynamics)
+        .with_location("back_head", Place::Dynamics)
         .size("depth", Unit::Metre, 0.004, [-0.02, 0.03])
         .shape("centre", Unit::Degree, 165.0, [130.0, 215.0])
         .shape("width", Unit::Degree, 12.0, [3.0, 40.0])
-        .builds(|v| Wear {
+        .with_constructor(|v| Wear {
             depth: v.get("depth"),
             centre: v.get("centre"),
             width: v.get("width"),
@@ -32,8 +32,8 @@ struct Wear {
 const HALF_WIDTH: f64 = 1.665_109_222_315_395_4;
 
 impl Effect for Wear {
-    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
-        hooks.dig(Hollow {
+    fn install(&self, _: &Site<'_>, extensions: &mut Extensions) {
+        extensions.add_hollow(Hollow {
             depth: self.depth,
             centre: self.centre,
             reach: self.width / HALF_WIDTH,

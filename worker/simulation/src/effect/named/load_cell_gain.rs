@@ -6,9 +6,9 @@ use crate::effect::unit::Unit;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("load_cell_gain", "Gain of the load cell")
-        .at("load_cell", Place::Load)
+        .with_location("load_cell", Place::Load)
         .size("gain", Unit::One, 0.02, [-0.3, 0.3])
-        .edits(|v, d| {
+        .with_edit(|v, d| {
             for load in &mut d.card {
                 *load *= 1.0 + v.get("gain");
             }

@@ -11,23 +11,23 @@
 //! Source: first-order instruments: Doebelin, *Measurement Systems*, 5th ed. (2004), chapter 3.
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
-use crate::effect::value::Values;
+use crate::effect::value::ParameterValues;
 use crate::math::elementary::{atan2, powf, sin_cos};
 use crate::math::harmonics::filter;
 use crate::model::description::Description;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("load_cell_lag", "Lag of the load cell or its logger")
-        .at("load_cell", Place::Load)
+        .with_location("load_cell", Place::Load)
         .size("lag", Unit::Second, 0.15, [-0.5, 0.5])
         .shape("poles", Unit::One, 1.0, [1.0, 4.0])
-        .edits(lag)
+        .with_edit(lag)
 }
 
-/// Harmonic at which the fade-out halves the correction.
+/// Order of the crank harmonic at which the fade-out halves the lag correction.
 const FADES: f64 = 90.0;
 
-fn lag(v: &Values, d: &mut Description) {
+fn lag(v: &ParameterValues, d: &mut Description) {
     let [lag, poles] = v.each(["lag", "poles"]);
     let w = d.crank.speed;
     d.card = filter(&d.card, u32::MAX, |harmonic| {

@@ -13,9 +13,9 @@ pub(super) fn descriptor() -> Descriptor {
         "load_offset",
         "Zero of the load cell, unbalance of the beam or steady wind",
     )
-    .at("load_cell", Place::Load)
+    .with_location("load_cell", Place::Load)
     .size("force", Unit::Newton, 1000.0, [-2e4, 2e4])
-    .edits(|v, d| {
+    .with_edit(|v, d| {
         for load in &mut d.card {
             *load += v.get("force");
         }

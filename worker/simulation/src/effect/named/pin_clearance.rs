@@ -16,14 +16,14 @@
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::math::elementary::{sin_cos, tanh};
-use crate::model::hook::{Effect, Hooks, Reading, Sampled, Site};
+use crate::model::extension::{Effect, Extensions, Reading, SampleState, Site};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new(
         "pin_clearance",
         "Clearance of the pins that hold the back head",
     )
-    .at("pin_b", Place::Gauge)
+    .with_location("pin_b", Place::Gauge)
     .sizes(
         ["step_1", "step_2", "step_3", "step_4"],
         Unit::Megapascal,
@@ -33,7 +33,7 @@ pub(super) fn descriptor() -> Descriptor {
     .shape("direction", Unit::Degree, -13.5, [-45.0, 45.0])
     .shape("bias", Unit::Newton, -7500.0, [-4e4, 4e4])
     .shape("force", Unit::Newton, 2000.0, [200.0, 5e4])
-    .builds(|v| {
+    .with_constructor(|v| {
         let (sine, cosine) = sin_cos(v.get("direction"));
         Clearance {
             step: v.each(["step_1", "step_2", "step_3", "step_4"]),
@@ -54,15 +54,15 @@ struct Clearance {
 }
 
 impl Effect for Clearance {
-    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
-        hooks.add_reading(*self);
+    fn install(&self, _: &Site<'_>, extensions: &mut Extensions) {
+        extensions.add_reading(*self);
     }
 }
 
 impl Reading for Clearance {
-    fn sample(&self, at: &Sampled, stress: &mut [f64; 4]) {
+    fn sample(&self, at: &SampleState, stress: &mut [f64; 4]) {
         let (s, c) = sin_cos(at.beam);
-        let [x, y] = at.head_push;
+        let [x, y] = at.head_force;
         let push = [c * x + s * y, c * y - s * x];
         let along = push[0] * self.direction[0] + push[1] * self.direction[1];
         let side = tanh((along - self.bias) / self.force);

@@ -9,18 +9,18 @@ use crate::drive::DriveState;
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::math::elementary::{exp, tanh};
-use crate::model::hook::{Along, Effect, Hooks, LineForce, Site};
+use crate::model::extension::{Effect, Extensions, LineForce, LineForceValue, Site};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("pivot_friction", "Friction of the saddle bearing")
-        .at("saddle", Place::Dynamics)
+        .with_location("saddle", Place::Dynamics)
         .size("moment", Unit::NewtonMetre, 1500.0, [0.0, 3e4])
         .size("viscous", Unit::NewtonMetreSecondPerRadian, 5000.0, [0.0, 2e5])
         .shape("stribeck_ratio", Unit::One, 1.2, [1.0, 3.0])
         .shape("stribeck_speed", Unit::RadianPerSecond, 0.02, [2e-3, 0.3])
         // at which three quarters of the friction are there; the beam reaches 0.3 rad/s
         .shape("creep", Unit::RadianPerSecond, 2e-3, [5e-4, 0.1])
-        .builds(|v| Bearing {
+        .with_constructor(|v| Bearing {
             moment: v.get("moment"),
             viscous: v.get("viscous"),
             ratio: v.get("stribeck_ratio"),
@@ -39,13 +39,13 @@ struct Bearing {
 }
 
 impl Effect for Bearing {
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
-        hooks.on(site.layout.beam(), *self);
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
+        extensions.add_line_force(site.layout.beam(), *self);
     }
 }
 
 impl LineForce for Bearing {
-    fn along(&self, _: &DriveState, _: f64, rate: f64) -> Along {
+    fn along(&self, _: &DriveState, _: f64, rate: f64) -> LineForceValue {
         let &Self {
             moment,
             viscous,
@@ -56,11 +56,11 @@ impl LineForce for Bearing {
         let t = tanh(rate / creep);
         let u = rate / speed;
         let rise = (ratio - 1.0) * exp(-(u * u));
-        Along {
-            other: -moment * (1.0 + rise) * t - viscous * rate,
+        LineForceValue {
+            non_conservative: -moment * (1.0 + rise) * t - viscous * rate,
             by_rate: -moment * ((1.0 + rise) * (1.0 - t * t) / creep - rise * t * 2.0 * u / speed)
                 - viscous,
-            ..Along::default()
+            ..LineForceValue::default()
         }
     }
 }

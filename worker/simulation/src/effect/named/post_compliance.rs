@@ -12,18 +12,18 @@ use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
 use crate::model::cycle::Cycle;
 use crate::model::description::{AddedMode, Description};
-use crate::model::hook::{Dashpot, Effect, Force, Hooks, Site};
+use crate::model::extension::{Dashpot, Effect, Extensions, Force, Site};
 use crate::model::instant::Instant;
 use crate::model::layout::MAX_MODES;
 use std::f64::consts::TAU;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("post_compliance", "Compliance of post and foundation")
-        .at("saddle", Place::Dynamics)
+        .with_location("saddle", Place::Dynamics)
         .size("compliance", Unit::MetrePerNewton, 5e-8, [0.0, 1e-6])
         .shape("damping", Unit::One, 0.03, [0.0, 0.5])
         .shape("mass", Unit::Kilogram, 5100.0, [500.0, 5e4])
-        .builds(|v| Post {
+        .with_constructor(|v| Post {
             compliance: v.get("compliance"),
             damping: v.get("damping"),
             mass: v.get("mass"),
@@ -85,14 +85,14 @@ impl Effect for Post {
         *modes += 2;
     }
 
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
         let d = &site.description;
-        hooks.add_rise(self.compliance * self.heaviest(d, site.cycle));
+        extensions.add_rise(self.compliance * self.heaviest(d, site.cycle));
         let layout = site.layout;
         let [along, across] = [2, 1]
             .map(|k| layout.plane_modes() - k)
             .map(|k| layout.mode(k));
-        hooks.add_force(FrontPull {
+        extensions.add_force(FrontPull {
             weight: d.suspension_mass * d.gravity,
             root: self.mass.sqrt(),
             along,
@@ -102,13 +102,13 @@ impl Effect for Post {
         // beside what every mode of the head has
         let damping = 2.0 * (self.damping - d.head.damping_ratio) * self.frequency();
         for coordinate in [along, across] {
-            hooks.on(coordinate, Dashpot { damping });
+            extensions.add_line_force(coordinate, Dashpot { damping });
         }
     }
 }
 
-/// Force of the load on a pivot displaced by `(x, y) / sqrt(m)` in the beam frame, with the potential `V = P
-/// (x sin theta + y cos theta) / sqrt(m)`.
+/// Force of the load `P` on the displaced pivot; two modal coordinates `x`, `y` displace it by `(x, y) /
+/// sqrt(m)` in the beam frame. Its potential is `V = P (x sin theta + y cos theta) / sqrt(m)`.
 #[derive(Clone, Copy, Debug)]
 struct FrontPull {
     weight: f64,

@@ -10,16 +10,16 @@ use crate::drive::DriveState;
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::model::cycle::Cycle;
-use crate::model::hook::{Along, Effect, Hooks, LineForce, Site};
+use crate::model::extension::{Effect, Extensions, LineForce, LineForceValue, Site};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new(
         "rod_string_reaction",
         "Reaction of the rod string to motion that the card does not contain",
     )
-    .at("suspension", Place::Dynamics)
+    .with_location("suspension", Place::Dynamics)
     .size("impedance", Unit::NewtonSecondPerMetre, 20500.0, [0.0, 1e5])
-    .builds(|v| Rods {
+    .with_constructor(|v| Rods {
         impedance: v.get("impedance"),
     })
 }
@@ -30,13 +30,13 @@ struct Rods {
 }
 
 impl Effect for Rods {
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
         let wave = Wave {
             impedance: self.impedance,
             arm: site.description.front_arc.radius,
             cycle: site.cycle.clone(),
         };
-        hooks.on(site.layout.suspension(), wave);
+        extensions.add_line_force(site.layout.suspension(), wave);
     }
 }
 
@@ -48,13 +48,13 @@ struct Wave {
 }
 
 impl LineForce for Wave {
-    fn along(&self, drive: &DriveState, _: f64, rate: f64) -> Along {
+    fn along(&self, drive: &DriveState, _: f64, rate: f64) -> LineForceValue {
         let turning = self.cycle.crank().sense * drive.pin_rate;
         let known = self.arm * self.cycle.beam(drive.turn).first * turning;
-        Along {
-            other: -self.impedance * (rate - known),
+        LineForceValue {
+            non_conservative: -self.impedance * (rate - known),
             by_rate: -self.impedance,
-            ..Along::default()
+            ..LineForceValue::default()
         }
     }
 }

@@ -12,15 +12,15 @@ use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::math::elementary::tanh;
 use crate::model::cycle::Cycle;
-use crate::model::hook::{Along, Effect, Hooks, LineForce, Site};
+use crate::model::extension::{Effect, Extensions, LineForce, LineForceValue, Site};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("rope_bending_loss", "Bending loss of the back rope on its head")
-        .at("back_rope", Place::Dynamics)
+        .with_location("back_rope", Place::Dynamics)
         .size("loss", Unit::One, 0.015, [0.0, 0.1])
         // speed of winding at which three quarters of the loss are there; it reaches 0.5 rad/s
         .shape("creep", Unit::RadianPerSecond, 1e-2, [1e-3, 0.2])
-        .builds(|v| Loss {
+        .with_constructor(|v| Loss {
             loss: v.get("loss"),
             creep: v.get("creep"),
         })
@@ -33,12 +33,12 @@ struct Loss {
 }
 
 impl Effect for Loss {
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
         let couple = Couple {
             law: *self,
             cycle: site.cycle.clone(),
         };
-        hooks.on(site.layout.beam(), couple);
+        extensions.add_line_force(site.layout.beam(), couple);
     }
 }
 
@@ -49,13 +49,13 @@ struct Couple {
 }
 
 impl LineForce for Couple {
-    fn along(&self, drive: &DriveState, _: f64, _: f64) -> Along {
+    fn along(&self, drive: &DriveState, _: f64, _: f64) -> LineForceValue {
         let turning = self.cycle.crank().sense * drive.pin_rate;
         let winding = self.cycle.tangent(drive.turn).first * turning;
         let pull = self.cycle.tension(drive.turn) * self.cycle.arm(drive.turn);
-        Along {
-            other: self.law.loss * pull * tanh(winding / self.law.creep),
-            ..Along::default()
+        LineForceValue {
+            non_conservative: self.law.loss * pull * tanh(winding / self.law.creep),
+            ..LineForceValue::default()
         }
     }
 }

@@ -13,7 +13,7 @@
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::math::elementary::exp;
-use crate::model::hook::{Along, Axial, Effect, Hooks, Memory, Site, Strain};
+use crate::model::extension::{Axial, Effect, Extensions, LineForceValue, Memory, Site, Strain};
 use crate::model::strand::{BACK, FRONT};
 
 pub(super) fn descriptor() -> Descriptor {
@@ -21,10 +21,10 @@ pub(super) fn descriptor() -> Descriptor {
         "rope_hysteresis",
         "Hysteresis of the ropes by friction between their wires",
     )
-    .at("back_rope", Place::Dynamics)
+    .with_location("back_rope", Place::Dynamics)
     .size("share", Unit::One, 0.05, [0.0, 0.5])
     .shape("yield_strain", Unit::One, 3e-4, [2e-5, 5e-3])
-    .builds(|v| BoucWen {
+    .with_constructor(|v| BoucWen {
         share: v.get("share"),
         yields: v.get("yield_strain"),
     })
@@ -38,15 +38,16 @@ struct BoucWen {
 }
 
 impl Effect for BoucWen {
-    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, _: &Site<'_>, extensions: &mut Extensions) {
         for rope in [BACK, FRONT] {
-            hooks.add_axial(rope, *self);
+            extensions.add_axial(rope, *self);
         }
     }
 }
 
 impl BoucWen {
-    /// Computes the hysteretic variable after a monotonic change of strain, and its derivative by the strain.
+    /// Computes the hysteretic variable `z` after a monotonic change of strain, and its derivative by the
+    /// strain.
     fn advanced(&self, [strain, z]: Memory, now: f64) -> [f64; 2] {
         let moved = now - strain;
         let sense = if moved < 0.0 { -1.0 } else { 1.0 };
@@ -65,22 +66,22 @@ impl BoucWen {
 }
 
 impl Axial for BoucWen {
-    fn pull(&self, at: &Strain<'_>) -> Along {
+    fn pull(&self, at: &Strain<'_>) -> LineForceValue {
         let stiffness = self.share * at.stiffness;
         // in the equilibrium before the run the slipping wires carry nothing
         let [z, slope] = at
             .memory
             .map_or([0.0; 2], |memory| self.advanced(memory, at.strain));
-        Along {
+        LineForceValue {
             spring: -stiffness * at.strain,
             energy: -0.5 * stiffness * at.strain * at.strain,
-            other: stiffness * z,
+            non_conservative: stiffness * z,
             by_place: stiffness * (slope - 1.0),
-            ..Along::default()
+            ..LineForceValue::default()
         }
     }
 
-    fn remember(&self, at: &Strain<'_>) -> Option<Memory> {
+    fn next_memory(&self, at: &Strain<'_>) -> Option<Memory> {
         let z = at
             .memory
             .map_or(0.0, |memory| self.advanced(memory, at.strain)[0]);

@@ -11,7 +11,7 @@ pub(super) fn descriptor() -> Descriptor {
         "rope_stretch",
         "Length of the back rope: stretch, bedding, thermal expansion",
     )
-    .at("back_rope", Place::Dynamics)
+    .with_location("back_rope", Place::Dynamics)
     .size("length", Unit::Metre, 0.02, [-0.1, 0.1])
-    .edits(|v, d| d.rod.length += v.get("length"))
+    .with_edit(|v, d| d.rod.length += v.get("length"))
 }

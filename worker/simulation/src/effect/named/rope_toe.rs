@@ -1,21 +1,22 @@
 //! Toe region of the ropes, soft until the wires have bedded: strain `T / EA + e_0 (1 - exp(-T / T_0))`.
 //!
-//! The law is solved for the tension at a strain; the difference from the individual's linear law is added
-//! between all cylinders of both ropes. Below zero tension the law continues with its slope at zero.
+//! The law is solved for the tension at a strain; the difference from the linear law of the evaluated rope
+//! coefficients is added between all cylinders of both ropes. Below zero tension the law continues with its
+//! slope at zero.
 //!
 //! Source: modulus that grows with stress: Feyrer, *Wire Ropes*, 2nd ed. (2015).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::math::elementary::exp;
-use crate::model::hook::{Along, Axial, Effect, Hooks, Site, Strain};
+use crate::model::extension::{Axial, Effect, Extensions, LineForceValue, Site, Strain};
 use crate::model::strand::{BACK, FRONT};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("rope_toe", "Soft toe of the ropes at low tension")
-        .at("back_rope", Place::Dynamics)
+        .with_location("back_rope", Place::Dynamics)
         .size("strain", Unit::One, 7.5e-4, [0.0, 0.01])
         .shape("tension", Unit::Newton, 6e4, [5e3, 5e5])
-        .builds(|v| Toe {
+        .with_constructor(|v| Toe {
             strain: v.get("strain"),
             tension: v.get("tension"),
         })
@@ -28,9 +29,9 @@ struct Toe {
 }
 
 impl Effect for Toe {
-    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, _: &Site<'_>, extensions: &mut Extensions) {
         for rope in [BACK, FRONT] {
-            hooks.add_axial(rope, *self);
+            extensions.add_axial(rope, *self);
         }
     }
 }
@@ -54,7 +55,7 @@ impl Toe {
 }
 
 impl Axial for Toe {
-    fn pull(&self, at: &Strain<'_>) -> Along {
+    fn pull(&self, at: &Strain<'_>) -> LineForceValue {
         // strain over tension is concave: from the left of the root Newton's method climbs to it
         // without overshooting, and the stiffest slope lies left of it
         let steepest = 1.0 / at.stiffness + self.strain / self.tension;
@@ -77,13 +78,13 @@ impl Axial for Toe {
             } else {
                 self.strain * (tension - self.tension * (1.0 - exp(-u)))
             };
-        Along {
+        LineForceValue {
             spring: tension - at.stiffness * at.strain,
             energy: tension * at.strain
                 - complementary
                 - 0.5 * at.stiffness * at.strain * at.strain,
             by_place: 1.0 / slope - at.stiffness,
-            ..Along::default()
+            ..LineForceValue::default()
         }
     }
 }

@@ -6,15 +6,15 @@
 use crate::drive::DriveState;
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
-use crate::model::hook::{Along, Effect, Hooks, LineForce, Site, dry_friction};
+use crate::model::extension::{Effect, Extensions, LineForce, LineForceValue, Site, dry_friction};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("stuffing_box_friction", "Friction of the stuffing box that the load cell does not measure")
-        .at("suspension", Place::Dynamics)
+        .with_location("suspension", Place::Dynamics)
         .size("force", Unit::Newton, 800.0, [0.0, 2e4])
         // at which three quarters of the friction are there; the stroke reaches 1 m/s
         .shape("creep", Unit::MetrePerSecond, 5e-3, [1e-3, 0.3])
-        .builds(|v| Packing {
+        .with_constructor(|v| Packing {
             force: v.get("force"),
             creep: v.get("creep"),
         })
@@ -27,13 +27,13 @@ struct Packing {
 }
 
 impl Effect for Packing {
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
-        hooks.on(site.layout.suspension(), *self);
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
+        extensions.add_line_force(site.layout.suspension(), *self);
     }
 }
 
 impl LineForce for Packing {
-    fn along(&self, _: &DriveState, _: f64, rate: f64) -> Along {
+    fn along(&self, _: &DriveState, _: f64, rate: f64) -> LineForceValue {
         dry_friction(self.force, rate, self.creep)
     }
 }

@@ -12,16 +12,16 @@
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::model::description::Description;
-use crate::model::hook::{Effect, Hooks, Reading, Sampled, Site};
+use crate::model::extension::{Effect, Extensions, Reading, SampleState, Site};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new(
         "twin_rope_inequality",
         "Unequal lengths of the twin back ropes",
     )
-    .at("back_rope", Place::Gauge)
+    .with_location("back_rope", Place::Gauge)
     .size("length", Unit::Metre, 0.002, [-0.05, 0.05])
-    .builds(|v| Twins {
+    .with_constructor(|v| Twins {
         length: v.get("length"),
     })
 }
@@ -38,10 +38,10 @@ impl Effect for Twins {
         }
     }
 
-    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+    fn install(&self, site: &Site<'_>, extensions: &mut Extensions) {
         if site.description.twins.is_none() {
             let rope = &site.description.rope;
-            hooks.add_reading(Sharing {
+            extensions.add_reading(Sharing {
                 difference: self.length,
                 pitch: rope.pitch,
                 length: rope.back as f64 * rope.pitch,
@@ -61,7 +61,7 @@ struct Sharing {
 }
 
 impl Reading for Sharing {
-    fn sample(&self, at: &Sampled, stress: &mut [f64; 4]) {
+    fn sample(&self, at: &SampleState, stress: &mut [f64; 4]) {
         let stiffness = at.joint_stiffness * self.pitch;
         let tension = at.back_tension;
         let difference = 0.5 * self.difference * stiffness / self.length;

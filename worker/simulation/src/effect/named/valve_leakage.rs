@@ -14,10 +14,10 @@ pub(super) fn descriptor() -> Descriptor {
         "valve_leakage",
         "Leakage of the travelling or the standing valve",
     )
-    .at("suspension", Place::Load)
+    .with_location("suspension", Place::Load)
     .size("travelling", Unit::Newton, 2000.0, [0.0, 2e4])
     .size("standing", Unit::Newton, 2000.0, [0.0, 2e4])
-    .edits(|v, d| {
+    .with_edit(|v, d| {
         let step = 360.0 / d.card.len() as f64;
         for (i, load) in d.card.iter_mut().enumerate() {
             let turn = step * i as f64;
@@ -28,7 +28,8 @@ pub(super) fn descriptor() -> Descriptor {
     })
 }
 
-/// Computes a triangular ramp: 0 at the first angle, 1 at the second and 0 again at the third.
+/// Computes a triangular function of an angle: 0 at the first of three angles, 1 at the second, 0 again at
+/// the third.
 fn ramp(turn: f64, [from, top, until]: [f64; 3]) -> f64 {
     if turn < top {
         ((turn - from) / (top - from)).max(0.0)

@@ -1,6 +1,6 @@
 //! Contract tests of all effects: complete descriptors, no change at absent values, bounds and order of
 //! action.
-use crate::effect::{Asked, Descriptor, Refused, Role, Selection, catalogue};
+use crate::effect::{Descriptor, EffectRequest, Role, Selection, SelectionError, catalogue};
 use crate::model::Machine;
 use crate::observe::Recorder;
 use crate::reference;
@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 const SAMPLES: usize = 72;
 
 /// Simulates the reference machine with effects; returns the result and the gauge curves.
-fn run(asked: &[Asked<'_>]) -> (RunResult, [Vec<f64>; 4]) {
+fn run(asked: &[EffectRequest<'_>]) -> (RunResult, [Vec<f64>; 4]) {
     let selection = Selection::new(asked).unwrap();
     let machine = Machine::with_effects(reference::description(), 2, selection.effects()).unwrap();
     let settings = RunSettings {
@@ -28,15 +28,15 @@ fn bits(gauges: &[Vec<f64>; 4]) -> Vec<u64> {
     gauges.iter().flatten().map(|x| x.to_bits()).collect()
 }
 
-fn at(descriptor: &Descriptor, value: impl Fn(usize) -> f64) -> Asked<'_> {
+fn at(descriptor: &Descriptor, value: impl Fn(usize) -> f64) -> EffectRequest<'_> {
     let parameters = descriptor.parameters.iter().enumerate();
-    Asked {
+    EffectRequest {
         id: &descriptor.id,
         parameters: parameters.map(|(k, p)| (p.name, value(k))).collect(),
     }
 }
 
-pub(super) fn typical(descriptor: &Descriptor) -> Asked<'_> {
+pub(super) fn typical(descriptor: &Descriptor) -> EffectRequest<'_> {
     at(descriptor, |k| descriptor.parameters[k].typical)
 }
 
@@ -110,7 +110,7 @@ fn absent_effects_leave_every_bit_alone() {
             Role::Shape => d.parameters[k].upper,
         })
     };
-    let all: Vec<Asked<'_>> = catalogue().iter().map(absent).collect();
+    let all: Vec<EffectRequest<'_>> = catalogue().iter().map(absent).collect();
     let (result, gauges) = run(&all);
     assert_eq!((bits(&gauges), result.statistics), plain);
     // each alone is refused by nothing and selects nothing
@@ -138,8 +138,8 @@ fn every_effect_at_its_typical_size_acts() {
     }
 }
 
-/// Checks every parameter at both bounds with the others typical: the run ends in a verdict, the gauge curves
-/// are finite, and the two bounds give different curves.
+/// Checks every parameter at both bounds with the others typical: every run completes or reports why it
+/// failed, the gauge curves are finite, and the two bounds give different curves.
 #[test]
 fn bounds_end_in_a_verdict() {
     let settings = RunSettings {
@@ -185,7 +185,7 @@ fn bounds_end_in_a_verdict() {
 /// Checks that all named effects give the same bits when requested in forward and in reverse order.
 #[test]
 fn the_order_of_asking_changes_no_bit() {
-    let mut asked: Vec<Asked<'_>> = catalogue()
+    let mut asked: Vec<EffectRequest<'_>> = catalogue()
         .iter()
         .filter(|d| !d.generic)
         .map(typical)
@@ -201,7 +201,7 @@ fn the_order_of_asking_changes_no_bit() {
 #[test]
 fn what_is_unknown_or_out_of_bounds_is_refused_by_name() {
     let asked = |id, name, value| {
-        Selection::new(&[Asked {
+        Selection::new(&[EffectRequest {
             id,
             parameters: vec![(name, value)],
         }])
@@ -209,7 +209,7 @@ fn what_is_unknown_or_out_of_bounds_is_refused_by_name() {
     };
     assert!(matches!(
         asked("pivot_fricton", "moment", 1.0),
-        Refused::UnknownEffect { effect: 0, .. }
+        SelectionError::UnknownEffect { effect: 0, .. }
     ));
     let unknown = asked("pivot_friction", "mu", 1.0);
     assert_eq!(unknown.parameter(), Some("mu"));
@@ -237,6 +237,6 @@ fn what_is_unknown_or_out_of_bounds_is_refused_by_name() {
     ]);
     assert!(matches!(
         twice.unwrap_err(),
-        Refused::Twice { effect: 2, .. }
+        SelectionError::Duplicate { effect: 2, .. }
     ));
 }

@@ -1,24 +1,24 @@
 //! Tests of the forces of every effect against finite differences: the tangent, and the potential at rest.
 use super::contract::typical;
 use crate::drive::Drive;
-use crate::effect::{Asked, Descriptor, Selection, catalogue};
+use crate::effect::{Descriptor, EffectRequest, Selection, catalogue};
 use crate::model::contact::Surface;
 use crate::model::tests::{assert_plane_is_space, disturbed, free, unit};
-use crate::model::{Individual, Machine};
+use crate::model::{Machine, RopeMachine};
 use crate::reference;
 use crate::run::RunSettings;
-use crate::system::{Shift, StateRef, System};
+use crate::system::{StateRef, StateShift, System};
 
 /// Builds the reference machine with one effect at its typical size; `None` if the effect changes neither
 /// forces nor surfaces.
 fn machine(d: &'static Descriptor) -> Option<Machine> {
     let selection = Selection::new(&[typical(d)]).unwrap();
     let machine = Machine::with_effects(reference::description(), 2, selection.effects()).unwrap();
-    let acts = !machine.hooks.is_empty() || machine.hooks.profile().is_some();
+    let acts = !machine.extensions.is_empty() || machine.extensions.profile().is_some();
     acts.then_some(machine)
 }
 
-fn individual(machine: &Machine, turning: bool) -> System<Individual<'_>> {
+fn individual(machine: &Machine, turning: bool) -> System<RopeMachine<'_>> {
     let mut law = reference::law();
     if !turning {
         // torsion and bending must be equal for an exact potential out of plane
@@ -29,7 +29,7 @@ fn individual(machine: &Machine, turning: bool) -> System<Individual<'_>> {
         ramp: if turning { 1e-3 } else { 1e3 },
         speed: 0.5,
     };
-    System::new(Individual::new(machine, machine.ropes(&law), drive))
+    System::new(RopeMachine::new(machine, machine.ropes(&law), drive))
 }
 
 /// Checks the tangent in a disturbed, moving state in which friction is about to reverse and laws with memory
@@ -54,11 +54,11 @@ fn tangent_is_the_derivative_of_the_forces() {
                 .collect(),
             ..crate::system::State::at_rest(0.6, vec![0.0; n])
         };
-        at.equations.remember(&before);
+        at.equations.update_memory(&before);
         let t = 0.7;
         for gamma in [0.0, 40.0] {
             let mut matrix = layout.matrix();
-            let shift = Shift {
+            let shift = StateShift {
                 mass: 0.0,
                 damping: gamma,
             };
@@ -147,7 +147,7 @@ fn nothing_of_a_raised_surface_lies_out_of_reach() {
         ("head_profile_wear", "depth", -0.02),
         ("post_compliance", "compliance", 3e-7),
     ] {
-        let asked = Asked {
+        let asked = EffectRequest {
             id,
             parameters: vec![(parameter, value)],
         };

@@ -1,9 +1,9 @@
 //! Test that no shape parameter is a mere factor of a size, from the contributions of each effect without a
 //! simulation.
 use crate::drive::DriveState;
-use crate::effect::{Descriptor, Effect, Hollow, Place, Role, Sampled, Unit, catalogue};
-use crate::model::hook::axial::Carrier;
-use crate::model::hook::{Hooks, Site};
+use crate::effect::{Descriptor, Effect, Hollow, Place, Role, SampleState, Unit, catalogue};
+use crate::model::extension::axial::RopeProperties;
+use crate::model::extension::{Extensions, Site};
 use crate::model::{Instant, Machine};
 use crate::reference;
 use std::f64::consts::TAU;
@@ -28,8 +28,8 @@ fn trace(effect: Arc<dyn Effect>) -> Vec<f64> {
         trace.push(head.frequencies[k]);
         trace.extend(head.radial[k].iter().chain(&head.participation[k]));
     }
-    let hooks = &machine.hooks;
-    trace.extend(turns().map(|turn| hooks.turn([turn, 0.5, 0.0])[0] - turn));
+    let extensions = &machine.extensions;
+    trace.extend(turns().map(|turn| extensions.turn([turn, 0.5, 0.0])[0] - turn));
     let ropes = machine.ropes(&reference::law());
     let n = machine.layout.len();
     for (k, turn) in turns().enumerate() {
@@ -51,51 +51,52 @@ fn trace(effect: Arc<dyn Effect>) -> Vec<f64> {
             q: &q,
             v: &v,
         };
-        hooks.add_forces(&at, &mut force);
+        extensions.add_forces(&at, &mut force);
         trace.extend(force);
-        let carrier = Carrier {
+        let carrier = RopeProperties {
             stiffness: 2e7,
             share: 1.0,
             length: 0.15,
         };
         for rope in 0..2 {
-            if let Some(laws) = hooks.axial(rope, &drive, carrier) {
+            if let Some(laws) = extensions.axial(rope, &drive, carrier) {
                 let memory = vec![[0.0; 2]; laws.len()];
                 let along = laws.pull(3e-6 * k as f64, 1e-4 * scattered(k), &memory);
-                trace.push(along.spring + along.other);
+                trace.push(along.spring + along.non_conservative);
             }
         }
-        if let Some(profile) = hooks.profile() {
+        if let Some(profile) = extensions.profile() {
             trace.push(profile.height(1.8 + 0.015 * k as f64)[0]);
         }
         let stress = [1e7, 2e7, -3e7, 4e7].map(|s| s * (1.0 + 0.5 * scattered(k)));
-        let sampled = Sampled {
+        let sampled = SampleState {
             beam: 0.5 * scattered(k),
             elapsed: k as f64 / 180.0,
-            head_push: [5e4 * scattered(3 * k), 5e4 * scattered(5 * k)],
+            head_force: [5e4 * scattered(3 * k), 5e4 * scattered(5 * k)],
             back_tension: 1e5 * (1.0 + 0.3 * scattered(k)),
             joint_stiffness: 1e8,
         };
         let mut read = stress;
-        hooks.read(&sampled, &mut read);
+        extensions.read(&sampled, &mut read);
         trace.extend(read.iter().zip(stress).map(|(read, stress)| read - stress));
     }
     let curve = || turns().map(|turn| 1e7 * libm::sin(3.0 * turn)).collect();
     let mut series: [Vec<f64>; 4] = std::array::from_fn(|_| curve());
     let before: Vec<f64> = curve();
-    hooks.read_series(0.07, &mut series);
+    extensions.read_series(0.07, &mut series);
     trace.extend(series[0].iter().zip(before).map(|(a, b)| a - b));
     trace
 }
 
-/// Returns the ratio of the second trace to the first if they are proportional.
+/// Returns the ratio of the second list of changes (of [`trace`]) to the first if they are proportional.
 fn ratio(a: &[f64], b: &[f64]) -> Option<f64> {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let (aa, ab, bb) = (dot(a, a), dot(a, b), dot(b, b));
     (a.len() == b.len() && ab * ab >= (1.0 - 1e-5) * aa * bb).then(|| ab / aa)
 }
 
-/// Returns a description of the first shape that is a factor of a size, with that size.
+/// Searches an effect for a shape parameter that merely scales a size's contribution; returns a message that
+/// names both.
 fn factor(d: &Descriptor) -> Option<String> {
     let of = |role: Role| {
         d.parameters
@@ -141,8 +142,8 @@ fn no_shape_is_a_factor_of_a_size() {
 struct Groove(f64);
 
 impl Effect for Groove {
-    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
-        hooks.dig(Hollow {
+    fn install(&self, _: &Site<'_>, extensions: &mut Extensions) {
+        extensions.add_hollow(Hollow {
             depth: self.0,
             centre: 2.9,
             reach: 0.1,
@@ -154,9 +155,9 @@ impl Effect for Groove {
 #[test]
 fn a_factor_is_found() {
     let groove = Descriptor::new("groove", "Groove")
-        .at("back_head", Place::Dynamics)
+        .with_location("back_head", Place::Dynamics)
         .size("depth", Unit::Metre, 1e-3, [0.0, 0.01])
         .shape("share", Unit::One, 0.5, [0.1, 1.0])
-        .builds(|v| Groove(v.get("depth") * v.get("share")));
+        .with_constructor(|v| Groove(v.get("depth") * v.get("share")));
     assert!(factor(&groove).unwrap().contains("share"));
 }

@@ -7,7 +7,7 @@
 
 /// Function from a node's index to its angle \[rad\] about the rope arc's centre and its height \[m\] along
 /// the arc's axis.
-pub(in super::super) type Seen<'a> = &'a dyn Fn(usize) -> [f64; 2];
+pub(in super::super) type AngleAndHeight<'a> = &'a dyn Fn(usize) -> [f64; 2];
 
 /// Point of a face where a line of constant angle crosses it.
 #[derive(Clone, Debug)]
@@ -64,12 +64,12 @@ impl Cut {
 
 /// Kind of element face. Arguments `face` are the indices of all nodes of one face, in Gmsh's order.
 pub(in super::super) trait Face: Sync {
-    /// Number of nodes.
+    /// Returns the number of nodes of a face of this kind.
     fn nodes(&self) -> usize;
 
     /// Returns the intersection of a face with the line at angle `psi` \[rad\], or `None` if the line misses
     /// the face.
-    fn cut(&self, face: &[usize], seen: Seen<'_>, psi: f64) -> Option<Cut>;
+    fn cut(&self, face: &[usize], seen: AngleAndHeight<'_>, psi: f64) -> Option<Cut>;
 }
 
 /// Returns whether the line at angle `psi` passes between two corners. A corner exactly on the line counts as
@@ -88,7 +88,7 @@ impl Face for Quadrilateral {
         4
     }
 
-    fn cut(&self, face: &[usize], seen: Seen<'_>, psi: f64) -> Option<Cut> {
+    fn cut(&self, face: &[usize], seen: AngleAndHeight<'_>, psi: f64) -> Option<Cut> {
         let mut found = (0..4).filter_map(|k| {
             let (a, b) = (face[k], face[(k + 1) % 4]);
             let ([angle_a, height_a], [angle_b, height_b]) = (seen(a), seen(b));
@@ -118,7 +118,7 @@ impl Triangle {
         })
     }
 
-    fn crossing(face: &[usize], seen: Seen<'_>, l: &[f64; 3]) -> Crossing {
+    fn crossing(face: &[usize], seen: AngleAndHeight<'_>, l: &[f64; 3]) -> Crossing {
         let nodes: Vec<(usize, f64)> = face.iter().copied().zip(Self::shape(l)).collect();
         let heights = nodes.iter().map(|&(node, share)| seen(node)[1] * share);
         Crossing {
@@ -133,7 +133,7 @@ impl Face for Triangle {
         6
     }
 
-    fn cut(&self, face: &[usize], seen: Seen<'_>, psi: f64) -> Option<Cut> {
+    fn cut(&self, face: &[usize], seen: AngleAndHeight<'_>, psi: f64) -> Option<Cut> {
         let mut found = (0..3).filter_map(|k| {
             let next = (k + 1) % 3;
             let angle = |place: usize| seen(face[place])[0];

@@ -13,7 +13,7 @@
 //! factor, to 0.6 %.
 use super::face::{Face, Quadrilateral};
 use super::integral::{add_stiffness, add_weight, jacobian};
-use super::law::{Element, InsideOut, Matrices};
+use super::interface::{Element, InsideOut, Matrices};
 use super::steel::Steel;
 use nalgebra::{DMatrix, SMatrix, Vector3};
 
@@ -144,7 +144,8 @@ impl Element for Hexahedron {
     }
 }
 
-/// Returns the condensed mass `T' M T`, with M the mass over all shape functions and `T = (1, -follow)`.
+/// Returns the condensed mass `T' M T`, with M the mass over all shape functions and `T = (1, -follow)`: the
+/// amplitudes of the incompatible modes are `-follow` times the nodal displacements.
 fn condensed(weight: &[[f64; SHAPES]; SHAPES], follow: &SMatrix<f64, INNER, DOFS>) -> Square {
     // M T, of which every direction is its own
     let part = |shape: usize, k: usize, column: usize| {

@@ -1,5 +1,5 @@
 //! Element kinds that a mesh may consist of.
-use super::law::Element;
+use super::interface::Element;
 use super::{hexahedron::Hexahedron, tetrahedron::Tetrahedron};
 
 /// Element kind of a mesh; all elements are of one kind, because the faces of bricks and tetrahedra do not

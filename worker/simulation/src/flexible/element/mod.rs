@@ -5,14 +5,14 @@
 mod face;
 mod hexahedron;
 mod integral;
+mod interface;
 mod kind;
-mod law;
 mod steel;
 #[cfg(test)]
 mod tests;
 mod tetrahedron;
 
 pub(super) use face::{Crossing, Cut};
+pub(super) use interface::Element;
 pub use kind::ElementKind;
-pub(super) use law::Element;
 pub use steel::Steel;

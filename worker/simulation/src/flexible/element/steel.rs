@@ -1,4 +1,4 @@
-//! Material of the head.
+//! Material of the back head.
 
 /// Isotropic, linear elastic material.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Tests of a single tetrahedron (quadrature rules, rigid motions, mass, inverse map) and of the cut through
 //! a triangular face.
 use super::face::{Face, Triangle};
-use super::law::InsideOut;
+use super::interface::InsideOut;
 use super::tetrahedron::{EDGES, degree_2, degree_5};
 use super::{ElementKind, Steel};
 use nalgebra::{DVector, Vector3};

@@ -10,7 +10,7 @@
 //! exact in the total mass for curved edges. This module knows one element and no mesh.
 use super::face::{Face, Triangle};
 use super::integral::{add_stiffness, add_weight, jacobian};
-use super::law::{Element, InsideOut, Matrices};
+use super::interface::{Element, InsideOut, Matrices};
 use super::steel::Steel;
 use nalgebra::{DMatrix, SMatrix, Vector3};
 

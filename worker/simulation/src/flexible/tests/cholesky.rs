@@ -11,7 +11,7 @@ use faer::{
     },
 };
 
-/// Solves the system with faer's Cholesky factorisation.
+/// Solves a linear system with faer's Cholesky factorisation.
 fn by_faer(matrix: &Symmetric, right: &[f64]) -> Vec<f64> {
     let (starts, rows) = matrix.pattern();
     let values: Vec<f64> = matrix.entries().map(|(_, _, value)| value).collect();

@@ -1,4 +1,4 @@
-//! Tests of the modes' shares of load patterns and of the selection of modes by them.
+//! Tests of the share of a load pattern's energy that each mode holds, and of the selection of modes by it.
 use super::super::{arc::Rim, coupling::Patterns, mesh::Half, problem::Problem};
 use super::*;
 
@@ -38,7 +38,7 @@ fn shares_of_all_modes_add_up_to_one() {
 fn modes_that_couple_most_are_kept() {
     let mesh = mirrored();
     let both = [Family::Symmetric, Family::Antisymmetric];
-    let asked = Request {
+    let asked = ReductionRequest {
         center: [-2.0, 0.0],
         patterns: &[ROPE],
         modes: 4,
@@ -59,7 +59,7 @@ fn modes_that_couple_most_are_kept() {
     assert!(picked.modes.is_sorted_by_key(|mode| mode.frequency));
     assert!(picked.left_out.is_sorted_by_key(|mode| mode.frequency));
     // in full: a rope and the beam's motion pull in the plane of motion
-    let lowest = reduce(&Request {
+    let lowest = reduce(&ReductionRequest {
         patterns: &[],
         ..asked
     });

@@ -1,5 +1,5 @@
-//! Tests for every element kind: both halves against the whole, tables against direct loads, and rejected
-//! inputs.
+//! Tests for every element kind: symmetric and antisymmetric half models against the whole body, influence
+//! tables against directly applied loads, and rejected inputs.
 use super::*;
 
 /// Returns the same body meshed with each element kind.
@@ -9,7 +9,8 @@ fn of_every_kind() -> [Mesh; 2] {
     [bricks, tetrahedra]
 }
 
-/// Checks that the symmetric and antisymmetric modes together are the modes of the whole body.
+/// Checks that the modes of the symmetric and the antisymmetric half model together are those of the whole
+/// body.
 #[test]
 fn both_families_are_the_whole() {
     for mesh in of_every_kind() {
@@ -67,7 +68,7 @@ fn a_half_is_as_good_as_the_whole() {
 }
 
 /// Checks that the reading from a gauge's influence line equals the stress computed from the displacement
-/// under the load.
+/// under the same load.
 #[test]
 fn influence_lines_are_the_stress_under_each_load() {
     for mesh in of_every_kind() {
@@ -188,7 +189,10 @@ fn pair_strains_the_whole(mesh: &Mesh) {
         offset: 0.3,
         modes: 1,
     });
-    assert!(matches!(reduce(&asked), Err(ReductionError::Beside { .. })));
+    assert!(matches!(
+        reduce(&asked),
+        Err(ReductionError::OutsideRim { .. })
+    ));
 }
 
 #[test]
@@ -211,11 +215,11 @@ fn what_cannot_be_reduced_says_why() {
     }
     assert!(matches!(
         error(&crushed, &[], &[]),
-        ReductionError::InsideOut { element: 0 }
+        ReductionError::InvertedElement { element: 0 }
     ));
     let mut loose = mirrored();
     loose.held.truncate(1);
-    assert_eq!(error(&loose, &[], &[]), ReductionError::NotHeld);
+    assert_eq!(error(&loose, &[], &[]), ReductionError::NotPositiveDefinite);
     assert!(matches!(
         error(&mirrored(), &[], &[0.1]),
         ReductionError::Station { .. }
@@ -229,7 +233,7 @@ fn what_cannot_be_reduced_says_why() {
         ReductionError::Gauge { gauge: 1, .. }
     ));
     let mut empty = mirrored();
-    empty.rim.clear();
+    empty.rope_faces.clear();
     assert!(matches!(
         error(&empty, &[], &[]),
         ReductionError::Mesh { .. }

@@ -1,5 +1,5 @@
-//! Tests of brick elements on bodies with known solutions, and of the two halves against the whole for every
-//! element kind.
+//! Tests of brick elements on bodies with known solutions, and of the half models against the whole body for
+//! every element kind.
 mod cholesky;
 mod coupling;
 mod halves;
@@ -61,7 +61,7 @@ fn bricks(
                 let [e, f, g, h] = square(k + 1);
                 mesh.elements.extend([a, b, c, d, e, f, g, h]);
                 if i == nx - 1 {
-                    mesh.rim.extend([b, c, g, f]);
+                    mesh.rope_faces.extend([b, c, g, f]);
                 }
             }
         }
@@ -261,8 +261,12 @@ fn held_modes_that_turn_with_their_base_ring_like_a_hinged_bar() {
     }
 }
 
-fn request<'a>(mesh: &'a Mesh, gauges: &'a [Gauge], families: &'a [Family]) -> Request<'a> {
-    Request {
+fn request<'a>(
+    mesh: &'a Mesh,
+    gauges: &'a [Gauge],
+    families: &'a [Family],
+) -> ReductionRequest<'a> {
+    ReductionRequest {
         mesh,
         steel: STEEL,
         gauges,

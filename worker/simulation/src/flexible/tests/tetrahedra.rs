@@ -22,7 +22,7 @@ pub(super) fn of_bricks(bricks: &Mesh) -> Mesh {
     let ranks: Vec<usize> = ranks.collect();
     let mut split = Split::new(bricks.nodes.clone(), |node| ranks[node]);
     let elements = split.tetrahedra(&bricks.elements);
-    let rim = split.triangles(&bricks.rim);
+    let rim = split.triangles(&bricks.rope_faces);
     let held: BTreeSet<usize> = bricks.held.iter().copied().collect();
     let between = split.middles.iter();
     let between = between.filter(|(ends, _)| ends.iter().all(|end| held.contains(end)));
@@ -34,7 +34,7 @@ pub(super) fn of_bricks(bricks: &Mesh) -> Mesh {
         kind: ElementKind::Tetrahedron,
         held: held.collect(),
         elements,
-        rim,
+        rope_faces: rim,
         half: bricks.half,
         nodes: split.nodes,
     }

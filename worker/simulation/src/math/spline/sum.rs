@@ -3,11 +3,11 @@
 //! If many places are evaluated with the same weights, the curves are summed knot by knot once, and every
 //! place costs the evaluation of one curve. The adjoint works likewise: forces at places are distributed to
 //! the knots, and the generalised force on each curve is gathered from the knots at the end.
-use super::{Jet, Place, Splines};
+use super::{SplinePosition, Splines, ValueAndDerivatives};
 
 /// Weighted sums of the curves of [`Splines`]: with the weights and with the weights' time derivatives.
 #[derive(Clone, Debug, Default)]
-pub struct Sum {
+pub struct WeightedSplines {
     /// Per knot: value and scaled second derivative of the sum with the weights, then of the sum with their
     /// rates.
     knots: Vec<[f64; 4]>,
@@ -16,13 +16,13 @@ pub struct Sum {
 /// Forces at places of a grid, distributed to its knots: per knot, the sums weighted for its value and for
 /// its scaled second derivative.
 #[derive(Clone, Debug, Default)]
-pub struct Spread {
+pub struct KnotForces {
     knots: Vec<[f64; 2]>,
 }
 
-impl Sum {
+impl WeightedSplines {
     /// Computes the sums of the curves with `weights` and with `rates`; both hold one entry per curve.
-    pub fn weigh(&mut self, splines: &Splines, weights: &[f64], rates: &[f64]) {
+    pub fn assemble(&mut self, splines: &Splines, weights: &[f64], rates: &[f64]) {
         let points = splines.points();
         self.knots.resize(points, [0.0; 4]);
         let curves = splines.knots.chunks_exact(splines.curves.max(1));
@@ -41,22 +41,22 @@ impl Sum {
     /// Returns value and derivatives of the sum with the weights at a place, and the value of the sum with
     /// the rates.
     #[inline]
-    pub fn at(&self, splines: &Splines, place: &Place) -> (Jet, f64) {
+    pub fn at(&self, splines: &Splines, place: &SplinePosition) -> (ValueAndDerivatives, f64) {
         let [y0, m0, dy0, dm0] = self.knots[place.left];
         let [y1, m1, dy1, dm1] = self.knots[place.right];
         let [a, b, cubic_a, cubic_b] = place.weights();
         let value = a * y0 + b * y1 + cubic_a * m0 + cubic_b * m1;
         let rate = a * dy0 + b * dy1 + cubic_a * dm0 + cubic_b * dm1;
         if place.clamped {
-            let constant = Jet {
+            let constant = ValueAndDerivatives {
                 value,
-                ..Jet::default()
+                ..ValueAndDerivatives::default()
             };
             return (constant, rate);
         }
         let per_step = splines.per_step;
         let slope = y1 - y0 + (1.0 - 3.0 * a * a) * m0 + (3.0 * b * b - 1.0) * m1;
-        let jet = Jet {
+        let jet = ValueAndDerivatives {
             value,
             first: slope * per_step,
             second: 6.0 * (a * m0 + b * m1) * (per_step * per_step),
@@ -66,7 +66,12 @@ impl Sum {
 
     /// Computes, at several places, values and slopes of the sum with the weights and values of the sum with
     /// the rates.
-    pub fn heights(&self, splines: &Splines, places: &[Place], sums: [&mut [f64]; 3]) {
+    pub fn evaluate_all(
+        &self,
+        splines: &Splines,
+        places: &[SplinePosition],
+        sums: [&mut [f64]; 3],
+    ) {
         let [values, slopes, rates] = sums;
         let sums = values.iter_mut().zip(slopes).zip(rates);
         for (place, ((value, slope), rate)) in places.iter().zip(sums) {
@@ -78,16 +83,16 @@ impl Sum {
     }
 }
 
-impl Spread {
+impl KnotForces {
     /// Sets all forces to zero and resizes to the grid of `splines`.
     pub fn clear(&mut self, splines: &Splines) {
         self.knots.clear();
         self.knots.resize(splines.points(), [0.0; 2]);
     }
 
-    /// Adds `force` at a place.
+    /// Distributes `force` at a place on the grid to the neighbouring knots.
     #[inline]
-    pub fn add(&mut self, place: &Place, force: f64) {
+    pub fn add(&mut self, place: &SplinePosition, force: f64) {
         let [a, b, cubic_a, cubic_b] = place.weights();
         let [value, bend] = &mut self.knots[place.left];
         *value += force * a;
@@ -121,16 +126,18 @@ mod tests {
         let curve = |k: i32| (0..9).map(|i| f64::from((i * k) % 5) - 1.7).collect();
         let splines = Splines::natural(1.0, 0.3, &[curve(2), curve(3)]);
         let (weights, rates) = ([0.7, -1.9], [2.3, 0.4]);
-        let mut sum = Sum::default();
-        sum.weigh(&splines, &weights, &rates);
-        let mut spread = Spread::default();
+        let mut sum = WeightedSplines::default();
+        sum.assemble(&splines, &weights, &rates);
+        let mut spread = KnotForces::default();
         spread.clear(&splines);
         let mut direct = [0.0; 2];
         for (x, force) in [(0.2, 3.0), (1.4, -7.0), (2.05, 1.3), (9.0, 0.6)] {
             let place = splines.place(x);
             let (jet, rate) = sum.at(&splines, &place);
             let jets = [splines.jet(&place, 0), splines.jet(&place, 1)];
-            let of = |by: [f64; 2], f: fn(&Jet) -> f64| by[0] * f(&jets[0]) + by[1] * f(&jets[1]);
+            let of = |by: [f64; 2], f: fn(&ValueAndDerivatives) -> f64| {
+                by[0] * f(&jets[0]) + by[1] * f(&jets[1])
+            };
             assert!((jet.value - of(weights, |j| j.value)).abs() < 1e-14);
             assert!((jet.first - of(weights, |j| j.first)).abs() < 1e-12);
             assert!((jet.second - of(weights, |j| j.second)).abs() < 1e-11);

@@ -3,9 +3,9 @@
 //! A law depends only on extension and its rate, not on whether the cylinders move in the plane or in space.
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
-use crate::element::bushing::{LinkLoad, Pull};
+use crate::element::bushing::{AxialTension, LinkLoad};
 use crate::element::plane::PlaneLoad;
-use crate::model::hook::Along;
+use crate::model::extension::LineForceValue;
 
 #[expect(
     clippy::multiple_inherent_impl,
@@ -15,12 +15,12 @@ impl Chain {
     /// Returns the result of the axial effect laws for a joint between two cylinders, with its extension
     /// \[m\] and rate [m/s]; `None` for an end joint or without such laws.
     #[inline]
-    pub(super) fn along(
+    pub(super) fn axial_effect(
         &self,
         joint: usize,
         joints: &Joints<'_>,
         state: &ChainState,
-    ) -> Option<(Along, [f64; 2])> {
+    ) -> Option<(LineForceValue, [f64; 2])> {
         let laws = joints.axial.filter(|_| joint > 0 && joint < self.count)?;
         let at = self.extension(joint, joints, state)?;
         let [extension, rate] = at;
@@ -36,11 +36,11 @@ impl Chain {
         joint: usize,
         joints: &Joints<'_>,
         state: &ChainState,
-    ) -> Option<Pull> {
-        let (along, [_, rate]) = self.along(joint, joints, state)?;
-        Some(Pull {
-            force: along.spring + along.other,
-            dissipated: along.other * rate,
+    ) -> Option<AxialTension> {
+        let (along, [_, rate]) = self.axial_effect(joint, joints, state)?;
+        Some(AxialTension {
+            force: along.spring + along.non_conservative,
+            dissipated: along.non_conservative * rate,
             by_extension: along.by_place,
             by_rate: along.by_rate,
         })
@@ -72,7 +72,7 @@ impl Chain {
     }
 
     /// Updates the memory of history-dependent axial laws at the end of a step.
-    pub(crate) fn remember(&self, joints: &Joints<'_>, state: &mut ChainState) {
+    pub(crate) fn update_memory(&self, joints: &Joints<'_>, state: &mut ChainState) {
         let Some(laws) = joints.axial else { return };
         let first = state.memory.is_empty();
         let mut memory = std::mem::take(&mut state.memory);

@@ -1,6 +1,6 @@
 //! Contact forces between a chain and an arc, on the cylinders and on the structure that carries the arc.
 use super::parts::Chain;
-use super::points::{Points, Pressed};
+use super::points::{CylinderContact, Points};
 use super::state::ChainState;
 use crate::element::impact::Impact;
 use crate::model::contact::Surface;
@@ -14,7 +14,12 @@ use crate::model::pose::InPlane;
 )]
 impl Chain {
     /// Evaluates the contact points for the poses in `state`.
-    pub(crate) fn touch(&self, surface: &Surface<'_>, law: &Impact, state: &mut ChainState) {
+    pub(crate) fn evaluate_contact(
+        &self,
+        surface: &Surface<'_>,
+        law: &Impact,
+        state: &mut ChainState,
+    ) {
         let points = &mut state.points;
         match self.motion {
             Motion::Plane => points.evaluate(self, surface, law, state.plane.iter()),
@@ -32,13 +37,13 @@ impl Chain {
         force: &mut [f64],
         border: &mut [f64],
     ) {
-        self.touch(surface, law, state);
-        self.add_pressed(surface, state, force, border);
+        self.evaluate_contact(surface, law, state);
+        self.add_evaluated_contact(surface, state, force, border);
         state.deepest = state.points.deepest();
     }
 
-    /// Adds the forces of the contact points already evaluated in `state`.
-    pub(crate) fn add_pressed(
+    /// Adds the forces of the contact points, which must already be evaluated in `state`.
+    pub(crate) fn add_evaluated_contact(
         &self,
         surface: &Surface<'_>,
         state: &mut ChainState,
@@ -52,13 +57,13 @@ impl Chain {
         let (points, contact, force) =
             (&state.points, &mut state.contact, &mut force[self.range()]);
         let loads = match self.motion {
-            Motion::Plane => self.press(points, &state.plane, contact, force),
-            Motion::Space => self.press(points, &state.poses, contact, force),
+            Motion::Plane => self.accumulate_contact_forces(points, &state.plane, contact, force),
+            Motion::Space => self.accumulate_contact_forces(points, &state.poses, contact, force),
         };
-        let Pressed { beam, lost, .. } = loads;
+        let CylinderContact { beam, lost, .. } = loads;
         state.dissipated = lost;
         if surface.bend.is_some() {
-            state.points.spread(&mut state.pressure);
+            state.points.distribute_to_knots(&mut state.pressure);
         }
         if let Some((on_beam, modal)) = border.split_first_mut() {
             *on_beam -= beam;
@@ -75,17 +80,17 @@ impl Chain {
 
     /// Adds the forces of all contact points to the cylinders' rows; returns the reaction on the carrier of
     /// the arc.
-    fn press<const A: usize>(
+    fn accumulate_contact_forces<const A: usize>(
         &self,
         points: &Points,
         poses: &[impl InPlane<A>],
         contact: &mut [f64],
         force: &mut [f64],
-    ) -> Pressed {
+    ) -> CylinderContact {
         let width = self.motion.width();
-        let mut all = Pressed::default();
+        let mut all = CylinderContact::default();
         for (k, &j) in points.cylinders().iter().enumerate() {
-            let sum = points.pressed(k);
+            let sum = points.cylinder_contact(k);
             all.lost += sum.lost;
             all.beam += sum.beam;
             contact[j] = sum.total;

@@ -20,7 +20,7 @@ use pulp::{Arch, Simd, WithSimd};
 )]
 impl Chain {
     /// Adds the contact's `-K` to the first matrix and its `-gamma D - K` to the second.
-    pub(crate) fn add_contact_parts(
+    pub(crate) fn add_contact_stiffness_and_tangent(
         &self,
         on: (&Surface<'_>, &Impact),
         state: &ChainState,
@@ -107,12 +107,12 @@ fn add_parts<const A: usize, const B: usize>(
     let seen = (tangent.surface, 0.0, tangent.border);
     let mut corner = [[0.0; B]; B];
     for (k, &j) in points.cylinders().iter().enumerate() {
-        if points.touching(k).next().is_none() {
+        if points.loaded_points(k).next().is_none() {
             continue;
         }
         let (mut sums, mut damped) = (Sums::zero(), Sums::zero());
-        for i in points.touching(k) {
-            let touch = points.touch((k, i), tangent.surface, tangent.law);
+        for i in points.loaded_points(k) {
+            let touch = points.contact_point((k, i), tangent.surface, tangent.law);
             let point = Derivatives::new(seen, &poses[j], &touch);
             tangent.add_point(&point, &touch, &poses[j], &mut sums);
             let by_rate = gamma * touch.law.by_rate;
@@ -131,8 +131,8 @@ fn add_parts<const A: usize, const B: usize>(
     tangent.add_corner(matrix);
 }
 
-/// Adds the damping part `c G G^T` of a point to the sums of its cylinder (without the border's rows) and to
-/// the corner.
+/// Adds a contact point's rate-dependent tangent `c G G^T` to the sums of its cylinder (without the border's
+/// rows) and to the part of the matrix within the border.
 #[expect(
     clippy::inline_always,
     reason = "compiled for each set of instructions"

@@ -1,5 +1,5 @@
 //! Derivatives of the penetration and the force of one contact point of a chain.
-use super::points::Touch;
+use super::points::ContactPoint;
 use super::state::ChainState;
 use crate::element::impact::Impact;
 use crate::model::contact::Surface;
@@ -11,13 +11,14 @@ type V2 = Vector2<f64>;
 
 /// Largest number of cylinder coordinates that move a contact point: two displacements and one or two angles.
 pub(super) const OWN: usize = 4;
-/// Largest number of border coordinates: the beam angle and the modes.
+/// Largest number of border coordinates, which all cylinders share: the beam angle and the modes.
 pub(crate) const BORDER: usize = MAX_MODES + 1;
 /// Number of border coordinates that suffices for a usual head; with this bound, sums are short enough to be
 /// unrolled.
 pub(crate) const FEW: usize = 8;
 
-/// Derivatives of a contact point, with room for `B` border coordinates.
+/// Derivatives of penetration and force of a contact point, with room for `B` border coordinates (beam angle,
+/// modes).
 pub(super) struct Derivatives<const B: usize> {
     /// Derivatives of the penetration with respect to the cylinder's coordinates; `own_force` holds those of
     /// the force.
@@ -41,9 +42,9 @@ impl<const B: usize> Derivatives<B> {
     pub(super) fn new<const A: usize>(
         (surface, gamma, border): (&Surface<'_>, f64, usize),
         pose: &impl InPlane<A>,
-        touch: &Touch,
+        touch: &ContactPoint,
     ) -> Self {
-        let Touch {
+        let ContactPoint {
             along,
             velocity,
             curvature,
@@ -99,9 +100,10 @@ impl<const B: usize> Derivatives<B> {
     }
 }
 
-/// Loaded contact point with its derivatives, for a measured channel; its cylinder moves in the plane.
+/// Loaded contact point of a cylinder in the plane, with the derivatives of its force and arc angle that a
+/// measured channel needs.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Reached<const B: usize> {
+pub(crate) struct LoadedPoint<const B: usize> {
     /// Contact force \[N\]; `angle` is the arc angle \[rad\].
     pub(crate) force: f64,
     pub(crate) angle: f64,
@@ -118,22 +120,22 @@ pub(crate) struct Reached<const B: usize> {
 }
 
 /// Calls `visit` with every loaded contact point and its cylinder's index, for a chain in the plane; there is
-/// room for `B` border coordinates.
-pub(crate) fn each_reached<const B: usize>(
+/// room for `B` border coordinates (beam angle, modes).
+pub(crate) fn for_each_loaded_point<const B: usize>(
     (surface, law): (&Surface<'_>, &Impact),
     state: &ChainState,
-    mut visit: impl FnMut(usize, &Reached<B>),
+    mut visit: impl FnMut(usize, &LoadedPoint<B>),
 ) {
     let seen = (surface, 0.0, surface.modes() + 1);
     let points = &state.points;
     for (k, &j) in points.cylinders().iter().enumerate() {
-        for i in points.touching(k) {
-            let touch = points.touch((k, i), surface, law);
+        for i in points.loaded_points(k) {
+            let touch = points.contact_point((k, i), surface, law);
             let point = Derivatives::<B>::new(seen, &state.plane[j], &touch);
             let (angle_by_point, angle_by_beam) = touch.curvature.angle_by;
             let own = |of: &dyn Fn(usize) -> f64| std::array::from_fn(of);
             let by_rate = touch.law.by_rate;
-            let reached = Reached {
+            let reached = LoadedPoint {
                 force: touch.law.force,
                 angle: touch.angle,
                 by_law: points.by_law((k, i), law),

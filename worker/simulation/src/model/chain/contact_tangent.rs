@@ -10,7 +10,7 @@
 //! penetration.
 use super::contact_point::{BORDER, Derivatives, FEW, OWN};
 use super::parts::Chain;
-use super::points::{Points, Touch};
+use super::points::{ContactPoint, Points};
 use super::state::ChainState;
 use crate::element::impact::Impact;
 use crate::linear::Bordered;
@@ -24,17 +24,17 @@ pub(super) struct Tangent<'a, const B: usize> {
     pub(super) surface: &'a Surface<'a>,
     pub(super) law: &'a Impact,
     pub(super) gamma: f64,
-    /// Number of border coordinates included.
+    /// Number of border coordinates (beam angle, modes) included.
     pub(super) border: usize,
     pub(super) corner: [[f64; B]; B],
 }
 
-/// Sums over the contact points of one cylinder.
+/// Tangent entries summed over the contact points of one cylinder.
 pub(super) struct Sums<const B: usize> {
     pub(super) own: [[f64; OWN]; OWN],
-    /// Entries in the cylinder's rows and the border's columns.
+    /// Tangent entries in the cylinder's rows and the border's columns.
     pub(super) right: [[f64; B]; OWN],
-    /// Entries in the border's rows and the cylinder's columns, transposed.
+    /// Tangent entries in the border's rows and the cylinder's columns, transposed.
     pub(super) bottom: [[f64; B]; OWN],
 }
 
@@ -94,7 +94,8 @@ impl<const B: usize> Sums<B> {
         }
     }
 
-    /// Adds the rate-dependent part, which is symmetric: its border rows are taken from its border columns.
+    /// Adds the rate-dependent part of the tangent, which is symmetric: its border rows are taken from its
+    /// border columns.
     pub(super) fn add_damping(&mut self, damped: &Self) {
         let pairs = [
             (self.own.as_flattened_mut(), damped.own.as_flattened()),
@@ -117,12 +118,12 @@ impl<const B: usize> Tangent<'_, B> {
         matrix: &mut Bordered,
     ) {
         for (k, &j) in points.cylinders().iter().enumerate() {
-            if points.touching(k).next().is_none() {
+            if points.loaded_points(k).next().is_none() {
                 continue;
             }
             let mut sums = Sums::zero();
-            for i in points.touching(k) {
-                let touch = points.touch((k, i), self.surface, self.law);
+            for i in points.loaded_points(k) {
+                let touch = points.contact_point((k, i), self.surface, self.law);
                 let seen = (self.surface, self.gamma, self.border);
                 let point = Derivatives::new(seen, &poses[j], &touch);
                 self.add_point(&point, &touch, &poses[j], &mut sums);
@@ -139,7 +140,8 @@ impl<const B: usize> Tangent<'_, B> {
         }
     }
 
-    /// Adds the sums of one cylinder to its block and to the border of the matrix.
+    /// Adds the tangent entries of one cylinder's contact points to its block and to the border of the
+    /// matrix.
     pub(super) fn add_sums<const A: usize>(
         &self,
         block: usize,
@@ -161,13 +163,14 @@ impl<const B: usize> Tangent<'_, B> {
         }
     }
 
-    /// Adds the contribution of one contact point.
+    /// Adds the tangent of one contact point to the sums of its cylinder and to the entries within the
+    /// border.
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
     pub(super) fn add_point<const A: usize>(
         &mut self,
         point: &Derivatives<B>,
-        touch: &Touch,
+        touch: &ContactPoint,
         pose: &impl InPlane<A>,
         sums: &mut Sums<B>,
     ) {
@@ -186,7 +189,7 @@ impl<const B: usize> Tangent<'_, B> {
     fn add_border<const A: usize>(
         &mut self,
         point: &Derivatives<B>,
-        touch: &Touch,
+        touch: &ContactPoint,
         sums: &mut Sums<B>,
     ) {
         let (curvature, force) = (&touch.curvature, touch.law.force);
@@ -224,13 +227,13 @@ impl<const B: usize> Tangent<'_, B> {
     }
 }
 
-/// Adds a point's contribution to its cylinder's own block, except for the second derivatives of the
+/// Adds a contact point's tangent to its cylinder's own block, except for the second derivatives of the
 /// cylinder's axis.
 #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
 #[inline(always)]
 fn add_own<const A: usize, const B: usize>(
     point: &Derivatives<B>,
-    touch: &Touch,
+    touch: &ContactPoint,
     sums: &mut Sums<B>,
 ) {
     let bends = touch.curvature.point * touch.law.force;

@@ -11,14 +11,14 @@ use nalgebra::Vector3;
 impl Chain {
     /// Returns the part of the static potential of axial effect laws that is not stored energy \[J\]:
     /// non-elastic force times extension.
-    pub(crate) fn potential_beyond_energy(&self, joints: &Joints<'_>, state: &ChainState) -> f64 {
+    pub(crate) fn non_elastic_potential(&self, joints: &Joints<'_>, state: &ChainState) -> f64 {
         let mut sum = 0.0;
         if joints.axial.is_none() {
             return sum;
         }
         for joint in 1..self.count {
-            if let Some((along, [extension, _])) = self.along(joint, joints, state) {
-                sum += along.other * extension;
+            if let Some((along, [extension, _])) = self.axial_effect(joint, joints, state) {
+                sum += along.non_conservative * extension;
             }
         }
         sum
@@ -41,7 +41,7 @@ impl Chain {
             } else if let Some(([i, j], law)) = self.link(joint, joints, state) {
                 *sum += law.energy(&i, &j);
             }
-            if let Some((along, _)) = self.along(joint, joints, state) {
+            if let Some((along, _)) = self.axial_effect(joint, joints, state) {
                 *sum += along.energy;
             }
         }

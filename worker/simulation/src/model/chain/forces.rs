@@ -64,7 +64,7 @@ impl Chain {
         }
     }
 
-    /// Computes only the load of the joint at the head, and stores it in `state`.
+    /// Computes only the load of the joint at the chain's head end, and stores it in `state`.
     pub(crate) fn load_head(&self, joints: &Joints<'_>, state: &mut ChainState) {
         if let Some(([i, j], law)) = self.link(self.count, joints, state) {
             state.joints[self.count] = law.load(&i, &j);

@@ -1,6 +1,6 @@
 //! Inertia of the cylinders of a chain.
 use super::parts::Chain;
-use crate::linear::{BLOCK, Bordered, Entry};
+use crate::linear::{BLOCK, Bordered, MatrixEntry};
 use crate::math::elementary::sin_cos;
 use crate::model::layout::Motion;
 use crate::state::StateRef;
@@ -11,7 +11,7 @@ use crate::state::StateRef;
 )]
 impl Chain {
     /// Subtracts `M(q) a` of the cylinders from `out`.
-    pub(crate) fn subtract_inertia<T: Entry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
+    pub(crate) fn subtract_inertia<T: MatrixEntry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
         let [along, across] = self.inertia;
         let of = self.range();
         let (q, a, out) = (&q[of.clone()], &a[of.clone()], &mut out[of]);
@@ -126,8 +126,8 @@ impl Chain {
         ]
     }
 
-    /// Adds `lambda W`, with the diagonal `W` weighting a cylinder's displacement by 1 and its rotations by
-    /// the squared length, so that both measure displacement of its ends.
+    /// Adds `lambda W` to the matrix, with the diagonal `W` weighting a cylinder's displacement by 1 and its
+    /// rotations by the squared length, so that both measure displacement of its ends.
     pub(crate) fn add_static_weight(&self, lambda: f64, matrix: &mut Bordered) {
         let turning = lambda * self.pitch * self.pitch;
         for j in self.first..self.first + self.count {

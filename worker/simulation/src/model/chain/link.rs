@@ -1,5 +1,5 @@
 //! Markers of a chain's joints.
-use super::parts::{Chain, Held, Joints};
+use super::parts::{Chain, EndJoint, Joints};
 use super::state::ChainState;
 use crate::element::bushing::{Bushing, LinkLoad, Marker};
 use crate::element::plane::PlaneMarker;
@@ -8,7 +8,7 @@ use crate::model::layout::Motion;
 use crate::model::pose::{PlanePose, Pose};
 use nalgebra::{Matrix3, Vector2};
 
-/// Side of a joint to which the rows of a block belong.
+/// Side of a joint (cylinder I or J) to which the rows of a block belong.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Side {
     I,
@@ -95,7 +95,7 @@ impl Chain {
     }
 }
 
-impl Held<'_> {
+impl EndJoint<'_> {
     /// Returns the markers of a joint with their axes permuted for a pinned law, whose axis is the holding
     /// body's z axis.
     fn with_law_axes(&self, markers: &[Marker; 2]) -> [Marker; 2] {

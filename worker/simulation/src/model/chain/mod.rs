@@ -19,5 +19,5 @@ pub(crate) mod points;
 pub(crate) mod state;
 pub(crate) mod tangent;
 
-pub use parts::{Chain, Held, Joints};
+pub use parts::{Chain, EndJoint, Joints};
 pub use state::ChainState;

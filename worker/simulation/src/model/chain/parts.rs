@@ -1,7 +1,7 @@
 //! Constant data of a chain (blocks, cylinders), and its joints at one instant.
 use crate::element::bushing::{Bushing, Marker};
 use crate::model::contact::{GAUSS, POINTS};
-use crate::model::hook::axial::AxialLaws;
+use crate::model::extension::axial::AxialLaws;
 use crate::model::layout::Motion;
 
 /// Position of a chain's blocks among the unknowns, and the properties of its cylinders.
@@ -52,7 +52,7 @@ impl Chain {
 
 /// Held end of a chain: marker on the holding body and law of the joint.
 #[derive(Clone, Copy, Debug)]
-pub struct Held<'a> {
+pub struct EndJoint<'a> {
     /// Marker on the holding body.
     pub marker: Marker,
     /// Law of the joint.
@@ -67,9 +67,9 @@ pub struct Joints<'a> {
     /// Law of the joints between two cylinders.
     pub inner: &'a Bushing,
     /// Joint that holds the first cylinder; `None` if that end is free.
-    pub base: Option<Held<'a>>,
+    pub base: Option<EndJoint<'a>>,
     /// Joint that holds the last cylinder; `None` if that end is free.
-    pub head: Option<Held<'a>>,
+    pub head: Option<EndJoint<'a>>,
     /// Axial effect laws between the cylinders.
     pub axial: Option<AxialLaws<'a>>,
 }

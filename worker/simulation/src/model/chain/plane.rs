@@ -5,8 +5,8 @@ use super::link::Side;
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
 use crate::element::bushing::Bushing;
-use crate::element::plane::{PLANE_UNITS, PlaneColumn};
-use crate::linear::{Block, Blocks};
+use crate::element::plane::{PLANE_COEFFICIENTS, PlaneColumn};
+use crate::linear::{Blocks, MatrixBlock};
 
 #[expect(
     clippy::multiple_inherent_impl,
@@ -50,7 +50,11 @@ impl Chain {
 
     /// Adds, per coordinate, the forces of the joints between cylinders per unit of each joint coefficient,
     /// as defined by [`Bushing::plane_units`]; does nothing for a chain in space.
-    pub(crate) fn add_plane_units(&self, state: &ChainState, units: &mut [[f64; PLANE_UNITS]]) {
+    pub(crate) fn add_plane_units(
+        &self,
+        state: &ChainState,
+        units: &mut [[f64; PLANE_COEFFICIENTS]],
+    ) {
         let Some(units) = units.get_mut(self.range()) else {
             return;
         };
@@ -90,7 +94,7 @@ impl Chain {
         }
     }
 
-    /// Subtracts the tangent of the joints between the cylinders.
+    /// Subtracts the tangent of the joints between cylinders from the matrix.
     pub(super) fn add_plane_tangent(
         &self,
         joints: &Joints<'_>,
@@ -111,7 +115,7 @@ impl Chain {
 
     /// Subtracts the joints' tangent, without the rate-dependent part from the first matrix and complete from
     /// the second.
-    pub(super) fn add_plane_parts(
+    pub(super) fn add_plane_stiffness_and_tangent(
         &self,
         joints: &Joints<'_>,
         state: &ChainState,
@@ -130,7 +134,7 @@ impl Chain {
     }
 }
 
-/// Subtracts the tangent of the joint between `block` (I) and the block before it (J).
+/// Subtracts the tangent of the joint between `block` (I) and the block before it (J) from the matrix.
 #[inline]
 fn subtract_joint(matrix: &mut Blocks<3>, block: usize, [by_i, by_j]: &[[PlaneColumn; 3]; 2]) {
     subtract(matrix.diagonal_mut(block - 1), by_j, Side::J);
@@ -140,9 +144,9 @@ fn subtract_joint(matrix: &mut Blocks<3>, block: usize, [by_i, by_j]: &[[PlaneCo
     subtract(matrix.diagonal_mut(block), by_i, Side::I);
 }
 
-/// Subtracts the rows of the cylinder on one side of a joint from a block.
+/// Subtracts a joint's derivatives from a block, in the rows of the cylinder on one side of the joint.
 #[inline]
-fn subtract(block: &mut Block<3>, columns: &[PlaneColumn; 3], side: Side) {
+fn subtract(block: &mut MatrixBlock<3>, columns: &[PlaneColumn; 3], side: Side) {
     for (k, column) in columns.iter().enumerate() {
         let (sign, torque) = match side {
             Side::I => (1.0, column.torque_i),

@@ -2,8 +2,8 @@
 //! compilers vectorise the arithmetic over many points. The geometry of contact and its law are evaluated
 //! only here; forces, tangent and energy read the results.
 use super::parts::Chain;
-use crate::element::impact::{By, Impact, ImpactForce};
-use crate::math::spline::{Place, sum::Spread};
+use crate::element::impact::{DerivativeVariable, Impact, ImpactForce};
+use crate::math::spline::{SplinePosition, sum::KnotForces};
 use crate::model::contact::{Curvature, POINTS, Surface, small_angle};
 use crate::model::pose::InPlane;
 use nalgebra::Vector2;
@@ -32,7 +32,7 @@ pub struct Points {
     bearing: Vec<Each>,
     angle: Vec<Each>,
     /// Positions of the points on the grid of the arc's mode shapes, if the arc has any.
-    on_grid: Vec<[Place; POINTS]>,
+    on_grid: Vec<[SplinePosition; POINTS]>,
     /// Height of the surface above its circle \[m\]; `slope` is its derivative with respect to the arc angle
     /// [m/rad], `rising` its rate [m/s].
     height: Vec<Each>,
@@ -52,7 +52,7 @@ pub struct Points {
 
 /// Sums over the contact points of one cylinder.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pressed {
+pub(super) struct CylinderContact {
     /// Sum of the normal contact forces \[N\].
     pub(super) total: f64,
     /// Force on the cylinder \[N\]; `bend` is its first moment along the axis [N m].
@@ -66,7 +66,7 @@ pub(super) struct Pressed {
 
 /// Loaded contact point with the quantities that a tangent needs.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Touch {
+pub(super) struct ContactPoint {
     /// Position along the cylinder from its centre \[m\]; `velocity` is the point's velocity [m/s].
     pub(super) along: f64,
     pub(super) velocity: V2,
@@ -78,13 +78,13 @@ pub(super) struct Touch {
     pub(super) by_beam: f64,
     pub(super) curvature: Curvature,
     /// Position on the grid of the arc's mode shapes, if the arc has any.
-    pub(super) on_grid: Place,
+    pub(super) on_grid: SplinePosition,
     /// Force of the contact law with its derivatives, multiplied by the point's share.
     pub(super) law: ImpactForce,
 }
 
 impl Points {
-    /// Allocates the points of a chain.
+    /// Allocates the contact points of a chain.
     pub(super) fn new(chain: &Chain) -> Self {
         let zeros = || vec![[0.0; POINTS]; chain.count];
         let half = 0.5 * chain.pitch;
@@ -97,7 +97,7 @@ impl Points {
             velocity: [zeros(), zeros()],
             bearing: zeros(),
             angle: zeros(),
-            on_grid: vec![[Place::default(); POINTS]; chain.count],
+            on_grid: vec![[SplinePosition::default(); POINTS]; chain.count],
             height: zeros(),
             slope: zeros(),
             rising: zeros(),
@@ -115,7 +115,7 @@ impl Points {
         &self.cylinders
     }
 
-    /// Collects the points of all cylinders that may touch, and evaluates the contact law there.
+    /// Collects the contact points of all cylinders that may touch, and evaluates the contact law there.
     pub(super) fn evaluate<'a, const A: usize, P: InPlane<A> + 'a>(
         &mut self,
         chain: &Chain,
@@ -124,22 +124,23 @@ impl Points {
         poses: impl Iterator<Item = &'a P>,
     ) {
         self.collect(chain, surface, poses);
-        if surface.asks_for_angle() {
-            self.turn();
+        if surface.is_noncircular() {
+            self.compute_angles();
         }
-        self.shape(surface);
-        self.penetrate(surface);
+        self.compute_heights(surface);
+        self.compute_penetrations(surface);
         let n = self.cylinders.len();
         let (depth, rate) = (&self.depth[..n], &self.rate[..n]);
         let (force, lost) = (&mut self.force[..n], &mut self.lost[..n]);
-        law.push_all(
+        law.forces_batch(
             [depth.as_flattened(), rate.as_flattened()],
             [force.as_flattened_mut(), lost.as_flattened_mut()],
         );
     }
 
-    /// Replaces the forces by their derivatives with respect to the parameter `by` of the law.
-    pub(crate) fn vary(&mut self, law: &Impact, by: By) {
+    /// Replaces the contact forces by their derivatives with respect to the parameter `by` of the contact
+    /// law.
+    pub(crate) fn replace_forces_by_derivatives(&mut self, law: &Impact, by: DerivativeVariable) {
         let n = self.cylinders.len();
         let force = self.force[..n].as_flattened_mut();
         let at = self.depth[..n].as_flattened().iter();
@@ -177,8 +178,8 @@ impl Points {
         }
     }
 
-    /// Computes the arc angles of the points.
-    fn turn(&mut self) {
+    /// Computes the arc angles of the contact points.
+    fn compute_angles(&mut self) {
         let c = self.cylinders.len();
         let [ax, ay] = self.toward.each_ref().map(|x| x[..c].as_flattened());
         let [bx, by] = self.place.each_ref().map(|x| x[..c].as_flattened());
@@ -190,8 +191,9 @@ impl Points {
         }
     }
 
-    /// Computes the heights of the surface above its circle, with slopes and rates.
-    fn shape(&mut self, surface: &Surface<'_>) {
+    /// Computes the heights of the arc's surface above its circle at the contact points, with slopes and
+    /// rates.
+    fn compute_heights(&mut self, surface: &Surface<'_>) {
         let c = self.cylinders.len();
         let height = self.height[..c].as_flattened_mut();
         let slope = self.slope[..c].as_flattened_mut();
@@ -203,7 +205,7 @@ impl Points {
                 *place = bend.shapes.place(angle);
             }
             bend.sum
-                .heights(bend.shapes, on_grid, [&mut *height, &mut *slope, rising]);
+                .evaluate_all(bend.shapes, on_grid, [&mut *height, &mut *slope, rising]);
         } else {
             height.fill(0.0);
             slope.fill(0.0);
@@ -218,8 +220,8 @@ impl Points {
         }
     }
 
-    /// Computes the penetrations with their rates and derivatives.
-    fn penetrate(&mut self, surface: &Surface<'_>) {
+    /// Computes the penetrations of the contact points with their rates and derivatives.
+    fn compute_penetrations(&mut self, surface: &Surface<'_>) {
         let c = self.cylinders.len();
         let n = c * POINTS;
         let [x, y] = self.place.each_ref().map(|x| &x[..c].as_flattened()[..n]);
@@ -256,13 +258,13 @@ impl Points {
         }
     }
 
-    /// Sums up the points of the `k`-th of [`Self::cylinders`].
+    /// Sums up the contact forces on the `k`-th of [`Self::cylinders`].
     #[inline]
-    pub(super) fn pressed(&self, k: usize) -> Pressed {
+    pub(super) fn cylinder_contact(&self, k: usize) -> CylinderContact {
         let (force, lost) = (&self.force[k], &self.lost[k]);
         let [x, y] = [&self.by_point[0][k], &self.by_point[1][k]];
         let beam = &self.by_beam[k];
-        let mut sum = Pressed::default();
+        let mut sum = CylinderContact::default();
         for i in 0..POINTS {
             let force = self.share[i] * force[i];
             let push = V2::new(-force * x[i], -force * y[i]);
@@ -275,24 +277,24 @@ impl Points {
         sum
     }
 
-    /// Iterates over the loaded points of the `k`-th of [`Self::cylinders`].
-    pub(super) fn touching(&self, k: usize) -> impl Iterator<Item = usize> {
+    /// Iterates over the loaded contact points of the `k`-th of [`Self::cylinders`].
+    pub(super) fn loaded_points(&self, k: usize) -> impl Iterator<Item = usize> {
         let pressed = move |&i: &usize| self.share[i] * self.force[k][i] != 0.0;
         (0..POINTS).filter(pressed)
     }
 
-    /// Returns point `i` of the `k`-th of [`Self::cylinders`]; surface and law must be those of the last
-    /// evaluation.
+    /// Returns contact point `i` of the `k`-th of [`Self::cylinders`]; surface and law must be those of the
+    /// last evaluation.
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
-    pub(super) fn touch(
+    pub(super) fn contact_point(
         &self,
         (k, i): (usize, usize),
         surface: &Surface<'_>,
         law: &Impact,
-    ) -> Touch {
+    ) -> ContactPoint {
         let law = law.force(self.depth[k][i], self.rate[k][i]);
-        Touch {
+        ContactPoint {
             along: self.along[i],
             velocity: V2::new(self.velocity[0][k][i], self.velocity[1][k][i]),
             angle: self.angle[k][i],
@@ -304,8 +306,8 @@ impl Points {
         }
     }
 
-    /// Returns the derivatives of the force at point `i` of the `k`-th of [`Self::cylinders`] with respect to
-    /// stiffness and damping of the law.
+    /// Returns the derivatives of the contact force at point `i` of the `k`-th of [`Self::cylinders`] with
+    /// respect to stiffness and damping of the law.
     pub(super) fn by_law(&self, (k, i): (usize, usize), law: &Impact) -> [f64; 2] {
         let by = law.force_by(self.depth[k][i], self.rate[k][i]);
         by.map(|by| self.share[i] * by)
@@ -337,7 +339,7 @@ impl Points {
     }
 
     /// Distributes the contact forces to the knots of the arc's mode shapes.
-    pub(super) fn spread(&self, pressure: &mut Spread) {
+    pub(super) fn distribute_to_knots(&self, pressure: &mut KnotForces) {
         for (k, places) in self.on_grid[..self.cylinders.len()].iter().enumerate() {
             for (i, place) in places.iter().enumerate() {
                 let force = self.share[i] * self.force[k][i];
@@ -348,7 +350,7 @@ impl Points {
         }
     }
 
-    /// Iterates over arc angle \[rad\] and force \[N\] of all points.
+    /// Iterates over pairs of arc angle \[rad\] and contact force \[N\] of all contact points.
     pub(crate) fn forces(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let points = self.angle.iter().zip(&self.force);
         let each = points.take(self.cylinders.len());
@@ -362,10 +364,10 @@ impl Points {
 mod tests {
     use super::*;
     use crate::math::elementary::sin_cos;
-    use crate::math::spline::{Splines, sum::Sum};
-    use crate::model::contact::Bend;
+    use crate::math::spline::{Splines, sum::WeightedSplines};
+    use crate::model::contact::Deflection;
     use crate::model::description::Arc;
-    use crate::model::hook::profile::{Hollow, Profile};
+    use crate::model::extension::profile::{Hollow, Profile};
     use crate::model::pose::PlanePose;
 
     /// Contact point with all its derivatives.
@@ -402,7 +404,7 @@ mod tests {
             ],
         );
         let mut profile = Profile::default();
-        profile.dig(Hollow {
+        profile.add_profile_change(Hollow {
             depth: 0.01,
             centre: 2.8,
             reach: 0.2,
@@ -416,9 +418,9 @@ mod tests {
         let chain = Chain::solid(0, 1, 0.01, 0.1, 7850.0);
         for (bent, worn) in [(false, false), (true, false), (false, true), (true, true)] {
             let at = |i: usize, x: [f64; 6]| {
-                let mut sum = Sum::default();
-                sum.weigh(&shapes, &x[4..], &MOTION[4..]);
-                let bend = Bend {
+                let mut sum = WeightedSplines::default();
+                sum.assemble(&shapes, &x[4..], &MOTION[4..]);
+                let bend = Deflection {
                     shapes: &shapes,
                     sum: &sum,
                     modal_rate: &MOTION[4..],

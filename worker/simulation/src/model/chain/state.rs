@@ -2,8 +2,8 @@
 use super::parts::Chain;
 use super::points::Points;
 use crate::element::bushing::LinkLoad;
-use crate::math::spline::sum::Spread;
-use crate::model::hook::axial::Memory;
+use crate::math::spline::sum::KnotForces;
+use crate::model::extension::axial::Memory;
 use crate::model::layout::Motion;
 use crate::model::pose::{PlanePose, Pose};
 use nalgebra::Vector2;
@@ -24,7 +24,7 @@ pub struct ChainState {
     /// Contact points of the last evaluation.
     pub points: Points,
     /// Contact forces on a deflected arc, distributed to the knots of its mode shapes.
-    pub pressure: Spread,
+    pub pressure: KnotForces,
     /// Largest penetration \[m\].
     pub deepest: f64,
     /// Power dissipated by the contact damping \[W\].
@@ -48,7 +48,7 @@ impl ChainState {
             joints: vec![LinkLoad::none(); chain.count + 1],
             contact: vec![0.0; chain.count],
             points: Points::new(chain),
-            pressure: Spread::default(),
+            pressure: KnotForces::default(),
             deepest: 0.0,
             dissipated: 0.0,
             memory: Vec::new(),

@@ -6,7 +6,7 @@ use super::link::Side;
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
 use crate::element::bushing::LinkTangent;
-use crate::linear::{BLOCK, Block, Blocks, Bordered};
+use crate::linear::{BLOCK, Blocks, Bordered, MatrixBlock};
 use crate::model::pose::Pose;
 use nalgebra::{Matrix3, Vector3};
 
@@ -23,10 +23,10 @@ pub(crate) struct CylinderColumns {
     angles: [M3; 3],
 }
 
-/// Derivatives of an end joint's load with respect to the motion of its cylinder and of the holding body,
-/// before rates are related to coordinates.
+/// Derivatives of an end joint's load with respect to displacement, velocity, rotation and angular velocity
+/// of its cylinder and of the holding body, each taken as independent.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct HeldEnd {
+pub(crate) struct EndJointTangent {
     side: Side,
     /// Matrix block of the cylinder; `pose` is its pose.
     block: usize,
@@ -62,7 +62,7 @@ impl Chain {
                 self.add_plane_tangent(joints, state, gamma, matrix);
             }
             Bordered::Space(matrix) => {
-                self.add_turning(state, matrix);
+                self.add_torque_geometric_stiffness(state, matrix);
                 for joint in 1..self.count {
                     self.add_inner_tangent(joint, joints, state, gamma, matrix);
                 }
@@ -72,7 +72,7 @@ impl Chain {
 
     /// Adds the joints' tangent, without the rate-dependent part to the first matrix and complete to the
     /// second; returns whether this was done, which requires a chain in the plane.
-    pub(crate) fn add_joint_parts(
+    pub(crate) fn add_joint_stiffness_and_tangent(
         &self,
         joints: &Joints<'_>,
         state: &ChainState,
@@ -83,12 +83,16 @@ impl Chain {
         let (Bordered::Plane(stiffness), Bordered::Plane(matrix)) = (stiffness, matrix) else {
             return false;
         };
-        self.add_plane_parts(joints, state, gamma, [stiffness, matrix]);
+        self.add_plane_stiffness_and_tangent(joints, state, gamma, [stiffness, matrix]);
         true
     }
 
     /// Returns the derivatives of the joints at base and head; `None` for a free end.
-    pub(crate) fn ends(&self, joints: &Joints<'_>, state: &ChainState) -> [Option<HeldEnd>; 2] {
+    pub(crate) fn ends(
+        &self,
+        joints: &Joints<'_>,
+        state: &ChainState,
+    ) -> [Option<EndJointTangent>; 2] {
         [(0, 0, Side::I), (self.count, self.count - 1, Side::J)].map(|(joint, cylinder, side)| {
             let ([i, j], law) = self.link(joint, joints, state)?;
             let [by_i, by_j] = law.tangent(&i, &j, &state.joints[joint]);
@@ -96,7 +100,7 @@ impl Chain {
                 Side::I => (by_i, by_j),
                 Side::J => (by_j, by_i),
             };
-            Some(HeldEnd {
+            Some(EndJointTangent {
                 side,
                 block: self.first + cylinder,
                 pose: state.pose(cylinder),
@@ -110,14 +114,14 @@ impl Chain {
     /// derivatives for the holding bodies.
     pub(crate) fn add_end_tangent(
         &self,
-        ends: &[Option<HeldEnd>; 2],
+        ends: &[Option<EndJointTangent>; 2],
         gamma: f64,
         matrix: &mut Bordered,
     ) -> [Option<EndTangent>; 2] {
         ends.each_ref().map(|end| {
             let end = end.as_ref()?;
             let by_cylinder = CylinderColumns::new(&end.by_own, &end.pose, gamma);
-            let mut own = Block::zeros();
+            let mut own = MatrixBlock::zeros();
             subtract_own(&mut own, &by_cylinder, &end.pose.angular(), end.side);
             let kept = self.motion.kept();
             for (c, &column) in kept.iter().enumerate() {
@@ -132,9 +136,9 @@ impl Chain {
         })
     }
 
-    /// Adds the derivative of each cylinder's joint torques due to the change of their generalised components
-    /// with its angles.
-    fn add_turning(&self, state: &ChainState, matrix: &mut Blocks<BLOCK>) {
+    /// Adds the tangent of turning cylinders: a joint torque's components along the angle coordinates change
+    /// with the angles.
+    fn add_torque_geometric_stiffness(&self, state: &ChainState, matrix: &mut Blocks<BLOCK>) {
         for (j, pose) in state.poses.iter().enumerate() {
             let torque = state.joints[j].torque_i + state.joints[j + 1].torque_j;
             let turning = pose.torque_by_angles(&torque);
@@ -184,15 +188,16 @@ impl CylinderColumns {
         }
     }
 
-    /// Returns the derivatives with respect to coordinate `k` of the cylinder.
+    /// Returns the derivatives of the joint's load with respect to coordinate `k` of the cylinder.
     pub(crate) fn column(&self, k: usize) -> Column {
         let of = if k < 3 { &self.position } else { &self.angles };
         std::array::from_fn(|row| of[row].column(k % 3).into_owned())
     }
 }
 
-/// Subtracts the rows of the cylinder on one side of a joint: force and generalised torque.
-fn subtract_own(block: &mut Block, columns: &CylinderColumns, angular: &M3, side: Side) {
+/// Subtracts a joint's derivatives from a block, in the rows (force, generalised torque) of the cylinder on
+/// one side.
+fn subtract_own(block: &mut MatrixBlock, columns: &CylinderColumns, angular: &M3, side: Side) {
     let (sign, torque) = match side {
         Side::I => (1.0, 1),
         Side::J => (-1.0, 2),

@@ -10,8 +10,8 @@ use simulation::model::description::RopeLaw;
 use simulation::sensitivity::Coefficient;
 use std::f64::consts::{FRAC_PI_2, LN_10, PI, TAU};
 
-/// Point on a body: the body's reference point and its velocity, the arm to the point, the body's angle and
-/// its rate.
+/// Attachment point on a body: position and velocity of the body's reference point, the arm from there to the
+/// attachment point, the body's angle and its rate.
 #[derive(Clone, Copy, Default)]
 struct Marker {
     point: Vector,
@@ -54,9 +54,9 @@ fn bushing([along, across, bending]: Law, i: &Marker, j: &Marker) -> (Vector, [D
 /// Coordinates, rates and accelerations, each with its derivative.
 pub(super) type Motion = [Vec<Dual>; 3];
 
-/// Machine with one rope law, evaluated in dual numbers whose derivative is by the decimal logarithm of one
-/// coefficient.
-pub(super) struct Twin<'a> {
+/// Machine with one rope law, evaluated in dual numbers that carry the derivative with respect to the decimal
+/// logarithm of one coefficient.
+pub(super) struct DualMachine<'a> {
     machine: &'a Machine,
     /// Bushing laws: between cylinders, at the rope's base, at the head.
     laws: [Law; 3],
@@ -64,7 +64,7 @@ pub(super) struct Twin<'a> {
     contact: [Dual; 3],
 }
 
-impl<'a> Twin<'a> {
+impl<'a> DualMachine<'a> {
     pub(super) fn new(machine: &'a Machine, law: &RopeLaw, by: Coefficient) -> Self {
         let rope = &machine.description.rope;
         let per_length = rope.reference_pitch / rope.pitch;
@@ -251,7 +251,7 @@ impl<'a> Twin<'a> {
     }
 }
 
-/// Adds a force and a torque to a cylinder's rows of the residual.
+/// Adds a force and a torque to the three rows of the residual that belong to a cylinder.
 fn push(rows: &mut [Dual], force: Vector, torque: Dual) {
     for (row, x) in rows.iter_mut().zip([force.0[0], force.0[1], torque]) {
         *row = *row + x;

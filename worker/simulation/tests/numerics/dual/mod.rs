@@ -7,21 +7,23 @@ mod machine;
 mod number;
 
 use crate::rope::recommended;
-use machine::{Motion, Twin};
+use machine::{DualMachine, Motion};
 use nalgebra::{DMatrix, DVector};
 use number::Dual;
 use simulation::integrator::dense::interpolate;
 use simulation::integrator::stepper::Stages;
-use simulation::model::{Individual, Machine};
+use simulation::model::{Machine, RopeMachine};
 use simulation::reference;
 use simulation::run::{Observe, RunSettings};
-use simulation::sensitivity::{self, Coefficient, Column, Derivative, Origin, Plan};
+use simulation::sensitivity::{
+    self, Coefficient, Column, ColumnOrigin, Derivative, DerivativePlan,
+};
 use simulation::system::{State, System};
 
 /// Observer of a run that integrates the derivatives by one coefficient along its stages.
 struct Follower<'a> {
     machine: &'a Machine,
-    twin: Twin<'a>,
+    twin: DualMachine<'a>,
     /// Derivatives of the states at the start and at the end of the last step.
     ends: [State; 2],
     /// Derivatives of the suspension's height and of the crank torque at each sample.
@@ -36,11 +38,12 @@ fn dual(real: [&[f64]; 3], by: &[Vec<f64>; 3]) -> Motion {
 }
 
 impl Follower<'_> {
-    /// Solves for the derivatives of coordinates, rates and accelerations that keep the residual zero; each
-    /// is `base` plus the factor in `times` times one common unknown per coordinate.
+    /// Solves for the derivatives of coordinates, rates and accelerations that keep the residual zero. Each
+    /// of the three is `base` plus its factor in `times` multiplied by the unknown of the coordinate, for
+    /// which a linear system is solved.
     fn solve(
         &self,
-        system: &mut System<Individual<'_>>,
+        system: &mut System<RopeMachine<'_>>,
         (t, real): (f64, [&[f64]; 3]),
         base: [Vec<f64>; 3],
         times: [f64; 3],
@@ -76,7 +79,7 @@ impl Follower<'_> {
 }
 
 impl Observe for Follower<'_> {
-    fn begin(&mut self, system: &mut System<Individual<'_>>, state: &State) {
+    fn begin(&mut self, system: &mut System<RopeMachine<'_>>, state: &State) {
         let zeros = vec![0.0; state.q.len()];
         let real = [&state.q[..], &zeros, &zeros];
         let none = std::array::from_fn(|_| zeros.clone());
@@ -86,7 +89,7 @@ impl Observe for Follower<'_> {
 
     fn step(
         &mut self,
-        system: &mut System<Individual<'_>>,
+        system: &mut System<RopeMachine<'_>>,
         [from, to]: [&State; 2],
         stages: Option<Stages<'_>>,
     ) {
@@ -126,7 +129,7 @@ impl Observe for Follower<'_> {
         self.ends[0].t = from.t;
     }
 
-    fn sample(&mut self, _: usize, system: &mut System<Individual<'_>>, state: &State) {
+    fn sample(&mut self, _: usize, system: &mut System<RopeMachine<'_>>, state: &State) {
         let mut by = state.clone();
         let [from, to] = &self.ends;
         interpolate(from, to, state.t, &mut by);
@@ -151,7 +154,7 @@ fn columns_are_what_dual_numbers_say() {
     description.rope.back /= 6;
     description.rope.front /= 6;
     let machine = Machine::new(description.clone(), 0).unwrap();
-    let origin = Origin {
+    let origin = ColumnOrigin {
         description: &description,
         modes: 0,
         effects: &[],
@@ -164,17 +167,17 @@ fn columns_are_what_dual_numbers_say() {
     };
     let law = recommended();
     for by in Coefficient::ALL {
-        let plan = Plan::new(&origin, &machine, &[Column::Coefficient(by)]).unwrap();
+        let plan = DerivativePlan::new(&origin, &machine, &[Column::Coefficient(by)]).unwrap();
         let mut follower = Follower {
             machine: &machine,
-            twin: Twin::new(&machine, &law, by),
+            twin: DualMachine::new(&machine, &law, by),
             ends: std::array::from_fn(|_| State::at_rest(0.0, Vec::new())),
             curves: [Vec::new(), Vec::new()],
         };
         let run = sensitivity::simulate(&machine, &law, &settings, &plan, &mut follower);
         let found = match &run.1.unwrap().columns[0] {
             Derivative::Curves(curves) => [curves.suspension.clone(), curves.torque.clone()],
-            Derivative::Nothing => [vec![0.0; 72], vec![0.0; 72]],
+            Derivative::Zero => [vec![0.0; 72], vec![0.0; 72]],
             Derivative::Missing(missing) => unreachable!("{by:?}: {missing}"),
         };
         let pairs = found.iter().zip(&follower.curves);

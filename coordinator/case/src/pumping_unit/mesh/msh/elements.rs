@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 const ALLOWED: &str = "mesh all volumes alike: 8-node hexahedra of order 1, or 10-node tetrahedra \
                        (gmsh -order 2, Mesh.ElementOrder = 2)";
 
-/// Meaning of a Gmsh element type number.
+/// Element kind that a Gmsh element type number stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Type {
     /// Volume elements of an allowed kind.
@@ -20,7 +20,7 @@ enum Type {
     Other,
 }
 
-/// Returns the meaning and the name of a Gmsh element type.
+/// Returns the element kind and the name of a Gmsh element type number.
 const fn known(number: i64) -> (Type, &'static str) {
     match number {
         2 => (Type::Linear, "3-node triangles"),

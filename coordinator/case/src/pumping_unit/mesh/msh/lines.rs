@@ -2,7 +2,7 @@
 use crate::error::{CaseError, damaged};
 use std::path::Path;
 
-/// Remedy for a mesh that cannot be read.
+/// Remedy text for an unreadable mesh: to save it again as MSH 4.1 ASCII.
 pub(super) const SAVE_AGAIN: &str = "save the mesh again as MSH 4.1 ASCII (gmsh -format msh41), \
                           8-node hexahedra of order 1 or 10-node tetrahedra";
 
@@ -27,17 +27,17 @@ impl<'a> Lines<'a> {
         self.rest.next()
     }
 
-    /// Returns the number of the line read last, from 1.
+    /// Returns the line number, from 1, of the mesh-file line that was read last.
     pub(super) const fn number(&self) -> usize {
         self.number
     }
 
-    /// Builds an error at the line read last, with the remedy [`SAVE_AGAIN`].
+    /// Builds an error at the mesh-file line that was read last, with the remedy [`SAVE_AGAIN`].
     pub(super) fn wrong(&self, problem: &str) -> CaseError {
         self.wrong_with(problem, SAVE_AGAIN)
     }
 
-    /// Builds an error at the line read last, with a given remedy.
+    /// Builds an error at the mesh-file line that was read last, with a given remedy.
     pub(super) fn wrong_with(&self, problem: &str, help: &str) -> CaseError {
         damaged(self.path, format!("line {}: {problem}", self.number), help)
     }
@@ -71,7 +71,7 @@ impl<'a> Lines<'a> {
             .ok_or_else(|| self.wrong("numbers are missing"))
     }
 
-    /// Reads the end tag of a section.
+    /// Reads the tag that ends a section of the mesh file.
     pub(super) fn end(&mut self, tag: &str) -> Result<(), CaseError> {
         if self.line()?.trim() == tag {
             Ok(())

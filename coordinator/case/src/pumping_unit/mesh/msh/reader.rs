@@ -45,7 +45,7 @@ fn parse(path: &Path, bytes: Vec<u8>) -> Result<Mesh, CaseError> {
             other => skip(&mut lines, other)?,
         }
     }
-    whole::finished(path, sections)
+    whole::validated_mesh(path, sections)
 }
 
 /// Checks the format line before the bytes are decoded as text.

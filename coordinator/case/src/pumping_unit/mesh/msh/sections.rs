@@ -10,7 +10,7 @@ pub(super) struct Sections {
     pub(super) names: BTreeMap<(usize, i64), String>,
     /// Map from (dimension, entity tag) to physical tags.
     pub(super) groups: BTreeMap<(usize, i64), Vec<i64>>,
-    /// Map from node tag to index.
+    /// Map from the tag of a node in the file to its index in the mesh.
     pub(super) index: BTreeMap<i64, usize>,
     pub(super) mesh: Mesh,
 }

@@ -29,7 +29,7 @@ const PIN_B: Block = (2, 2, 9, &[1, 4, 3, 8, 9, 7]);
 const ROPE: Block = (2, 3, 9, &[2, 3, 4, 6, 9, 10]);
 const FLOOR: Block = (2, 4, 9, &[1, 3, 2, 7, 6, 5]);
 
-/// Reads a mesh made of blocks; `floor` is the group name of surface 4.
+/// Reads a test mesh made of the given element blocks; `floor` is the group name of surface 4.
 fn read_blocks(blocks: &[Block], nodes: &[[f64; 3]], floor: &str) -> Result<Mesh, String> {
     let mut text = format!(
         "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n2 1 \"pin_a\"\n2 2 \"pin_b\"\n\

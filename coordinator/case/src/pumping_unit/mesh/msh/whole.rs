@@ -15,7 +15,7 @@ use std::path::Path;
 /// # Errors
 /// Returns an error for a missing physical group, a group with a node that belongs to no element, an inverted
 /// element, and a half mesh that does not end at the plane z = 0.
-pub(super) fn finished(path: &Path, sections: Sections) -> Result<Mesh, CaseError> {
+pub(super) fn validated_mesh(path: &Path, sections: Sections) -> Result<Mesh, CaseError> {
     for wanted in SURFACES {
         require(
             path,

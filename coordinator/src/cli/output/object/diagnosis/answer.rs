@@ -2,15 +2,15 @@
 use super::{
     effects::{EffectOutput, ForceOutput, RoundOutput, effect, force, rounds},
     gap::{GapOutput, PredictionOutput, gap, predictions},
-    place::{WhereOutput, whereabouts},
-    wander::{WanderedOutput, wandered},
+    localisation::{LocalisationOutput, localisation},
+    parameter_drift::{VaryingUnknownsOutput, wandered},
 };
 use discrepancy::{
-    diagnose::{Absorbed, Diagnosis, Estimate, Limit, LookAlikes, NeverExact},
-    ground::preflight::Preflight,
+    baseline::discretisation_check::Preflight,
+    diagnose::{Absorbed, Diagnosis, Estimate, IndistinguishablePair, Limit, NuisanceEstimate},
     verdict::Verdict,
 };
-use report::diagnosis::Subject;
+use report::diagnosis::DiagnosisInput;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -22,8 +22,8 @@ pub(crate) struct DiagnoseOutput {
     verdict: Verdict,
     /// Reason for the verdict; null if it needs none.
     reason: Option<String>,
-    /// Added effects, followed by the other members of their ambiguity sets, best first. Empty if the verdict
-    /// names no effect: suspected effects are listed in the rounds.
+    /// Effects that the diagnosis added to the model, followed by the other members of their ambiguity sets,
+    /// best first. Empty if the verdict names no effect: suspected effects are listed in the rounds.
     effects: Vec<EffectOutput>,
     /// Form and joint of a generic force that fits better than every named effect.
     generic: Option<String>,
@@ -31,27 +31,28 @@ pub(crate) struct DiagnoseOutput {
     generic_force: Option<ForceOutput>,
     rounds: Vec<RoundOutput>,
     #[serde(rename = "where")]
-    whereabouts: Option<WhereOutput>,
-    wander: WanderedOutput,
+    whereabouts: Option<LocalisationOutput>,
+    wander: VaryingUnknownsOutput,
     detection_limits: Vec<Limit>,
     /// Estimated instrument errors (nuisance parameters), reported besides the effects.
-    nuisances: Vec<NeverExact>,
-    /// Effects that this record cannot show because the unknowns absorb them, largest absorbed share first.
+    nuisances: Vec<NuisanceEstimate>,
+    /// Effects that the measured record cannot reveal because the unknowns absorb them, largest absorbed
+    /// share first.
     absorbed: Vec<Absorbed>,
     /// Pairs of effects that this record cannot distinguish at three times their detection limits.
     inseparable: Vec<[String; 2]>,
     /// Measurements that would distinguish the inseparable pairs, in the order of the pairs.
-    data_worth: Vec<LookAlikes>,
+    data_worth: Vec<IndistinguishablePair>,
     gap: GapOutput,
-    /// Predictive scores of the accepted model, or of the suspect that was withheld, on all data excluded
-    /// from the fit.
+    /// Predictive scores, on all data excluded from the fit, of the accepted model or, if none was accepted,
+    /// of the withheld suspected effect.
     prediction: Vec<PredictionOutput>,
     whiteness: Option<WhitenessOutput>,
     rival: Option<RivalOutput>,
     assumed_noise: bool,
     numerical_error: Option<NumericalOutput>,
     genes: BTreeMap<String, f64>,
-    /// Stages that exhausted their simulation budget.
+    /// Names of the stages of the diagnosis that exhausted their simulation budget.
     ran_out: Vec<&'static str>,
     stages: Vec<StageOutput>,
     wall_s: f64,
@@ -70,7 +71,8 @@ struct RivalOutput {
     gap: GapOutput,
 }
 
-/// Discretisation error: change of the channels under a finer model, by channel (in their units).
+/// Discretisation error of the simulation, by channel: change of each channel under a finer model, in the
+/// channel's unit.
 #[derive(Debug, Serialize)]
 struct NumericalOutput {
     rms: Vec<f64>,
@@ -102,7 +104,7 @@ struct StageOutput {
 }
 
 /// Builds the JSON object of a diagnosis.
-pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
+pub(crate) fn object(subject: &DiagnosisInput<'_>) -> DiagnoseOutput {
     let diagnosis = &subject.diagnosed.diagnosis;
     let genes = diagnosis
         .after
@@ -121,7 +123,7 @@ pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
         generic: diagnosis.generic.clone(),
         generic_force: diagnosis.force.as_ref().map(force),
         rounds: rounds(diagnosis),
-        whereabouts: whereabouts(subject),
+        whereabouts: localisation(subject),
         wander: wandered(subject),
         detection_limits: diagnosis.detection_limits().map(bounded).collect(),
         nuisances: diagnosis.nuisances.clone(),
@@ -167,7 +169,7 @@ pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
     }
 }
 
-/// Returns the effects if the verdict names any, else an empty slice.
+/// Returns the effects found by the diagnosis if the verdict names any, else an empty slice.
 fn named(diagnosis: &Diagnosis) -> &[Estimate] {
     match diagnosis.verdict {
         Verdict::Named | Verdict::Ambiguous | Verdict::Unlisted => &diagnosis.effects,

@@ -1,6 +1,6 @@
 //! Effects, suspected effects and generic forces, with their sizes and tests.
 use super::gap::{GapOutput, gap};
-use discrepancy::diagnose::{Diagnosis, Estimate, Force, ParameterEstimate, Round};
+use discrepancy::diagnose::{Diagnosis, Estimate, ForceEstimate, ParameterEstimate, Round};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ struct ParameterOutput {
     ci95: [f64; 2],
 }
 
-/// Round of the search for effects: its test, its suspects and the effect that was added.
+/// Round of the search for effects: its test, the suspected effects and the effect that was added.
 #[derive(Debug, Serialize)]
 pub(super) struct RoundOutput {
     p_value: f64,
@@ -40,13 +40,13 @@ struct SuspectOutput {
     p_value: f64,
     statistic: f64,
     absorbed: Option<f64>,
-    /// Parameters estimated in the effect's own refit, whether or not the verdict names the effect; null
-    /// without a refit.
+    /// Parameters estimated when the model is refitted with this effect, whether or not the verdict names the
+    /// effect; null without a refit.
     parameters: Option<BTreeMap<String, ParameterOutput>>,
     ln_evidence: Option<f64>,
 }
 
-/// Generic force at a joint, of a given form but with no named cause.
+/// Generic force: a force at a joint, of a given form but with no named cause.
 #[derive(Debug, Serialize)]
 pub(super) struct ForceOutput {
     id: String,
@@ -85,7 +85,7 @@ pub(super) fn effect(diagnosis: &Diagnosis, found: &Estimate) -> EffectOutput {
 }
 
 /// Converts a generic force of the diagnosis to its JSON form.
-pub(super) fn force(found: &Force) -> ForceOutput {
+pub(super) fn force(found: &ForceEstimate) -> ForceOutput {
     ForceOutput {
         id: found.id.clone(),
         joint: found.joint.clone(),
@@ -110,7 +110,7 @@ pub(super) fn rounds(diagnosis: &Diagnosis) -> Vec<RoundOutput> {
         set: round.set.clone(),
         reason: round.reason.clone(),
         suspects: round
-            .suspects
+            .candidates
             .iter()
             .map(|suspect| SuspectOutput {
                 id: suspect.effect.id.clone(),

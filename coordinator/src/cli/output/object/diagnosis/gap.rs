@@ -1,8 +1,8 @@
 //! Gap (unexplained share of the measured variance) before and after the effects were added, and predictive
 //! scores.
-use discrepancy::proof::closed::Closed;
-use discrepancy::proof::compare::{Portion, Row};
-use discrepancy::proof::predictive::Prediction;
+use discrepancy::validation::compare::{DataRole, GapRow};
+use discrepancy::validation::gap_closure::Closed;
+use discrepancy::validation::predictive::Prediction;
 use protocol::case::Case;
 use serde::Serialize;
 
@@ -24,12 +24,12 @@ pub(super) fn predictions(case: &Case, scores: &[Prediction]) -> Vec<PredictionO
             record: case.conditions.get(score.condition)?.name.clone(),
             nats: score.nats,
             held_out: match score.part {
-                Portion::Cycles => "cycles",
-                Portion::Channels => "channel",
-                Portion::Segment => "segment",
-                Portion::Condition => "condition",
-                Portion::LeftOut => "left_out",
-                Portion::Fitted => return None,
+                DataRole::Cycles => "cycles",
+                DataRole::Channels => "channel",
+                DataRole::Segment => "segment",
+                DataRole::Condition => "condition",
+                DataRole::LeftOut => "left_out",
+                DataRole::Fitted => return None,
             },
         })
     };
@@ -48,18 +48,18 @@ pub(super) struct GapOutput {
     other_condition: Option<Closed>,
 }
 
-/// Selects the gaps from the comparison rows.
-pub(super) fn gap(rows: &[Row]) -> GapOutput {
-    let one = |part: Portion| {
+/// Selects the gap before and after the effects for each kind of data from the rows of the comparison.
+pub(super) fn gap(rows: &[GapRow]) -> GapOutput {
+    let one = |part: DataRole| {
         let row = rows.iter().find(|row| row.part == part)?;
         Some(row.closed)
     };
-    let cycles = one(Portion::Cycles);
+    let cycles = one(DataRole::Cycles);
     let marked = rows.iter().find(|row| row.held_out).map(|row| row.closed);
     GapOutput {
-        calibration: one(Portion::Fitted),
+        calibration: one(DataRole::Fitted),
         held_out: marked.or(cycles),
         held_out_cycles: marked.and(cycles),
-        other_condition: one(Portion::Condition),
+        other_condition: one(DataRole::Condition),
     }
 }

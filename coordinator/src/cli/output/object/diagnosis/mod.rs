@@ -3,8 +3,8 @@
 pub(in crate::cli) mod answer;
 mod effects;
 mod gap;
-mod place;
+mod localisation;
+mod parameter_drift;
 #[cfg(test)]
 mod tests;
 pub(in crate::cli) mod times;
-mod wander;

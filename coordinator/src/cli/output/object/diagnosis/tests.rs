@@ -2,47 +2,50 @@
 //! every verdict.
 use super::{answer::object, times::Times};
 use discrepancy::{
-    diagnose::{Diagnosis, Estimate, Force, Limit, LookAlikes, ParameterEstimate, Round},
-    laboratory::Stage,
-    model::{Fit, Model},
-    place::{
-        along, joint, order,
-        wander::{Part, Shift, Wander},
-        whereabouts::Where,
+    diagnose::{
+        Diagnosis, Estimate, ForceEstimate, IndistinguishablePair, Limit, ParameterEstimate, Round,
     },
-    proof::{
-        closed::Closed,
-        compare::{Portion, Row},
+    laboratory::Stage,
+    localisation::{
+        joint, order,
+        parameter_drift::{ParameterDrift, ParameterShift, RecordPart},
+        summary::Localisation,
+        window_test,
+    },
+    model::{Fit, FittedModel},
+    record::{Record, Recorded, Stated, noise::NoiseSource},
+    validation::{
+        compare::{DataRole, GapRow},
+        gap_closure::Closed,
         predictive::Prediction,
     },
-    record::{Record, Recorded, Stated, noise::Known},
     verdict::Verdict,
 };
 use protocol::case::Case;
-use report::{Origin, diagnosis::Subject};
+use report::{Origin, diagnosis::DiagnosisInput};
 use search::{
-    least_squares::{LeastSquares, Settings},
+    least_squares::{LeastSquares, LeastSquaresSettings},
     space::Space,
 };
 use serde_json::Value;
 use std::{path::Path, time::Duration};
-use study::{Diagnosed, StageCost};
+use study::{DiagnosisResult, StageCost};
 
 fn case() -> Case {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
     case::load(&folder, &case::Overrides::default()).unwrap()
 }
 
-fn row(part: Portion, closed: f64) -> Row {
-    Row {
-        condition: usize::from(part == Portion::Condition),
+fn row(part: DataRole, closed: f64) -> GapRow {
+    GapRow {
+        condition: usize::from(part == DataRole::Condition),
         part,
         held_out: false,
         closed: Closed {
             before: 0.04,
             after: 0.04 * (1.0 - closed),
             closed,
-            interval: (part == Portion::Fitted).then_some([closed - 0.1, closed + 0.1]),
+            interval: (part == DataRole::Fitted).then_some([closed - 0.1, closed + 0.1]),
         },
         before: Vec::new(),
         after: Vec::new(),
@@ -69,7 +72,7 @@ fn estimate(id: &str) -> Estimate {
 fn bare(verdict: Verdict) -> Diagnosis {
     Diagnosis {
         verdict,
-        noise: Known::Stated,
+        noise: NoiseSource::Stated,
         ..Diagnosis::unresolved("because")
     }
 }
@@ -78,9 +81,9 @@ fn bare(verdict: Verdict) -> Diagnosis {
 fn full(verdict: Verdict) -> Diagnosis {
     let set = vec!["gauge_drift".to_owned(), "gauge_gain".to_owned()];
     let parts = [
-        (Portion::Fitted, 0.9),
-        (Portion::Cycles, 0.8),
-        (Portion::Condition, 0.7),
+        (DataRole::Fitted, 0.9),
+        (DataRole::Cycles, 0.8),
+        (DataRole::Condition, 0.7),
     ];
     let rows = parts.map(|(part, closed)| row(part, closed)).to_vec();
     Diagnosis {
@@ -89,7 +92,7 @@ fn full(verdict: Verdict) -> Diagnosis {
         rounds: vec![Round {
             ranked: 1,
             together: false,
-            suspects: Vec::new(),
+            candidates: Vec::new(),
             generics: Vec::new(),
             refits: Vec::new(),
             null_evidence: -900.0,
@@ -99,11 +102,11 @@ fn full(verdict: Verdict) -> Diagnosis {
             added: Some("gauge_drift".to_owned()),
             reason: None,
         }],
-        whereabouts: Some(Where {
-            along: along::AlongMap {
+        localisation: Some(Localisation {
+            along: window_test::AlongMap {
                 bins: Vec::new(),
                 strength: Vec::new(),
-                windows: vec![along::Window {
+                windows: vec![window_test::AbscissaWindow {
                     channel: 1,
                     from: 345.0,
                     to: 378.0,
@@ -130,13 +133,13 @@ fn full(verdict: Verdict) -> Diagnosis {
             size: 3.0,
             largest: 0.5,
         }],
-        look_alikes: vec![LookAlikes {
+        look_alikes: vec![IndistinguishablePair {
             effects: ["gauge_drift".to_owned(), "gauge_gain".to_owned()],
             cycles: 2.5,
             cycles_with_others: None,
         }],
         rows: rows.clone(),
-        prediction: [(0, Portion::Cycles, 71.5), (1, Portion::Condition, -0.5)]
+        prediction: [(0, DataRole::Cycles, 71.5), (1, DataRole::Condition, -0.5)]
             .map(|(condition, part, nats)| Prediction {
                 condition,
                 part,
@@ -144,7 +147,7 @@ fn full(verdict: Verdict) -> Diagnosis {
             })
             .to_vec(),
         rival: Some(("rope_toe".to_owned(), rows)),
-        noise: Known::Seen,
+        noise: NoiseSource::Measured,
         ..bare(verdict)
     }
 }
@@ -160,10 +163,10 @@ fn printed(diagnosis: Diagnosis) -> Value {
         held_out: false,
         stated: Stated::default(),
     }];
-    let diagnosed = Diagnosed {
+    let diagnosed = DiagnosisResult {
         diagnosis,
         accounts: vec![(
-            Stage::What,
+            Stage::Test,
             StageCost {
                 experiments: 40,
                 failed: 2,
@@ -172,7 +175,7 @@ fn printed(diagnosis: Diagnosis) -> Value {
             },
         )],
     };
-    let subject = Subject {
+    let subject = DiagnosisInput {
         case: &case,
         records: &records,
         library: &[],
@@ -225,9 +228,9 @@ fn every_verdict_has_its_word_and_every_field_of_the_contract() {
 fn a_force_without_a_cause_is_printed_with_its_size() {
     let case = case();
     let space = Space::new(&case.unknowns).unwrap();
-    let model = Model::plain(space);
-    let search = LeastSquares::new(model.variables(&[]), Settings::default());
-    let found = Force {
+    let model = FittedModel::plain(space);
+    let search = LeastSquares::new(model.variables(&[]), LeastSquaresSettings::default());
+    let found = ForceEstimate {
         id: "probe.saddle.cos3".to_owned(),
         joint: "saddle".to_owned(),
         form: "harmonic 3".to_owned(),
@@ -241,7 +244,7 @@ fn a_force_without_a_cause_is_printed_with_its_size() {
             search,
             curves: Vec::new(),
         },
-        rows: vec![row(Portion::Fitted, 0.9), row(Portion::Condition, 0.7)],
+        rows: vec![row(DataRole::Fitted, 0.9), row(DataRole::Condition, 0.7)],
     };
     let said = printed(Diagnosis {
         generic: Some(found.id.clone()),
@@ -259,18 +262,18 @@ fn a_force_without_a_cause_is_printed_with_its_size() {
     assert!(printed(full(Verdict::Named))["generic_force"].is_null());
 }
 
-/// Checks the JSON form of drifting genes: parts of the turn are given by angles, other conditions by name,
-/// both with a value.
+/// Checks the JSON form of genes whose value would have to vary: sectors of the turn are given by angles,
+/// other conditions by name, both with a value.
 #[test]
 fn wandering_genes_have_their_values() {
     let case = case();
-    let model = Model::plain(Space::new(&case.unknowns).unwrap());
-    let search = LeastSquares::new(model.variables(&[]), Settings::default());
-    let sector = Part::Sector {
+    let model = FittedModel::plain(Space::new(&case.unknowns).unwrap());
+    let search = LeastSquares::new(model.variables(&[]), LeastSquaresSettings::default());
+    let sector = RecordPart::Sector {
         from: 90.0,
         to: 180.0,
     };
-    let shift = |part, by| Shift {
+    let shift = |part, by| ParameterShift {
         part,
         by,
         p_value: 0.01,
@@ -281,9 +284,9 @@ fn wandering_genes_have_their_values() {
             search,
             curves: Vec::new(),
         }),
-        wander: vec![Wander {
+        drifts: vec![ParameterDrift {
             unknown: 1,
-            shifts: vec![shift(sector, 1.0), shift(Part::Condition(1), -1.0)],
+            shifts: vec![shift(sector, 1.0), shift(RecordPart::Condition(1), -1.0)],
             explained: 0.25,
         }],
         ..full(Verdict::Named)
@@ -380,7 +383,7 @@ fn effects_gaps_and_limits_are_as_documented() {
 fn times_that_were_written_are_put_back() {
     let times: Times = serde_json::from_value(printed(full(Verdict::Named))).unwrap();
     let mut accounts = [
-        (Stage::What, StageCost::default()),
+        (Stage::Test, StageCost::default()),
         (Stage::Refit, StageCost::default()),
     ];
     times.restore(&mut accounts);

@@ -1,11 +1,11 @@
 //! JSON object of `horsehead identify`.
 use crate::kind;
 use discrepancy::{
-    diagnose::NeverExact,
-    identify::{Direction, Further, Seen, UnknownEstimate},
+    diagnose::NuisanceEstimate,
+    identify::{Determination, Direction, FurtherMeasurement, UnknownEstimate},
     laboratory::Stage,
 };
-use report::identification::Subject;
+use report::identification::IdentificationInput;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -20,11 +20,11 @@ pub(crate) struct IdentifyOutput {
     unknowns: BTreeMap<String, UnknownOutput>,
     /// Directions in the space of unknowns, from the best determined to the undetermined ones.
     directions: Vec<Direction>,
-    /// Prediction bands, by condition.
+    /// Prediction bands of the channels, by condition.
     prediction: BTreeMap<String, Map<String, Value>>,
-    nuisances: Vec<NeverExact>,
-    /// Further measurements, each with the unknowns that it would determine better.
-    further: Vec<Further>,
+    nuisances: Vec<NuisanceEstimate>,
+    /// Proposed further measurements, each with the unknowns that it would determine better.
+    further: Vec<FurtherMeasurement>,
     /// Root mean square of the residual divided by that of the noise [1].
     times_noise: f64,
     /// Whether the residual exceeds the noise: intervals are then widened, and a diagnosis should be run
@@ -42,13 +42,15 @@ pub(crate) struct IdentifyOutput {
 struct UnknownOutput {
     value: f64,
     unit: String,
-    /// 95 % interval; null for an open end, and null as a whole if both ends are open.
+    /// 95 % confidence interval of the unknown; null for an open end, and null as a whole if both ends are
+    /// open.
     ci95: Option<[Option<f64>; 2]>,
-    seen: Seen,
+    seen: Determination,
     correlated_with: Vec<CorrelationOutput>,
-    /// Reason why the profile ends on each side: `rises`, `bound`, `fails`, `given_up`.
-    ends: [discrepancy::identify::End; 2],
-    /// Likelihood profile: pairs of the value and the rise of -2 ln L, with all other unknowns refitted.
+    /// Reason why the likelihood profile ends on each side: `rises`, `bound`, `fails`, `given_up`.
+    ends: [discrepancy::identify::IntervalEnd; 2],
+    /// Likelihood profile of the unknown: pairs of its value and the increase of -2 ln L over the minimum,
+    /// with all other unknowns refitted.
     profile: Vec<[f64; 2]>,
 }
 
@@ -63,7 +65,7 @@ fn unknown(own: &UnknownEstimate) -> UnknownOutput {
     UnknownOutput {
         value: own.value,
         unit: own.unit.clone(),
-        ci95: (own.seen != Seen::NotSeen).then_some(own.interval),
+        ci95: (own.seen != Determination::NotSeen).then_some(own.interval),
         seen: own.seen,
         correlated_with: correlated
             .map(|(name, correlation)| CorrelationOutput {
@@ -77,7 +79,10 @@ fn unknown(own: &UnknownEstimate) -> UnknownOutput {
 }
 
 /// Builds the JSON object of an identifiability analysis.
-pub(crate) fn object(subject: &Subject<'_>, accounts: &[(Stage, StageCost)]) -> IdentifyOutput {
+pub(crate) fn object(
+    subject: &IdentificationInput<'_>,
+    accounts: &[(Stage, StageCost)],
+) -> IdentifyOutput {
     let (case, identified) = (subject.case, subject.identified);
     let unknowns = identified.unknowns.iter();
     let bands = identified.bands.iter();

@@ -2,15 +2,17 @@
 use super::*;
 use case::{Overrides, load};
 use discrepancy::{
-    identify::{Band, Curve, End, Identified, Part, Pin},
-    record::noise::Known,
+    identify::{
+        Band, BandCurve, DeterminedUnknown, DirectionPart, IdentificationResult, IntervalEnd,
+    },
+    record::noise::NoiseSource,
 };
 use protocol::case::Case;
 use report::{Origin, identification::report};
 use std::path::Path;
 
 /// Returns an analysis with four unknowns: bounded on both sides, only below, only above, and not at all.
-fn identified(case: &Case) -> Identified {
+fn identified(case: &Case) -> IdentificationResult {
     let own = |name: &str, interval: [Option<f64>; 2]| UnknownEstimate {
         name: name.to_owned(),
         unit: "N/m".to_owned(),
@@ -18,23 +20,23 @@ fn identified(case: &Case) -> Identified {
         interval,
         ends: interval.map(|end| {
             if end.is_some() {
-                End::Rises
+                IntervalEnd::Rises
             } else {
-                End::Bound
+                IntervalEnd::Bound
             }
         }),
-        seen: Seen::of(interval[0].is_some(), interval[1].is_some()),
+        seen: Determination::of(interval[0].is_some(), interval[1].is_some()),
         correlated: vec![("kc".to_owned(), -0.9)],
         profile: vec![[1e8, 4.0], [2e8, 0.0]],
     };
-    let curve = |points: usize| Curve {
+    let curve = |points: usize| BandCurve {
         likeliest: vec![1.0; points],
         low: vec![0.5; points],
         high: vec![1.5; points],
     };
     let channels = case.channels_of(0);
     let channels = channels.map(|(_, channel)| curve(channel.abscissa.points.len()));
-    Identified {
+    IdentificationResult {
         genes: case.start(),
         unknowns: vec![
             own("kb1", [Some(1e8), Some(3e8)]),
@@ -44,7 +46,7 @@ fn identified(case: &Case) -> Identified {
         ],
         directions: vec![Direction {
             sd_decades: f64::INFINITY,
-            parts: vec![Part {
+            parts: vec![DirectionPart {
                 name: "kb56".to_owned(),
                 part: 1.0,
             }],
@@ -55,9 +57,9 @@ fn identified(case: &Case) -> Identified {
             condition: 0,
             channels: channels.collect(),
         }],
-        further: vec![Further {
+        further: vec![FurtherMeasurement {
             measurement: "4 times as many cycles".to_owned(),
-            pins: vec![Pin {
+            pins: vec![DeterminedUnknown {
                 name: "kb1".to_owned(),
                 sd_now: 0.2,
                 sd_then: 0.1,
@@ -65,7 +67,7 @@ fn identified(case: &Case) -> Identified {
         }],
         left: 2.0,
         is_noise: false,
-        noise: Known::Stated,
+        noise: NoiseSource::Stated,
         notes: Vec::new(),
     }
 }
@@ -77,7 +79,7 @@ fn fields_are_a_contract() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
     let case = load(&folder, &Overrides::default()).unwrap();
     let identified = identified(&case);
-    let subject = Subject {
+    let subject = IdentificationInput {
         case: &case,
         identified: &identified,
         origin: Origin {

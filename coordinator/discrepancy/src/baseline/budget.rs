@@ -1,0 +1,71 @@
+//! Budget of a diagnosis: number of simulations per stage. Time is not limited, so that the result does not
+//! depend on the number of workers.
+//!
+//! A stage that has used up its budget begins no further optional work (valley search, round, challenger).
+//! Work in progress is finished, so the budget may be exceeded by one such unit.
+use crate::laboratory::{Laboratory, Stage};
+use protocol::job::{Observation, SimulateSpec};
+
+/// Simulator that counts simulations and refuses optional work when a stage's budget is used up.
+pub(crate) struct Budgeted<'a, L> {
+    lab: &'a mut L,
+    /// Remaining budget of each stage, in simulations without derivatives.
+    left: [f64; Stage::ALL.len()],
+    /// Stages that were refused optional work because their budget was used up.
+    ran_out: Vec<Stage>,
+}
+
+impl<'a, L> Budgeted<'a, L> {
+    pub(crate) fn new(lab: &'a mut L, budget: &[u32; Stage::ALL.len()]) -> Self {
+        Self {
+            lab,
+            left: budget.map(f64::from),
+            ran_out: Vec::new(),
+        }
+    }
+
+    /// Returns the stages that were refused optional work because their budget was used up.
+    pub(crate) fn ran_out(&self) -> &[Stage] {
+        &self.ran_out
+    }
+}
+
+/// Returns the cost of a simulation relative to one without derivatives: 1, or with derivatives 5 plus 0.1
+/// per derivative.
+pub fn cost(spec: &SimulateSpec) -> f64 {
+    let columns = spec.columns.len() as f64;
+    if spec.columns.is_empty() {
+        1.0
+    } else {
+        5.0 + 0.1 * columns
+    }
+}
+
+impl<L: Laboratory> Laboratory for Budgeted<'_, L> {
+    type Error = L::Error;
+
+    fn differentiates(&self) -> bool {
+        self.lab.differentiates()
+    }
+
+    fn has_budget(&mut self, stage: Stage) -> bool {
+        let left = self.left[stage as usize] > 0.0;
+        if !left && !self.ran_out.contains(&stage) {
+            self.ran_out.push(stage);
+        }
+        left
+    }
+
+    fn left(&self, stage: Stage) -> f64 {
+        self.left[stage as usize]
+    }
+
+    async fn observe(
+        &mut self,
+        stage: Stage,
+        batch: Vec<SimulateSpec>,
+    ) -> Result<Vec<Option<Observation>>, L::Error> {
+        self.left[stage as usize] -= batch.iter().map(cost).sum::<f64>();
+        self.lab.observe(stage, batch).await
+    }
+}

@@ -1,0 +1,82 @@
+//! Removal of effects that became unnecessary beside later ones, or that do not improve prediction.
+use crate::baseline::session::Session;
+use crate::diagnose::diagnosis::Diagnosis;
+use crate::laboratory::{Laboratory, Stage};
+use crate::model::fit::Fit;
+use crate::validation::compare::ValidationRecord;
+use crate::validation::predictive::{rejection_reason, scores};
+use search::least_squares::LeastSquaresSettings;
+
+/// Removes, one at a time, effects without which the evidence falls by less than the gain required to add an
+/// effect, and effects that do not improve the prediction of data excluded from the fit.
+pub(crate) async fn prune<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    mut current: Fit,
+    shown: &[ValidationRecord<'_>],
+    diagnosis: &mut Diagnosis,
+) -> Result<Fit, L::Error> {
+    let gain = session.inputs.thresholds.gain;
+    while current.model.added.len() > 1 {
+        let added = 0..current.model.added.len();
+        let starts = added
+            .map(|position| current.point().without(position))
+            .collect();
+        let mut experiments = session.experiments(Stage::Refit);
+        let fits = experiments
+            .fits(starts, LeastSquaresSettings::short(6))
+            .await?;
+        let mut fits: Vec<(usize, Fit)> = fits
+            .into_iter()
+            .enumerate()
+            .filter_map(|(position, fit)| Some((position, fit?)))
+            .collect();
+        fits.sort_by(|(_, a), (_, b)| b.log_evidence().total_cmp(&a.log_evidence()));
+        let Some((position, fit)) = fits.first() else {
+            break;
+        };
+        let lost = (current.log_evidence() - fit.log_evidence()) / current.dispersion();
+        let found = if lost < gain {
+            let id = &current.model.added[*position].id;
+            let reason = format!("{id} is no longer needed with the effects that were added later");
+            Some((*position, fit.clone(), reason))
+        } else {
+            find_unpredictive(session, shown, (&current, fits), diagnosis).await?
+        };
+        let Some((position, fit, reason)) = found else {
+            break;
+        };
+        let id = &current.model.added[position].id;
+        let own = diagnosis
+            .rounds
+            .iter_mut()
+            .filter(|round| round.added.as_ref() == Some(id));
+        for round in own {
+            round.withdraw(reason.clone());
+        }
+        current = fit;
+    }
+    Ok(current)
+}
+
+/// Returns the first of several models, each without one effect of the answer, that predicts as well as the
+/// answer: the effect's position, the model, and the reason.
+async fn find_unpredictive<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    shown: &[ValidationRecord<'_>],
+    (answer, without): (&Fit, Vec<(usize, Fit)>),
+    diagnosis: &Diagnosis,
+) -> Result<Option<(usize, Fit, String)>, L::Error> {
+    let inputs = session.inputs;
+    let thresholds = &inputs.thresholds;
+    let tried = diagnosis.rounds.first().map_or(1, |r| r.candidates.len());
+    let mut experiments = session.experiments(Stage::Show);
+    for (position, fit) in without {
+        let own = scores(&mut experiments, shown, [answer, &fit]).await?;
+        let needed = [thresholds.prediction, own.needed(thresholds, 1, tried)];
+        let id = &answer.model.added[position].id;
+        if let Some(reason) = rejection_reason(id, &own, needed, inputs) {
+            return Ok(Some((position, fit, reason)));
+        }
+    }
+    Ok(None)
+}

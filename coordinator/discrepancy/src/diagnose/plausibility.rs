@@ -1,0 +1,149 @@
+//! Plausibility of estimated effect sizes: conditions beyond the significance test that an effect must meet
+//! before it is named.
+//!
+//! A test only shows that something is present. An effect is not named if its size is compatible with zero,
+//! lies at a bound, or is within the tolerance of an instrument.
+use crate::thresholds::{AT_BOUND, WITHIN};
+
+/// Estimated size of an effect that is about to be named.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Size {
+    /// Identifier of the effect.
+    pub(crate) effect: String,
+    /// Name of the effect's size parameter.
+    pub(crate) parameter: String,
+    pub(crate) value: f64,
+    /// 95 % confidence interval of the size.
+    pub(crate) interval: [f64; 2],
+    /// Lower and upper bound of the size in the search.
+    pub(crate) bounds: [f64; 2],
+    /// Value at which the effect vanishes.
+    pub(crate) absent: f64,
+    /// For the error of an instrument, which is never exactly zero: standard deviation that is expected
+    /// without any effect.
+    pub(crate) tolerance: Option<f64>,
+}
+
+impl Size {
+    /// Returns whether the interval contains the absent value, or the size is within the tolerance of an
+    /// instrument.
+    fn may_be_nothing(&self) -> bool {
+        let [low, high] = self.interval;
+        let holds = low <= self.absent && self.absent <= high;
+        let usual = |sd: f64| (self.value - self.absent).abs() <= WITHIN * sd;
+        holds || self.tolerance.is_some_and(usual)
+    }
+
+    /// Returns whether the value lies at a bound other than its absent value.
+    fn at_bound(&self) -> bool {
+        let [lower, upper] = self.bounds;
+        let near = |bound: f64| (self.value - bound).abs() <= AT_BOUND * (upper - lower);
+        let free = |bound: f64| (bound - self.absent).abs() > AT_BOUND * (upper - lower);
+        self.bounds
+            .into_iter()
+            .any(|bound| near(bound) && free(bound))
+    }
+
+    /// Returns whether the confidence interval of the size covers the whole allowed range, so that the record
+    /// does not determine it.
+    fn is_open(&self) -> bool {
+        let [low, high] = self.interval;
+        low <= self.bounds[0] && self.bounds[1] <= high
+    }
+}
+
+/// Returns the first reason against the sizes of the effects, if there is one.
+pub(crate) fn doubt(sizes: &[Size]) -> Option<String> {
+    for size in sizes {
+        let Size {
+            effect, parameter, ..
+        } = size;
+        let mut own = sizes.iter().filter(|other| other.effect == *effect);
+        if own.all(Size::may_be_nothing) {
+            let [low, high] = size.interval;
+            return Some(match size.tolerance {
+                Some(sd) if !(low..=high).contains(&size.absent) => format!(
+                    "{effect}: its {parameter} of {:.3e} lies within {WITHIN} standard deviations of the \
+                     instrument's tolerance ({sd:.1e})",
+                    size.value
+                ),
+                _ => format!(
+                    "{effect}: the interval of its {parameter}, {low:.3e} to {high:.3e}, contains the value \
+                     at which the effect vanishes"
+                ),
+            });
+        }
+        if size.at_bound() {
+            return Some(format!(
+                "{effect}: its {parameter} lies at its bound of {:.3e}",
+                size.value
+            ));
+        }
+        if size.is_open() {
+            return Some(format!(
+                "{effect}: the interval of its {parameter} is as wide as its whole range"
+            ));
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn size(value: f64, interval: [f64; 2]) -> Size {
+        Size {
+            effect: "slip".to_owned(),
+            parameter: "share".to_owned(),
+            value,
+            interval,
+            bounds: [-1.0, 1.0],
+            absent: 0.0,
+            tolerance: None,
+        }
+    }
+
+    #[test]
+    fn a_size_that_may_be_nothing_names_nothing() {
+        let said = |sizes: &[Size]| doubt(sizes);
+        assert_eq!(said(&[size(0.3, [0.2, 0.4])]), None);
+        let nothing = size(0.1, [-0.1, 0.3]);
+        assert!(
+            said(std::slice::from_ref(&nothing))
+                .unwrap()
+                .contains("effect vanishes")
+        );
+        // one size of several is enough, and of another effect it is none
+        assert_eq!(said(&[nothing.clone(), size(0.3, [0.2, 0.4])]), None);
+        let other = Size {
+            effect: "phase".to_owned(),
+            ..size(0.3, [0.2, 0.4])
+        };
+        assert!(said(&[nothing, other]).unwrap().starts_with("slip"));
+    }
+
+    #[test]
+    fn an_instrument_is_no_discovery_within_three_of_what_it_is_good_to() {
+        let toleranced = |value: f64| Size {
+            tolerance: Some(0.1),
+            ..size(value, [value - 0.01, value + 0.01])
+        };
+        assert!(doubt(&[toleranced(0.29)]).unwrap().contains("tolerance"));
+        assert_eq!(doubt(&[toleranced(-0.31)]), None);
+    }
+
+    #[test]
+    fn bounds_and_open_intervals_carry_nothing() {
+        assert!(
+            doubt(&[size(0.9999, [0.5, 1.0])])
+                .unwrap()
+                .contains("bound")
+        );
+        let wide = Size {
+            absent: -2.0,
+            ..size(0.5, [-1.0, 1.0])
+        };
+        assert!(doubt(&[wide]).unwrap().contains("whole range"));
+    }
+}

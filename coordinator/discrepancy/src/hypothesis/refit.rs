@@ -1,0 +1,61 @@
+//! Refits with a candidate effect switched on: every unknown and every parameter of the effect is free.
+use crate::hypothesis::candidate::CandidateEffect;
+use crate::laboratory::Laboratory;
+use crate::model::experiments::Experiments;
+use crate::model::fit::Fit;
+use crate::model::unknowns::Point;
+use search::least_squares::LeastSquaresSettings;
+
+/// Candidate effect after its refit.
+#[derive(Clone, Debug)]
+pub struct Refitted {
+    /// Identifier of the effect.
+    pub id: String,
+    /// Best fit with the effect.
+    pub fit: Fit,
+    /// Log evidence of the refitted model (nats).
+    pub log_evidence: f64,
+}
+
+impl Refitted {
+    /// Creates the record of a candidate effect's refit from a fit whose last added effect is the candidate.
+    pub(crate) fn new(id: String, fit: Fit) -> Self {
+        Self {
+            id,
+            log_evidence: fit.log_evidence(),
+            fit,
+        }
+    }
+}
+
+/// Refits candidate effects in parallel, each from its linear estimate and from a ladder of other sizes, and
+/// returns the best refit of each; effects of which no refit can be simulated are omitted.
+///
+/// # Errors
+/// Returns an error if no worker is left to simulate, or the user stops the run.
+pub async fn refit<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    fit: &Fit,
+    suspects: &[&CandidateEffect],
+) -> Result<Vec<Refitted>, L::Error> {
+    let starts = |suspect: &&CandidateEffect| {
+        let all = std::iter::once(&suspect.start).chain(&suspect.rungs);
+        let all = all.map(|start| (suspect.effect.id.clone(), fit.with(&suspect.effect, start)));
+        all.collect::<Vec<(String, Point)>>()
+    };
+    let (ids, starts): (Vec<String>, Vec<Point>) = suspects.iter().flat_map(starts).unzip();
+    let fits = experiments
+        .fits(starts, LeastSquaresSettings::short(8))
+        .await?;
+    let mut refits: Vec<Refitted> = Vec::new();
+    for (id, fit) in ids.into_iter().zip(fits) {
+        let Some(fit) = fit else { continue };
+        let own = Refitted::new(id, fit);
+        match refits.iter_mut().find(|other| other.id == own.id) {
+            Some(other) if own.log_evidence > other.log_evidence => *other = own,
+            Some(_) => {}
+            None => refits.push(own),
+        }
+    }
+    Ok(refits)
+}

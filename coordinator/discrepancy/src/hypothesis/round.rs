@@ -1,0 +1,99 @@
+//! Round of hypothesis tests: tests and refits of all candidate effects on one model, and the decision drawn
+//! from them.
+use crate::hypothesis::candidate::CandidateEffect;
+use crate::hypothesis::refit::Refitted;
+use crate::linear::score::{chi_squared_tail, family_wise};
+use crate::model::fit::Fit;
+
+/// Tests, refits and decision of one round.
+#[derive(Clone, Debug)]
+pub struct Round {
+    /// Tests of all named effects, in the library's order.
+    pub candidates: Vec<CandidateEffect>,
+    /// Tests, refits and decision of one round of a diagnosis.
+    pub generics: Vec<CandidateEffect>,
+    /// Tests of all named candidate effects, in the library's order.
+    pub refits: Vec<Refitted>,
+    /// Log evidence of the current model, without a further effect.
+    pub null_evidence: f64,
+    /// Dispersion (`chi^2` per degree of freedom) of the best model, by which statistics and differences of
+    /// log evidences are divided.
+    pub dispersion: f64,
+    /// Family-wise p-value of the tests of all named effects.
+    pub p_value: f64,
+    /// Ambiguity set: identifiers of the effects that the record cannot distinguish from the added one, best
+    /// first; empty if no effect was added.
+    pub set: Vec<String>,
+    /// Identifier of the added effect, if any.
+    pub added: Option<String>,
+    /// Number of effects ranked by evidence and prediction when the ranking replaced the effect that was
+    /// added first; 1 if it was not replaced.
+    pub ranked: usize,
+    /// Whether the added effect is one of several that were found together.
+    pub together: bool,
+    /// Reason why no effect was added.
+    pub reason: Option<String>,
+}
+
+impl Round {
+    /// Creates a round from its tests and refits, and ranks the refits relative to the current model.
+    pub(crate) fn new(
+        current: &Fit,
+        suspects: Vec<CandidateEffect>,
+        generics: Vec<CandidateEffect>,
+        refits: Vec<Refitted>,
+    ) -> Self {
+        let mut round = Self {
+            candidates: suspects,
+            generics,
+            refits,
+            null_evidence: current.log_evidence(),
+            dispersion: 1.0,
+            p_value: 1.0,
+            set: Vec::new(),
+            added: None,
+            ranked: 1,
+            together: false,
+            reason: None,
+        };
+        round.judge(current);
+        round
+    }
+
+    /// Returns a log evidence relative to the current model, divided by the dispersion (nats).
+    pub fn nats(&self, log_evidence: f64) -> f64 {
+        (log_evidence - self.null_evidence) / self.dispersion
+    }
+
+    /// Withdraws the added effect and records the reason.
+    pub(crate) fn withdraw(&mut self, reason: String) {
+        self.added = None;
+        self.set.clear();
+        self.reason = Some(reason);
+    }
+
+    /// Sorts the refits by evidence, and derives the dispersion of the best model and the family-wise p-value
+    /// under it.
+    pub(crate) fn judge(&mut self, current: &Fit) {
+        self.refits
+            .sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+        let best = self.refits.first().map(|own| own.fit.dispersion());
+        self.dispersion = best
+            .map_or(f64::INFINITY, |own| own)
+            .min(current.dispersion());
+        let scale = self.dispersion;
+        let least = self
+            .candidates
+            .iter()
+            .filter_map(|s| Some((s.score.as_ref()?, s.tries)))
+            .map(|(score, tries)| {
+                let tail = chi_squared_tail(score.statistic / scale, score.freedom);
+                // an estimate of the wrong sign speaks against its effect
+                let own = if score.p_value < 1.0 { tail } else { 1.0 };
+                family_wise(own, tries)
+            })
+            .fold(1.0, f64::min);
+        // no test at all rejects nothing
+        self.p_value = family_wise(least, self.candidates.len().max(1));
+    }
+}

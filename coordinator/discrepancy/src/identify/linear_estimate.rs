@@ -1,0 +1,80 @@
+//! Quick linear identifiability analysis from one linearised simulation at given parameters.
+//!
+//! It assumes the noise of the record alone, without instrument tolerances, numerical error or refits. A
+//! residual above the noise widens every interval. The result accompanies the table of a calibration;
+//! [`super::identify`] computes profile likelihoods instead.
+use super::answer::{Determination, IntervalEnd, UnknownEstimate};
+use super::settings::FREE;
+use crate::estimate::spread::Spread;
+use crate::inputs::Inputs;
+use crate::laboratory::{Laboratory, Stage};
+use crate::model::experiments::Experiments;
+use crate::model::unknowns::{DefaultPrior, FittedModel, Point};
+use crate::record::whitened::WhitenedRecord;
+use search::least_squares::LeastSquaresSettings;
+
+/// Estimates the searched unknowns with linear intervals from the record of the calibrated condition, at the
+/// start of the inputs. Returns `None` without a record or a start, or if the simulation does not complete.
+///
+/// # Errors
+/// Returns an error if no worker is left to simulate, or the user stops the run.
+pub async fn glance<L: Laboratory>(
+    lab: &mut L,
+    inputs: &Inputs,
+) -> Result<Option<Vec<UnknownEstimate>>, L::Error> {
+    let record = inputs.records.first().filter(|record| record.is_fitted());
+    let (Some(record), Some(x)) = (record, &inputs.start) else {
+        return Ok(None);
+    };
+    let orders = inputs.thresholds.orders;
+    let on = WhitenedRecord::under_own_noise(record.free(), orders, inputs.usual.clone());
+    let model = FittedModel {
+        unstated: DefaultPrior::Bounds,
+        ..FittedModel::plain(inputs.space.clone())
+    };
+    let mut experiments = Experiments {
+        lab,
+        on: &on,
+        stage: Stage::Show,
+    };
+    let point = Point {
+        model,
+        x: x.clone(),
+    };
+    // one Jacobian where it is
+    let still = LeastSquaresSettings {
+        iterations: 1,
+        ..FREE
+    };
+    let Some(fit) = experiments.fit(point, still).await? else {
+        return Ok(None);
+    };
+    let spread = Spread::of(&on.metric, &fit);
+    let axes = fit.model.space.axes().iter().enumerate();
+    let estimate = axes.map(|(k, axis)| {
+        let half = spread.quantile * spread.variance(k).sqrt();
+        let (at, bounds) = (fit.x()[k], axis.interval());
+        let ends = [at - half > bounds.from, at + half < bounds.to];
+        let [below, above] = ends;
+        UnknownEstimate {
+            name: axis.unknown.name.clone(),
+            unit: axis.unknown.unit.clone(),
+            value: axis.value(at),
+            interval: [
+                below.then(|| axis.value(at - half)),
+                above.then(|| axis.value(at + half)),
+            ],
+            ends: ends.map(|rises| {
+                if rises {
+                    IntervalEnd::Rises
+                } else {
+                    IntervalEnd::Bound
+                }
+            }),
+            seen: Determination::of(below, above),
+            correlated: Vec::new(),
+            profile: Vec::new(),
+        }
+    });
+    Ok(Some(estimate.collect()))
+}

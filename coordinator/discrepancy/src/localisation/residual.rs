@@ -1,0 +1,15 @@
+//! Whitened residual of a fit, with what is needed to predict its distribution under noise.
+use crate::linear::tangent::Tangent;
+use crate::record::metric::Metric;
+use nalgebra::DVector;
+
+/// A whitened residual.
+#[derive(Clone, Copy, Debug)]
+pub struct Residual<'a> {
+    /// Whitened residual vector, measured less simulated.
+    pub values: &'a DVector<f64>,
+    /// Metric in which the residual is whitened.
+    pub metric: &'a Metric,
+    /// Tangent space of the fit: directions of the residual that recalibration has already removed.
+    pub tangent: &'a Tangent,
+}

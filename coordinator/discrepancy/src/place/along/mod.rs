@@ -1,8 +1,0 @@
-//! Map of a residual over the abscissa: windows in which it is larger than noise.
-pub(crate) mod map;
-pub(crate) mod null;
-pub(crate) mod windows;
-
-pub use crate::record::bins::{BINS, Bins};
-pub use map::{AlongMap, Window, map};
-pub use windows::WIDTHS;

@@ -1,0 +1,146 @@
+//! Presets: named choices of strategy and settings, as the command line lists and modifies them.
+use super::{
+    ask_tell::Strategy,
+    setting::{Setting, SettingsError},
+    settings::Settings,
+};
+use crate::space::Space;
+
+/// Named choice of strategy and settings.
+pub struct Preset {
+    /// Name of the preset on the command line.
+    pub name: &'static str,
+    /// Summary of the preset for help texts, one line.
+    pub summary: &'static str,
+    /// Name of the strategy: [`super::settings::StrategySettings::STRATEGY`].
+    pub strategy: &'static str,
+    /// Function that returns the preset's settings for the search space and number of workers of a run.
+    pub settings: fn(&SearchPlan<'_>) -> Settings,
+    /// Groups of settings that can be set by name.
+    pub groups: &'static [SettingGroup],
+    /// Accuracy and properties that tests may demand of the preset.
+    pub expectations: Expectations,
+    /// Function that builds the search: [`super::settings::build_as`] of the strategy's settings.
+    pub build: Build,
+}
+
+/// Function that builds a search from settings, a space and a seed.
+pub type Build = fn(&Settings, &Space, u64) -> Result<Box<dyn Strategy>, SettingsError>;
+
+/// Search space and number of workers of a planned run, on which default settings may depend.
+#[derive(Clone, Copy, Debug)]
+pub struct SearchPlan<'a> {
+    /// Search space.
+    pub space: &'a Space,
+    /// Planned number of workers of the run.
+    pub workers: usize,
+}
+
+/// Part of a preset's settings that has its own table of setting names.
+#[derive(Clone, Copy, Debug)]
+pub struct SettingGroup {
+    /// Prefix of the command-line keys of this part's settings.
+    pub prefix: &'static str,
+    /// Position of the part in the settings, as a JSON pointer.
+    pub pointer: &'static str,
+    /// Table of the settings in this part.
+    pub table: &'static [Setting],
+    /// Names of settings in the table that are not offered because they have no effect in this preset.
+    pub excluded: &'static [&'static str],
+}
+
+impl SettingGroup {
+    /// Creates the single group of a preset whose settings are not divided into parts.
+    pub const fn whole(table: &'static [Setting]) -> Self {
+        Self {
+            prefix: "",
+            pointer: "",
+            table,
+            excluded: &[],
+        }
+    }
+}
+
+/// Setting of a preset, with its key on the command line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PresetSetting {
+    /// Name of the setting on the command line.
+    pub key: String,
+    /// Allowed values and meaning of the setting.
+    pub setting: Setting,
+    /// Location of the value within the preset's settings, as a JSON pointer.
+    place: String,
+}
+
+/// Accuracy and properties that tests may demand of a preset, in addition to the requirements on all presets;
+/// measured on the functions of [`crate::test_function`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expectations {
+    /// Upper bound on the final fitness for functions with one basin of attraction.
+    pub one_basin: f64,
+    /// Upper bound on the final fitness for a function with many basins of attraction.
+    pub many_basins: f64,
+    /// Upper bound on the distance from the minimum in every gene (coordinate).
+    pub distance: f64,
+    /// Whether the first proposed individual has the recommended values.
+    pub starts_at_recommended: bool,
+    /// Maximum number of evaluations to find a narrow minimum on a plateau; `None` if the preset does not
+    /// find such minima.
+    pub valley_evaluations: Option<usize>,
+    /// Whether the proposals depend on the seed.
+    pub seed_dependent: bool,
+}
+
+impl Preset {
+    /// Returns all settings that can be set by name, in order.
+    pub fn settable(&self) -> Vec<PresetSetting> {
+        let of = |group: &SettingGroup, setting: &Setting| PresetSetting {
+            key: format!("{}{}", group.prefix, setting.field),
+            setting: *setting,
+            place: format!("{}/{}", group.pointer, setting.field),
+        };
+        let groups = self.groups.iter();
+        let all = groups.flat_map(|group| {
+            let meant = |setting: &&Setting| !group.excluded.contains(&setting.field);
+            let table = group.table.iter().filter(meant);
+            table.map(move |setting| of(group, setting))
+        });
+        all.collect()
+    }
+
+    /// Sets a setting by name; returns the new value as text.
+    ///
+    /// # Errors
+    /// If there is no setting of that name, or the value is not allowed.
+    pub fn set(
+        &self,
+        settings: &mut Settings,
+        key: &str,
+        text: &str,
+    ) -> Result<String, SettingsError> {
+        let named = self.settable();
+        let Some(found) = named.iter().find(|one| one.key == key) else {
+            return Err(SettingsError::Unknown {
+                key: key.to_owned(),
+                known: named.into_iter().map(|one| one.key).collect(),
+            });
+        };
+        let value = found.setting.parse(text);
+        let value = value.ok_or_else(|| found.setting.refusal(key, text))?;
+        let shown = found.setting.show(&value);
+        let place = settings.at_mut(&found.place);
+        let absent = || SettingsError::Absent {
+            key: key.to_owned(),
+        };
+        *place.ok_or_else(absent)? = value;
+        Ok(shown)
+    }
+}
+
+impl PresetSetting {
+    /// Returns the value of the setting in settings of its preset, as text.
+    pub fn value(&self, settings: &Settings) -> Option<String> {
+        let value = settings.at(&self.place)?;
+        Some(self.setting.show(value))
+    }
+}

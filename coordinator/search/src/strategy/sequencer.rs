@@ -1,0 +1,191 @@
+//! Sequential execution of the pieces (batch-wise parts) of a strategy: assigns ids, restores the order of
+//! results, reuses results of identical individuals.
+//!
+//! The conductor knows batches, not algorithms. Its state is a function of the longest unbroken run of
+//! results from id 0; later results wait in a buffer.
+use super::{
+    archive::{Archive, EvaluatedIndividual, Residual, key},
+    ask_tell::Strategy,
+    evaluation_result::EvaluationResult,
+    ordered_results::Intake,
+    outcome::{Best, Finish, Progress},
+    proposal::Proposal,
+    stage::{Batch, Piece, ProposalDraft},
+};
+use std::collections::{BTreeMap, VecDeque};
+
+/// Strategy that executes a sequence of pieces (batch-wise parts), one after another.
+pub struct Conductor {
+    pieces: VecDeque<Box<dyn Piece>>,
+    /// Whether a repeated individual takes its known result instead of being evaluated again.
+    reuse_clones: bool,
+    intake: Intake,
+    /// Proposal id of each draft in the running batch; identical individuals share an id.
+    slots: Vec<u64>,
+    outbox: Vec<Proposal>,
+    /// Residual vectors by proposal id, for proposals that required one.
+    residuals: BTreeMap<u64, Residual>,
+    next_id: u64,
+    generation: u32,
+    /// Number of generations of the completed pieces.
+    generations_done: u32,
+    finish: Option<Finish>,
+}
+
+impl Conductor {
+    /// Creates a strategy that executes these pieces in order. `reuse_clones` saves evaluations where pieces
+    /// propose an individual again; as evaluations are pure, it changes no result.
+    pub fn new(pieces: Vec<Box<dyn Piece>>, reuse_clones: bool) -> Self {
+        let mut conductor = Self {
+            pieces: pieces.into(),
+            reuse_clones,
+            intake: Intake::default(),
+            slots: Vec::new(),
+            outbox: Vec::new(),
+            residuals: BTreeMap::new(),
+            next_id: 0,
+            generation: 0,
+            generations_done: 0,
+            finish: None,
+        };
+        conductor.advance();
+        conductor
+    }
+
+    /// Plans batches of the pieces until a batch needs an evaluation or no piece is left.
+    fn advance(&mut self) {
+        while self.finish.is_none() && self.intake.awaited() == 0 {
+            self.close_batch();
+            let Some(piece) = self.pieces.front_mut() else {
+                self.finish = Some(Finish::Planned);
+                return;
+            };
+            if piece.reached_threshold() {
+                self.finish = Some(Finish::Threshold);
+            } else if let Some(batch) = piece.plan(self.intake.archive()) {
+                self.open_batch(batch);
+            } else {
+                self.generations_done += piece.generations();
+                self.pieces.pop_front();
+            }
+        }
+    }
+
+    /// Passes the results of the finished batch, if any, to the current piece.
+    fn close_batch(&mut self) {
+        if self.slots.is_empty() {
+            return;
+        }
+        let entries = self.intake.archive().entries();
+        let results: Vec<EvaluatedIndividual> = std::mem::take(&mut self.slots)
+            .into_iter()
+            .filter_map(|id| {
+                let entry = entries.get(usize::try_from(id).ok()?)?;
+                Some(EvaluatedIndividual {
+                    residual: self.residuals.get(&id).cloned(),
+                    ..entry.clone()
+                })
+            })
+            .collect();
+        if let Some(piece) = self.pieces.front_mut() {
+            piece.absorb(&results);
+        }
+    }
+
+    fn open_batch(&mut self, batch: Batch) {
+        self.generation = self.generations_done + batch.generation;
+        let mut fresh: BTreeMap<Vec<u64>, u64> = BTreeMap::new();
+        for ProposalDraft { genes, purpose } in batch.drafts {
+            let known = if self.reuse_clones {
+                // a result that is known without its residual is no use where that is wanted
+                let serves = |id: &u64| {
+                    let known = self.residuals.get(id);
+                    !purpose.wants_residual()
+                        || known.is_some_and(|it| {
+                            !purpose.wants_derivatives() || !it.derivatives.is_empty()
+                        })
+                };
+                let met = self.intake.archive().find(&genes).map(|entry| entry.id);
+                met.filter(serves)
+                    .or_else(|| fresh.get(&key(&genes)).copied())
+            } else {
+                None
+            };
+            let id = known.unwrap_or_else(|| {
+                let id = self.next_id;
+                self.next_id += 1;
+                fresh.insert(key(&genes), id);
+                self.intake.expect(id, genes.clone());
+                self.outbox.push(Proposal {
+                    id,
+                    genes,
+                    generation: self.generation,
+                    purpose,
+                });
+                id
+            });
+            self.slots.push(id);
+        }
+    }
+}
+
+impl Strategy for Conductor {
+    fn ask(&mut self) -> Vec<Proposal> {
+        std::mem::take(&mut self.outbox)
+    }
+
+    fn tell(&mut self, id: u64, result: EvaluationResult) {
+        self.intake.keep(id, result);
+        while self.intake.take().is_some() {
+            self.advance();
+        }
+    }
+
+    fn tell_residual(&mut self, id: u64, residual: Residual) {
+        if self.intake.awaits(id) {
+            self.residuals.entry(id).or_insert(residual);
+        }
+    }
+
+    fn finished(&self) -> Option<Finish> {
+        self.finish
+    }
+
+    fn progress(&self) -> Progress {
+        let evaluations = self.intake.archive().entries().len() as u64;
+        let remaining: u64 = self.pieces.iter().map(|piece| piece.remaining()).sum();
+        let consumed = self.next_id - self.intake.awaited();
+        let batch_done = self.slots.iter().filter(|id| **id < consumed).count() as u64;
+        let ahead = match self.finish {
+            Some(_) => 0,
+            None => remaining
+                .saturating_sub(batch_done)
+                .max(self.intake.awaited()),
+        };
+        Progress {
+            generation: self.generation,
+            generations: self.generations_done
+                + self
+                    .pieces
+                    .iter()
+                    .map(|piece| piece.generations())
+                    .sum::<u32>(),
+            evaluations,
+            expected_evaluations: evaluations + ahead,
+            best_fitness: self
+                .intake
+                .archive()
+                .best()
+                .filter(|best| best.result.survived())
+                .map(|best| best.result.fitness),
+        }
+    }
+
+    fn best(&self) -> Option<Best> {
+        self.intake.archive().best().map(Best::from)
+    }
+
+    fn archive(&self) -> &Archive {
+        self.intake.archive()
+    }
+}

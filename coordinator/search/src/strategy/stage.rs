@@ -1,0 +1,45 @@
+//! Interface of a piece: a part of a strategy that works batch by batch.
+use super::{
+    archive::{Archive, EvaluatedIndividual},
+    proposal::Purpose,
+};
+
+/// Batch-wise part of a strategy. A piece receives results only as whole batches, in the order of its own
+/// plan.
+pub trait Piece {
+    /// Returns the next batch, never an empty one, or `None` when the piece has finished. The archive holds
+    /// every result of the run so far.
+    fn plan(&mut self, archive: &Archive) -> Option<Batch>;
+
+    /// Takes the results of the last batch: one per draft, in the order of the drafts.
+    fn absorb(&mut self, results: &[EvaluatedIndividual]);
+
+    /// Returns the number of generations that the piece adds to the search.
+    fn generations(&self) -> u32;
+
+    /// Returns the number of evaluations still expected, including the running batch.
+    fn remaining(&self) -> u64;
+
+    /// Returns whether a result reached the fitness threshold, which ends the whole search.
+    fn reached_threshold(&self) -> bool {
+        false
+    }
+}
+
+/// Batch of points that can be evaluated at the same time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Batch {
+    /// Generation to which the batch belongs, counted from the start of the piece.
+    pub generation: u32,
+    /// Points of the batch, each with the purpose of its evaluation.
+    pub drafts: Vec<ProposalDraft>,
+}
+
+/// Point to evaluate, before it is assigned an id.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProposalDraft {
+    /// Gene values in declared units.
+    pub genes: Vec<f64>,
+    /// Purpose of the evaluation.
+    pub purpose: Purpose,
+}

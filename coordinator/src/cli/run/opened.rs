@@ -1,0 +1,225 @@
+//! Run with its folder, manifest and case: opening, resuming and comparing runs.
+use super::{
+    bus,
+    folder::{CASE, MANIFEST, RunFolder},
+    manifest::{Manifest, RunIdentity},
+};
+use crate::cli::output::problem::Problem;
+use case::{Loaded, Overrides, difference::differences, load_with_notes};
+use protocol::case::Case;
+use report::Origin;
+use std::path::{Path, PathBuf};
+
+/// Run of one kind; `S` is the type of the settings that, with case, seed and start, determine its result.
+#[derive(Clone, Debug)]
+pub(crate) struct Run<S> {
+    /// Run folder.
+    pub(crate) folder: RunFolder,
+    /// Manifest: how the run was begun, with the wall time of its finished sessions.
+    pub(crate) manifest: Manifest<S>,
+    /// Case as it was when the run was begun.
+    pub(crate) case: Case,
+}
+
+impl<S: RunIdentity> Run<S> {
+    /// Opens an existing run.
+    ///
+    /// # Errors
+    /// If the folder holds no run, or one of another version or kind.
+    pub(crate) fn open(path: &Path) -> anyhow::Result<Self> {
+        Self::load(RunFolder::at(path)?)
+    }
+
+    fn load(folder: RunFolder) -> anyhow::Result<Self> {
+        let head = folder.head()?;
+        if head.kind != S::KIND {
+            return Err(Problem {
+                message: format!(
+                    "{} holds a run of `horsehead {}`, not of `horsehead {}`",
+                    folder.path().display(),
+                    head.kind,
+                    S::KIND
+                ),
+                remedy: "name the folder of another run, or begin a new one with --run DIR"
+                    .to_owned(),
+            }
+            .into());
+        }
+        Ok(Self {
+            manifest: folder.read_json(MANIFEST)?,
+            case: folder.read_json(CASE)?,
+            folder,
+        })
+    }
+
+    /// Prepares a new run in a vacant folder, or resumes the same run in its folder. Writes nothing:
+    /// [`Run::remember`] does so once the journal has been accepted.
+    ///
+    /// # Errors
+    /// If the folder holds another run or unrelated files.
+    pub(crate) fn begin(path: &Path, manifest: Manifest<S>, case: Case) -> anyhow::Result<Self> {
+        let folder = RunFolder::new(path);
+        let mut run = Self {
+            folder,
+            manifest,
+            case,
+        };
+        if !run.folder.is_begun() {
+            run.folder.check_vacant()?;
+            return Ok(run);
+        }
+        let earlier = Self::load(run.folder.clone())?;
+        if let Some(difference) = run.difference(&earlier) {
+            return Err(Problem {
+                message: format!("{} holds another run: {difference}", path.display()),
+                remedy: format!(
+                    "choose another folder with --run, or go on with that run:\n  {}",
+                    earlier.resume_command()
+                ),
+            }
+            .into());
+        }
+        let changes = differences(&earlier.case, &run.case);
+        if !changes.is_empty() {
+            return Err(run.changed(&changes).into());
+        }
+        run.manifest.wall_s = earlier.manifest.wall_s;
+        Ok(run)
+    }
+
+    /// Describes the first difference in seed, start or settings from an earlier run; `None` if there is
+    /// none.
+    fn difference(&self, earlier: &Self) -> Option<String> {
+        let (was, is) = (&earlier.manifest, &self.manifest);
+        if was.seed != is.seed {
+            Some(format!("its seed is {}, not {}", was.seed, is.seed))
+        } else if was.start_genes() != is.start_genes() {
+            Some("it starts at other genes".to_owned())
+        } else if was.first_individuals() != is.first_individuals() {
+            Some(match &was.table {
+                Some(table) => format!(
+                    "it begins with other individuals, those that {} held",
+                    table.file.display()
+                ),
+                None => "it begins without a table of individuals".to_owned(),
+            })
+        } else if was.settings != is.settings {
+            let difference = is.settings.difference(&was.settings);
+            Some(match was.preset.as_str() {
+                "" => difference,
+                preset => format!("{difference} (it was begun with preset {preset})"),
+            })
+        } else {
+            None
+        }
+    }
+
+    /// Returns the provenance of the results as shown in reports; `digest` may be empty.
+    pub(crate) fn origin(&self, digest: String) -> anyhow::Result<Origin> {
+        let manifest = &self.manifest;
+        Ok(Origin {
+            program: manifest.program.clone(),
+            command: manifest.command.clone(),
+            run: self.folder.path().display().to_string(),
+            case_hash: bus::case_hash(&self.case)?,
+            measured_name: manifest.measured.clone(),
+            preset: (!manifest.preset.is_empty()).then(|| manifest.preset.clone()),
+            seed: Some(manifest.seed),
+            digest,
+            synthetic: manifest.synthetic,
+        })
+    }
+
+    /// Returns whether the run computed results but its journal is missing or empty.
+    pub(crate) fn lost_journal(&self) -> bool {
+        let computed = self.manifest.wall_s > 0.0 || self.folder.is_finished();
+        self.folder.is_begun() && computed && !self.folder.has_journal()
+    }
+
+    /// Checks that the run can be replayed: it is finished and its journal is present.
+    ///
+    /// # Errors
+    /// If it cannot be replayed; the error gives the command that resumes it.
+    pub(crate) fn expect_replayable(&self) -> Result<(), Problem> {
+        let path = self.folder.path().display();
+        let (message, remedy) = if !self.folder.is_finished() {
+            (format!("{path} is not finished"), "resume the run first")
+        } else if !self.folder.has_journal() {
+            (
+                format!("the journal of {path} is missing or empty"),
+                "restore the journal, or compute the run again",
+            )
+        } else {
+            return Ok(());
+        };
+        Err(Problem {
+            message,
+            remedy: format!("{remedy}:\n  {}", self.resume_command()),
+        })
+    }
+
+    /// Writes the case and the manifest into the run folder, with the wall time spent so far (s).
+    pub(crate) fn save(&self, wall_s: f64) -> anyhow::Result<()> {
+        if !self.folder.file(CASE).exists() {
+            self.folder.write_json(CASE, &self.case)?;
+        }
+        let manifest = Manifest {
+            wall_s,
+            ..self.manifest.clone()
+        };
+        self.folder.write_json(MANIFEST, &manifest)
+    }
+
+    /// Returns the command that resumes the run in its current folder.
+    pub(crate) fn resume_command(&self) -> String {
+        self.manifest.resume_command(self.folder.path())
+    }
+
+    /// Loads the case with the measured cycles of its records, which the run folder does not contain.
+    ///
+    /// # Errors
+    /// If the case has changed since the run was begun.
+    pub(crate) fn loaded(&self) -> anyhow::Result<Loaded> {
+        let manifest = &self.manifest;
+        let overrides = Overrides {
+            measured: manifest.replaced_records().map(ToOwned::to_owned),
+        };
+        let loaded = self.as_begun(load_with_notes(&manifest.case_folder, &overrides)?)?;
+        let changes = differences(&self.case, &loaded.case);
+        if !changes.is_empty() {
+            return Err(self.changed(&changes).into());
+        }
+        Ok(loaded)
+    }
+
+    /// Returns the error for a run whose case has changed; its remedy names a new run folder, because
+    /// repeating the command would fail again.
+    fn changed(&self, changes: &str) -> Problem {
+        let manifest = &self.manifest;
+        let path = self.folder.path();
+        let another = manifest.resume_command(&unused(path));
+        Problem {
+            message: format!(
+                "the case has changed since {} was begun: {changes}",
+                path.display()
+            ),
+            remedy: format!(
+                "a run belongs to one case; restore {}, or begin a new run of the changed case:\n  {another}",
+                manifest.case_folder.display()
+            ),
+        }
+    }
+
+    /// Removes from a case the effects that this diagnosis has added to it.
+    pub(crate) fn as_begun(&self, loaded: Loaded) -> anyhow::Result<Loaded> {
+        Ok(loaded.without_effects_from(&bus::case_hash(&self.case)?))
+    }
+}
+
+/// Returns the first path of the form `NAME-2`, `NAME-3`, ... that does not exist yet.
+fn unused(path: &Path) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let numbered = |number: u32| path.with_file_name(format!("{name}-{number}"));
+    let mut free = (2..1000).map(numbered).filter(|path| !path.exists());
+    free.next().unwrap_or_else(|| path.to_owned())
+}

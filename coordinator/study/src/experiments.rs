@@ -1,0 +1,187 @@
+//! Executor of the experiments (simulations) of a diagnosis or identification as jobs of an evaluator.
+//!
+//! Experiments are numbered in the order in which they are requested, which depends on results alone; a
+//! resumed run therefore finds all of them in its journal.
+use super::{
+    error::StudyError,
+    evaluator::{Evaluator, answer},
+    job_number::LIBRARY,
+    stop::{Stop, or_stop},
+    watch::{View, Watch},
+};
+use discrepancy::baseline::budget::cost;
+use discrepancy::diagnose::Inputs;
+use discrepancy::laboratory::{Laboratory, Stage};
+use protocol::{
+    announce::EffectDescriptor,
+    id::JobId,
+    job::{Answer, Job, Observation, SimulateSpec, Verdict},
+};
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+/// Cost so far of one stage of a diagnosis or identification.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StageCost {
+    /// Number of completed experiments.
+    pub experiments: u64,
+    /// Number of experiments that failed or ended early.
+    pub failed: u64,
+    /// Number of batches run one after another; experiments of one batch are independent.
+    pub batches: u64,
+    /// Wall time of all batches, including waiting.
+    pub wall: Duration,
+}
+
+/// Progress of the current stage of a diagnosis or identification.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StageView {
+    /// All possible stages, in order.
+    pub stages: &'static [Stage],
+    /// Current stage.
+    pub stage: Stage,
+    /// Number of completed experiments of the stage.
+    pub done: u64,
+    /// Number of experiments of the current batch without a result.
+    pub open: usize,
+    /// Cost of all stages so far, in units of one plain simulation.
+    pub spent: f64,
+    /// Remaining budget of the stage, in units of one plain simulation.
+    pub left: f64,
+}
+
+impl View for StageView {
+    type Reason = Stage;
+}
+
+/// Asks a worker for the effects that it can simulate.
+///
+/// # Errors
+/// If no worker answers, or the user stops.
+pub async fn library<E: Evaluator>(
+    evaluator: &mut E,
+    stop: &mut Stop,
+) -> Result<Vec<EffectDescriptor>, StudyError> {
+    evaluator.submit(JobId(LIBRARY), Job::Describe)?;
+    let completed = or_stop(evaluator.next(), stop).await??;
+    answer(completed, Answer::into_described, || {
+        "the list of effects".to_owned()
+    })
+}
+
+/// Executor that submits the experiments (simulations) of a study to an evaluator as jobs.
+pub(super) struct Jobs<'a, E> {
+    evaluator: &'a mut E,
+    watch: &'a mut dyn Watch<StageView>,
+    stop: &'a mut Stop,
+    next_id: u64,
+    differentiates: bool,
+    stages: &'static [Stage],
+    costs: BTreeMap<Stage, StageCost>,
+    /// Cost of the completed experiments, in units of one plain simulation.
+    spent: f64,
+    /// Remaining budget of each stage, in units of one plain simulation.
+    left: [f64; Stage::ALL.len()],
+}
+
+impl<'a, E: Evaluator> Jobs<'a, E> {
+    /// Creates the executor of a study's experiments; their jobs are numbered from `first`.
+    pub(super) fn new(
+        (evaluator, first): (&'a mut E, u64),
+        inputs: &Inputs,
+        stages: &'static [Stage],
+        watch: &'a mut dyn Watch<StageView>,
+        stop: &'a mut Stop,
+    ) -> Self {
+        Self {
+            evaluator,
+            watch,
+            stop,
+            next_id: first,
+            differentiates: !inputs.differences,
+            stages,
+            costs: BTreeMap::new(),
+            spent: 0.0,
+            left: inputs.thresholds.budget.map(f64::from),
+        }
+    }
+
+    /// Returns the cost of each stage that did experiments.
+    pub(super) fn accounts(self) -> Vec<(Stage, StageCost)> {
+        self.costs.into_iter().collect()
+    }
+}
+
+impl<E: Evaluator> Laboratory for Jobs<'_, E> {
+    type Error = StudyError;
+
+    fn differentiates(&self) -> bool {
+        self.differentiates
+    }
+
+    async fn observe(
+        &mut self,
+        stage: Stage,
+        batch: Vec<SimulateSpec>,
+    ) -> Result<Vec<Option<Observation>>, StudyError> {
+        let started = Instant::now();
+        let first = self.next_id;
+        let mut results: Vec<Option<Observation>> = vec![None; batch.len()];
+        let mut open = batch.len();
+        let prices: Vec<f64> = batch.iter().map(cost).collect();
+        for spec in batch {
+            self.watch.asked(self.next_id, &stage);
+            self.evaluator
+                .submit(JobId(self.next_id), Job::Simulate(spec))?;
+            self.next_id += 1;
+        }
+        while open > 0 {
+            let completed = or_stop(self.evaluator.next(), self.stop).await??;
+            let place = completed
+                .id
+                .0
+                .checked_sub(first)
+                .and_then(|k| usize::try_from(k).ok());
+            let Some(slot) = place.and_then(|k| results.get_mut(k)) else {
+                continue;
+            };
+            let price = place
+                .and_then(|k| prices.get(k))
+                .copied()
+                .unwrap_or_default();
+            self.spent += price;
+            self.left[stage as usize] -= price;
+            let cost = self.costs.entry(stage).or_default();
+            cost.experiments += 1;
+            let id = completed.id;
+            match completed.outcome.done() {
+                Ok(answer) => {
+                    let seen = answer.into_channels();
+                    let seen = seen.map_err(|_| StudyError::WrongKind { id })?;
+                    cost.failed += u64::from(seen.verdict != Verdict::Complete);
+                    *slot = Some(seen);
+                }
+                // a failure that every experiment would meet ends the diagnosis
+                Err(failure) => match StudyError::from_systematic_failure(&failure) {
+                    Some(error) => return Err(error),
+                    None => cost.failed += 1,
+                },
+            }
+            open -= 1;
+            let evaluator = &*self.evaluator;
+            let view = StageView {
+                stages: self.stages,
+                stage,
+                done: cost.experiments,
+                open,
+                spent: self.spent,
+                left: self.left[stage as usize].max(0.0),
+            };
+            self.watch.progress(&view, &|| evaluator.workers_status());
+        }
+        let cost = self.costs.entry(stage).or_default();
+        cost.batches += u64::from(!results.is_empty());
+        cost.wall += started.elapsed();
+        Ok(results)
+    }
+}

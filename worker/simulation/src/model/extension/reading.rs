@@ -1,0 +1,26 @@
+//! Stages of the measuring chain, from stress at the gauge to its reading.
+use std::fmt::Debug;
+
+/// Stage of the measuring chain, from stress at the gauge to its reading.
+pub trait Reading: Debug + Send + Sync {
+    /// Modifies the readings of one sample \[Pa\].
+    fn sample(&self, _at: &SampleState, _stress: &mut [f64; 4]) {}
+
+    /// Modifies the readings of a whole revolution; samples are `spacing` \[s\] apart and periodic.
+    fn series(&self, _spacing: f64, _stress: &mut [Vec<f64>; 4]) {}
+}
+
+/// Quantities at one sample of the recorded revolution that are available to a [`Reading`].
+#[derive(Clone, Copy, Debug)]
+pub struct SampleState {
+    /// Beam angle \[rad\].
+    pub beam: f64,
+    /// Elapsed share of the recorded revolution, 0 to 1.
+    pub elapsed: f64,
+    /// Force of the back ropes on the back head, in W \[N\].
+    pub head_force: [f64; 2],
+    /// Tension of the back rope at the crossbeam \[N\]; the sum for twin ropes.
+    pub back_tension: f64,
+    /// Stiffness of one joint between two cylinders of the individual's rope [N/m].
+    pub joint_stiffness: f64,
+}

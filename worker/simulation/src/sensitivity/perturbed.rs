@@ -1,0 +1,138 @@
+//! Individual with perturbed parameters, used for differences: residuals, memory of axial laws, and gauge
+//! readings.
+use crate::drive::Drive;
+use crate::element::bushing::Bushing;
+use crate::model::extension::{Memory, SampleState};
+use crate::model::forces::Terms;
+use crate::model::{Machine, RopeMachine, Ropes, Scratch};
+use crate::observe::{Gradient, TorqueBy, readings, sampled, shaft, turned_by_ropes};
+use crate::system::{Equations, State};
+
+/// Individual with perturbed parameters that borrows its buffers for each evaluation.
+#[derive(Clone, Debug)]
+pub(super) struct PerturbedModel<'a> {
+    pub(super) machine: &'a Machine,
+    ropes: Ropes,
+    pub(super) drive: Drive,
+    /// Memory of the axial laws, for each chain.
+    memory: Vec<Vec<Memory>>,
+}
+
+impl<'a> PerturbedModel<'a> {
+    pub(super) fn new(machine: &'a Machine, ropes: Ropes, drive: Drive) -> Self {
+        Self {
+            machine,
+            ropes,
+            drive,
+            memory: vec![Vec::new(); machine.chains.len()],
+        }
+    }
+
+    /// Returns the law of the joints between cylinders.
+    pub(super) const fn inner(&self) -> &Bushing {
+        &self.ropes.joint
+    }
+
+    /// Calls `ask` with the individual, which uses the given buffers meanwhile.
+    pub(super) fn with_buffers<T>(
+        &mut self,
+        scratch: &mut Scratch,
+        ask: impl FnOnce(&mut RopeMachine<'a>) -> T,
+    ) -> T {
+        let lent = std::mem::take(scratch);
+        let mut individual = RopeMachine::within(self.machine, self.ropes, self.drive, lent);
+        self.exchange(&mut individual.scratch);
+        let answer = ask(&mut individual);
+        *scratch = individual.scratch;
+        self.exchange(scratch);
+        answer
+    }
+
+    fn exchange(&mut self, scratch: &mut Scratch) {
+        for (own, chain) in self.memory.iter_mut().zip(&mut scratch.chains) {
+            std::mem::swap(own, &mut chain.memory);
+        }
+    }
+
+    /// Computes the selected terms of the residual `Q - M a`, with or without inertia, at a state whose poses
+    /// are in `scratch`.
+    pub(super) fn residual(
+        &mut self,
+        scratch: &mut Scratch,
+        state: &State,
+        (terms, inertia): (Terms, bool),
+        out: &mut [f64],
+    ) {
+        self.with_buffers(scratch, |individual| {
+            individual.posed_forces(state.motion(), terms, out);
+            if inertia {
+                individual.subtract_inertia(&state.q, &state.a, out);
+            }
+        });
+    }
+
+    /// Updates the memory of axial laws from an accepted state.
+    pub(super) fn remember(&mut self, scratch: &mut Scratch, state: &State) {
+        if self.machine.extensions.has_axial() {
+            self.with_buffers(scratch, |individual| individual.update_memory(state));
+        }
+    }
+
+    /// Returns the gauge readings \[Pa\].
+    pub(super) fn readings(
+        &mut self,
+        scratch: &mut Scratch,
+        state: &State,
+        force: &mut [f64],
+    ) -> [f64; 4] {
+        let part = !self.machine.extensions.has_readings();
+        self.with_buffers(scratch, |individual| {
+            readings(individual, state, force, part)
+        })
+    }
+
+    /// Returns the gauge readings \[Pa\] and, if requested, the quantities available to reading extensions; also
+    /// computes the derivatives of the stress if `gradient` is given. `room` is workspace for a state.
+    pub(super) fn gradient(
+        &mut self,
+        scratch: &mut Scratch,
+        state: &State,
+        (force, room): (&mut [f64], &mut State),
+        (known, gradient): (bool, Option<&mut Gradient>),
+    ) -> ([f64; 4], Option<SampleState>) {
+        let part = !known && !self.machine.extensions.has_readings();
+        self.with_buffers(scratch, |individual| {
+            let stress = readings(individual, state, force, part);
+            let known = known.then(|| sampled(individual, state));
+            if let Some(gradient) = gradient {
+                gradient.fill(individual, state, room);
+            }
+            (stress, known)
+        })
+    }
+
+    /// Returns suspension height and crank torque; see [`shaft`].
+    pub(super) fn shaft(&mut self, scratch: &mut Scratch, state: &State) -> [f64; 2] {
+        self.with_buffers(scratch, |individual| shaft(individual, state))
+    }
+
+    /// Computes the derivatives of the torque with respect to the state; `room` is workspace for a state.
+    pub(super) fn torque_by(
+        &mut self,
+        scratch: &mut Scratch,
+        state: &State,
+        (by, room): (&mut TorqueBy, &mut State),
+    ) {
+        self.with_buffers(scratch, |individual| by.fill(individual, state, room));
+    }
+
+    /// Returns the crank torque caused by the force of the back ropes alone [N m].
+    pub(super) fn turned_by_ropes(&mut self, scratch: &mut Scratch, state: &State) -> f64 {
+        self.with_buffers(scratch, |individual| turned_by_ropes(individual, state))
+    }
+
+    /// Returns the force of the rope's end on the back head, in the beam frame \[N\].
+    pub(super) fn anchor_pull(&mut self, scratch: &mut Scratch, state: &State) -> [f64; 2] {
+        self.with_buffers(scratch, |individual| individual.anchor_pull(state.motion()))
+    }
+}
