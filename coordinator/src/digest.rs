@@ -18,7 +18,7 @@ impl Digest {
         digest
     }
 
-    /// Adds a number to the digest.
+    /// Adds the bit pattern of a number to the digest.
     pub(crate) fn number(&mut self, value: f64) {
         self.bytes(&value.to_bits().to_le_bytes());
     }
@@ -31,7 +31,6 @@ impl Digest {
         }
     }
 
-    /// Adds raw bytes to the digest.
     pub(crate) fn bytes(&mut self, bytes: &[u8]) {
         self.0.update(bytes);
     }

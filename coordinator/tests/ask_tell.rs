@@ -31,7 +31,7 @@ impl Peer {
         Self { child, to, from }
     }
 
-    /// Sends a line and returns the reply.
+    /// Sends a line to the process and returns its reply.
     fn say(&mut self, line: &str) -> Value {
         writeln!(self.to.as_mut().unwrap(), "{line}").unwrap();
         self.hear()
@@ -43,7 +43,7 @@ impl Peer {
         serde_json::from_str(&line).unwrap()
     }
 
-    /// Closes the input and returns the final reply.
+    /// Closes the process's input and returns its final reply.
     fn hang_up(&mut self) -> Value {
         self.to = None;
         self.hear()
@@ -117,7 +117,7 @@ fn every_strategy_talks_to_its_end_in_any_order() {
     }
 }
 
-/// Checks that a residual without an objective suffices: its sum of squares is minimised.
+/// Checks that a result may be sent as a residual without an objective: its sum of squares is then minimised.
 #[test]
 fn a_point_may_be_told_with_its_residual_alone() {
     let mut peer = Peer::new("least-squares");

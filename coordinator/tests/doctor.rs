@@ -12,7 +12,7 @@ use std::{
     time::{Duration, Instant, SystemTime},
 };
 
-/// Runs `horsehead doctor` and returns its object and exit code.
+/// Runs `horsehead doctor` and returns the object that it prints, and its exit code.
 fn doctor(words: &[&str]) -> (Value, Option<i32>) {
     let output = Command::new(env!("CARGO_BIN_EXE_horsehead"))
         .arg("doctor")
@@ -26,7 +26,7 @@ fn doctor(words: &[&str]) -> (Value, Option<i32>) {
     (object.unwrap_or(Value::String(said)), output.status.code())
 }
 
-/// Asserts that the given layer is reported as failed, as the last layer that was checked.
+/// Asserts that `horsehead doctor` reports the given network layer as failed and checks no layer after it.
 fn fails(words: &[&str], layer: &str) {
     let (object, code) = doctor(words);
     assert_eq!(

@@ -70,7 +70,7 @@ impl TestFolder {
         encoder.finish().unwrap();
     }
 
-    /// Adds an effect to the case.
+    /// Adds an effect, given as lines of TOML, to the test case.
     fn effect(&self, lines: &str) {
         self.replace(
             "case/case.toml",
@@ -329,7 +329,7 @@ const MISTAKES: &[Mistake] = &[
         |_| {},
         "allow case",
         2,
-        &["`model.kind` = \"dhh\"", "needs no permission"],
+        &["`model.kind` = \"dhh\"", "needs no entry in the allow list"],
     ),
     (
         "no workers at all",

@@ -12,9 +12,9 @@ pub struct Announcement {
     pub host: String,
     /// Process id of the worker on its machine.
     pub pid: u32,
-    /// Number of slots, i.e. jobs computed at a time.
+    /// Number of the worker's slots, i.e. jobs computed at a time.
     pub slots: u32,
-    /// Hardware threads of the worker's machine.
+    /// Number of hardware threads of the worker's machine.
     pub cores: u32,
     /// Kinds of job that the worker can execute, by [`crate::job::Job::kind`].
     pub job_kinds: Vec<String>,
@@ -36,13 +36,13 @@ pub struct ModelDescriptor {
 /// Effect that a model can add, described in enough detail to be proposed, estimated and searched.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EffectDescriptor {
-    /// Fixed identifier, as used in results.
+    /// Fixed identifier of the effect, as used in results, e.g. `pivot_friction`.
     pub id: String,
-    /// Description in words.
+    /// Description of the effect in words.
     pub title: String,
     /// Joint or part of the model at which the effect acts, e.g. `saddle` or `guide`.
     pub joint: String,
-    /// Part of the model that the effect changes.
+    /// Part of the model that the effect changes: dynamics, drive, load or sensor.
     pub place: Place,
     /// Whether the effect is a generic force without a physical cause, used only to find where a model is
     /// wrong.
@@ -55,11 +55,11 @@ pub struct EffectDescriptor {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Place {
-    /// Geometry, inertia or forces.
+    /// Geometry, inertia or forces of the machine.
     Dynamics,
     /// Driving motion, or the zero of the driving angle.
     Drive,
-    /// Applied load.
+    /// Load applied to the machine.
     Load,
     /// Measurement chain from the measured quantity to the reading.
     Sensor,
@@ -72,7 +72,7 @@ pub struct ParameterDescriptor {
     pub name: String,
     /// Unit of all values of the parameter, as text.
     pub unit: String,
-    /// Role: whether the parameter switches the effect on or only shapes it.
+    /// Role of the parameter: whether it switches the effect on or only shapes it.
     pub role: Role,
     /// Signs that the parameter may have.
     pub sign: Sign,
@@ -89,13 +89,14 @@ pub struct ParameterDescriptor {
     pub scale: f64,
 }
 
-/// Role of a parameter in its effect.
+/// Role of a parameter in its effect: size or shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
-    /// Size: at its absent value the effect vanishes.
+    /// Size of the effect, for example a friction coefficient: at one value of it the effect vanishes.
     Size,
-    /// Shape: modifies an effect that is switched on by its size parameters.
+    /// Shape of the effect, for example a velocity scale: acts only once the effect's size parameters switch
+    /// it on.
     Shape,
 }
 

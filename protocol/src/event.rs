@@ -15,61 +15,61 @@ pub struct RunHeader {
     pub kind: String,
     /// Content hash of the encoded case.
     pub case: ContentHash,
-    /// Canonical JSON of all other settings that determine the result.
+    /// All other settings that determine the result of the run, as canonical JSON.
     pub settings: String,
 }
 
 /// Entry of a run's journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Event {
-    /// First entry: identity of the run.
+    /// First entry of the journal: identity of the run.
     Begun {
-        /// Id of the run in messages.
+        /// Id of the run, as used in messages.
         run: RunId,
-        /// Settings that determine the result.
+        /// Settings that determine the result of the run.
         header: RunHeader,
     },
-    /// A coordinator process took over the run.
+    /// A coordinator process took over the run, either the first one or one that resumes it.
     Opened {
-        /// Number of the coordinator process, from 1.
+        /// Number of the coordinator process within the run, from 1.
         epoch: u32,
-        /// Time of the takeover [ms since 1970 UTC].
+        /// Time at which the coordinator process took over the run [ms since 1970 UTC].
         at_unix_ms: u64,
     },
-    /// A worker was admitted.
+    /// A worker was admitted to the run.
     Joined {
-        /// Id of the worker.
+        /// Id of the admitted worker.
         worker: WorkerId,
         /// Host name of the worker's machine.
         host: String,
-        /// Number of slots of the worker.
+        /// Number of slots (parallel jobs) of the worker.
         slots: u32,
-        /// Digest of the worker's numerics.
+        /// Digest of the worker's numerics: equal digests guarantee bitwise equal results.
         model_digest: String,
     },
     /// A worker left or was lost.
     Left {
-        /// Id of the worker.
+        /// Id of the worker that left or was lost.
         worker: WorkerId,
         /// Reason in words why the worker left or is considered lost.
         reason: String,
     },
     /// A job was requested by the study.
     Asked {
-        /// Id of the job.
+        /// Id of the requested job.
         job: JobId,
         /// Content hash of the encoded job; a job id denotes the same content in all coordinator processes of
         /// a run.
         work: ContentHash,
     },
-    /// The only accepted result of a job was recorded.
+    /// The only accepted result of a job.
     Finished(Box<Finished>),
     /// The coordinator ended the run regularly.
     Closed,
     /// Result of the case's reference individual on the run's first worker, which every other worker must
     /// reproduce.
     Proved {
-        /// Bits, or a selection of the values, of the reference result.
+        /// Reference result: the hash of all its bits, or selected values.
         proof: ReferenceResult,
     },
     /// Use of the slots' time up to now; written periodically, when workers leave, and at the end. The last
@@ -77,14 +77,14 @@ pub enum Event {
     Accounted(Box<Account>),
 }
 
-/// Use of the slots' time of all workers.
+/// Use of slot time by all workers in one coordinator process.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Account {
-    /// Number of the coordinator process, from 1.
+    /// Number of the coordinator process within the run, from 1.
     pub epoch: u32,
     /// Time since the coordinator process began \[ms\].
     pub at_ms: u64,
-    /// Slot time of each worker by use.
+    /// Use of slot time of each worker.
     pub workers: Vec<WorkerAccount>,
 }
 
@@ -95,9 +95,9 @@ pub struct WorkerAccount {
     pub worker: WorkerId,
     /// Host name of the worker's machine.
     pub host: String,
-    /// Number of slots of the worker.
+    /// Number of slots (parallel jobs) of the worker.
     pub slots: u32,
-    /// Number of accepted results from the worker.
+    /// Number of the worker's results that were accepted.
     pub done: u64,
     /// Number of attempts that failed on the worker.
     pub failed: u64,
@@ -110,23 +110,23 @@ pub struct WorkerAccount {
 pub struct Spent {
     /// Total time for which slots were connected: number of slots times duration.
     pub connected_us: u64,
-    /// Time spent on computing accepted results.
+    /// Slot time spent on computing accepted results \[us\].
     pub useful_us: u64,
     /// Idle time while the search waits for results that other slots compute.
     pub barrier_us: u64,
     /// Idle time for other reasons: fetching the case, waiting for the next job or for a journal that cannot
     /// be written, or no jobs in the run.
     pub starved_us: u64,
-    /// Time spent on results that another worker delivered first.
+    /// Slot time spent on results that another worker delivered first \[us\].
     pub speculative_us: u64,
-    /// Time spent on attempts that failed.
+    /// Slot time spent on attempts that failed \[us\].
     pub failed_us: u64,
     /// Time spent on attempts whose worker was lost or that never got an answer.
     pub lost_us: u64,
 }
 
 impl Spent {
-    /// Returns each use of slot time with its name \[us\].
+    /// Returns the slot time of each use with the name of the use \[us\].
     pub const fn kinds(&self) -> [(&'static str, u64); 6] {
         [
             ("useful", self.useful_us),
@@ -138,12 +138,12 @@ impl Spent {
         ]
     }
 
-    /// Returns the sum over all uses \[us\].
+    /// Returns the slot time summed over all uses \[us\].
     pub fn sum_us(&self) -> u64 {
         self.kinds().iter().map(|(_, us)| us).sum()
     }
 
-    /// Adds the times of another account.
+    /// Adds the slot times of another account, use by use.
     pub const fn add(&mut self, other: &Self) {
         self.connected_us += other.connected_us;
         self.useful_us += other.useful_us;
@@ -158,20 +158,20 @@ impl Spent {
 /// Accepted result of a job; a job has exactly one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finished {
-    /// Attempt that delivered the result.
+    /// Attempt at the job that delivered the result.
     pub attempt: Attempt,
-    /// Content hash of the encoded job.
+    /// Content hash of the encoded job that was computed.
     pub work: ContentHash,
     /// Worker that computed the result; `None` for a failure that the coordinator recorded itself.
     pub worker: Option<WorkerId>,
-    /// Time that the attempt took in the slot.
+    /// Time that the attempt occupied the worker's slot.
     pub cost: Cost,
-    /// Outcome of the job.
+    /// Outcome of the job: its answer or the reason of its failure.
     pub outcome: Outcome,
 }
 
 impl Finished {
-    /// Returns the id of the job.
+    /// Returns the id of the job that the result belongs to.
     pub const fn job(&self) -> JobId {
         self.attempt.job
     }

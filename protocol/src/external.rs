@@ -17,25 +17,28 @@ pub const KIND: &str = "command";
 /// Maximum total size of all files of a case (bytes), because they travel with the case in one message.
 pub const MOST_BYTES: usize = 12 << 20;
 
-/// Returns the model kind of an external program's entry, as used in messages.
+/// Returns the model kind, as used in messages, of an external program's entry in the list of allowed
+/// programs.
 pub fn kind_of(entry: &str) -> String {
     format!("{KIND}:{entry}")
 }
 
-/// Returns the name of the entry if a model kind in a message denotes an external program.
+/// Returns the entry's name in the list of allowed programs if a model kind in a message denotes an external
+/// program.
 pub fn entry_of(kind: &str) -> Option<&str> {
     kind.strip_prefix(KIND)?.strip_prefix(':')
 }
 
-/// Description of one evaluation by an external program.
+/// Description of how an external program evaluates an individual: input files, output files and their
+/// meaning.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct External {
     /// Files that are the same for every individual, copied into the program's folder before the input files
     /// are written.
     pub files: Vec<File>,
-    /// Input files written for every individual.
+    /// Input files of the program, written for every individual.
     pub fills: Vec<InputFile>,
-    /// Output files read after the program has ended.
+    /// Output files of the program, read after it has ended.
     pub readings: Vec<OutputFile>,
     /// Values computed from the parameters alone, without the program.
     pub equations: Vec<Equation>,
@@ -49,19 +52,19 @@ pub struct External {
     pub verdicts: Vec<(i32, String)>,
 }
 
-/// Input file written for every individual.
+/// Input file of an external program, written for every individual.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct InputFile {
     /// Path of the file below the program's folder.
     pub file: String,
-    /// Format and template of the file.
+    /// Format and template of the input file.
     pub form: InputFormat,
 }
 
 /// Format of an input file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum InputFormat {
-    /// PEST template: the text of the `.tpl` file.
+    /// PEST template, given by the text of the `.tpl` file.
     Pest(String),
     /// Text template with `{name}` fields.
     Braces(String),
@@ -74,7 +77,7 @@ pub enum InputFormat {
 pub struct OutputFile {
     /// Path of the file below the program's folder.
     pub file: String,
-    /// Format of the file.
+    /// Format of the output file.
     pub form: OutputFormat,
 }
 
@@ -87,25 +90,25 @@ pub enum OutputFormat {
     /// Dakota results file, with the names of its functions in the file's order; each function yields a named
     /// value.
     Dakota(Vec<String>),
-    /// Table with columns under a header.
+    /// Table with columns of numbers under a header.
     Table,
-    /// JSON object.
+    /// JSON object that contains the values.
     Object,
 }
 
 /// Value computed from the parameters: a weighted sum of them or of their logarithms.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Equation {
-    /// Name of the value.
+    /// Name of the computed value.
     pub name: String,
-    /// Terms of the sum.
+    /// Terms of the weighted sum.
     pub terms: Vec<EquationTerm>,
 }
 
-/// Term of an equation.
+/// Term of an equation: a factor times a parameter or its logarithm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EquationTerm {
-    /// Name of the parameter.
+    /// Name of the parameter in the term.
     pub parameter: String,
     /// Factor on the parameter or its logarithm.
     pub factor: f64,
@@ -129,20 +132,21 @@ pub struct Parameter {
 pub enum ChannelSource {
     /// Named values read from output files, one per point of the channel's abscissa.
     Named(Vec<String>),
-    /// Column of a table, interpolated to the channel's abscissa along another column, or used unchanged.
+    /// Column of a table, interpolated to the channel's abscissa along another column of the table, or used
+    /// unchanged.
     Column {
         /// Index of the table among the output files.
         reading: usize,
         /// Name of the abscissa column; `None` if the rows correspond to the channel's points.
         at: Option<String>,
-        /// Name of the column with the values.
+        /// Name of the table column with the channel's values.
         column: String,
     },
     /// Number or list of numbers in a JSON object.
     Pointer {
         /// Index of the JSON file among the output files.
         reading: usize,
-        /// JSON pointer to the values.
+        /// JSON pointer to the channel's values.
         values: String,
         /// JSON pointer to the abscissa of the values; `None` if they correspond to the channel's points.
         at: Option<String>,

@@ -7,7 +7,7 @@ use std::path::{Component, Path};
 pub struct File {
     /// Path relative to the folder that the file belongs to, with `/` as separator.
     pub path: String,
-    /// Content of the file.
+    /// Bytes of the file.
     #[serde(with = "serde_bytes")]
     pub content: Vec<u8>,
     /// Whether the file is executable.

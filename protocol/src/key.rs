@@ -28,9 +28,10 @@ pub const ROOT: &str = "horsehead/1";
 /// Channel of a message between coordinator and worker: bulk data must not delay control messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Lane {
-    /// Lane of jobs (to a worker) and of results (from a worker).
+    /// Channel for bulk data: jobs to a worker, results from a worker.
     Data,
-    /// Lane of short messages that must not wait behind bulk data: admission, acknowledgements, heartbeats.
+    /// Channel for short control messages that must not wait behind bulk data: admission, acknowledgements,
+    /// heartbeats.
     Control,
 }
 
@@ -52,8 +53,8 @@ pub fn from_worker(run: RunId, worker: &WorkerName, lane: Lane) -> String {
     format!("{ROOT}/{run}/{lane}/{worker}")
 }
 
-/// Returns the key expression that matches all workers' keys in one lane, in any run, since new workers do
-/// not know the run.
+/// Returns the key expression that matches the keys of one channel ([`Lane`]) of all workers, in any run,
+/// since new workers do not know the run.
 pub fn all_from_workers(lane: Lane) -> String {
     match lane {
         Lane::Data => format!("{ROOT}/*/res/*/*"),
@@ -71,7 +72,7 @@ pub fn all_alive(run: RunId) -> String {
     format!("{ROOT}/{run}/alive/*/*")
 }
 
-/// Returns the key at which a worker requests one chunk of a blob.
+/// Returns the key at which a worker requests one chunk of a blob (content addressed by its hash).
 pub fn blob(run: RunId, hash: ContentHash, chunk: u32) -> String {
     format!("{ROOT}/{run}/blob/{hash}/{chunk}")
 }
@@ -118,7 +119,7 @@ impl Grant {
     }
 }
 
-/// Parses hash and chunk number at the end of a blob's key; `None` for any other key.
+/// Parses the content hash and the chunk number at the end of a blob's key; `None` for any other key.
 pub fn blob_of(key: &str) -> Option<(ContentHash, u32)> {
     let (rest, chunk) = key.rsplit_once('/')?;
     let (_, hash) = rest.rsplit_once('/')?;

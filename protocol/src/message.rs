@@ -19,40 +19,41 @@ pub struct Attempt {
 /// Message from the coordinator to a worker.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToWorker {
-    /// The coordinator does not know the worker, which must announce itself (again).
+    /// Request that the worker announce itself (again), since the coordinator does not know it.
     Identify,
-    /// The worker is admitted to the run that the frame states.
+    /// Admission of the worker to the run that the frame states.
     Admitted {
-        /// Number of the coordinator process in that run, counted from 1.
+        /// Number of the coordinator process within the run, counted from 1; a restarted coordinator has the
+        /// next number.
         epoch: u32,
         /// Hash of the case, which the worker must fetch as a blob before any job.
         case: ContentHash,
         /// Length of the encoded case (bytes).
         case_bytes: u64,
     },
-    /// The worker is not admitted.
+    /// Refusal to admit the worker to the run.
     Refused {
         /// Field of the worker's announcement that does not match the run, and the remedy.
         reason: String,
     },
-    /// Job to do; repeating it does no harm (idempotent).
+    /// Job that the worker must do; receiving it repeatedly does no harm (idempotent).
     Run(Box<Assignment>),
-    /// The result of the attempt is no longer needed.
+    /// Cancellation of an attempt whose result is no longer needed.
     Cancel(Attempt),
-    /// The results of these attempts are in the journal; the worker can discard them.
+    /// Confirmation that the results of these attempts are in the journal; the worker can discard them.
     Stored(Vec<Attempt>),
-    /// The run has ended; this coordinator sends no more work.
+    /// Notice that the run has ended and that this coordinator sends no more work.
     Ended,
 }
 
-/// Job as dispatched to a worker, with attempt and deadline.
+/// Job as dispatched to a worker, with its attempt number and deadline.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Assignment {
     /// Job id and dispatch number that the worker must return with the result.
     pub attempt: Attempt,
-    /// Time from start to forced termination \[ms\].
+    /// Time from the start of the job to its forced termination \[ms\].
     pub deadline_ms: u64,
-    /// Job to do.
+    /// Job that the worker must do.
     pub job: Job,
 }
 
@@ -61,64 +62,66 @@ pub struct Assignment {
 pub enum FromWorker {
     /// Description of the worker when it joins.
     Announce(Box<Announcement>),
-    /// Heartbeat with the attempts that the worker holds.
+    /// Heartbeat of the worker with the attempts that it holds.
     Beat(Heartbeat),
-    /// Result of an attempt.
+    /// Result of one attempt at a job.
     Done(Box<Done>),
-    /// The worker is shutting down; its attempts must be dispatched to other workers.
+    /// Notice that the worker is shutting down; its attempts must be dispatched to other workers.
     Leaving {
         /// Reason why the worker leaves, as text.
         reason: String,
     },
 }
 
-/// Heartbeat, sent each second; its lists of the attempts that a worker holds are authoritative.
+/// Heartbeat of a worker, sent each second; its lists of the attempts that the worker holds are
+/// authoritative.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Heartbeat {
-    /// Sequence number, counted from 0.
+    /// Sequence number of the heartbeat, counted from 0.
     pub number: u64,
-    /// Hash of the case that the worker has fetched and verified; without a case only [`Job::Nothing`] can be
-    /// done.
+    /// Hash of the case that the worker has fetched and verified; without a case the worker can only do jobs
+    /// without computation ([`Job::Nothing`]).
     pub case: Option<ContentHash>,
     /// Result of the case's reference individual on this worker; without it the worker receives no jobs.
     pub proof: Option<ReferenceResult>,
-    /// Attempts being computed in a slot.
+    /// Attempts that slot processes of the worker are computing.
     pub running: Vec<Attempt>,
-    /// Attempts queued for a slot.
+    /// Attempts that wait in the worker for a free slot process.
     pub waiting: Vec<Attempt>,
-    /// Attempts whose results are not yet acknowledged.
+    /// Attempts whose results the coordinator has not yet acknowledged.
     pub finished: Vec<Attempt>,
 }
 
-/// Time that a job occupied its slot; informative only, used for no decision and not part of any digest.
+/// Wall and processor time of a job in its slot process; informative only, used for no decision and not part
+/// of any digest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Cost {
-    /// Wall time in the slot \[us\].
+    /// Wall time of the job in its slot process \[us\].
     pub wall_us: u64,
     /// Processor time of the slot process during the job \[us\]; 0 if the job gave no answer.
     pub cpu_us: u64,
 }
 
 impl Cost {
-    /// Returns the wall time in the slot \[s\].
+    /// Returns the wall time of the job in its slot process \[s\].
     pub const fn wall_s(self) -> f64 {
         self.wall_us as f64 / 1e6
     }
 
-    /// Returns the processor time \[s\].
+    /// Returns the processor time of the job \[s\].
     pub const fn cpu_s(self) -> f64 {
         self.cpu_us as f64 / 1e6
     }
 }
 
-/// Result of an attempt, kept by the worker until the coordinator acknowledges it.
+/// Result of one attempt at a job, kept by the worker until the coordinator acknowledges it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Done {
     /// Attempt that the result belongs to.
     pub attempt: Attempt,
     /// Hash of the job that was done, which guards against assigning the result to another job.
     pub work: ContentHash,
-    /// Time that the job took.
+    /// Wall and processor time of the job.
     pub cost: Cost,
     /// Answer or failure of the job.
     pub outcome: Outcome,
@@ -127,18 +130,18 @@ pub struct Done {
 /// Message from the worker process to a slot process, over the slot's standard input.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToSlot {
-    /// The encoded case for all following jobs.
+    /// Encoded case to which all following jobs refer.
     Case(#[serde(with = "serde_bytes")] Vec<u8>),
-    /// Job to do.
+    /// Job that the slot process must do.
     Run(Box<Job>),
 }
 
 /// Message from a slot process to its worker process, over the slot's standard output.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum FromSlot {
-    /// The slot process is ready.
+    /// Notice that the slot process has started and accepts messages.
     Ready,
-    /// The slot process has finished a job.
+    /// Result of a job that the slot process has finished.
     Done {
         /// Answer or failure of the job.
         outcome: Box<Outcome>,

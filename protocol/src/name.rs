@@ -31,7 +31,8 @@ pub struct NameError {
 }
 
 impl WorkerName {
-    /// Creates the name of a process that shows the certificate of an owner.
+    /// Creates the name of a worker process from the name of its certificate (the owner) and the process's
+    /// own number.
     ///
     /// # Errors
     /// [`NameError`] unless [`check_owner`] accepts the owner.
@@ -43,7 +44,7 @@ impl WorkerName {
         })
     }
 
-    /// Creates the name of a process without a certificate.
+    /// Creates the name of a worker process without a certificate.
     pub fn anyone(process: u64) -> Self {
         Self {
             owner: NO_CERTIFICATE.to_owned(),
@@ -83,7 +84,7 @@ impl fmt::Display for WorkerName {
     }
 }
 
-/// Checks whether a certificate's name can be part of a key.
+/// Checks whether a certificate's name can be part of a Zenoh key.
 ///
 /// # Errors
 /// [`NameError`] if the name is empty, too long, contains characters that are not permitted, or is

@@ -21,15 +21,16 @@ pub enum ReferenceResult {
 /// Selected value of the reference individual's result, with the scale for its comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
-    /// The value, in its channel's unit.
+    /// Value of one channel at one abscissa, in the channel's unit.
     pub value: f64,
-    /// Root mean square of the values of the channel, in the channel's unit.
+    /// Root mean square of all values of the same channel, to which permitted differences are relative, in
+    /// the channel's unit.
     pub scale: f64,
 }
 
 impl ReferenceResult {
-    /// Compares the result with that of another machine: hashes must be equal; values may differ by at most
-    /// `tolerance` times the larger of their scales.
+    /// Compares the reference results of this and another machine: hashes must be equal; values may differ by
+    /// at most `tolerance` times the larger of their scales.
     ///
     /// # Errors
     /// Description of the difference, in words.

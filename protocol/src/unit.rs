@@ -31,7 +31,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// All units, in the order in which errors list them.
+    /// All units, in the order in which error messages list them.
     pub const ALL: [Self; 7] = [
         Self::NewtonPerMetre,
         Self::NewtonMetrePerRadian,
@@ -47,7 +47,7 @@ impl Unit {
         Self::ALL.into_iter().find(|unit| unit.symbol() == symbol)
     }
 
-    /// Returns the symbol used in case files and tables.
+    /// Returns the symbol of the unit used in case files and tables.
     pub const fn symbol(self) -> &'static str {
         match self {
             Self::NewtonPerMetre => "N/m",

@@ -14,25 +14,25 @@ use serde::{Serialize, de::DeserializeOwned};
 /// Version of the frame and of everything in it; both peers must have the same. A test compares the layout of
 /// every message with a stored copy: a change of layout requires a higher number.
 pub const VERSION: u8 = 12;
-/// Largest length of a body (bytes): a long simulation with its snapshots fits.
+/// Largest length of a frame's body (bytes): a long simulation with its snapshots fits.
 pub const BODY_LIMIT: usize = 16 << 20;
 /// Allowance for the data added to an outcome at each hop: slot to worker, worker to coordinator, coordinator
 /// to journal (bytes). An outcome that passes one hop must fit through the next.
 const ENVELOPE: usize = 64;
-/// Length of the header before the body (bytes).
+/// Length of a frame's header, which precedes the body (bytes).
 pub const HEADER_BYTES: usize = 20;
 const MAGIC: [u8; 2] = *b"HH";
 
 /// Type of the body in a frame; a new kind gets a new number, numbers are never reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameKind {
-    /// [`crate::message::ToWorker`].
+    /// Body of the type [`crate::message::ToWorker`].
     ToWorker,
-    /// [`crate::message::FromWorker`].
+    /// Body of the type [`crate::message::FromWorker`].
     FromWorker,
-    /// [`crate::message::ToSlot`].
+    /// Body of the type [`crate::message::ToSlot`].
     ToSlot,
-    /// [`crate::message::FromSlot`].
+    /// Body of the type [`crate::message::FromSlot`].
     FromSlot,
 }
 
@@ -73,9 +73,9 @@ pub enum WireError {
     /// The frame is truncated.
     #[error("the frame is truncated: {found} of {expected} bytes were received")]
     Truncated {
-        /// Number of bytes received.
+        /// Number of bytes of the frame that were received.
         found: usize,
-        /// Number of bytes that the header requires.
+        /// Number of bytes that the frame must have according to its header.
         expected: usize,
     },
     /// The first two bytes are not the magic number `HH`.
@@ -95,9 +95,9 @@ pub enum WireError {
     /// The kind of the frame is not the expected one.
     #[error("a frame of kind {found} was received where kind {expected} was expected")]
     Kind {
-        /// Kind stated in the frame.
+        /// Number of the frame kind stated in the header.
         found: u8,
-        /// Kind that the reader expects.
+        /// Number of the frame kind that the reader expects.
         expected: u8,
     },
     /// The body exceeds the length limit of its kind.
@@ -105,7 +105,7 @@ pub enum WireError {
     TooLong {
         /// Length of the body (bytes).
         bytes: usize,
-        /// Limit on the length (bytes).
+        /// Largest permitted length of the body (bytes).
         limit: usize,
     },
     /// The checksum does not match the body.
@@ -118,16 +118,16 @@ pub enum WireError {
         /// Checksum stated in the header.
         expected: u32,
     },
-    /// Bytes remain after the value.
+    /// Bytes remain after the decoded value.
     #[error("the message is too long for its type: {bytes} bytes remain after decoding")]
     Leftover {
-        /// Number of remaining bytes.
+        /// Number of bytes that remain after decoding.
         bytes: usize,
     },
-    /// The body cannot be decoded as the expected type.
+    /// The value cannot be encoded, or the body cannot be decoded as the expected type.
     #[error("the message cannot be encoded or decoded: {reason}")]
     Malformed {
-        /// Message of the decoder.
+        /// Error message of the encoder or decoder.
         reason: String,
     },
 }
@@ -137,7 +137,7 @@ pub enum WireError {
 pub struct Frame<'a> {
     /// Run that the frame belongs to; 0 if the worker does not know the run yet.
     pub run: RunId,
-    /// Encoded value in the frame.
+    /// Body of the frame: the message, still encoded.
     pub body: &'a [u8],
 }
 
@@ -195,7 +195,7 @@ pub fn encode_frame<T: Serialize>(
     Ok(frame)
 }
 
-/// Checks a frame and returns its body, still encoded.
+/// Checks header and checksum of a frame and returns its body, still encoded.
 ///
 /// # Errors
 /// Any of [`WireError`] but [`WireError::Malformed`].
@@ -230,7 +230,7 @@ pub fn parse_frame(kind: FrameKind, frame: &[u8]) -> Result<Frame<'_>, WireError
     }
 }
 
-/// Opens a frame and decodes its body.
+/// Checks header and checksum of a frame and decodes its body.
 ///
 /// # Errors
 /// Any of [`WireError`].

@@ -1,5 +1,5 @@
-//! Property tests of the codec: every value survives encoding and decoding, and no input makes the decoder
-//! panic.
+//! Property tests of the wire encoding: every value survives encoding and decoding, and no input makes the
+//! decoder panic.
 #[expect(unreachable_pub, reason = "a module of the fuzz targets, too")]
 #[path = "../../tests/fuzz/targets/property/wire.rs"]
 mod property;

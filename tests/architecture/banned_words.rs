@@ -1,5 +1,5 @@
-//! Words that belong to one machine and the files that may contain them; all other code must be independent
-//! of the model.
+//! Checks that words of one machine, such as rope or gauge, occur only in listed files; all other code must
+//! be independent of the model.
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -11,7 +11,7 @@ struct Rule {
     within: &'static [&'static str],
     /// Banned words; a word in lower case is banned in any case, a word with capitals only as written.
     words: &'static [&'static str],
-    /// Exceptions: folders and files that may contain the words.
+    /// Folders and files that may contain the banned words.
     except: &'static [&'static str],
 }
 

@@ -12,7 +12,8 @@ use std::{
 /// file.
 pub(crate) type Uses = BTreeMap<(usize, usize), BTreeSet<String>>;
 
-/// Largest number of re-exports that are followed; no chain in the workspace is so long.
+/// Largest number of re-exports followed to find the definition of a name; no chain in the workspace is so
+/// long.
 const DEEPEST: usize = 16;
 
 /// Returns the dependencies between the files of a crate.
@@ -84,7 +85,7 @@ fn follow(tree: &ModuleTree, from: Found, rest: &[String], deepest: usize) -> BT
         .collect()
 }
 
-/// Returns the items and modules that a name denotes in a module, through imports and re-exports.
+/// Returns the items and modules that a name denotes in a module, found through imports and re-exports.
 fn named(tree: &ModuleTree, module: usize, name: &str, deepest: usize) -> BTreeSet<Found> {
     let Some(deepest) = deepest.checked_sub(1) else {
         return BTreeSet::new();

@@ -3,15 +3,14 @@
 use proc_macro2::{TokenStream, TokenTree};
 use syn::{UseTree, visit::Visit};
 
-/// Segments of a path, as written.
 pub(crate) type Path = Vec<String>;
 
 /// Syntax-tree visitor that collects paths and imports.
 #[derive(Debug, Default)]
 pub(crate) struct Visitor {
-    /// Paths outside of `use` declarations.
+    /// Paths written in the visited code outside of `use` declarations.
     pub paths: Vec<Path>,
-    /// Trees of `use` declarations.
+    /// Trees of the `use` declarations in the visited code.
     pub uses: Vec<UseTree>,
 }
 

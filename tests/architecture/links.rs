@@ -1,4 +1,5 @@
-//! Links of the manual and of every README: each target is a file, and each anchor a heading of it.
+//! Checks the links of the manual and of every README: each target must be an existing file, and each anchor
+//! a heading of it.
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -37,7 +38,8 @@ fn targets(text: &str) -> Vec<String> {
         .collect()
 }
 
-/// Anchor of a heading, as Git forges make it: small letters, hyphens for spaces, punctuation left out.
+/// Returns the anchor of a Markdown heading as Git forges make it: lower case, hyphens for spaces, no
+/// punctuation.
 fn anchor(heading: &str) -> String {
     let kept = heading
         .trim_start_matches('#')

@@ -27,7 +27,7 @@ pub(crate) struct Module {
     pub parent: Option<usize>,
     /// Names defined or imported, each with its meanings (a name may be a type and a function).
     pub names: BTreeMap<String, Vec<Name>>,
-    /// Paths of glob imports.
+    /// Paths of the module's glob imports.
     pub globs: Vec<Path>,
     /// Every path written in the module's code, also in its imports.
     pub paths: Vec<Path>,
@@ -36,9 +36,9 @@ pub(crate) struct Module {
 /// Files and modules of a crate.
 #[derive(Debug, Default)]
 pub(crate) struct ModuleTree {
-    /// Files, the crate root first.
+    /// Paths of the crate's files, the crate root first.
     pub files: Vec<PathBuf>,
-    /// Modules, the crate root first.
+    /// Modules of the crate, the root module first.
     pub modules: Vec<Module>,
 }
 

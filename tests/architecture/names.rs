@@ -1,4 +1,5 @@
-//! Names of public types: each exists once in the product, or its further uses stand for the same idea.
+//! Checks that each name of a public type exists once in the product, or that its further uses stand for the
+//! same idea.
 use std::{
     collections::BTreeMap,
     fs,
@@ -6,8 +7,8 @@ use std::{
 };
 use syn::{Item, Visibility};
 
-/// Names that several crates use for the same idea, with what it is. The pumping unit's parts exist twice on
-/// purpose: as data that travel (`protocol`) and as the dynamics use them (`simulation`).
+/// Type names that several crates use for the same idea, each with its meaning. The pumping unit's parts
+/// exist twice on purpose: as data that travel (`protocol`) and as the dynamics use them (`simulation`).
 const SHARED: &[(&str, &str)] = &[
     ("Coefficient", "one of the ten searched coefficients"),
     ("Column", "a derivative that a simulation returns"),

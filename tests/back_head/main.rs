@@ -1,5 +1,5 @@
-//! Checks the reduction of the shipped back head from its mesh against reference tables: modes by `CalculiX`,
-//! statics by another implementation of the same element.
+//! Checks the reduction of the shipped back head from its mesh to modes and influence lines against reference
+//! tables: modes by `CalculiX`, statics by another implementation of the same element.
 #![expect(
     clippy::unwrap_used,
     reason = "the helpers read shipped files; a test that cannot read them has failed"
@@ -80,7 +80,8 @@ fn gauges(table: &serde_json::Value) -> Vec<Gauge> {
 
 const PROBES_DEG: [f64; 6] = [125.0, 140.0, 160.0, 180.0, 200.0, 212.0];
 
-/// Reduction of the shipped brick mesh with 24 modes of both families, computed once for all tests.
+/// Reduction of the shipped brick mesh with 24 modes, symmetric and antisymmetric, computed once for all
+/// tests.
 static BRICKS: LazyLock<Reduction> = LazyLock::new(|| reduced_from(&shipped_mesh(), 24, &BOTH));
 
 fn reduced_from(mesh: &Mesh, modes: usize, families: &[Family]) -> Reduction {
@@ -111,8 +112,9 @@ fn mac(a: &[f64], b: &[f64]) -> f64 {
 
 const BOTH: [Family; 2] = [Family::Symmetric, Family::Antisymmetric];
 
-/// Checks that all 24 modes of both families agree with `CalculiX` within 0.6 % (required: 1 % for the first
-/// six, 2 % for twelve), and the shapes of modes without a close neighbour of the same family.
+/// Checks that the head's 24 symmetric and antisymmetric modes agree with `CalculiX` within 0.6 % (required:
+/// 1 % for the first six, 2 % for twelve), and the shapes of modes without a close neighbour of the same
+/// symmetry.
 #[test]
 fn modes_of_both_families_are_those_of_calculix() {
     let reduction = &*BRICKS;
@@ -288,7 +290,7 @@ fn the_quasi_static_turn_is_the_published_one() {
     }
 }
 
-/// Reads the contact angle and the tension of the rope over a revolution from the kinematics table.
+/// Reads the contact angle and the tension of the back rope over a revolution from the kinematics table.
 fn table_turn() -> QuasiStaticTurn {
     let path = folder().join("../machine/kinematics_720.csv");
     let text = fs::read_to_string(path).unwrap();
@@ -304,7 +306,7 @@ fn table_turn() -> QuasiStaticTurn {
     turn
 }
 
-/// Converts influence lines [Pa/N] to the form of a case [MPa/N].
+/// Converts influence lines from [Pa/N] to [MPa/N], the unit of a case.
 fn lines(arc_deg: Vec<f64>, normal: &[Vec<f64>], tangential: &[Vec<f64>]) -> Influence {
     let table = |rows: &[Vec<f64>]| {
         let rows = rows.iter();

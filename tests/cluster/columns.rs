@@ -23,8 +23,8 @@ fn coarse() -> Case {
     unit.into_case().unwrap()
 }
 
-/// Returns eight simulations with derivatives by a rope coefficient, an effect's size, an effect's shape
-/// parameter and a generic force.
+/// Returns eight simulation jobs that request derivatives with respect to a rope coefficient, an effect's
+/// size, an effect's shape parameter and a generic force.
 fn jobs(case: &Case) -> Vec<Job> {
     let mut shape = Column::new("pivot_friction.creep");
     shape.values = vec![("moment".to_owned(), 1500.0)];

@@ -10,9 +10,9 @@ use std::{
 };
 use tests::process::{Process, coordinator_program, wait_until};
 
-/// Number of individuals of a calibration.
 const POINTS: u64 = 12;
-/// Length at which the journal holds a few of its results, of some 28 kB each (bytes).
+/// Length of the journal at which the test kills the calibration: a few results of some 28 kB are recorded
+/// (bytes).
 const SOME: u64 = 100_000;
 
 /// Copies the shipped case with fewer, longer cylinders and edits its file line by line.
@@ -41,7 +41,7 @@ fn horsehead(folder: &Path, words: &[&str]) -> Command {
     command
 }
 
-/// Runs a command and returns the JSON object that it prints.
+/// Runs a `horsehead` command and returns the JSON object that it prints.
 fn said(folder: &Path, words: &[&str]) -> Value {
     let output = horsehead(folder, words).output().unwrap();
     let errors = String::from_utf8_lossy(&output.stderr);

@@ -57,7 +57,7 @@ impl OnSmallDisk {
         Self::start_with(folder, locator, (jobs, delay_ms), &[])
     }
 
-    /// Starts a coordinator as [`Self::start`] does, with environment variables.
+    /// Starts a coordinator as [`Self::start`] does, with additional environment variables.
     fn start_with(
         folder: &Path,
         locator: &str,

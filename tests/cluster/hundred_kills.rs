@@ -55,7 +55,7 @@ fn recorded(run_dir: &Path) -> BTreeMap<u64, String> {
     }
 }
 
-/// Returns the jobs that slots have begun so far, in order.
+/// Returns the ids of the jobs that slot processes have begun so far, in order, from their trace file.
 fn begun(trace: &Path) -> Vec<u64> {
     let text = fs::read_to_string(trace).unwrap_or_default();
     text.lines().map(|line| line.parse().unwrap()).collect()

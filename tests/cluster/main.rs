@@ -22,7 +22,6 @@ use dispatch::runtime::{Dispatch, DispatchError};
 use protocol::{id::JobId, job::Outcome};
 use std::{collections::BTreeMap, time::Duration};
 
-/// Time limit of every wait.
 const LIMIT: Duration = Duration::from_mins(1);
 
 /// Lock for tests whose slots are children of the test process itself, so that each test counts only its own.

@@ -22,7 +22,7 @@ fn coordinator(run_dir: &Path, locator: &str, jobs: u64, local: usize) -> Proces
     Process::start(command)
 }
 
-/// Returns the results in the journal by job, and the number of result entries, which shows duplicates.
+/// Returns the results recorded in the journal, by job, and their total number, which reveals duplicates.
 fn recorded(run_dir: &Path) -> (BTreeMap<JobId, Outcome>, usize) {
     let (mut results, mut records) = (BTreeMap::new(), 0);
     journal::fold(&run_dir.join(journal::FILE), |_, event| {

@@ -17,12 +17,11 @@ use tests::{
 };
 
 const WORKERS: usize = 64;
-/// Number of jobs submitted but not finished: two for each worker, and some to spare.
+/// Number of jobs that are submitted but not finished at any time: two for each worker, and some to spare.
 const AHEAD: u64 = 3 * WORKERS as u64;
 
 struct Load {
     dispatch: Dispatch,
-    /// Payload of each job (bytes).
     order_bytes: usize,
     delay_ms: u32,
     asked: u64,

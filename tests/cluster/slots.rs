@@ -53,8 +53,8 @@ fn task(job: u64, delay_ms: u32, deadline: Duration) -> Task {
     }
 }
 
-/// Returns the slot processes that are children of this process; the tests with such slots run one at a time,
-/// and other tests' slots are children of worker processes.
+/// Returns the slot processes that are children of this test process; tests that use it run one at a time,
+/// and the slots of other tests are children of worker processes.
 fn slots() -> BTreeSet<i32> {
     children(getpid())
         .into_iter()

@@ -25,7 +25,7 @@ fn library(folder: &Path) -> PathBuf {
     built
 }
 
-/// Returns the time of day as a program with the preloaded library sees it \[s\].
+/// Returns the time of day that a program with the preloaded library sees \[s\].
 fn shown(library: &Path) -> i64 {
     let output = Command::new("date")
         .arg("+%s")

@@ -1,4 +1,4 @@
-//! Tests of calibrations over several conditions.
+//! Tests of calibrations that fit one model to the records of several conditions.
 use crate::rig::Rig;
 use std::fs;
 

@@ -3,7 +3,7 @@ use crate::rig::{Rig, source};
 use serde_json::Value;
 use std::fs;
 
-/// Returns the results that PEST++ gave for a model, from a stored file.
+/// Returns the stored results of PEST++ for a model.
 fn found(model: &str) -> Value {
     let text = fs::read_to_string(source("pest").join("pestpp.json")).unwrap();
     serde_json::from_str::<Value>(&text).unwrap()[model].take()
@@ -76,7 +76,7 @@ fn parameters_and_objective_are_those_of_pest() {
     }
 }
 
-/// Half width of a 95 % interval in standard deviations.
+/// Half width of a 95 % interval of a normal distribution in standard deviations.
 const NORMAL: f64 = 1.96;
 
 /// Checks that standard deviations of parameters and predictions agree with those of PEST++ within a tenth.

@@ -7,7 +7,6 @@ use std::{
 };
 use tempfile::TempDir;
 
-/// Temporary folder of one test.
 pub(crate) struct Rig(TempDir);
 
 impl Rig {
@@ -73,7 +72,7 @@ impl Rig {
         command.output().unwrap()
     }
 
-    /// Runs a command, asserts success, and returns its standard output.
+    /// Runs a coordinator command, asserts success, and returns its standard output.
     pub(crate) fn done(&self, words: &[&str]) -> String {
         let output = self.run(words);
         let errors = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -81,13 +80,13 @@ impl Rig {
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// Runs a command with `--output json` and returns the parsed object.
+    /// Runs a coordinator command with `--output json` and returns the parsed object.
     pub(crate) fn object(&self, words: &[&str]) -> Value {
         let words: Vec<&str> = words.iter().copied().chain(["--output", "json"]).collect();
         serde_json::from_str(&self.done(&words)).unwrap()
     }
 
-    /// Runs a command, asserts failure, and returns its standard error.
+    /// Runs a coordinator command, asserts failure, and returns its standard error.
     pub(crate) fn refused(&self, words: &[&str]) -> String {
         let output = self.run(words);
         let errors = String::from_utf8_lossy(&output.stderr).into_owned();

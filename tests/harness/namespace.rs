@@ -1,5 +1,5 @@
-//! Two simulated machines on one host: network namespaces joined by a virtual Ethernet cable that can be
-//! unplugged.
+//! Two simulated machines on one host, called head and node: network namespaces joined by a virtual Ethernet
+//! cable that can be unplugged.
 //!
 //! The head has the address [`HEAD`], the node has [`NODE`]; neither has a route to other networks.
 use std::{

@@ -71,12 +71,12 @@ fn free_port(any: &str) -> String {
         .expect("a free port")
 }
 
-/// A process that is killed when dropped.
+/// Child process that is killed when this handle is dropped.
 #[derive(Debug)]
 pub struct Process(Child);
 
 impl Process {
-    /// Starts a worker.
+    /// Starts a worker process.
     ///
     /// # Panics
     /// If it does not start.
@@ -84,7 +84,7 @@ impl Process {
         Self::worker_with(connect, arguments, &[])
     }
 
-    /// Starts a worker with additional environment variables.
+    /// Starts a worker process with additional environment variables.
     ///
     /// # Panics
     /// If it does not start.
@@ -114,7 +114,7 @@ impl Process {
         Self::start(command)
     }
 
-    /// Returns the process id.
+    /// Returns the id of the process.
     ///
     /// # Panics
     /// Never: ids are positive.
@@ -125,7 +125,7 @@ impl Process {
             .expect("a process id")
     }
 
-    /// Sends a signal.
+    /// Sends a signal to the process.
     ///
     /// # Panics
     /// If the process has been waited for.

@@ -1,5 +1,5 @@
-//! A search without physics, for tests that kill and resume runs. The fitness is the length of a worker's
-//! reply, so that it truly depends on the workers, and the log can be compared bit by bit.
+//! A search on a mathematical test function, for tests that kill and resume runs. The fitness is the length
+//! of a worker's reply, so that it truly depends on the workers, and the log can be compared bit by bit.
 use dispatch::runtime::Dispatch;
 use protocol::{
     id::JobId,
@@ -15,10 +15,10 @@ use search::{
 };
 use std::time::Duration;
 
-/// Longest time that a search waits for a result.
+/// Longest time that the search waits for a worker's result.
 const PATIENCE: Duration = Duration::from_mins(1);
 
-/// Search in which each individual is one short job.
+/// Search in which each individual is evaluated by one short job on the workers.
 pub struct SearchRun {
     /// Search strategy, which proposes individuals and is told their fitness.
     pub strategy: Box<dyn Strategy>,
@@ -57,7 +57,7 @@ impl SearchRun {
         }
     }
 
-    /// Runs the search to its end; `each` is called with the number of results after each result.
+    /// Runs the search to its end; after each result `each` is called with the number of results so far.
     ///
     /// # Panics
     /// If the run cannot go on, or no result arrives for a minute.
@@ -95,7 +95,7 @@ impl SearchRun {
         jobs.collect()
     }
 
-    /// Passes the reply to a job to the strategy as the individual's fitness.
+    /// Passes the length of a job's reply to the search strategy as the individual's fitness.
     pub fn tell(&mut self, id: u64, outcome: &Outcome) {
         let told = match outcome {
             Outcome::Done(Answer::Nothing(reply)) => EvaluationResult {
@@ -110,7 +110,8 @@ impl SearchRun {
         self.strategy.tell(id, told);
     }
 
-    /// Returns the bits of all individuals and their fitness, in id order, as text.
+    /// Returns the bit patterns of all individuals' values and fitness as text, in id order, to compare runs
+    /// exactly.
     pub fn log(&self) -> String {
         let line = |entry: &EvaluatedIndividual| {
             let genes = entry.genes.iter().chain([&entry.result.fitness]);

@@ -52,8 +52,8 @@ fn rubbish(n: u64) -> Vec<u8> {
     }
 }
 
-/// Opens connections to a socket and sends invalid bytes until `stop` is set; returns the number of
-/// connections.
+/// Opens connections to a TCP socket of the coordinator and sends invalid bytes until `stop` is set; returns
+/// the number of connections.
 fn throw_at(address: SocketAddr, lane: u64, stop: &AtomicBool) -> u64 {
     let mut thrown = 0;
     while !stop.load(Ordering::Relaxed) {

@@ -16,7 +16,7 @@ use tests::{
     process::{Process, free_locator, free_quic_locator, wait_until, worker_program},
 };
 
-/// Number of QUIC handshakes that the test begins and never finishes.
+/// Number of QUIC handshakes that the test begins and does not finish.
 const BEGUN: usize = 300;
 /// Longest time in which a worker must join despite unfinished handshakes; a coordinator that handled
 /// handshakes one at a time would need longer.

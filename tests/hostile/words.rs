@@ -196,7 +196,7 @@ impl Serialize for Raw {
     }
 }
 
-/// Wraps a malformed body in a valid frame, so that it reaches the decoder.
+/// Wraps a malformed message body in a valid frame, so that it reaches the decoder.
 fn around(run: RunId, body: &[u8]) -> Vec<u8> {
     let frame = wire::encode_frame(FrameKind::FromWorker, run, &Raw(body.to_vec())).unwrap();
     assert_eq!(

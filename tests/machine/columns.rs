@@ -128,8 +128,8 @@ fn columns_are_what_whole_runs_beside_say() {
     }
 }
 
-/// Checks that requested columns leave the curves of the run unchanged bit for bit, and that each column is
-/// independent of the other columns requested.
+/// Checks that requesting derivatives leaves the simulated curves unchanged bit for bit, and that each
+/// derivative is independent of which others are requested.
 #[test]
 fn columns_change_nothing_else() {
     let case = coarse();
@@ -152,7 +152,8 @@ fn columns_change_nothing_else() {
     assert_eq!(ask(&["kb4"]).columns, [nothing]);
 }
 
-/// Checks that a failed run returns no columns and the verdict of the run without columns.
+/// Checks that a failed simulation returns no derivatives, and the same verdict as without a request for
+/// them.
 #[test]
 fn a_run_that_fails_has_no_columns() {
     let case = coarse();

@@ -1,4 +1,4 @@
-//! Tests of effects on the real unit, and of jobs that contain effects.
+//! Tests of effects on the shipped pumping unit, and of jobs that contain effects.
 #![expect(
     clippy::wildcard_enum_match_arm,
     clippy::too_many_lines,
@@ -41,7 +41,7 @@ fn energy_ledger_closes_with_every_effect() {
     }
 }
 
-/// Kind of reply with all curves but no snapshots of the moving machine.
+/// Reply requested from the worker: all curves, but no snapshots of the moving machine.
 const CURVES: Reply = Reply::Curves { pictures: 0 };
 
 fn observe(case: &Case, effects: &[EffectSetting], discretisation: Discretisation) -> Observation {
@@ -73,7 +73,8 @@ fn bits(observation: &Observation) -> Vec<u64> {
 }
 
 /// Checks that effects give the same bits whether a job or the case states them and in any order, and that
-/// effects at their absent values give the bits of the plain machine.
+/// effects with the parameter values that stand for their absence give the bits of the machine without
+/// effects.
 #[test]
 fn effects_give_the_same_bits_wherever_they_are_stated() {
     let case = case();
@@ -144,8 +145,8 @@ fn a_refined_observation_is_of_the_same_machine() {
     }
 }
 
-/// Checks that unknown effects, parameters and invalid discretisations are refused by field, for every kind
-/// of job.
+/// Checks that unknown effects, parameters and invalid discretisations are refused with the name of the wrong
+/// field, for every kind of job.
 #[test]
 fn what_the_model_does_not_have_is_refused_by_field() {
     let case = case();

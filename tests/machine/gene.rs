@@ -1,5 +1,5 @@
-//! Tests of genes that are parameters of the case's effects: their evaluation by a worker, and a calibration
-//! that recovers them.
+//! Tests of parameters of the case's effects that are unknowns of the search: their evaluation by a worker,
+//! and a calibration that recovers them.
 #![expect(
     clippy::wildcard_enum_match_arm,
     reason = "whatever else comes back is a failed test"
@@ -79,9 +79,9 @@ fn observed(prepared: &Prepared, genes: &[f64], effects: &[EffectSetting]) -> Ob
     }
 }
 
-/// Checks that a gene of an effect gives the same bits as its value written into the case, for every kind of
-/// job, and that no state is carried from one individual to the next. An effect of the job replaces that of
-/// the case entirely, including its gene.
+/// Checks that an effect's parameter among an individual's values gives the same bits as the same value
+/// written into the case, for every kind of job, and that no state is carried from one individual to the
+/// next. An effect stated in the job replaces that of the case entirely, including its searched parameter.
 #[test]
 fn a_gene_of_an_effect_is_that_value_in_the_case() {
     let (stated, other) = (coarse(&[friction(1000.0)]), coarse(&[friction(1800.0)]));
@@ -125,8 +125,8 @@ fn a_gene_of_an_effect_is_that_value_in_the_case() {
     );
 }
 
-/// Checks that an invalid gene of an effect is refused with the name of its field: wrong bounds or units when
-/// the case is prepared, wrong values when the individual is evaluated.
+/// Checks that an invalid searched parameter of an effect is refused with the name of its field: wrong bounds
+/// or units when the case is prepared, wrong values when the individual is evaluated.
 #[test]
 fn a_gene_that_the_model_cannot_take_is_refused_by_field() {
     let refused = |failure: Failure| match failure {
@@ -235,8 +235,8 @@ fn calibrated(case: &Case, parts: Vec<SearchPart>) -> Calibrated {
     runtime.unwrap().block_on(search).unwrap()
 }
 
-/// Checks that fewer than 150 individuals recover the hidden friction and load-card delay of a synthetic
-/// record, among all coefficients.
+/// Checks that a calibration with fewer than 150 individuals recovers the hidden friction and load-card delay
+/// of a synthetic record, among all coefficients.
 #[test]
 fn a_calibration_finds_the_sizes_of_effects() {
     let late = |time: f64| EffectSetting::new("card_time_shift", &[("time", time)]);

@@ -1,4 +1,4 @@
-//! Tests of the real unit: the shipped case, converted as a worker converts it.
+//! Tests of the shipped pumping unit: its case, converted as a worker converts it.
 #![expect(clippy::unwrap_used, reason = "helpers of tests")]
 mod columns;
 mod effect;
@@ -31,7 +31,8 @@ fn unit() -> PumpingUnit {
     PumpingUnit::of(case()).unwrap()
 }
 
-/// Returns the recommended coefficients and the optimised ones of Table 3, with names.
+/// Returns two individuals with their names: the recommended coefficients and the optimised ones of Table 3
+/// of the paper.
 fn individuals(case: &Case) -> [(&'static str, Vec<f64>); 2] {
     let optimised = folder().join("table3_optimised.toml");
     [
@@ -262,7 +263,7 @@ fn gauges_do_not_depend_on_the_method() {
     }
 }
 
-/// Computes the root mean square difference of two curves divided by the range of the second.
+/// Computes the root mean square difference of two curves divided by the range of the second curve.
 fn difference(a: &[f64], b: &[f64]) -> f64 {
     let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len() as f64;
     let square: Vec<f64> = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).collect();

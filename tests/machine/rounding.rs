@@ -12,7 +12,8 @@ use worker::handler::Prepared;
 
 /// Number of harmonic orders that a diagnosis compares.
 const ORDERS: usize = 120;
-/// Upper limit of a message of six channels of 720 samples (bytes); in a diagnosis it has 6,800.
+/// Upper limit on the length of a message of six channels of 720 samples (bytes); a real message of a
+/// diagnosis has 6,800.
 const MOST_BYTES: usize = 7_000;
 
 fn done(prepared: &Prepared, individual: &Individual, reply: Reply) -> Answer {
@@ -20,7 +21,7 @@ fn done(prepared: &Prepared, individual: &Individual, reply: Reply) -> Answer {
     prepared.evaluate(&Job::Simulate(spec)).done().unwrap()
 }
 
-/// Returns the channels of an individual twice: as transmitted (rounded) and as computed (exact).
+/// Returns the channels that a worker computes for an individual twice: as transmitted (rounded) and exact.
 fn both(prepared: &Prepared, individual: &Individual) -> [Observation; 2] {
     let rounded = done(prepared, individual, Reply::Channels);
     let bytes = protocol::wire::encode(&Outcome::Done(rounded.clone())).unwrap();
@@ -38,8 +39,8 @@ fn both(prepared: &Prepared, individual: &Individual) -> [Observation; 2] {
 }
 
 /// Checks that rounding the channels moves each whitened residual by less than 3e-3 standard deviations, and
-/// the change of the residuals with a gene (by 1/20 decade) or a friction by less than 0.05 in norm, so that
-/// no estimate or test statistic moves by more than 5 % of its uncertainty.
+/// the change of the residuals with a searched coefficient (by 1/20 decade) or a friction by less than 0.05
+/// in norm, so that no estimate or test statistic moves by more than 5 % of its uncertainty.
 #[test]
 fn rounded_channels_are_short_and_far_below_the_noise() {
     let loaded = load_with_notes(&folder(), &Overrides::default()).unwrap();

@@ -1,5 +1,5 @@
-//! Tests of twin ropes on the real unit, with the head's influence tables for a rope pair that are shipped
-//! with the case.
+//! Tests of twin ropes on the shipped pumping unit, with the influence tables of the back head for a rope
+//! pair that are shipped with the case.
 use crate::{folder, individuals};
 use protocol::pumping_unit::PumpingUnit;
 use simulation::model::description::RopeLaw;

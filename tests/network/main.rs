@@ -34,7 +34,8 @@ const SILENCE_MS: u64 = 4000;
 /// wait, hold it shared.
 static BUSY: RwLock<()> = RwLock::new(());
 
-/// Running coordinator on the head, with its output, network namespaces and key material.
+/// Coordinator running in the network namespace called head, with its output, the namespaces and key
+/// material.
 struct Testbed {
     // the processes end before what they stand on
     coordinator: Process,
@@ -43,7 +44,7 @@ struct Testbed {
     folder: tempfile::TempDir,
 }
 
-/// State of the run as printed in one line of the coordinator.
+/// Time and counts of workers and jobs that the coordinator printed in one line.
 #[derive(Clone, Copy, Debug)]
 struct State {
     ms: u64,
@@ -73,8 +74,8 @@ impl State {
 }
 
 impl Testbed {
-    /// Starts a coordinator on the head with this number of jobs; returns `None` if the machine supports no
-    /// namespaces.
+    /// Starts a coordinator with this number of jobs in the network namespace called head; returns `None` if
+    /// the machine supports no namespaces.
     fn set(jobs: u64, delay_ms: u64) -> Option<Self> {
         worker_program();
         let namespaces = Namespaces::make()?;
@@ -100,7 +101,8 @@ impl Testbed {
         self.folder.path().join("keys").join(name)
     }
 
-    /// Starts a worker on the node, which dials the given port of the head.
+    /// Starts a worker in the network namespace called node, which connects to the given port of the
+    /// coordinator.
     fn worker(&self, name: &str, port: u16, slots: u32) -> Process {
         let mut command = self.namespaces.on_node(&worker_program());
         command.args(["--connect", &format!("quic/{HEAD}:{port}")]);

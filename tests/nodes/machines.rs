@@ -23,8 +23,8 @@ const HOSTS: [u16; 4] = [2201, 2202, 2203, 2204];
 const JOBS: &str = "1000";
 const DELAY_MS: &str = "200";
 
-/// Creates head and node namespaces, and a test folder whose ssh reaches hosts on the node; returns `None`
-/// after [`tests::skip`] where this machine does not allow them.
+/// Creates the network namespaces called head and node, and a test folder whose ssh reaches hosts on the
+/// node; returns `None` after [`tests::skip`] where this machine does not allow them.
 pub(super) fn network() -> Option<(Namespaces, Site)> {
     if !Path::new(SSHD).exists() {
         tests::skip("openssh-server is not installed");
@@ -90,7 +90,7 @@ pub(super) fn host(site: &Site, namespaces: &Namespaces, port: u16) -> Process {
     Process::logged(command, &site.path(&format!("sshd{port}.log")))
 }
 
-/// Runs a `horsehead` command on the head.
+/// Runs a `horsehead` command in the network namespace called head.
 pub(super) fn on_head(site: &Site, namespaces: &Namespaces, words: &[&str]) -> Output {
     let mut command = namespaces.on_head(&coordinator_program());
     let path = std::env::var("PATH").unwrap();
@@ -108,7 +108,7 @@ fn workers(site: &Site, namespaces: &Namespaces) -> Vec<Value> {
     object["workers"].as_array().cloned().unwrap_or_default()
 }
 
-/// Polls the list of workers on the head until `is` holds for it.
+/// Polls the coordinator's list of workers until `is` holds for it.
 fn until(site: &Site, namespaces: &Namespaces, what: &str, is: impl Fn(&[Value]) -> bool) {
     let begun = Instant::now();
     loop {

@@ -126,7 +126,7 @@ impl Site {
         self.horsehead(&[&common, words].concat())
     }
 
-    /// Returns the workers that `workers list` prints.
+    /// Returns the workers listed by `workers list` in its JSON output.
     fn list(&self) -> Vec<Value> {
         let listed = self.horsehead(&["workers", "list", "--run", "run", "--output", "json"]);
         assert!(listed.status.success(), "{}", errors(&listed));

@@ -4,7 +4,6 @@ use dispatch::runtime::{Dispatch, DispatchOptions};
 use protocol::id::JobId;
 use std::time::{Duration, Instant};
 
-/// Longest wait for an expected event.
 const LIMIT: Duration = Duration::from_secs(40);
 
 /// Opens a run that accepts remote workers, with jobs that each take `delay_ms`.
@@ -21,7 +20,7 @@ async fn open(site: &Site, jobs: u64, delay_ms: u32) -> Dispatch {
     run
 }
 
-/// Polls the list of workers until `is` holds; returns the time taken.
+/// Polls the coordinator's list of workers until `is` holds for it; returns the time taken.
 async fn until(site: &Site, what: &str, is: impl Fn(&[Value]) -> bool) -> Duration {
     let begun = Instant::now();
     loop {

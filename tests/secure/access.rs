@@ -36,7 +36,7 @@ async fn coordinator(locator: &str, keys: &Path) -> ZenohCoordinator {
     ZenohCoordinator::open(options).await.unwrap()
 }
 
-/// Coordinator, and two raw sessions whose certificates and worker names differ.
+/// Running coordinator, and two raw client sessions whose certificates and worker names differ.
 struct Pair {
     /// Folder of the key material, kept until the test ends.
     folder: TempDir,
@@ -154,7 +154,7 @@ async fn a_certificate_speaks_for_nobody_else() {
     end.close().await;
 }
 
-/// Subscribes to a key pattern and collects the received payloads.
+/// Subscribes a raw session to a key pattern and collects the received payloads.
 fn listen(session: &Session, pattern: String) -> Arc<Mutex<Vec<Vec<u8>>>> {
     let heard: Arc<Mutex<Vec<Vec<u8>>>> = Arc::default();
     let to = Arc::clone(&heard);

@@ -22,8 +22,8 @@ use tests::{
 /// that gets no answer.
 const AT_ONCE: Duration = Duration::from_secs(15);
 
-/// Checks that a run is computed by two workers with the same certificate, one with another, and a local
-/// worker without a certificate.
+/// Checks that the jobs of a run are computed by two workers with the same certificate, one with another, and
+/// a local worker without a certificate.
 #[tokio::test(flavor = "multi_thread")]
 async fn a_run_is_done_by_workers_with_certificates() {
     let folder = tempfile::tempdir().unwrap();

@@ -27,7 +27,7 @@ fn options(run_dir: &Path, locator: &str, keys: &Path, local_workers: usize) -> 
     }
 }
 
-/// Returns a command that starts a worker.
+/// Returns a command that starts a worker with the given key material, if any.
 fn worker(locator: &str, tls: Option<PathBuf>, arguments: &[&str]) -> Command {
     let mut command = Command::new(worker_program());
     command

@@ -22,5 +22,5 @@ pub mod slot;
 mod stream;
 mod test_hook;
 
-/// Kinds of model that `horsehead-worker` simulates.
+/// Kinds of model that the program `horsehead-worker` simulates.
 pub const SIMULATORS: simulator::Simulators = &[&pumping_unit::PumpingUnits, &external::Externals];

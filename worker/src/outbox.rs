@@ -1,4 +1,4 @@
-//! Results that the coordinator has not yet acknowledged.
+//! Outbox of a worker: results that the coordinator has not yet acknowledged.
 use protocol::message::{Attempt, Done};
 use std::{
     collections::{BTreeMap, VecDeque},
@@ -67,7 +67,8 @@ impl Outbox {
         self.waiting.keys().copied().collect()
     }
 
-    /// Returns the results to be sent again now: 1, 2, 4 and then every 8 s after the last transmission.
+    /// Returns the results to be sent again now. Intervals between transmissions are 1, 2, 4 and then always
+    /// 8 s.
     pub fn due(&mut self, now: Duration) -> Vec<Done> {
         let mut due = Vec::new();
         for waiting in self.waiting.values_mut() {

@@ -25,7 +25,7 @@ use tokio::sync::mpsc::UnboundedSender;
 /// Time without a sign of life (pulse) after which a keeper thread, and hence the worker, counts as stuck.
 const STUCK: Duration = Duration::from_secs(3);
 
-/// All slots of a worker; their processes are ended on drop.
+/// All slots of a worker, each of which computes one job at a time; their processes are ended on drop.
 #[derive(Debug)]
 pub struct Pool {
     keepers: Vec<mpsc::Sender<ToKeeper>>,
@@ -35,7 +35,7 @@ pub struct Pool {
 }
 
 impl Pool {
-    /// Starts the keeper threads; the processes are started with their first jobs.
+    /// Starts the keeper threads of all slots; a slot's process is started with its first job.
     ///
     /// # Errors
     /// If a thread cannot be started.
@@ -80,7 +80,7 @@ impl Pool {
         self.keepers.len()
     }
 
-    /// Returns whether there is no slot.
+    /// Returns whether the pool has no slots.
     pub fn is_empty(&self) -> bool {
         self.keepers.is_empty()
     }
@@ -90,7 +90,7 @@ impl Pool {
         self.send(slot, ToKeeper::Run(task));
     }
 
-    /// Cancels the job of a slot, if it still computes this attempt.
+    /// Cancels the job of a slot, if the slot still computes the given attempt.
     pub fn cancel(&self, slot: usize, attempt: Attempt) {
         self.send(slot, ToKeeper::Cancel(attempt));
     }

@@ -11,12 +11,11 @@ use std::{fs, thread, time::Duration};
 const MAX_PASSES: u32 = 500;
 const PAUSE: Duration = Duration::from_millis(2);
 
-/// Process as listed by the system.
+/// Process as listed by the operating system.
 #[derive(Clone, Copy, Debug)]
 struct Listed {
     pid: i32,
     parent: i32,
-    /// Whether the process is a zombie: it has ended and only its status remains.
     is_over: bool,
 }
 

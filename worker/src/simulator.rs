@@ -14,7 +14,7 @@ pub type Simulators = &'static [&'static dyn Simulator];
 
 /// Kind of model, for example the pumping unit, as a worker simulates it.
 pub trait Simulator: fmt::Debug + Sync {
-    /// Returns the name of the kind, as stated in cases.
+    /// Returns the name of the kind of model, as stated in cases.
     fn kind(&self) -> &'static str;
 
     /// Returns a digest of the numerics of this build: equal digests promise equal bits. The first call in a
@@ -24,8 +24,8 @@ pub trait Simulator: fmt::Debug + Sync {
     /// Returns the effects that the model can add to a case.
     fn effects(&self) -> Vec<EffectDescriptor>;
 
-    /// Returns the descriptions to announce: one for the kind itself, or one for each variant available on
-    /// this machine.
+    /// Returns the model descriptions that a worker announces: one for the kind itself, or one for each
+    /// variant available on this computer.
     fn described(&self) -> Vec<ModelDescriptor> {
         vec![ModelDescriptor {
             kind: self.kind().to_owned(),
@@ -39,9 +39,9 @@ pub trait Simulator: fmt::Debug + Sync {
         kind == self.kind()
     }
 
-    /// Returns the columns (derivatives) that every worker computes for the case's reference individual when
-    /// it joins, in addition to the curves: one for each way in which this kind of model computes
-    /// derivatives. Empty if it gives none.
+    /// Returns the derivatives that every worker computes for the case's reference individual when it joins,
+    /// in addition to the curves: one for each way in which this kind of model computes derivatives. Empty if
+    /// it gives none.
     fn reference_columns(&self, _case: &Case) -> Vec<Column> {
         Vec::new()
     }
@@ -63,17 +63,17 @@ pub trait Simulator: fmt::Debug + Sync {
 
 /// Model of one case, ready for any number of jobs; no job leaves state behind for the next.
 pub trait Model: fmt::Debug + Send + Sync {
-    /// Simulates, and returns the curves of the condition's channels exactly as computed, with their
-    /// derivatives by the columns of the job: [`protocol::job::Derivative::none`] for a model that gives
-    /// none, and no derivatives of a run that fails. Columns change no bit of the curves. With `scored_only`,
-    /// only curves of channels with a record are required.
+    /// Simulates an individual, and returns the curves of the condition's channels exactly as computed, with
+    /// the derivatives that the job requests: [`protocol::job::Derivative::none`] for a model that gives
+    /// none, and no derivatives of a run that fails. Requesting derivatives changes no bit of the curves.
+    /// With `scored_only`, only curves of channels with a measured record are required.
     ///
     /// # Errors
     /// [`Failure::Misconfigured`] where the job does not fit the case.
     fn observe(&self, spec: &SimulateSpec, scored_only: bool) -> Result<Observation, Failure>;
 
-    /// Simulates, and returns everything that can be plotted; `pictures` is the number of shapes of the
-    /// moving parts to record over the whole run, 0 for none. Derivatives are computed as by
+    /// Simulates an individual, and returns everything that can be plotted; `pictures` is the number of
+    /// shapes of the moving bodies to record over the whole run, 0 for none. Derivatives are computed as by
     /// [`Self::observe`]. A model with no curves besides its channels need not override this method.
     ///
     /// # Errors
@@ -99,7 +99,7 @@ pub fn described(simulators: Simulators) -> Vec<ModelDescriptor> {
     all.flat_map(|simulator| simulator.described()).collect()
 }
 
-/// Returns the simulator for a case.
+/// Returns the simulator for a case, chosen by the case's kind of model.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] if there is none for its kind.

@@ -24,7 +24,7 @@ use std::{
     time::Duration,
 };
 
-/// Name of the thread that reads jobs.
+/// Name of the slot process's thread that reads jobs.
 pub(crate) const INPUT: &str = "slot-input";
 
 /// Serves until the input ends, within the given address space (MiB; 0 for no limit): a job that needs more

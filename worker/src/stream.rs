@@ -6,7 +6,7 @@ use protocol::{
 use serde::{Serialize, de::DeserializeOwned};
 use std::io::{self, Read, Write};
 
-/// Writes one message and flushes.
+/// Writes one framed message to the pipe and flushes.
 pub(crate) fn write<T: Serialize>(
     to: &mut impl Write,
     kind: FrameKind,
@@ -17,7 +17,7 @@ pub(crate) fn write<T: Serialize>(
     to.flush()
 }
 
-/// Reads one message; `None` at the end of the stream.
+/// Reads one framed message from the pipe; `None` at the end of the stream.
 pub(crate) fn read<T: DeserializeOwned>(
     from: &mut impl Read,
     kind: FrameKind,

@@ -17,7 +17,7 @@ use std::{env, fs::OpenOptions, io::Write, process::Command, thread, time::Durat
 const MISBEHAVE: &str = "HORSEHEAD_TEST_MISBEHAVE";
 /// Environment variable with the file to which slots append a line for each job they begin.
 const TRACE: &str = "HORSEHEAD_TEST_TRACE";
-/// Duration longer than any deadline.
+/// Duration longer than any job's deadline, used for a job that hangs.
 const FOR_EVER: Duration = Duration::from_hours(24 * 365);
 
 /// Applies the misbehaviour configured for a job, if any; to be called before the job is evaluated.
@@ -83,7 +83,6 @@ fn misbehave(behaviour: &str) {
     }
 }
 
-/// Computes until this thread has used the given processor time.
 fn burn(time: Duration) {
     let until = computed().saturating_add(time);
     while computed() < until {
@@ -91,7 +90,7 @@ fn burn(time: Duration) {
     }
 }
 
-/// Returns the processor time of this thread.
+/// Returns the processor time that this thread has used so far.
 fn computed() -> Duration {
     let said = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     let nanos = said

@@ -83,7 +83,7 @@ pub trait ModelKind: Sync {
     }
 }
 
-/// Generic kind of model without any customisation.
+/// [`ModelKind`] of every model without a case format of its own; keeps all default methods.
 pub(crate) struct GenericKind;
 
 impl ModelKind for GenericKind {

@@ -15,17 +15,17 @@ use toml::de::{DeTable, DeValue};
 /// TOML file that was read; its text is kept for the excerpts of later error messages.
 #[derive(Debug)]
 pub struct Document {
-    /// Path of the file.
+    /// Path of the TOML file.
     pub path: PathBuf,
     text: String,
 }
 
-/// Step of the path to a field.
+/// Step of the path to a field of a TOML file: a table key or an array index.
 #[derive(Debug, Clone, Copy)]
 pub enum DocumentStep<'a> {
     /// Key of a table.
     Key(&'a str),
-    /// Index of an array entry.
+    /// Index of an entry of an array.
     Index(usize),
 }
 
@@ -43,7 +43,7 @@ impl Document {
         })
     }
 
-    /// Parses the text into a type.
+    /// Parses the text of the TOML file into a type.
     ///
     /// # Errors
     /// Returns an error for invalid syntax, an unknown key (with the nearest known one), a missing key or a
@@ -113,7 +113,7 @@ impl Document {
         ))
     }
 
-    /// Returns the byte range of a field in the text.
+    /// Returns the byte range of a field in the text of the TOML file.
     fn span(&self, way: &[DocumentStep<'_>]) -> Option<Range<usize>> {
         let root = DeTable::parse(&self.text).ok()?;
         let (first, rest) = way.split_first()?;
@@ -131,7 +131,7 @@ impl Document {
         Some(at.span())
     }
 
-    /// Returns the source line of a span, with a marker line below it.
+    /// Returns the TOML source line at a byte range, with a marker line below it.
     fn excerpt(&self, span: Range<usize>) -> String {
         let before = self.text.get(..span.start).unwrap_or_default();
         let line = before.matches('\n').count();
@@ -152,8 +152,8 @@ impl Document {
     }
 }
 
-/// Cuts a line of more than 120 characters to the part around a column; returns the part and the column
-/// within it.
+/// Shortens a source line of more than 120 characters to the characters around a column; returns these and
+/// the column within them.
 fn around(line: &str, column: usize) -> (String, usize) {
     const WIDEST: usize = 120;
     const BEFORE: usize = 60;
@@ -200,7 +200,7 @@ pub fn short(value: f64) -> String {
 /// Text that separates the expectation from an example in the serde `expecting` messages of case-file types.
 const EXAMPLE_SEPARATOR: &str = "; write ";
 
-/// Text in messages for the type of a non-negative integer.
+/// Wording of error messages for a value that must be a non-negative integer.
 const EXPECTED_COUNT: &str = "expected a whole number, 0 or greater";
 
 /// Returns the first line of a TOML library message, without its list of alternatives and with Rust type
@@ -224,7 +224,7 @@ fn first_line(message: &str) -> String {
     }
 }
 
-/// Returns the remedy for a message of the TOML library.
+/// Returns the remedy that a user is offered for an error message of the TOML library.
 fn advice(message: &str) -> String {
     let mut quoted = message.split('`').skip(1).step_by(2);
     if message.starts_with("unknown field") || message.starts_with("unknown variant") {
@@ -268,7 +268,8 @@ pub fn units() -> String {
         .join(", ")
 }
 
-/// Prefixes that reverse the meaning of a word.
+/// Prefixes that reverse the meaning of a word; words that differ by one of them are never suggested for each
+/// other.
 const OPPOSITE: [&str; 4] = ["anti", "counter", "un", "non"];
 
 /// Returns the candidate most similar to a word, if the similarity is at least 0.5; never a candidate of

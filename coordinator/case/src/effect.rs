@@ -72,12 +72,14 @@ impl CaseEffect {
         }
     }
 
-    /// Returns the units of the parameters, in the order of [`Self::setting`].
+    /// Returns the units of the effect's parameters, in the order in which [`Self::setting`] lists the
+    /// parameters.
     pub fn units(&self) -> Vec<String> {
         self.parameters.values().map(|p| p.unit.clone()).collect()
     }
 
-    /// Returns the searched parameters as unknowns, in the order of [`Self::setting`].
+    /// Returns the searched parameters of the effect as unknowns, in the order in which [`Self::setting`]
+    /// lists the parameters.
     pub fn genes(&self) -> impl Iterator<Item = Unknown> {
         self.parameters.iter().filter_map(|(name, p)| {
             let label = format!("{}.{name}", self.id);

@@ -99,7 +99,7 @@ fn edit(
     })
 }
 
-/// Appends the tables of effects to existing tables.
+/// Appends `[[effects]]` tables of the given effects to those of a case file.
 fn tables(mut there: ArrayOfTables, effects: &[CaseEffect]) -> Item {
     for effect in effects {
         there.push(table(effect));
@@ -107,7 +107,7 @@ fn tables(mut there: ArrayOfTables, effects: &[CaseEffect]) -> Item {
     Item::ArrayOfTables(there)
 }
 
-/// Returns an effect as a table with one line per key, preceded by an empty line.
+/// Returns an effect as an `[[effects]]` table with one line per key, preceded by an empty line.
 fn table(effect: &CaseEffect) -> Table {
     let numbers = effect.parameters.iter();
     let numbers: InlineTable = numbers.map(|(name, p)| (name, parameter(p))).collect();
@@ -264,7 +264,7 @@ mod tests {
         assert_eq!(back.effects, effects());
     }
 
-    /// Checks that only the start values change and everything else stays as written.
+    /// Checks that replacing start values in a case file leaves everything else as written.
     #[test]
     fn a_start_is_replaced_where_it_stands() {
         let folder = tempfile::tempdir().unwrap();

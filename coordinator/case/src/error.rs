@@ -14,9 +14,9 @@ pub enum CaseError {
     Missing {
         /// Path of the missing file.
         path: Box<Path>,
-        /// Purpose of the file, and where it is named.
+        /// Purpose of the missing file, and where the case names it.
         role: Box<str>,
-        /// Remedy.
+        /// Remedy that is suggested for the missing file.
         help: Box<str>,
     },
     /// File that cannot be read.
@@ -30,7 +30,7 @@ pub enum CaseError {
     /// File that cannot be replaced.
     #[error("{}: cannot be written: {source}\nhelp: check that there is room and that you may write there; the old file is unchanged", path.display())]
     Unwritable {
-        /// Path of the file that cannot be written.
+        /// Path of the file that cannot be replaced.
         path: Box<Path>,
         /// Error of the operating system.
         source: io::Error,
@@ -40,9 +40,9 @@ pub enum CaseError {
     Damaged {
         /// Path of the damaged file.
         path: Box<Path>,
-        /// Description of the damage.
+        /// Description of what is wrong with the damaged file.
         problem: Box<str>,
-        /// Remedy.
+        /// Remedy that is suggested for the damaged file.
         help: Box<str>,
     },
     /// Malformed TOML file: invalid syntax, an unknown or missing key, or a value of another type.
@@ -50,11 +50,11 @@ pub enum CaseError {
     Toml {
         /// Path of the TOML file.
         path: Box<Path>,
-        /// Description of the problem.
+        /// Description of what is wrong with the TOML file.
         problem: Box<str>,
-        /// Source line with a marker below it; empty if not available.
+        /// Source line of the TOML error with a marker below it; empty if not available.
         excerpt: Box<str>,
-        /// Remedy.
+        /// Remedy that is suggested for the TOML error.
         help: Box<str>,
     },
     /// Field with a value that is not allowed.
@@ -64,13 +64,13 @@ pub enum CaseError {
         path: Box<Path>,
         /// Dotted path of the field within the file.
         field: Box<str>,
-        /// Value of the field.
+        /// Value that the field has, which is not allowed.
         value: Box<str>,
-        /// Allowed values, with the unit.
+        /// Allowed values of the field, with their unit.
         allowed: Box<str>,
-        /// Source line with a marker below it; empty if not available.
+        /// Source line of the field with a marker below it; empty if not available.
         excerpt: Box<str>,
-        /// Remedy.
+        /// Remedy that is suggested for the field.
         help: Box<str>,
     },
     /// Table without a required column.
@@ -80,9 +80,9 @@ pub enum CaseError {
         path: Box<Path>,
         /// Name of the missing column.
         column: Box<str>,
-        /// Names of the existing columns.
+        /// Names of the columns that the table has.
         found: Box<str>,
-        /// Remedy.
+        /// Remedy that is suggested for the missing column.
         help: Box<str>,
     },
     /// Table cell, or whole row, with a value that is not allowed.
@@ -90,32 +90,32 @@ pub enum CaseError {
     Cell {
         /// Path of the table's file.
         path: Box<Path>,
-        /// Row number, from 1 for the header.
+        /// Row number of the faulty cell; the header is row 1.
         row: u64,
-        /// Name of the column.
+        /// Name of the faulty cell's column.
         column: Box<str>,
-        /// Content of the cell.
+        /// Content of the faulty cell.
         value: Box<str>,
-        /// Allowed values, with the unit.
+        /// Values that the table cell may have, with their unit.
         allowed: Box<str>,
-        /// Remedy.
+        /// Remedy that is suggested for the faulty cell.
         help: Box<str>,
     },
-    /// Two or more independent errors.
+    /// Two or more independent errors of one case.
     #[error("{0}")]
     Several(Several),
     /// Two statements of a case that contradict each other.
     #[error("{}: {field} is {value}, but {other}\nhelp: {help}", path.display())]
     Contradiction {
-        /// Path of the file with the first statement.
+        /// Path of the file with the first of two contradictory statements.
         path: Box<Path>,
-        /// Field of the first statement.
+        /// Field of the case with the first of two contradictory statements.
         field: Box<str>,
-        /// Value of the first statement.
+        /// Value that the first of two contradictory statements gives.
         value: Box<str>,
         /// Text of the second, contradicting statement, with its location.
         other: Box<str>,
-        /// Remedy.
+        /// Remedy that is suggested for the contradiction.
         help: Box<str>,
     },
 }

@@ -21,7 +21,7 @@ pub fn require_exists(path: &Path, role: &str) -> Result<(), CaseError> {
     })
 }
 
-/// Remedy text for a missing file.
+/// Remedy that is suggested where a file of a case is missing.
 const MISSING: &str = "put the file there, or correct the name where it is stated";
 
 /// Reads a whole file; `role` is its purpose, for the error message.
@@ -106,7 +106,7 @@ pub fn read_gzip(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
     Ok(bytes)
 }
 
-/// Reads to the end; refuses more than [`LIMIT`] bytes.
+/// Reads a file or stream to its end; refuses more than [`LIMIT`] bytes.
 fn read_limited(from: impl Read, path: &Path) -> Result<io::Result<Vec<u8>>, CaseError> {
     let mut bytes = Vec::new();
     let outcome = from.take(LIMIT + 1).read_to_end(&mut bytes);

@@ -14,7 +14,7 @@ use protocol::{
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::Path};
 
-/// Entry of a gene file.
+/// Entry of a gene file: the value of one unknown, with its unit.
 #[derive(Debug, Deserialize)]
 #[serde(
     deny_unknown_fields,
@@ -59,7 +59,7 @@ pub fn read_genes(path: &Path, case: &Case) -> Result<Vec<f64>, CaseError> {
     values.collect()
 }
 
-/// Returns the value of an entry in the case's unit.
+/// Converts the value of a gene-file entry to the unit in which the case states the unknown.
 fn value(document: &Document, unknown: &Unknown, entry: &GeneValue) -> Result<f64, CaseError> {
     let way = |key| {
         [
@@ -98,7 +98,7 @@ fn value(document: &Document, unknown: &Unknown, entry: &GeneValue) -> Result<f6
     Ok(*value)
 }
 
-/// Builds the error for an entry that is not an unknown of the case.
+/// Builds the error for a gene-file entry whose name is not that of an unknown of the case.
 fn unknown_name_error(
     document: &Document,
     case: &Case,
@@ -117,7 +117,8 @@ fn unknown_name_error(
     document.field(&[DocumentStep::Key(name)], entry.value, allowed, &help)
 }
 
-/// Returns the text of a gene file; [`read_genes`] reads back bit-identical values.
+/// Returns the text of a gene file with the given values of the unknowns; [`read_genes`] reads back
+/// bit-identical values.
 pub fn write_genes(case: &Case, values: &[f64], about: &str) -> String {
     let mut text = format!("# {about}\n");
     for (unknown, value) in case.unknowns.iter().zip(values) {

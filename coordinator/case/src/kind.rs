@@ -12,8 +12,8 @@ use serde::Deserialize;
 
 const ALL: &[&dyn ModelKind] = &[&PumpingUnitKind, &CommandKind];
 
-/// Returns the part of a kind's name before the colon, which is the same for all allow-list entries:
-/// `command` of `command:decay`.
+/// Returns the part of a model kind's name before the colon, as `command` of `command:decay`; the rest names
+/// an allow-list entry.
 pub fn family(name: &str) -> &str {
     name.split_once(':').map_or(name, |(family, _)| family)
 }

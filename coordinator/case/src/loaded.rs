@@ -15,18 +15,18 @@ pub enum Records {
     Synthetic,
 }
 
-/// Loaded case, with its notes, separate cycles and effects.
+/// Case as loaded from its folder, with remarks, records cycle by cycle, and effects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
     /// Case in the form that is sent to workers.
     pub case: Case,
-    /// Remarks that are not errors.
+    /// Remarks on the case that are not errors.
     pub notes: Vec<Note>,
     /// Records with each cycle separate, for a diagnosis; only conditions that have a record.
     pub cycles: Vec<Record>,
     /// Whether the case declares its records as synthetic; false if `--measured` replaces them.
     pub synthetic: bool,
-    /// Effects as the file states them, with intervals and provenance.
+    /// Effects as the case file states them, with intervals and provenance.
     pub effects: Vec<CaseEffect>,
 }
 

@@ -4,7 +4,8 @@ use super::{
     error::CaseError,
 };
 
-/// Checks the names of the tables `list`; `what` is the word for one table in messages.
+/// Checks the names of the case file's tables under the key `list`; `what` is the word for one of these
+/// tables in messages.
 ///
 /// # Errors
 /// Returns an error for the first name that is empty, duplicate or has characters not allowed on command
@@ -29,7 +30,7 @@ pub fn check(document: &Document, list: &str, what: &str, names: &[&str]) -> Res
     Ok(())
 }
 
-/// Checks one name; `is_there` says whether an earlier table has the same name.
+/// Checks the name of one table of a case file; `is_there` says whether an earlier table has the same name.
 ///
 /// # Errors
 /// As [`check`].

@@ -12,7 +12,7 @@ use serde::Deserialize;
 /// Half width of a 95 % interval of the normal distribution, in standard deviations.
 const NORMAL: f64 = 1.96;
 
-/// Prior in one of the forms of the case file.
+/// Prior of an unknown, in one of the forms that a case file allows.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(
     untagged,
@@ -24,11 +24,11 @@ pub enum PriorEntry {
     Interval([f64; 2]),
     /// Value known to a factor: 95 % lies between `value / factor` and `value * factor`.
     Factor(PriorFactor),
-    /// Value with one standard deviation, in the search coordinate.
+    /// Value of the unknown with its standard deviation in the search coordinate.
     Deviation(Deviation),
 }
 
-/// Value with the factor of its 95 % interval.
+/// Central value of a prior, with the factor by which its 95 % interval extends either way.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PriorFactor {
@@ -36,7 +36,7 @@ pub struct PriorFactor {
     factor: f64,
 }
 
-/// Value with its standard deviation.
+/// Central value of a prior, with its standard deviation.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Deviation {

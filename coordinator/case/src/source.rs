@@ -24,7 +24,7 @@ pub struct RecordFolder<'a> {
 }
 
 impl<'a> RecordFolder<'a> {
-    /// Creates a source from a case file, its folder and the command line's overrides.
+    /// Creates the location of a case from its file, its folder and the overrides of the command line.
     pub fn new(folder: &'a Path, overrides: &'a Overrides, document: &'a Document) -> Self {
         Self {
             folder,

@@ -10,7 +10,7 @@ use std::path::Path;
 pub struct CsvTable {
     /// Numbers of each requested column.
     pub columns: Vec<Vec<f64>>,
-    /// Line of the file per row of numbers; the header is line 1.
+    /// Line number in the CSV file of each row that was read; the header is line 1.
     pub lines: Vec<u64>,
     /// Names of the requested columns.
     pub names: Vec<String>,
@@ -23,7 +23,7 @@ pub struct CsvTable {
 const MEANT: f64 = 0.85;
 
 impl CsvTable {
-    /// Reads the requested columns and ignores the others. A `#` before the header is allowed.
+    /// Reads the requested columns of a CSV table and ignores the others. A `#` before the header is allowed.
     ///
     /// # Errors
     /// A missing or repeated column, a row of another length, a cell that is not a finite number, or no rows.
@@ -31,9 +31,9 @@ impl CsvTable {
         Self::read_with(path, bytes, wanted, &[])
     }
 
-    /// Reads the requested columns, followed by the optional ones that the table has. An unknown column whose
-    /// name resembles an optional one counts as its misspelling and is an error, so that no data are ignored
-    /// because of a typing error.
+    /// Reads the requested columns of a CSV table, followed by the optional ones that it has. An unknown
+    /// column whose name resembles an optional one counts as its misspelling and is an error, so that no data
+    /// are ignored because of a typing error.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -131,7 +131,7 @@ impl CsvTable {
         }
     }
 
-    /// Creates an error about one cell.
+    /// Creates an error about one cell of the CSV table.
     pub fn cell(
         &self,
         path: &Path,
@@ -151,7 +151,7 @@ impl CsvTable {
     }
 }
 
-/// Returns the names of the columns.
+/// Returns the column names in the header of a CSV file.
 ///
 /// # Errors
 /// A first row that cannot be read.
@@ -178,7 +178,7 @@ fn reader(bytes: &[u8]) -> (csv::Reader<&[u8]>, u8) {
     (reader, between)
 }
 
-/// Reads the column names from the first row.
+/// Reads the column names from the first row of a CSV file.
 fn header(
     path: &Path,
     reader: &mut csv::Reader<&[u8]>,
@@ -209,8 +209,8 @@ fn advance(
     })
 }
 
-/// Returns the index of a column by name. A column in `needed` is never suggested as the misspelling of
-/// another.
+/// Returns the index of a CSV column by its name. A column in `needed` is never suggested as the misspelling
+/// of another.
 fn place(
     path: &Path,
     header: &[String],

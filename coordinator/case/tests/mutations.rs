@@ -18,7 +18,7 @@ fn shipped() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/cyjs10-5-37hb")
 }
 
-/// Name of the compressed file among [`FILES`].
+/// Name of the gzip-compressed record among the files that are mutated.
 const PACKED: &str = "measured/test_5rpm.csv.gz";
 const FILES: [&str; 7] = [
     "case.toml",

@@ -26,7 +26,7 @@ fn root_mean_square(record: &ChannelRecord) -> f64 {
     (squares / record.spread.len() as f64).sqrt()
 }
 
-/// Returns the gauge records of a condition.
+/// Returns the gauge records that a case has for a condition.
 fn gauges(case: &Case, condition: usize) -> Vec<&ChannelRecord> {
     case.measured(condition)
         .map(|(_, _, record)| record)

@@ -10,15 +10,16 @@ use search::space::Space;
 /// Inputs of a diagnosis: case, records, candidate effects and thresholds.
 #[derive(Clone, Debug)]
 pub struct Inputs {
-    /// Unknowns of the case with their bounds.
+    /// Search space of the case: its unknowns with their bounds.
     pub space: Space,
-    /// Names of the case's conditions, in its order.
+    /// Names of the case's working conditions, in the order of the case.
     pub conditions: Vec<String>,
     /// All unknowns of the case; those whose start is their absent value are candidate effects.
     pub unknowns: Vec<Unknown>,
-    /// Records, the calibrated condition's first.
+    /// Measured records of all conditions; the record of the calibrated condition comes first.
     pub records: Vec<Record>,
-    /// Effects that the workers can simulate.
+    /// Effects that the workers can simulate: the library of missing effects from which the diagnosis
+    /// selects.
     pub library: Vec<EffectDescriptor>,
     /// Coordinates of a calibrated point in the search space, if there is one.
     pub start: Option<Vec<f64>>,
@@ -31,7 +32,7 @@ pub struct Inputs {
     pub global_search: &'static str,
     /// Seed of the global search.
     pub seed: u64,
-    /// Thresholds of all decisions.
+    /// Thresholds of all decisions of the diagnosis.
     pub thresholds: Thresholds,
     /// Whether derivatives are computed by finite differences even if the simulator can differentiate.
     pub differences: bool,
@@ -49,7 +50,8 @@ impl Inputs {
         all.filter(|suspect| !without.contains(&suspect.id))
     }
 
-    /// Returns the name of a condition with the word "condition", or its number where it has no name.
+    /// Returns the name of a working condition for messages, e.g. "condition fast"; its number if it has no
+    /// name.
     pub(crate) fn condition(&self, place: usize) -> String {
         let name = self.conditions.get(place);
         name.map_or_else(
@@ -58,7 +60,7 @@ impl Inputs {
         )
     }
 
-    /// Returns the records of conditions other than the fitted one that the case does not hold out.
+    /// Returns the records of all conditions but the calibrated one, without records held out by the case.
     pub(crate) fn others(&self) -> impl Iterator<Item = &Record> {
         self.records
             .iter()

@@ -9,20 +9,20 @@ pub enum Stage {
     Basin,
     /// Fit of all unknowns in the metric of the tests.
     Recalibrate,
-    /// Numerical check: size of the discretisation error.
+    /// Numerical check: estimate of the discretisation error of the simulated curves.
     Preflight,
-    /// Localisation of the residual.
+    /// Localisation of the residual: abscissa, orders and joints at which simulation and record disagree.
     Where,
-    /// Signatures and tests of all effects.
+    /// Signatures (first-order changes of the curves) and hypothesis tests of all candidate effects.
     Test,
-    /// Refits of the candidate effects.
+    /// Refits of the model with the most likely candidate effects added.
     Refit,
     /// Validation: misfit before and after adding the effects.
     Show,
 }
 
 impl Stage {
-    /// Every stage, in order.
+    /// All stages of a diagnosis, in the order in which they run.
     pub const ALL: [Self; 7] = [
         Self::Basin,
         Self::Recalibrate,
@@ -47,13 +47,13 @@ impl Stage {
     }
 }
 
-/// Simulator of batches of experiments.
+/// Simulator of batches of experiments, through which a diagnosis obtains all simulated curves.
 pub trait Laboratory {
-    /// Reason why no further experiment can be simulated.
+    /// Error that ends the diagnosis because no further experiment can be simulated.
     type Error;
 
-    /// Returns whether observations contain the derivatives that a job requests, or the reason for their
-    /// absence; if false, finite differences of whole experiments are used instead.
+    /// Returns whether the laboratory computes derivatives that a job requests; if not, finite differences of
+    /// whole experiments are used.
     fn differentiates(&self) -> bool {
         false
     }
@@ -82,8 +82,8 @@ pub trait Laboratory {
     ) -> impl Future<Output = Result<Vec<Option<Observation>>, Self::Error>>;
 }
 
-/// Returns the curves of an observation for the channels of a record, in their order; `None` unless the
-/// observation is complete.
+/// Returns the simulated curves of an observation that belong to a record's channels, in the order of the
+/// channels; `None` if the simulation did not complete.
 pub fn channels(observation: &Observation, record: &Record) -> Option<Curves> {
     if observation.verdict != Verdict::Complete {
         return None;

@@ -28,7 +28,7 @@ pub struct Thresholds {
     /// Minimum share of the initial misfit above the noise that an effect must remove not to be negligible,
     /// where the model without the effect already fits to within the noise.
     pub practical: f64,
-    /// Maximum number of effects that a diagnosis adds, one per round.
+    /// Maximum number of effects that a diagnosis adds to the model, one per round of tests.
     pub rounds: usize,
     /// Factor by which a probe force (a force without a physical cause) must beat the best listed effect.
     pub generic_factor: f64,
@@ -47,7 +47,7 @@ pub struct Thresholds {
     /// Budget of each stage in plain simulations, in the stages' order: once it is used up, a stage starts
     /// nothing that is optional. A simulation with derivatives counts as five, plus a tenth per derivative.
     pub budget: [u32; Stage::ALL.len()],
-    /// Identifiers of effects that are not considered.
+    /// Identifiers of library effects that the diagnosis does not consider.
     pub without: Vec<String>,
 }
 

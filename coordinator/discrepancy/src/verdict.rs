@@ -20,11 +20,11 @@ pub enum Verdict {
 /// Validity of the assumptions on which the tests rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TestValidity {
-    /// Fit converged, discretisation fine enough and noise seen: the tests are valid.
+    /// The tests are valid: fit converged, discretisation fine enough, noise estimated from cycles.
     Valid,
-    /// Noise stated, not seen: the tests are valid as far as the statement is right.
+    /// The noise is only stated: the tests are valid as far as the statement is right.
     NoiseStated,
-    /// Noise neither seen nor stated.
+    /// The noise is neither estimated from cycles nor stated: the tests are not valid.
     NoiseUnknown,
     /// No effect of the library considered: nothing can be named or called unlisted.
     NothingConsidered,
@@ -35,15 +35,16 @@ pub enum TestValidity {
 /// Results of the tests of a diagnosis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Findings {
-    /// Validity of the tests' assumptions.
+    /// Validity of the assumptions on which the tests rest.
     pub ground: TestValidity,
     /// Whether any family of tests rejects the hypothesis that the residual is noise alone.
     pub rejected: bool,
     /// Number of added effects, each supported by the evidence and of practical size.
     pub added: usize,
-    /// Size of the largest ambiguity set among the added effects.
+    /// Number of effects in the largest ambiguity set of an added effect.
     pub rivals: usize,
-    /// Whether a probe force beats every listed effect.
+    /// Whether a probe force (without a physical cause) explains the residual better than every listed
+    /// effect.
     pub probe_force_wins: bool,
 }
 

@@ -13,7 +13,8 @@ use std::{
     thread,
 };
 
-/// Number of hosts handled concurrently; more would only compete for the outgoing network of this machine.
+/// Number of hosts on which a launch plan is executed concurrently; more would only compete for the outgoing
+/// network of this machine.
 const AT_A_TIME: usize = 32;
 
 /// Failure of a step of a launch plan on one host.
@@ -22,7 +23,7 @@ const AT_A_TIME: usize = 32;
 pub struct LaunchError {
     /// Host on which the step failed, or "this machine".
     pub place: String,
-    /// Purpose of the failed step, completing "cannot STEP".
+    /// Purpose of the failed step, as a verb phrase that completes the error message "cannot STEP".
     pub step: String,
     /// Last line of the step's error output, or its exit status.
     pub why: String,
@@ -30,11 +31,11 @@ pub struct LaunchError {
     pub remedy: String,
 }
 
-/// Executes the plan and reports the result of each host as it ends. Once `cancelled` is set, no further step
-/// starts, and the remaining hosts are not reported.
+/// Executes a launch plan and reports the result of each host as it ends. Once `cancelled` is set, no further
+/// step starts, and the remaining hosts are not reported.
 ///
 /// # Errors
-/// If one of the plan's initial steps fails; then nothing was done on any host.
+/// If one of the plan's initial steps on this machine fails; then nothing was done on any host.
 pub fn execute_plan(
     plan: &LaunchPlan,
     cancelled: &AtomicBool,
@@ -135,7 +136,7 @@ fn write(path: &Path, content: &str) -> io::Result<()> {
     fs::write(path, content)
 }
 
-/// Runs a command with its input, to its end.
+/// Runs a command of a launch step with its standard input, waits for its end and returns its output.
 fn call(command: &[String], input: &StepInput) -> io::Result<Output> {
     let mut from = None;
     let stdin = match input {
@@ -185,7 +186,7 @@ fn words_of(words: &[String]) -> Command {
     command
 }
 
-/// Returns the last non-empty line of the output, or else the exit status.
+/// Returns the last non-empty line of a command's error output, or else its exit status as text.
 fn last_line(said: &str, code: Option<i32>) -> String {
     let line = said.lines().map(str::trim).rfind(|line| !line.is_empty());
     line.map_or_else(
@@ -197,7 +198,8 @@ fn last_line(said: &str, code: Option<i32>) -> String {
     )
 }
 
-/// Returns a remedy for errors of ssh, and for full disks, whose last line alone does not explain them.
+/// Returns a remedy for known errors of ssh and for full disks, found in a command's output, whose last line
+/// alone does not explain them.
 fn refusal(program: &str, said: &str) -> Option<&'static str> {
     let has = |words: &str| said.contains(words);
     if has("No space left on device") || has("Disk quota exceeded") {

@@ -7,9 +7,9 @@ use support::Problem;
 pub struct Host {
     /// `HOST` or `USER@HOST`; aliases of the user's ssh configuration are allowed.
     pub target: String,
-    /// Port, if different from the ssh configuration.
+    /// Port of the host's ssh server, if different from the ssh configuration.
     pub port: Option<u16>,
-    /// Number of simulations at a time, if different from the other hosts.
+    /// Number of simultaneous simulations on the host, if different from the other hosts.
     pub slots: Option<u16>,
 }
 

@@ -15,8 +15,8 @@ const NAME: &str = "horsehead-worker";
 /// Mount path of the keys in a pod.
 const KEYS: &str = "/keys";
 
-/// Plans the application of the manifests; `options` is `replicas=4`, optionally with `image`, `namespace`,
-/// `cpu` and `memory`; `name` is the worker's key folder, shared by all pods.
+/// Plans the application of the Kubernetes manifests for workers; `options` is `replicas=4`, optionally with
+/// `image`, `namespace`, `cpu` and `memory`; `name` is the worker's key folder, shared by all pods.
 ///
 /// # Errors
 /// If the options cannot be parsed.

@@ -8,18 +8,18 @@ const END: &str = "HORSEHEAD_END";
 /// Standard input of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum StepInput {
-    /// Empty input.
+    /// Empty standard input.
     Nothing,
-    /// Literal text.
+    /// Literal text, passed to the command as standard input.
     Text(String),
-    /// Content of a file.
+    /// Content of a file, passed to the command as standard input.
     File(PathBuf),
     /// Output of another command, by which key material reaches its destination without appearing in the
     /// plan.
     Command(Vec<String>),
 }
 
-/// Step of a plan.
+/// Step of a launch plan: a file to write or a command to run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PlanStep {
     /// Writes a file, creating its parent folders.
@@ -42,7 +42,7 @@ pub enum PlanStep {
         only_if: Option<String>,
         /// Whether the command's output decides which later steps run (see [`PlanStep::Run::only_if`]).
         asks: bool,
-        /// Remedy in case of failure.
+        /// Advice to the user if the command fails.
         remedy: String,
     },
 }
@@ -50,7 +50,7 @@ pub enum PlanStep {
 /// Steps of a launch plan for one host, in order; the first failure ends them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanPart {
-    /// Display name of the target, such as a host name.
+    /// Display name of the target on which the steps are executed, such as a host name.
     pub place: String,
     /// Message shown when all steps have succeeded, such as "joined as worker-01".
     pub success_message: String,
@@ -62,9 +62,9 @@ pub struct PlanPart {
 /// another.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LaunchPlan {
-    /// Steps on this machine, run before all parts.
+    /// Steps run on this machine before those of all hosts.
     pub local_steps: Vec<PlanStep>,
-    /// Steps for each host, one part per host.
+    /// Steps for each host, one [`PlanPart`] per host.
     pub parts: Vec<PlanPart>,
 }
 

@@ -18,7 +18,8 @@ pub struct Program {
     pub glibc: Vec<u32>,
     /// File size \[bytes\].
     pub bytes: usize,
-    /// First 16 digits of the hash of the content; part of the file name on nodes.
+    /// First 16 digits of the hash of the program's content; part of the program's file name on the hosts to
+    /// which it is copied.
     pub hash: String,
 }
 
@@ -47,7 +48,7 @@ impl Program {
         })
     }
 
-    /// Returns the glibc version as `2.34`; `0` if none is needed.
+    /// Returns the glibc version that the worker program requires, as `2.34`; `0` if none is required.
     pub fn glibc_text(&self) -> String {
         let numbers: Vec<String> = self.glibc.iter().map(u32::to_string).collect();
         if numbers.is_empty() {
@@ -58,7 +59,8 @@ impl Program {
     }
 }
 
-/// Returns the processor architecture and the newest `GLIBC_` version that the loader requires.
+/// Returns the processor architecture of a program and the newest `GLIBC_` version that the loader requires
+/// for it.
 fn needs(bytes: &[u8]) -> Result<(Option<&'static str>, Vec<u32>), object::read::Error> {
     let header = FileHeader64::<Endianness>::parse(bytes)?;
     let endian = header.endian()?;

@@ -157,8 +157,8 @@ fn owner_suffix(order: &WorkerOptions) -> String {
     format!("-{}", hash.chars().take(8).collect::<String>())
 }
 
-/// Plans the end of workers on hosts: those launched by the owner in the given options
-/// ([`WorkerOptions::owner`]) for the same coordinator; all workers if no options are given.
+/// Plans the end of workers on hosts: with options given, the workers launched by their owner
+/// ([`WorkerOptions::owner`]) for the same coordinator; without options, all workers.
 pub fn down(hosts: &[Host], order: Option<&WorkerOptions>) -> LaunchPlan {
     let owner = order.map_or("", |order| order.owner.as_str());
     let mark = order.map(owner_suffix).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Worker on this machine as a unit of the user's systemd, restarted with the machine.
+//! Launcher of a worker on this machine as a unit of the user's systemd, restarted with the machine.
 use super::{
     plan::{LaunchPlan, PlanPart, PlanStep, StepInput},
     program::Program,

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 pub struct WorkerOptions {
     /// Address of the coordinator to connect to.
     pub connect: Locator,
-    /// Coordinator's folder of key material; `None` for `tcp/`.
+    /// Coordinator's folder of key material for TLS; `None` for an unencrypted `tcp/` address.
     pub tls: Option<PathBuf>,
     /// Time without work after which the worker ends \[s\]; `None` for never.
     pub idle_timeout: Option<u64>,

@@ -59,7 +59,8 @@ pub const SIGNED: Ramp = Ramp([
 ]);
 
 impl Ramp {
-    /// Returns the colour at a share of the scale, clamped to 0 to 1; the lowest if not finite.
+    /// Returns the colour at a position on the colour scale, clamped to 0 to 1; the lowest colour if the
+    /// position is not finite.
     pub fn at(&self, share: f64) -> Color {
         let share = if share.is_finite() { share } else { 0.0 };
         let place = 4.0 * share.clamp(0.0, 1.0);

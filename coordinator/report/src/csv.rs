@@ -20,7 +20,8 @@ const COLUMNS: [&str; 10] = [
     "simulated",
 ];
 
-/// Writes the channels of named parameter sets of one case; a failed simulation has values up to its failure.
+/// Writes the channels of named simulations of one case as CSV; a failed simulation has values up to its
+/// failure.
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.
@@ -60,7 +61,7 @@ pub(super) fn curves(
     Ok(writer.flush()?)
 }
 
-/// Writes the derivatives of one simulation, one row per name, channel and point.
+/// Writes the derivatives of one simulation's curves as CSV, one row per unknown, channel and point.
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.

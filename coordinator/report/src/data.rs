@@ -11,13 +11,13 @@ use protocol::job::{Curves, Evaluation, Verdict};
 /// One parameter set of a calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Individual {
-    /// Number in the evaluation log; `None` if not proposed by the search.
+    /// Number of the individual in the evaluation log; `None` if it was not proposed by the search.
     pub id: Option<u64>,
     /// Gene values in declared units, in the case's order.
     pub genes: Vec<f64>,
 }
 
-/// One entry of the evaluation log.
+/// Evaluation of one individual, from the evaluation log of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HistoryPoint {
     /// Number of the individual, consecutive from 0 over the whole run.
@@ -54,7 +54,7 @@ pub struct WorkerUse {
     pub failed: u64,
     /// Computing time summed over slots, in seconds.
     pub busy_s: f64,
-    /// Time connected, in seconds.
+    /// Time for which the worker was connected, in seconds.
     pub present_s: f64,
 }
 
@@ -67,17 +67,18 @@ impl WorkerUse {
     }
 }
 
-/// Result of simulating one parameter set under one condition: agreement with the record, and curves.
+/// Result of simulating one parameter set under one condition: agreement with the measured record, and
+/// curves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// Agreement with the record; without channels if there is no record or no complete simulation.
+    /// Agreement with the measured record; without channels if there is no record or no complete simulation.
     pub evaluation: Evaluation,
     /// Simulated curves of the channels; they end at a failure of the simulation.
     pub curves: Curves,
 }
 
 impl Run {
-    /// Returns the simulation with its case and condition.
+    /// Returns a view of this simulation's curves together with its case and the index of its condition.
     pub const fn shown<'a>(&'a self, case: &'a Case, condition: usize) -> SimulationView<'a> {
         SimulationView {
             case,
@@ -86,7 +87,8 @@ impl Run {
         }
     }
 
-    /// Returns the gap (share of variance left unexplained) of each measured channel of a condition.
+    /// Returns the gap (share of the measured variance left unexplained) of each measured channel of a
+    /// condition, with the channel.
     pub fn gaps<'a>(&self, case: &'a Case, condition: usize) -> Vec<(&'a Channel, Gap)> {
         let shown = self.shown(case, condition);
         let gap = |(_, channel, record): (usize, &'a Channel, &ChannelRecord)| {
@@ -123,16 +125,16 @@ impl<'a> SimulationView<'a> {
 pub struct ConditionResult {
     /// Index of the condition in the case.
     pub condition: usize,
-    /// Result with the recommended parameters.
+    /// Result of simulating the recommended parameters.
     pub recommended: Run,
-    /// Result with the optimised parameters.
+    /// Result of simulating the optimised parameters.
     pub optimised: Run,
 }
 
 /// Provenance of a result, sufficient to reproduce it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Origin {
-    /// Program and version.
+    /// Name and version of the program that computed the result.
     pub program: String,
     /// Command line that reproduces the result.
     pub command: String,
@@ -142,7 +144,7 @@ pub struct Origin {
     pub case_hash: String,
     /// Source of the measured records.
     pub measured_name: String,
-    /// Whether the records were computed instead of measured on a machine.
+    /// Whether the case's records were computed by a simulation instead of measured on a machine.
     pub synthetic: bool,
     /// Search preset, if there was a search.
     pub preset: Option<String>,
@@ -165,7 +167,7 @@ pub struct Calibration {
     pub optimised: Individual,
     /// The evaluation log in index order.
     pub history: Vec<HistoryPoint>,
-    /// Workers and their contributions.
+    /// Contribution of each worker to the calibration.
     pub workers: Vec<WorkerUse>,
     /// Slot time of all workers by use, over all sessions of the run.
     pub spent: Spent,
@@ -175,8 +177,8 @@ pub struct Calibration {
     pub finish: String,
     /// Results per condition, conventionally the calibrated condition first.
     pub conditions: Vec<ConditionResult>,
-    /// First-order estimate, for each searched unknown, of the interval that the record determines; empty if
-    /// not computed.
+    /// First-order estimate, for each searched unknown, of the interval that the measured record determines;
+    /// empty if not computed.
     pub identifiability: Vec<UnknownEstimate>,
     /// Further notes and warnings, one sentence each.
     pub notes: Vec<String>,
@@ -189,7 +191,8 @@ impl Calibration {
         Some(result.optimised.shown(&self.case, result.condition))
     }
 
-    /// Returns all simulations, condition by condition, with the name of the parameter set.
+    /// Returns views of all simulations of the calibration, condition by condition, each with the name of its
+    /// parameter set (recommended or optimised).
     pub fn shown(&self) -> Vec<(&'static str, SimulationView<'_>)> {
         let both = self.conditions.iter().flat_map(|result| {
             let runs = [
@@ -201,8 +204,8 @@ impl Calibration {
         both.collect()
     }
 
-    /// Returns the verdict of a parameter set under the calibrated conditions, and its objective summed over
-    /// them; `None` if one of the conditions has no result.
+    /// Returns the verdict on a parameter set's simulations under the calibrated conditions, and the
+    /// objective summed over these conditions; `None` if one of them has no result.
     pub fn objective(&self, of: impl Fn(&ConditionResult) -> &Run) -> Option<(Verdict, f64)> {
         let mut whole = (Verdict::Complete, 0.0);
         for condition in self.case.objective.conditions() {
@@ -217,7 +220,7 @@ impl Calibration {
         Some(whole)
     }
 
-    /// Returns the result under the calibrated condition, the first if there are several.
+    /// Returns the results under the calibrated condition, the first one if there are several.
     pub fn calibrated(&self) -> Option<&ConditionResult> {
         self.conditions
             .iter()
@@ -225,7 +228,7 @@ impl Calibration {
     }
 }
 
-/// Single simulation, reported by itself.
+/// Data of a single simulation, for a report of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SingleRun {
     /// Simulated case.
@@ -238,7 +241,7 @@ pub struct SingleRun {
     pub genes_name: String,
     /// Gene values in declared units, in the case's order.
     pub genes: Vec<f64>,
-    /// Agreement with the record, if evaluated.
+    /// Agreement of the simulation with the measured record, if evaluated.
     pub evaluation: Option<Evaluation>,
     /// Simulated curves of the channels; they end at a failure of the simulation.
     pub curves: Curves,
@@ -250,7 +253,7 @@ pub struct SingleRun {
 }
 
 impl SingleRun {
-    /// Returns the simulation with its case and condition.
+    /// Returns a view of the simulation's curves together with its case and the index of its condition.
     pub const fn shown(&self) -> SimulationView<'_> {
         SimulationView {
             case: &self.case,

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// Figures, tables, sections and files of a report that depend on the kind of model.
 pub trait ModelReport: Sync {
-    /// Returns the figures of the channels, with all simulations that are shown.
+    /// Returns the figures of a simulation's channels.
     fn channels(&self, of: &SimulationView<'_>) -> Vec<Figure>;
 
     /// Returns the figures of simulated curves that are not channels, such as internal forces.
@@ -17,17 +17,20 @@ pub trait ModelReport: Sync {
     /// names the parameter set it was run with.
     fn sections(&self, whose: &str, of: Option<&SimulationView<'_>>) -> Vec<Section>;
 
-    /// Returns the description of the abscissas' origin, appended to their name; empty where none is needed.
+    /// Returns the description of the abscissas' origin, such as " from bottom dead centre", appended to an
+    /// abscissa's name in axis titles; empty where none is needed.
     fn zero(&self) -> &'static str;
 
     /// Returns the title of the group of table rows to which an unknown belongs; parameters of effects have a
     /// group of their own.
     fn group(&self, unknown: &Unknown) -> &'static str;
 
-    /// Returns the tables of one simulation: first the ranges of its curves, then all other numbers.
+    /// Returns the tables of one simulation: first the table of the ranges of its curves, then tables of all
+    /// other numbers.
     fn tables(&self, run: &SingleRun) -> Vec<Table>;
 
-    /// Writes the data behind the figures of named simulations. Returns the paths.
+    /// Writes files specific to the kind of model with the data behind the figures of named simulations.
+    /// Returns the paths.
     ///
     /// # Errors
     /// [`ReportError`] when a file cannot be written.

@@ -1,4 +1,4 @@
-//! Report content for models of any kind: the channels.
+//! Report content common to models of any kind: figures and tables of the channels.
 use super::data::{SimulationView, SingleRun};
 use super::document::{Figure, Section, Table};
 use super::drawing::ModelReport;
@@ -8,7 +8,7 @@ use super::{chart, csv};
 use protocol::case::{Case, Unknown};
 use std::path::{Path, PathBuf};
 
-/// Report content for kinds of model without content of their own.
+/// Report content for kinds of model without report content of their own.
 pub struct GenericReport;
 
 impl ModelReport for GenericReport {

@@ -22,7 +22,7 @@ pub fn of(case: &Case) -> &'static dyn ModelReport {
         .map_or(&GenericReport, |(_, drawing)| *drawing)
 }
 
-/// Returns the axis for an abscissa of a case.
+/// Returns the horizontal axis of figures over an abscissa of a case.
 pub(super) fn axis(case: &Case, abscissa: &Abscissa) -> ChartAxis {
     ChartAxis::of(abscissa, of(case).zero())
 }

@@ -13,12 +13,13 @@ pub fn calibration(calibration: &Calibration) -> Report {
     Report::new(title, &calibration.origin.run, sections)
 }
 
-/// Renders the tables of parameters and errors of a calibration for a terminal.
+/// Renders the tables of a calibration's parameters and errors for a terminal; `styled` if it supports bold.
 pub fn parameters(calibration: &Calibration, styled: bool) -> String {
     section_text(&section::parameters(calibration), styled)
 }
 
-/// Describes a calibration's residual above the noise; `None` where the residual is at noise level.
+/// Describes how far a calibration's residual exceeds the measurement noise; `None` where the residual is at
+/// noise level.
 pub fn structure(calibration: &Calibration) -> Option<String> {
     words::model_error(calibration)
 }
@@ -34,7 +35,7 @@ pub fn ranges(run: &SingleRun) -> Option<Table> {
     kind::of(&run.case).tables(run).into_iter().next()
 }
 
-/// Builds the table of a simulation's agreement with its record, if there is one.
+/// Builds the table of a simulation's agreement with its measured record, if there is one.
 pub fn agreement(run: &SingleRun) -> Option<Table> {
     let mut rows = table::agreement(run);
     // its heading is the title here

@@ -1,8 +1,7 @@
 //! Chain rule that converts derivatives computed by workers to derivatives with respect to search
-//! coordinates.
-//!
-//! A worker differentiates with respect to an unknown of the case or a parameter of an effect, per decade or
-//! per unit; a search varies coordinates. Unknowns tied to another one vary with it.
+//! coordinates. A worker differentiates with respect to an unknown of the case or a parameter of an effect,
+//! per decade or per unit; a search varies coordinates (scaled values of the unknowns). Unknowns tied to a
+//! searched unknown vary with it.
 use crate::space::Space;
 use protocol::job::{Column, Derivative, Per};
 use std::f64::consts::LN_10;
@@ -15,12 +14,14 @@ pub struct DerivativeTerm {
     pub column: Column,
     /// Current value of the unknown or parameter that the worker differentiates by [declared unit].
     pub value: f64,
-    /// Derivative of the unknown's value with respect to the search coordinate.
+    /// Derivative of the unknown's or parameter's value with respect to the search coordinate [declared
+    /// unit].
     pub rate: f64,
 }
 
 impl DerivativeTerm {
-    /// Returns the factor that converts a worker's derivative, per decade or per unit, to the coordinate.
+    /// Returns the factor that converts a worker's derivative, per decade or per unit, to the derivative with
+    /// respect to the search coordinate.
     pub fn factor(&self, per: &Per) -> f64 {
         match per {
             Per::Decade => self.rate / (self.value * LN_10),
@@ -28,8 +29,9 @@ impl DerivativeTerm {
         }
     }
 
-    /// Adds the contribution of this term to the derivative `sum` of the curve with index `place`, restricted
-    /// to `rows` if given; returns `None` if the derivative is missing or its length does not match.
+    /// Adds this term's contribution for the curve with index `place` to `sum`, the derivative of that curve
+    /// at all its points or only at the points with indices `rows`; returns `None` if the worker's derivative
+    /// is missing or its length does not match.
     pub fn add(
         &self,
         by: &Derivative,
@@ -73,8 +75,8 @@ mod tests {
     use super::*;
     use protocol::case::{Scale, Tie, Unknown};
 
-    /// Checks that the terms convert derivatives per decade and per unit into those by coordinates, against
-    /// finite differences.
+    /// Checks that the chain-rule terms convert derivatives per decade and per unit into those by search
+    /// coordinates, against finite differences.
     #[test]
     fn terms_make_derivatives_by_coordinates() {
         let mut unknowns = [

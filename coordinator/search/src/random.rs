@@ -9,24 +9,24 @@ use rand_chacha::{
     rand_core::{Rng, SeedableRng},
 };
 
-/// Purpose of a random draw; part of its address.
+/// Purpose of a random draw; part of the key that addresses the draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Initial population or design.
+    /// Draws of the initial population or design of the search.
     Initial,
     /// Roulette draws of a generation.
     Selection,
-    /// Crossover of a pair of parents.
+    /// Draws of the crossover of a pair of parents.
     Crossover,
-    /// Mutation of a child.
+    /// Draws of the mutation of a child.
     Mutation,
-    /// One crossover-based hill-climbing trial.
+    /// Draws of one crossover-based hill-climbing trial.
     CrossoverTrial,
-    /// One mutation-based hill-climbing trial.
+    /// Draws of one mutation-based hill-climbing trial.
     MutationTrial,
-    /// One step of a local refinement.
+    /// Draws of one step of a local refinement.
     Refinement,
-    /// Noise, or a resample of cycles, for the reference distribution of a test statistic.
+    /// Draws of noise, or of a resample of cycles, for the reference distribution of a test statistic.
     Resample,
 }
 
@@ -43,7 +43,7 @@ impl Streams {
         Self { seed, scope }
     }
 
-    /// Returns the stream at an address.
+    /// Returns the random stream addressed by a generation, the purpose of the draws and an index.
     pub fn at(&self, generation: u32, phase: Phase, index: usize) -> Stream {
         let mut key = [0_u8; 32];
         let address = self
@@ -61,7 +61,7 @@ impl Streams {
     }
 }
 
-/// Random number stream at one address.
+/// Random number stream for one address (seed, scope, generation, phase, index).
 #[derive(Clone, Debug)]
 pub struct Stream(ChaCha8Rng);
 

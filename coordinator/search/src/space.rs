@@ -13,7 +13,7 @@ use protocol::case::{BadUnknown, Scale, Unknown, check_unknowns};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpaceError {
-    /// The space has no axis.
+    /// The search space has no axis, because no unknown is searched.
     #[error("there is no unknown to search: each is fixed, tied or switched off")]
     Empty,
     /// An unknown has an invalid definition.
@@ -22,9 +22,9 @@ pub enum SpaceError {
     /// The number of starting values differs from the number of unknowns.
     #[error("the start has {found} values, but there are {expected} unknowns")]
     Length {
-        /// Number of values given.
+        /// Number of starting values given, one expected per unknown.
         found: usize,
-        /// Number of unknowns.
+        /// Number of unknowns of the case, and thus of the starting values expected.
         expected: usize,
     },
 }
@@ -42,12 +42,12 @@ pub struct Axis {
     pub trust: Interval,
 }
 
-/// Closed interval of coordinates.
+/// Closed interval of coordinates on an axis of the search space.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Interval {
-    /// Lower end (coordinate).
+    /// Lower end of the interval (coordinate).
     pub from: f64,
-    /// Upper end (coordinate).
+    /// Upper end of the interval (coordinate).
     pub to: f64,
 }
 
@@ -119,7 +119,7 @@ impl Axis {
         }
     }
 
-    /// Returns half the length of the interval, the unit of a linear axis [declared unit].
+    /// Returns half the length of the unknown's interval, which is the unit of a linear axis [declared unit].
     fn half(&self) -> f64 {
         0.5 * (self.unknown.upper - self.unknown.lower)
     }
@@ -215,7 +215,7 @@ impl Space {
         Self { starts, ..self }
     }
 
-    /// Returns the points that open an initial population (coordinate), best first.
+    /// Returns the starting points that an initial population contains first (coordinates), best first.
     pub fn starts(&self) -> &[Vec<f64>] {
         &self.starts
     }
@@ -232,7 +232,7 @@ impl Space {
         &self.axes
     }
 
-    /// Returns the position of an unknown's axis; `None` if the unknown is not searched.
+    /// Returns the index of the axis of the unknown with a name; `None` if that unknown is not searched.
     pub fn position(&self, name: &str) -> Option<usize> {
         self.axes.iter().position(|axis| axis.unknown.name == name)
     }
@@ -258,8 +258,8 @@ impl Space {
         self.value_sources.iter().map(value).collect()
     }
 
-    /// Returns the unknowns that an axis moves: their positions, their names, and the derivative of each
-    /// value with respect to the axis' coordinate at `x` [declared unit].
+    /// Returns the unknowns whose values change along an axis: their positions in the case, their names, and
+    /// the derivative of each value with respect to the axis' coordinate at `x` [declared unit].
     pub fn rates(&self, axis: usize, x: f64) -> impl Iterator<Item = (usize, &str, f64)> {
         let own = self.axes[axis].rate(x);
         let givers = self.value_sources.iter().zip(&self.names).enumerate();
@@ -348,7 +348,8 @@ mod tests {
         assert_eq!(short, Err(SpaceError::Length { found, expected }));
     }
 
-    /// Checks that the rates agree with difference quotients of the values, also for a tied unknown.
+    /// Checks that the derivatives returned by `rates` agree with difference quotients of the values, also
+    /// for a tied unknown.
     #[test]
     fn rates_are_those_of_the_values() {
         let mut unknowns = [

@@ -1,18 +1,19 @@
-//! Test functions with known minima for search strategies.
+//! Test functions with known minima, on which search strategies are tested.
 //!
-//! Points are coordinates of the space: +-4 decades from the start. All minima are 0.
+//! Points are given by coordinates of the search space, which reaches 4 decades to either side of the start.
+//! The value at every minimum is 0.
 use crate::{
     space::{Space, SpaceError},
     strategy::EvaluationResult,
 };
 use protocol::case::{HeldRatios, Scale, Shift, Unknown, Valley};
 
-/// Value of a test function: the residual vector whose squared norm is the fitness, or, for a point at which
-/// the simulated run fails, its grade.
+/// Value of a test function at a point: the residual vector whose squared norm is the fitness, or, where the
+/// simulated run fails, the grade of the failure.
 type Value = Result<Vec<f64>, f64>;
 
-/// Trust interval of a stiffness (decades); [`LOSS`] is that of a damping loss, [`SERIES`] that of a
-/// stiffness in series with the first.
+/// Trust interval of the resonance's stiffness, relative to its start (decades); [`LOSS`] is that of its
+/// damping loss, [`SERIES`] that of a stiffness in series with the first.
 const STIFF: [f64; 2] = [-1.0, 1.5];
 const LOSS: [f64; 2] = [-1.0, 4.0];
 const SERIES: [f64; 2] = [-0.5, 3.5];
@@ -22,7 +23,7 @@ const SERIES: [f64; 2] = [-0.5, 3.5];
 pub struct TestFunction {
     /// Name of the test function.
     pub name: &'static str,
-    /// Position of the minimum (coordinate); at most 10 unknowns.
+    /// Coordinates of the minimum, for at most 10 unknowns.
     pub optimum: &'static [f64],
     value: fn(&[f64], &[f64]) -> Value,
 }
@@ -121,7 +122,7 @@ impl TestFunction {
         space.expect("ordered bounds about positive values")
     }
 
-    /// Returns the result of the test function at gene values in [`Self::space`].
+    /// Returns the result of the test function at gene values of [`Self::space`]: its fitness, or a failure.
     pub fn tell(&self, space: &Space, genes: &[f64]) -> EvaluationResult {
         match (self.value)(&space.point(genes), self.optimum) {
             Ok(residual) => EvaluationResult {
@@ -209,7 +210,7 @@ fn resonance(x: &[f64], optimum: &[f64]) -> Value {
     Ok(residual)
 }
 
-/// Returns the order [harmonics of the load] and damping ratio of both modes.
+/// Returns the order [harmonics of the load] and damping ratio of both modes of the resonance function.
 fn modes(x: &[f64]) -> [(f64, f64); 2] {
     let compliance = libm::exp10(0.4 - x[0]) + 0.015 * libm::exp10((2.6 - x[8]) / 1.5);
     let root = libm::sqrt(1.015 / compliance);

@@ -1,4 +1,5 @@
-//! Parts of the commands' output that depend on the kind of model; the default methods suit every kind.
+//! Trait for the parts of the JSON output that depend on the kind of model; its default methods suit every
+//! kind.
 use crate::digest::Digest;
 use discrepancy::identify::Band;
 use protocol::{
@@ -8,7 +9,7 @@ use protocol::{
 };
 use serde_json::{Map, Value, json};
 
-/// Kind of model with its output formats.
+/// Kind of model, such as the pumping unit, with its own JSON output of curves, bands and scores.
 pub(crate) trait Kind: Sync {
     /// Returns the name of the kind, as in the case file.
     fn name(&self) -> &'static str;
@@ -53,8 +54,8 @@ pub(crate) trait Kind: Sync {
         Ok(Map::from_iter([("curves".to_owned(), curves)]))
     }
 
-    /// Returns the derivatives of the curves with respect to the unknown or effect parameter `per`, channel
-    /// by channel, as shown by `simulate --derivatives --output json`.
+    /// Returns the derivatives of all channel curves with respect to one unknown or effect parameter, as
+    /// shown by `simulate --derivatives --output json`; `per` is the unit of change of this parameter.
     fn derivative(
         &self,
         case: &Case,
@@ -114,7 +115,7 @@ pub(crate) trait Kind: Sync {
     }
 }
 
-/// Default kind for models without formats of their own.
+/// Model kind used for every model without its own JSON output; it keeps all default methods.
 pub(super) struct AnyKind;
 
 impl Kind for AnyKind {

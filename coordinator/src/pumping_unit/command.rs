@@ -89,7 +89,7 @@ impl FamilyChoice {
     }
 }
 
-/// Maximum number of modes; a mesh of this kind does not resolve higher ones.
+/// Maximum number of modes of the head that may be requested; its mesh does not resolve higher ones.
 const MOST_MODES: usize = 40;
 
 /// Reduces the head, compares it with the tables of the case, and writes the requested files.
@@ -159,7 +159,6 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     terminal::print(arguments.output.output, tables, &object)
 }
 
-/// Collects the data for drawing the modes of a reduced head.
 fn picture<'a>(
     machine: &Machine,
     source: &'a HeadSource,
@@ -181,7 +180,8 @@ fn surface<'a>(read: &'a mesh::Mesh, name: &str) -> &'a [usize] {
     read.surfaces.get(name).map_or(&[], Vec::as_slice)
 }
 
-/// Returns the rope wrap on the back head at the largest rope tension of a crank revolution.
+/// Returns the wrap of the rope on the back head (tension and contact arc) at the largest rope tension of a
+/// revolution.
 fn hardest(machine: &Machine, turn: &QuasiStaticTurn) -> RopeWrap {
     let wraps = wraps(machine, turn);
     let most = wraps.max_by(|a, b| a.tension_n.total_cmp(&b.tension_n));
@@ -192,8 +192,8 @@ fn hardest(machine: &Machine, turn: &QuasiStaticTurn) -> RopeWrap {
     })
 }
 
-/// Returns the rope wraps with the smallest, the median and the largest covered arc of a crank revolution,
-/// used as load patterns.
+/// Returns the rope wraps with the smallest, median and largest contact arc of a revolution, as load patterns
+/// for the selection of coupled modes.
 fn patterns(machine: &Machine, turn: &QuasiStaticTurn) -> Vec<RopeWrap> {
     let mut wraps: Vec<RopeWrap> = wraps(machine, turn).collect();
     wraps.sort_by(|a, b| a.leaves_deg.total_cmp(&b.leaves_deg));
@@ -206,7 +206,8 @@ fn patterns(machine: &Machine, turn: &QuasiStaticTurn) -> Vec<RopeWrap> {
         .collect()
 }
 
-/// Returns the rope wrap on the back head at every crank angle of the quasi-static revolution.
+/// Returns the wrap of the rope on the back head (tension and contact arc) at every crank angle of the
+/// quasi-static revolution.
 fn wraps(machine: &Machine, turn: &QuasiStaticTurn) -> impl Iterator<Item = RopeWrap> {
     let anchor_deg = machine.back_head.rope_anchor_deg;
     let places = turn.tension_n.iter().zip(&turn.contact_deg);
@@ -245,7 +246,7 @@ fn spec(
     }
 }
 
-/// Converts a mesh into the form in which it is sent to a worker.
+/// Converts the head's mesh into the form sent to a worker.
 fn mesh(read: &mesh::Mesh) -> HeadMesh {
     #[expect(
         clippy::cast_possible_truncation,

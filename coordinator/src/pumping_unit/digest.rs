@@ -1,4 +1,4 @@
-//! Digest of a simulated revolution of the pumping unit.
+//! Digest of a simulated revolution of the pumping unit: equal digests mean bitwise equal results.
 use crate::digest::Digest;
 use protocol::pumping_unit::Simulation;
 

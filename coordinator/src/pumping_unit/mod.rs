@@ -1,5 +1,5 @@
-//! Parts of the coordinator that are specific to the pumping unit, model kind `dhh`; the rest of the
-//! coordinator reaches them through the kind named by the case.
+//! Parts of the coordinator that are specific to the pumping unit, model kind `dhh`; other parts call them
+//! only through the trait for model kinds.
 pub(crate) mod command;
 mod digest;
 pub(crate) mod kind;

@@ -3,30 +3,24 @@
 //!
 //! Independent of the type of the rows and of the file format.
 
-/// Column name for job numbers in all exported tables; databases get an index on it.
+/// Name of the job number column in every exported table that has one; databases get an index on it.
 pub(super) const JOB: &str = "job";
 
-/// Value of a field of a table.
+/// Value in one cell of an exported table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
-    /// Missing value.
     Null,
-    /// Integer.
     Integer(i64),
     /// Finite real number.
     Real(f64),
-    /// Text.
     Text(String),
 }
 
-/// Type of the values of a column; every column may also hold missing values.
+/// Type of the values in a column of an exported table; every column may also hold missing values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// Type of [`Value::Integer`].
     Integer,
-    /// Type of [`Value::Real`].
     Real,
-    /// Type of [`Value::Text`].
     Text,
 }
 
@@ -41,14 +35,13 @@ impl Kind {
     }
 }
 
-/// Description of a column, as shown in files.
+/// Description of one column of an exported table: name, type and meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Column {
-    /// Name, including the unit.
+    /// Name of the column, including the unit of its values.
     pub(super) name: String,
-    /// Type of the values.
     pub(super) kind: Kind,
-    /// Meaning of the values, for the dictionary table.
+    /// Meaning of the column's values, as written in the export's dictionary table.
     pub(super) about: String,
 }
 
@@ -120,7 +113,7 @@ impl<R: 'static> Columns<R> {
         self.add(name, about, Kind::Text, Box::new(value))
     }
 
-    /// Adds the columns of a part of the row; `of` returns this part.
+    /// Adds the columns of a nested part of the row type; `of` returns this part of a row.
     pub(super) fn with<S: 'static>(mut self, part: Columns<S>, of: fn(&R) -> &S) -> Self {
         self.columns.extend(part.columns);
         let read = part.read.into_iter();
@@ -129,12 +122,11 @@ impl<R: 'static> Columns<R> {
         self
     }
 
-    /// Returns the descriptions of the columns.
     pub(super) fn columns(&self) -> &[Column] {
         &self.columns
     }
 
-    /// Returns the values of a row.
+    /// Returns the values of one row, in the order of the columns.
     pub(super) fn fields(&self, row: &R) -> Vec<Value> {
         self.read.iter().map(|read| read(row)).collect()
     }

@@ -10,7 +10,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Writes one file per table into a folder.
+/// Writer of an export in CSV format, one file per table in a folder.
 pub(super) struct CsvFiles {
     folder: PathBuf,
     files: Vec<(PathBuf, csv::Writer<BufWriter<File>>)>,

@@ -8,7 +8,7 @@ use std::{
 /// Error of the export of a run.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// A file cannot be read or written.
+    /// A file of the export cannot be read or written.
     #[error("cannot {doing} {}: {source}", path.display())]
     Io {
         /// Failed file operation, for example `write`.
@@ -18,10 +18,10 @@ pub enum StoreError {
         /// Error of the operating system.
         source: io::Error,
     },
-    /// A table cannot be written.
+    /// A row or table of the export cannot be written in its file format.
     #[error("cannot write {}: {source}", path.display())]
     Table {
-        /// File of the table.
+        /// File of the table that cannot be written.
         path: PathBuf,
         /// Error of the file format library.
         source: Box<dyn std::error::Error + Send + Sync>,
@@ -32,7 +32,7 @@ pub enum StoreError {
         /// Existing file or folder.
         path: PathBuf,
     },
-    /// The journal cannot be read.
+    /// The run's journal, from which the export is made, cannot be read.
     #[error(transparent)]
     Journal(#[from] JournalError),
 }

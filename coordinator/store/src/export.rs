@@ -1,4 +1,5 @@
-//! Export in progress: converts events of the journal and evaluations of the study into rows.
+//! Export in progress: converts the journal's events, and the simulations requested by the study, into table
+//! rows.
 use super::{
     error::StoreError,
     row::{Brief, EffectRow, Evaluated, Fact, Happened, Scored},
@@ -18,7 +19,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Reason for which a simulation was requested.
+/// Label of an exported simulation: the reason for which the study requested it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ColumnLabel {
     /// Generation of the search in which the individual was proposed; none outside a search.
@@ -27,16 +28,16 @@ pub struct ColumnLabel {
     pub purpose: String,
 }
 
-/// Completed export.
+/// Result of a completed export.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Exported {
-    /// Files of the export.
+    /// Paths of the files that the export consists of.
     pub files: Vec<PathBuf>,
-    /// Number of rows of each table.
+    /// Number of exported rows by table name.
     pub rows: BTreeMap<&'static str, u64>,
 }
 
-/// Export in progress.
+/// Export in progress: receives a run's journal and evaluations, and writes them as table rows.
 pub struct Store<'a> {
     case: &'a Case,
     draft: Draft,
@@ -77,7 +78,8 @@ impl<'a> Store<'a> {
         self.book.add_row(&self.tables.run, &fact)
     }
 
-    /// Reads the journal, adds all rows that follow from it alone, and returns its results as a recording.
+    /// Reads the run's journal, exports all rows that follow from it alone, and returns its job results as a
+    /// recording, from which the study can be repeated.
     ///
     /// # Errors
     /// [`StoreError::Journal`] if the journal cannot be read, other errors if a table cannot be written.

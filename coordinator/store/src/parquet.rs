@@ -1,4 +1,4 @@
-//! Tables as Parquet: one file each, every column optional, text as UTF-8.
+//! Writer of the exported tables as Parquet: one file per table, every column optional, text as UTF-8.
 use super::{
     column::{Kind, Value},
     error::StoreError,
@@ -20,7 +20,8 @@ use std::{
     sync::Arc,
 };
 
-/// Writes one file per table into a folder; every call of `write` adds one row group.
+/// Writer of an export in Parquet format, one file per table in a folder; each batch of rows becomes one row
+/// group.
 pub(super) struct ParquetFiles {
     folder: PathBuf,
     files: Vec<(PathBuf, Vec<Kind>, SerializedFileWriter<File>)>,

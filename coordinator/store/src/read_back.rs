@@ -12,16 +12,12 @@ use std::{
 };
 use store::Format;
 
-/// Value of a field of a table.
+/// Value in one cell of a table read from an export.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
-    /// Missing value.
     Null,
-    /// Integer.
     Integer(i64),
-    /// Finite real number.
     Real(f64),
-    /// Text.
     Text(String),
 }
 
@@ -80,7 +76,7 @@ fn sqlite(path: &Path) -> Tables {
     names.into_iter().map(read).collect()
 }
 
-/// Returns table name and path of each file in a folder.
+/// Returns the table name and path of each file in the folder of a CSV or Parquet export.
 fn parts(folder: &Path) -> Vec<(String, std::path::PathBuf)> {
     fs::read_dir(folder)
         .expect("it is a folder")

@@ -1,4 +1,4 @@
-//! Row types of the tables.
+//! Row types of the exported tables.
 use dispatch::scheduler;
 use protocol::{
     event::Finished,
@@ -61,12 +61,12 @@ pub(super) struct Evaluated {
     pub(super) purpose: String,
     pub(super) condition: String,
     pub(super) genes: Vec<f64>,
-    /// Number of effects added to those of the case.
+    /// Number of effects that the simulation added to those of the case.
     pub(super) effects: usize,
     pub(super) result: Brief,
 }
 
-/// Score of one channel of one job.
+/// Row of the table `scores`: score of one channel in one job.
 pub(super) struct Scored {
     pub(super) job: JobId,
     pub(super) score: ChannelScore,
@@ -81,7 +81,7 @@ pub(super) struct EffectRow {
     pub(super) parameter: Option<(String, f64)>,
 }
 
-/// Row of the table `events`: an event of the run.
+/// Row of the table `events`: event of the run, such as a worker joining.
 #[derive(Default)]
 pub(super) struct Happened {
     pub(super) at_byte: u64,
@@ -94,7 +94,7 @@ pub(super) struct Happened {
     pub(super) detail: Option<String>,
 }
 
-/// Property of the whole run, by name.
+/// Row of the table `run`: name and value of a property of the whole run.
 pub(super) struct Fact {
     pub(super) name: String,
     pub(super) value: String,

@@ -16,13 +16,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// SQLite application id of the exported databases: `HHRN`.
+/// SQLite application id that marks a database as an export of this program: `HHRN`.
 pub(super) const APPLICATION: i32 = 0x4848_524e;
 
 /// Version of the table schema, stored as SQLite `user_version`.
 const VERSION: i32 = 1;
 
-/// Writes all tables into one SQLite file.
+/// Writer of an export as one SQLite database.
 pub(super) struct Database {
     path: PathBuf,
     connection: Connection,

@@ -20,7 +20,7 @@ use tempfile::TempDir;
 /// File format of an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// One SQLite database.
+    /// One SQLite database with all tables.
     Sqlite,
     /// A folder with one CSV file per table.
     Csv,
@@ -29,7 +29,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// Returns the name of the format.
+    /// Returns the name of the export format.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Sqlite => "sqlite",
@@ -55,9 +55,9 @@ impl Format {
 /// Path and format of an export.
 #[derive(Clone, Debug)]
 pub struct Target {
-    /// Path of the file or folder.
+    /// Path of the export: a file for SQLite, otherwise a folder.
     pub path: PathBuf,
-    /// File format.
+    /// File format of the export.
     pub format: Format,
     /// Whether existing content that is not an export may be replaced: a file as a whole, in a folder the
     /// files of the same names.
@@ -98,7 +98,7 @@ impl Draft {
         self.scratch.path().join(DRAFT)
     }
 
-    /// Creates the writer for the format of the export.
+    /// Creates the table writer for the file format of the export.
     pub(super) fn sink(&self) -> Result<Box<dyn Sink>, StoreError> {
         let path = self.path();
         if self.target.format.is_folder() {

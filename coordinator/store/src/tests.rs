@@ -4,7 +4,6 @@ use super::{Exported, Format, Store, StoreError, Target, read_back, table::NAMES
 use protocol::case::Case;
 use std::{fs, path::Path};
 
-/// Returns the case shipped with the project.
 fn case() -> Case {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/cyjs10-5-37hb");
     case::load(&folder, &case::Overrides::default()).unwrap()
@@ -23,7 +22,6 @@ fn write(path: &Path, format: Format, force: bool) -> Result<Exported, StoreErro
     Store::begin(target(path, format, force), &case)?.finish()
 }
 
-/// Returns the sorted names of the entries of a folder.
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let mut names: Vec<String> = entries

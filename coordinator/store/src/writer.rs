@@ -6,36 +6,38 @@ use super::{
 };
 use std::{collections::BTreeMap, mem};
 
-/// Number of rows per batch of a table.
+/// Number of rows of a table that are collected before they are written as one batch.
 const ROWS: usize = 4096;
 
-/// Schema of a table: name and columns.
+/// Schema of an exported table: its name and columns.
 #[derive(Clone, Debug)]
 pub(super) struct Schema {
     pub(super) name: &'static str,
     pub(super) columns: Vec<Column>,
 }
 
-/// Writer of tables in one file format.
+/// Writer of tables in one file format (SQLite, CSV or Parquet).
 pub(super) trait Sink {
-    /// Begins the next table.
+    /// Begins a table with the given name and columns; tables are counted in the order in which they are
+    /// begun.
     fn begin(&mut self, shape: &Schema) -> Result<(), StoreError>;
 
     /// Writes rows of the table with index `place`; tables are counted from 0 in the order in which they were
     /// begun.
     fn write(&mut self, place: usize, rows: &[Vec<Value>]) -> Result<(), StoreError>;
 
-    /// Completes and closes all files.
+    /// Completes and closes all files of the export.
     fn finish(self: Box<Self>) -> Result<(), StoreError>;
 }
 
-/// Handle of a table in an export; each of its rows is made from a value of type `R`.
+/// Handle by which rows are added to one table of an export; each row is made from a value of type `R`.
 pub(super) struct TableHandle<R> {
     place: usize,
     columns: Columns<R>,
 }
 
-/// Tables of an export with their buffered rows and their writer.
+/// Buffering writer of an export: collects the rows of each table and passes full batches to the format's
+/// writer.
 pub(super) struct TableWriter {
     sink: Box<dyn Sink>,
     pages: Vec<TableBuffer>,
@@ -55,7 +57,7 @@ impl TableWriter {
         }
     }
 
-    /// Begins a table and returns its handle.
+    /// Begins a table of the export and returns the handle for adding rows to it.
     pub(super) fn begin<R: 'static>(
         &mut self,
         name: &'static str,
@@ -77,7 +79,7 @@ impl TableWriter {
         })
     }
 
-    /// Adds a row, and writes the batch once it is full.
+    /// Adds a row to a table, and writes the table's batch of rows once it is full.
     pub(super) fn add_row<R: 'static>(
         &mut self,
         to: &TableHandle<R>,
@@ -94,12 +96,11 @@ impl TableWriter {
         self.sink.write(to.place, &mem::take(&mut page.waiting))
     }
 
-    /// Returns the schemas of all tables.
     pub(super) fn schemas(&self) -> Vec<Schema> {
         self.pages.iter().map(|page| page.shape.clone()).collect()
     }
 
-    /// Writes the remaining rows, completes all files, and returns the number of rows of each table.
+    /// Writes all remaining rows, completes the export's files, and returns the number of rows by table name.
     pub(super) fn finish(mut self) -> Result<BTreeMap<&'static str, u64>, StoreError> {
         let mut rows = BTreeMap::new();
         for (place, page) in self.pages.iter_mut().enumerate() {

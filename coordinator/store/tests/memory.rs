@@ -17,7 +17,7 @@ use protocol::{
 use std::{env, fs, path::Path, process::Command};
 use store::{ColumnLabel, Format, Store, Target};
 
-/// Length of the residual vector in each generated test result (a tenth of the usual length).
+/// Length of the residual vector of each generated test result, a tenth of the length in real runs.
 const RESIDUALS: usize = 144;
 /// Maximum additional memory (MiB) of an export of 50,000 evaluations compared with 5,000; these evaluations
 /// take 80 MiB in the journal, and more as rows.

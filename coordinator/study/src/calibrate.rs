@@ -22,11 +22,11 @@ pub(super) const MIN_FAILED_EVALUATIONS: usize = 8;
 /// Result of a finished search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibrated {
-    /// Best individual.
+    /// Best individual found by the search.
     pub best: Best,
     /// Stopping criterion that ended the search.
     pub finish: Finish,
-    /// All evaluations in index order.
+    /// Log of all evaluations of the search, in index order.
     pub log: EvaluationLog,
 }
 
@@ -88,8 +88,8 @@ pub(super) fn score(case: &Case, proposal: &Proposal) -> Job {
     })
 }
 
-/// Returns the unknowns with respect to which the job of a proposal computes derivatives: all that are
-/// neither fixed nor switched off, or none if the proposal needs no derivatives.
+/// Returns the derivative columns that the job of a proposal requests: one for each unknown that is neither
+/// fixed nor switched off, or none if the proposal needs no derivatives.
 fn derived(case: &Case, proposal: &Proposal) -> Vec<Column> {
     let wanted = proposal.purpose.wants_derivatives();
     let moving = case.unknowns.iter().filter(|it| !it.fixed && !it.is_off());
@@ -125,8 +125,8 @@ pub(super) fn entry(proposal: Proposal, outcome: Outcome) -> Result<LogEntry, St
     }
 }
 
-/// Fails if all evaluations so far have failed and the first generation is complete. The search could
-/// continue, but a wrongly configured case or machine is by far the more likely reason.
+/// Returns an error if the first generation is complete and all evaluations so far have failed: a wrongly
+/// configured case or machine is then by far the most likely reason.
 fn check_beginning(log: &EvaluationLog, open: &BTreeMap<u64, Proposal>) -> Result<(), StudyError> {
     if log
         .entries()

@@ -15,28 +15,28 @@ use std::collections::BTreeMap;
 /// Individuals to score and simulate under one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CompareRequest {
-    /// Index of the condition in the case.
+    /// Index of the condition in the case under which the individuals are compared.
     pub condition: usize,
-    /// Index of the first of these individuals among all individuals compared under this condition in the
-    /// run; determines the job numbers.
+    /// Number of individuals already compared under this condition in the run, i.e. index of the first of
+    /// these; determines the job numbers.
     pub first: usize,
-    /// Individuals by name; values of the unknowns in declared units.
+    /// Individuals to compare, each with its name and the values of its unknowns in declared units.
     pub individuals: Vec<(String, Vec<f64>)>,
     /// Number of motion snapshots recorded per simulation; 0 for none.
     pub frames: u32,
-    /// Parameters by which the curves are differentiated.
+    /// Unknowns and effect parameters by which the curves are differentiated.
     pub columns: Vec<Column>,
 }
 
-/// Number of motion snapshots that give a smooth animation.
+/// Number of motion snapshots per simulation that suffices for a smooth animation.
 pub const PICTURES: u32 = 120;
 
 /// Score and curves of one individual under one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ComparedCurves {
-    /// Name of the individual.
+    /// Name of the compared individual.
     pub name: String,
-    /// Values of the unknowns in declared units.
+    /// Values of the individual's unknowns in declared units.
     pub genes: Vec<f64>,
     /// Score against the measured record; none where the condition has no record.
     pub evaluation: Option<Evaluation>,
@@ -44,16 +44,15 @@ pub struct ComparedCurves {
     pub drawn: job::Curves,
 }
 
-/// Scores and curves of all individuals under one condition.
+/// Scores and curves of all compared individuals under one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
-    /// Index of the condition in the case.
+    /// Index in the case of the condition under which the individuals were simulated.
     pub condition: usize,
-    /// Results in the order of the requested individuals.
+    /// Scores and curves of the individuals, in the order of the request.
     pub individuals: Vec<ComparedCurves>,
 }
 
-/// Score and curves of one individual, filled in as results arrive.
 #[derive(Default)]
 struct Pair {
     evaluation: Option<Evaluation>,

@@ -11,16 +11,17 @@ use super::{
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::laboratory::Stage;
 
-/// Result of a diagnosis, and its cost.
+/// Result of a diagnosis of model deficiencies, and the cost of its experiments.
 #[derive(Clone, Debug)]
 pub struct DiagnosisResult {
-    /// Result of the diagnosis.
+    /// Findings of the diagnosis: possible model deficiencies and how well each explains the measured
+    /// records.
     pub diagnosis: Diagnosis,
-    /// Number of experiments, batches and wall time of each stage that ran experiments.
+    /// Cost of the diagnosis (experiments, batches, wall time) by stage, for stages that ran experiments.
     pub accounts: Vec<(Stage, StageCost)>,
 }
 
-/// Runs a diagnosis on an evaluator.
+/// Runs a diagnosis of model deficiencies, with an evaluator that computes its simulations.
 ///
 /// # Errors
 /// If the workers cannot build the case or an effect, no evaluator is left, or the user stops.

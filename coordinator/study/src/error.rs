@@ -9,9 +9,9 @@ use std::fmt;
 /// Error of an evaluator that can no longer compute jobs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EvaluatorError {
-    /// Description of the error.
+    /// Description of the evaluator's error in words.
     pub message: String,
-    /// Remedy, if there is one.
+    /// Remedy for the evaluator's error, if there is one.
     pub help: Option<String>,
 }
 
@@ -27,7 +27,7 @@ impl std::error::Error for EvaluatorError {}
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyError {
-    /// The evaluator can no longer work.
+    /// The evaluator can no longer compute jobs.
     #[error(transparent)]
     Evaluator(#[from] EvaluatorError),
     /// The settings of the search are invalid.
@@ -36,18 +36,18 @@ pub enum StudyError {
     /// The workers cannot build a model from the case.
     #[error("the workers cannot build this case: {field}: {problem}")]
     Misconfigured {
-        /// Invalid field of the case.
+        /// Name of the case's field that is invalid.
         field: String,
-        /// Description of the problem.
+        /// Description of the problem in the field of the case.
         problem: String,
     },
-    /// A parameter by which to differentiate is unknown.
+    /// The study was asked for derivatives with respect to a parameter that does not exist.
     #[error("the workers cannot differentiate by this: {problem}")]
     Column {
-        /// Description of the error, with the known parameter name most similar to the given one.
+        /// Description of the unknown parameter, with the most similar known name.
         problem: String,
     },
-    /// The workers do not support this kind of job.
+    /// The workers do not support a kind of job that the study needs.
     #[error("the workers refuse this job: {reason}")]
     Refused {
         /// Reason given by the workers.
@@ -58,9 +58,9 @@ pub enum StudyError {
     AllFailed {
         /// Number of individuals that were evaluated.
         count: usize,
-        /// Failures with their counts, the most frequent first.
+        /// Failures of the individuals in words, with counts, the most frequent first.
         how: String,
-        /// Most frequent failure of the simulated physics, if there was any.
+        /// Most frequent failure of the simulated machine; `None` if all failures have other reasons.
         physics: Option<Identifier>,
     },
     /// An individual that is to be compared could not be evaluated.
@@ -68,16 +68,16 @@ pub enum StudyError {
     Unavailable {
         /// Name of the individual and of the condition that could not be evaluated.
         what: String,
-        /// Failure of the job.
+        /// Reason why the job of the individual failed.
         failure: Failure,
     },
     /// A worker answered a job with the result of another kind of job.
     #[error("job {id} was answered with the result of another kind of job")]
     WrongKind {
-        /// Number of the job.
+        /// Number of the job that was answered wrongly.
         id: JobId,
     },
-    /// The user asked to stop.
+    /// The user stopped the study.
     #[error("interrupted")]
     Interrupted,
 }
@@ -98,8 +98,8 @@ impl StudyError {
         }
     }
 
-    /// Converts the failure of a job without which the study cannot continue into an error; `what` names its
-    /// subject.
+    /// Converts the failure of a job that the study cannot do without into an error; `what` names the
+    /// individual or purpose of the job.
     pub(super) fn of(failure: Failure, what: impl FnOnce() -> String) -> Self {
         Self::from_systematic_failure(&failure).unwrap_or_else(|| Self::Unavailable {
             what: what(),

@@ -19,11 +19,11 @@ use tokio::sync::mpsc;
 /// Request to score an individual.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EvaluationRequest<T> {
-    /// Identification of the request, returned with its answer.
+    /// Identification of the request, chosen by the requesting program and returned with the answer.
     pub tag: T,
     /// Values of the unknowns in the order of the case [declared units].
     pub genes: Vec<f64>,
-    /// Whether the residual is to be returned.
+    /// Whether the answer contains the residual vector.
     pub with_residual: bool,
 }
 

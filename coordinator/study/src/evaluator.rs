@@ -9,7 +9,7 @@ use protocol::{
 };
 use std::time::Duration;
 
-/// Evaluator of jobs, which are completed in any order.
+/// Interface to the computing of a study's jobs, which are completed in any order.
 pub trait Evaluator {
     /// Submits a job under an id chosen by the caller; each id is submitted once. A result known from an
     /// earlier session is returned again by [`Evaluator::next`].
@@ -37,7 +37,8 @@ pub trait Evaluator {
     fn workers_status(&self) -> WorkersSnapshot;
 }
 
-/// Extracts the answer of the expected kind with `take`; `what` names the subject of the job in an error.
+/// Extracts the expected kind of answer from a completed job by `take`; `what` names the job's purpose in an
+/// error message.
 ///
 /// # Errors
 /// If the job failed, or was answered as another kind of job.
@@ -54,7 +55,7 @@ pub fn answer<T>(
     take(answer).map_err(|_| StudyError::WrongKind { id })
 }
 
-/// Status of all workers.
+/// Status of all workers of a run, for display.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WorkersSnapshot {
     /// All workers that joined in this session, including those that left.
@@ -63,7 +64,8 @@ pub struct WorkersSnapshot {
     pub queued: usize,
     /// Number of jobs being computed.
     pub running: usize,
-    /// Slot time of all workers in this session, divided by use (computing, waiting, lost and others).
+    /// Slot time of all workers in this session, divided by use (computing, waiting, lost and others); a slot
+    /// is a place for one job at a time.
     pub spent: Spent,
     /// Time in this session during which at least one worker was computing; excludes waiting for workers and
     /// for their model setup.
@@ -81,14 +83,14 @@ pub struct WorkerStatus {
     pub attached: bool,
     /// Number of simulations that the worker runs in parallel.
     pub slots: u32,
-    /// Number of slots that are currently computing.
+    /// Number of the worker's slots that are currently computing.
     pub busy: u32,
-    /// Number of jobs whose result was accepted.
+    /// Number of the worker's jobs whose result was accepted.
     pub done: u64,
     /// Number of jobs that failed on this worker.
     pub failed: u64,
-    /// Computing time summed over slots (s).
+    /// Computing time of the worker, summed over its slots (s).
     pub busy_s: f64,
-    /// Time connected (s).
+    /// Time for which the worker has been connected (s).
     pub present_s: f64,
 }

@@ -23,24 +23,25 @@ use std::time::{Duration, Instant};
 /// Cost so far of one stage of a diagnosis or identification.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StageCost {
-    /// Number of completed experiments.
+    /// Number of the stage's completed experiments (simulations).
     pub experiments: u64,
-    /// Number of experiments that failed or ended early.
+    /// Number of the stage's experiments whose simulation failed or ended early.
     pub failed: u64,
-    /// Number of batches run one after another; experiments of one batch are independent.
+    /// Number of batches of experiments that the stage ran one after another; experiments of one batch are
+    /// independent.
     pub batches: u64,
-    /// Wall time of all batches, including waiting.
+    /// Wall time of all batches of the stage, including waiting.
     pub wall: Duration,
 }
 
 /// Progress of the current stage of a diagnosis or identification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageView {
-    /// All possible stages, in order.
+    /// All stages through which the diagnosis or identification may pass, in order.
     pub stages: &'static [Stage],
-    /// Current stage.
+    /// Stage that is currently running.
     pub stage: Stage,
-    /// Number of completed experiments of the stage.
+    /// Number of completed experiments (simulations) of the current stage.
     pub done: u64,
     /// Number of experiments of the current batch without a result.
     pub open: usize,
@@ -69,7 +70,7 @@ pub async fn library<E: Evaluator>(
     })
 }
 
-/// Executor that submits the experiments (simulations) of a study to an evaluator as jobs.
+/// Runner of a study's experiments (simulations), which it submits to an evaluator as jobs.
 pub(super) struct Jobs<'a, E> {
     evaluator: &'a mut E,
     watch: &'a mut dyn Watch<StageView>,
@@ -106,7 +107,7 @@ impl<'a, E: Evaluator> Jobs<'a, E> {
         }
     }
 
-    /// Returns the cost of each stage that did experiments.
+    /// Returns the cost of each stage that ran experiments.
     pub(super) fn accounts(self) -> Vec<(Stage, StageCost)> {
         self.costs.into_iter().collect()
     }

@@ -13,12 +13,13 @@ use discrepancy::identify::{IdentificationResult, UnknownEstimate, glance, ident
 use discrepancy::laboratory::Stage;
 use protocol::case::{Case, Channel};
 
-/// Result of an identification, and its cost.
+/// Result of an identification of unknowns, and the cost of its experiments.
 #[derive(Clone, Debug)]
 pub struct IdentifiedOn {
-    /// Result of the identification; none where no fit completes.
+    /// Unknowns that the measured record determines, with their values; none where no fit completes.
     pub identified: Option<IdentificationResult>,
-    /// Number of experiments, batches and wall time of each stage that ran experiments.
+    /// Cost of the identification (experiments, batches, wall time) by stage, for stages that ran
+    /// experiments.
     pub accounts: Vec<(Stage, StageCost)>,
 }
 
@@ -31,7 +32,8 @@ const STAGES: [Stage; 5] = [
     Stage::Show,
 ];
 
-/// Runs an identification on an evaluator.
+/// Runs an identification of the unknowns that the measured record determines, with an evaluator that
+/// computes its simulations.
 ///
 /// # Errors
 /// If the workers cannot build the case, no evaluator is left, or the user stops.

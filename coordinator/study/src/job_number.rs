@@ -22,7 +22,8 @@ pub(super) const EXPERIMENTS: u64 = LIBRARY + 1;
 /// Number of the first experiment of the identifiability estimate after a calibration; above the numbers of
 /// its individuals and comparisons.
 pub(super) const IDENTIFIABILITY_JOBS: u64 = 1 << 50;
-/// Number of the first job of a comparison; above the number of any individual of a search.
+/// Number of the first comparison job, which scores or simulates a selected individual; above the job number
+/// of any individual of a search.
 const COMPARISONS: u64 = 1 << 40;
 
 /// Returns the number of the first of the two jobs (score and curves) of a compared individual; each

@@ -10,7 +10,7 @@ pub enum EvaluationOutcome {
     Complete,
     /// The simulated machine failed before the end of the revolution.
     Physics(Identifier),
-    /// The job could not be computed.
+    /// The job could not be computed, for example because its worker was lost.
     Infrastructure(Failure),
 }
 
@@ -30,7 +30,7 @@ impl EvaluationOutcome {
 pub struct LogEntry {
     /// Index of the individual, consecutive from 0.
     pub id: u64,
-    /// Generation in which the individual was proposed.
+    /// Generation of the search in which the individual was proposed.
     pub generation: u32,
     /// Purpose for which the search proposed the individual.
     pub purpose: Purpose,
@@ -38,12 +38,12 @@ pub struct LogEntry {
     pub genes: Vec<f64>,
     /// Fitness reported to the search: the objective if complete, otherwise a graded penalty.
     pub fitness: f64,
-    /// Outcome of the evaluation.
+    /// Outcome of the individual's evaluation.
     pub ending: EvaluationOutcome,
 }
 
 impl LogEntry {
-    /// Creates the entry of an evaluated proposal.
+    /// Creates the log entry of a proposal whose evaluation was returned.
     pub(super) fn scored(proposal: Proposal, evaluation: &Evaluation) -> Self {
         let ending = match evaluation.verdict {
             Verdict::Complete => EvaluationOutcome::Complete,
@@ -78,7 +78,7 @@ impl LogEntry {
         }
     }
 
-    /// Returns fitness and completeness of the entry, in the form passed to the search strategy.
+    /// Returns the entry's fitness, and whether its simulation was complete, for the search strategy.
     pub(super) fn strategy_result(&self) -> EvaluationResult {
         EvaluationResult {
             fitness: self.fitness,
@@ -94,31 +94,31 @@ pub struct EvaluationLog {
 }
 
 impl EvaluationLog {
-    /// Returns the entries in id order.
+    /// Returns the log entries in the order of their ids.
     pub fn entries(&self) -> impl ExactSizeIterator<Item = &LogEntry> {
         self.entries.values()
     }
 
-    /// Returns the number of entries.
+    /// Returns the number of evaluated individuals in the log.
     pub fn len(&self) -> usize {
         self.entries.len()
     }
 
-    /// Returns whether the log has no entries.
+    /// Returns whether no individual has been evaluated yet.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
 
-    /// Returns the number of entries that did not complete.
+    /// Returns the number of individuals whose simulation was not completed.
     pub fn failed(&self) -> usize {
         self.entries()
             .filter(|entry| entry.ending != EvaluationOutcome::Complete)
             .count()
     }
 
-    /// Computes BLAKE3 over id, gene bits and fitness bits of every entry in id order, all little endian, as
-    /// 64 hexadecimal digits. Two searches with the same digest evaluated the same individuals with the same
-    /// results.
+    /// Computes the BLAKE3 digest over id, values of the unknowns and fitness of every log entry in id order
+    /// (little endian), as 64 hexadecimal digits. Two searches with the same digest evaluated the same
+    /// individuals with the same results.
     pub fn digest(&self) -> String {
         let mut hasher = blake3::Hasher::new();
         for entry in self.entries() {

@@ -23,7 +23,7 @@ pub struct ProgressView {
     pub failed: u64,
     /// Number of completed evaluations that were read from an earlier session.
     pub replayed: u64,
-    /// Smallest fitness of a complete individual so far.
+    /// Smallest fitness of an individual whose simulation was complete.
     pub best: Option<f64>,
 }
 
@@ -32,13 +32,14 @@ impl View for ProgressView {
 }
 
 impl ProgressView {
-    /// Adds a completed evaluation.
+    /// Adds an evaluation log entry to the progress.
     pub fn apply(&mut self, entry: &LogEntry, replayed: bool) {
         let complete = entry.ending == EvaluationOutcome::Complete;
         self.add(complete.then_some(entry.fitness), replayed);
     }
 
-    /// Adds a completed evaluation with the given objective, `None` if it failed.
+    /// Adds a completed evaluation to the progress, with its objective (`None` if it failed); `replayed`
+    /// marks one from an earlier session.
     pub(super) fn add(&mut self, objective: Option<f64>, replayed: bool) {
         self.completed += 1;
         self.replayed += u64::from(replayed);
@@ -47,7 +48,7 @@ impl ProgressView {
         self.best = better.or(self.best);
     }
 
-    /// Updates generation and expected evaluations from the search.
+    /// Updates current generation and expected number of evaluations from the search strategy.
     pub fn plan(&mut self, progress: &Progress) {
         self.generation = progress.generation;
         self.generations = progress.generations;

@@ -1,4 +1,4 @@
-//! Evaluator that computes nothing and answers from the recording of a journal.
+//! Evaluator that computes nothing and answers a study's jobs from a recorded journal.
 //!
 //! A study on this evaluator repeats the run as far as the journal goes, and changes nothing in the run
 //! folder.
@@ -11,10 +11,10 @@ use dispatch::scheduler::Completed;
 use protocol::{event::Finished, id::JobId, job::Job};
 use std::collections::VecDeque;
 
-/// Callback that receives every job with its result.
+/// Callback that receives every replayed job with its recorded result.
 type ResultCallback<'a> = &'a mut dyn FnMut(&Job, &Finished) -> Result<(), EvaluatorError>;
 
-/// Evaluator that returns the results of a recording in the order of submission.
+/// Evaluator that returns the recorded results of a journal in the order in which jobs are submitted.
 pub struct ReplayEvaluator<'a> {
     recording: &'a JournalSnapshot,
     seen: ResultCallback<'a>,
@@ -24,8 +24,8 @@ pub struct ReplayEvaluator<'a> {
 }
 
 impl<'a> ReplayEvaluator<'a> {
-    /// Creates an evaluator over a recording; `seen` is called with every job and its result before the study
-    /// receives the result.
+    /// Creates an evaluator that answers from a recording; `seen` receives every job with its result before
+    /// the study does.
     pub const fn new(recording: &'a JournalSnapshot, seen: ResultCallback<'a>) -> Self {
         Self {
             recording,

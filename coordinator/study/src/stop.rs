@@ -5,7 +5,7 @@ use tokio::sync::watch;
 /// Cancellation signal: becomes true when the user wants to stop.
 pub type Stop = watch::Receiver<bool>;
 
-/// Awaits a future unless the user stops first.
+/// Awaits a future unless the user stops the study first.
 ///
 /// # Errors
 /// [`StudyError::Interrupted`] if the user stops.

@@ -28,7 +28,6 @@ pub(crate) struct TestEvaluator {
     pub(crate) known: BTreeMap<JobId, Outcome>,
     pub(crate) answered: BTreeMap<JobId, Outcome>,
     pub(crate) computed: usize,
-    /// Job numbers for studies that number jobs by content.
     pub(crate) numbers: JobNumbers,
 }
 

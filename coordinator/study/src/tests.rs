@@ -246,7 +246,8 @@ async fn a_comparison_that_cannot_be_made_names_the_individual() {
     assert_eq!(error.help().unwrap(), "the same command tries again");
 }
 
-/// Checks that an unknown column is reported as invalid input, since repeating the command would fail again.
+/// Checks that a request for derivatives by an unknown parameter is reported as invalid input, since
+/// repeating the command would fail again.
 #[tokio::test]
 async fn a_column_that_does_not_exist_is_said_to_be_wrong() {
     let refused = |_: &Space, _: u64, _: &Individual| {

@@ -1,16 +1,16 @@
 //! Observer of a study, for display only: no influence on results.
 use super::evaluator::WorkersSnapshot;
 
-/// Type of progress that one kind of study reports to its observer.
+/// Progress data that a kind of study (search, diagnosis, ..) reports to its observer.
 pub trait View {
-    /// Reason for which the study requests a job.
+    /// Type of the reason for which the study requests a job, such as a stage.
     type Reason: ?Sized;
 }
 
 /// Observer of a study that reports its progress as `V`.
 pub trait Watch<V: View> {
-    /// Receives the progress when a result has arrived or the study has changed its plan; `crew` returns the
-    /// worker status.
+    /// Receives the study's progress whenever a result has arrived or the plan has changed; `crew` returns
+    /// the status of the workers.
     fn progress(&mut self, view: &V, crew: &dyn Fn() -> WorkersSnapshot);
 
     /// Receives the number of results from an earlier session, before any other call.

@@ -12,7 +12,8 @@ pub fn interpolated(xs: &[f64], ys: &[f64], x: f64) -> Option<f64> {
     between((*xs.get(below)?, *ys.get(below)?), right, x)
 }
 
-/// Interpolates in a table, with the value of the nearest end outside the table; 0 for an empty table.
+/// Interpolates linearly in a table; outside it returns the value of the nearest end, and 0 for an empty
+/// table.
 pub fn interpolate_clamped(xs: &[f64], ys: &[f64], x: f64) -> f64 {
     let end = match xs.first() {
         Some(first) if x < *first => ys.first(),

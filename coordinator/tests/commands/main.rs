@@ -7,7 +7,7 @@
 use serde_json::Value;
 use std::{fs, path::Path, process::Command};
 
-/// Runs a command with `--output json` and returns its object.
+/// Runs a command with `--output json` and returns the object that it prints.
 fn json(arguments: &[&str]) -> Value {
     let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
     let output = Command::new(env!("CARGO_BIN_EXE_horsehead"))

@@ -34,30 +34,30 @@ pub const VARIABLE: &str = "HORSEHEAD_ALLOW";
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Allowed {
-    /// Allowed programs by the entry name that cases use.
+    /// Allowed programs, by the entry name under which cases refer to them.
     #[serde(default)]
     pub entry: BTreeMap<String, AllowEntry>,
 }
 
-/// One program with its arguments and limits.
+/// Allowed program with its arguments, and the limits of its runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AllowEntry {
     /// Path of the program: absolute, or relative to the folder of a run.
     pub program: PathBuf,
-    /// Arguments of the program.
+    /// Arguments with which the program is started.
     #[serde(default)]
     pub arguments: Vec<String>,
     /// Digest of the case's files that were reviewed; without it any files are accepted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub files: Option<String>,
-    /// Hardware threads that one run occupies.
+    /// Number of hardware threads that one run of the program occupies.
     #[serde(default = "one")]
     pub cores: u32,
     /// Maximum number of simultaneous runs; without it as many as the cores allow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_once: Option<u32>,
-    /// Maximum wall time of a run (s).
+    /// Maximum wall time of a run of the program (s).
     #[serde(default = "hour")]
     pub wall_s: f64,
     /// Address-space limit of each process (MiB); 0 for no limit.

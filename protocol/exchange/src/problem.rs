@@ -1,23 +1,22 @@
-//! Error type for faults of a file, with the remedy.
+//! Error type for faults in the files of external programs, with the remedy.
 use std::fmt;
 
-/// Fault of a file: position, text found, text allowed, and remedy.
+/// Fault in a file of an external program: position, text found, text allowed, and remedy.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct Problem {
-    /// Name of the file as given by the caller.
+    /// Name of the faulty file as given by the caller.
     pub file: String,
     /// Line of the fault, from 1; `None` if the fault concerns the whole file.
     pub line: Option<usize>,
-    /// Text or value found.
+    /// Text or value found in the file.
     pub found: String,
-    /// Description of the allowed text or value.
+    /// Description of the text or value that is allowed there.
     pub allowed: String,
-    /// Action that corrects the fault.
+    /// Action that corrects the fault of the file.
     pub remedy: String,
 }
 
 impl Problem {
-    /// Creates a problem at a line of a file.
     pub(crate) fn at(
         file: &str,
         line: usize,

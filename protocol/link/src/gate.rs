@@ -48,14 +48,15 @@ use tokio::{
 
 /// Number of unidirectional streams of the bus per direction: one for each priority except the highest.
 const STREAMS: u32 = 7;
-/// Maximum number of concurrent handshakes.
+/// Maximum number of handshakes that the gate (authenticating proxy) performs concurrently.
 const PENDING: usize = 1024;
 /// Number of pending handshakes above which peers must validate their address (QUIC retry) first.
 const RETRY_THRESHOLD: usize = 64;
 /// Maximum time for the closing exchange with peers at shutdown.
 const CLOSE_TIMEOUT: Duration = Duration::from_millis(200);
 
-/// Running gate; dropping it closes the gate and all connections through it.
+/// Running gate (authenticating proxy before the router); dropping it closes the gate and all connections
+/// through it.
 #[derive(Debug)]
 pub(crate) struct Gate {
     endpoint: Endpoint,
@@ -66,7 +67,7 @@ pub(crate) struct Gate {
 
 /// State of a gate (authenticating proxy) shared by all its connections.
 struct AdmissionContext {
-    /// Current list of workers that may join.
+    /// Latest version of the list of workers that may join.
     listed: watch::Receiver<AllowList>,
     inner: Arc<RouterConnector>,
     refusals: Refusals,

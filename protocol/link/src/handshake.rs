@@ -20,9 +20,9 @@ use tokio::{net::TcpStream, time::timeout};
 
 /// Maximum wait for an answer to the probe.
 const PROBE_TIMEOUT: Duration = Duration::from_secs(3);
-/// Maximum wait for the ICMP message that reports a closed port.
+/// Maximum wait for an ICMP message by which a machine reports a closed UDP port.
 const ICMP_TIMEOUT: Duration = Duration::from_millis(200);
-/// Offset of TLS alerts among QUIC's error codes.
+/// Offset of TLS alert codes within QUIC's range of error codes.
 const ALERTS: u64 = 0x100;
 /// TLS alert `no_application_protocol`, sent by a listener that does not know the probe's protocol.
 const NO_SUCH_PROTOCOL: u64 = 120;

@@ -2,10 +2,10 @@
 use crate::LinkError;
 use std::net::{IpAddr, TcpListener, UdpSocket};
 
-/// Parsed address of the bus.
+/// Parsed locator, i.e. address of a coordinator on the bus.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Locator {
-    /// Protocol: `tcp` or `quic`.
+    /// Transport protocol of the address: `tcp` or `quic`.
     pub protocol: Protocol,
     /// Host name or address; an IPv6 address keeps its brackets.
     pub host: String,
@@ -16,14 +16,14 @@ pub struct Locator {
 /// Transport protocol of the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Protocol {
-    /// TCP, unencrypted; for loopback.
+    /// TCP, unencrypted; meant for connections within one machine.
     Tcp,
     /// QUIC, encrypted and mutually authenticated.
     Quic,
 }
 
 impl Protocol {
-    /// Returns the name used in locators.
+    /// Returns the name of the protocol as used in locators.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Tcp => "tcp",
@@ -33,7 +33,7 @@ impl Protocol {
 }
 
 impl Locator {
-    /// Parses `PROTOCOL/HOST:PORT`.
+    /// Parses a locator of the form `PROTOCOL/HOST:PORT`.
     ///
     /// # Errors
     /// [`LinkError::Locator`] or [`LinkError::Protocol`].

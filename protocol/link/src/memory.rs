@@ -20,7 +20,7 @@ use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 /// Simulated faults of an in-process link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaultInjection {
-    /// Seed of the pseudo-random draws.
+    /// Seed of the pseudo-random draws that decide the fate of each frame.
     pub seed: u64,
     /// Share of frames that are lost \[1\].
     pub loss: f64,
@@ -51,7 +51,7 @@ struct Shared {
 }
 
 impl Shared {
-    /// Draws a uniform number in [0, 1).
+    /// Draws a pseudo-random number, uniform in [0, 1).
     fn draw(&self) -> f64 {
         let count = self.drawn.fetch_add(1, Ordering::Relaxed);
         let place = u128::from(self.faults.seed) << 64 | u128::from(count);

@@ -5,15 +5,15 @@ use std::fmt;
 /// Unknown with a fault that prevents a search.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BadUnknown {
-    /// Position of the unknown in the list.
+    /// Index of the faulty unknown in the list.
     pub position: usize,
-    /// Name of the unknown.
+    /// Name of the faulty unknown.
     pub name: String,
-    /// Field with the fault, named as in case files.
+    /// Field of the unknown that has the fault, named as in case files.
     pub field: &'static str,
-    /// Value found in the field.
+    /// Value found in the faulty field.
     pub found: String,
-    /// Description of the values allowed for the field.
+    /// Description of the values allowed in the faulty field.
     pub allowed: String,
     /// Action that corrects the fault.
     pub remedy: &'static str,

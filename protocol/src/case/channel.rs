@@ -6,15 +6,15 @@ use serde::{Deserialize, Serialize};
 /// Signal of a simulation under one condition, with its measured record if there is one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Channel {
-    /// Short name, unique within its condition, e.g. `force`.
+    /// Short name of the channel, unique within its condition, e.g. `force`.
     pub name: String,
-    /// Description in words, e.g. `force at the support`.
+    /// Description of the channel in words, e.g. `force at the support`.
     pub title: String,
     /// Unit of the values, as text; no conversion is made.
     pub unit: String,
-    /// Index of its condition in the case.
+    /// Index in the case of the condition under which the channel is simulated.
     pub condition: usize,
-    /// Abscissa of the values.
+    /// Abscissa of the channel's values, e.g. time.
     pub abscissa: Abscissa,
     /// Standard deviation of the measurement noise of one value, in [`Self::unit`]; `None` if not stated.
     pub noise: Option<f64>,
@@ -27,9 +27,9 @@ pub struct Channel {
     /// are 1.
     #[serde(with = "crate::curve")]
     pub weights: Vec<f64>,
-    /// Whether the values have an absolute zero.
+    /// Whether the channel's values have an absolute zero, so that a constant difference counts as an error.
     pub offset: Offset,
-    /// Measured record used for scoring; `None` for a channel that was not measured.
+    /// Measured record of the channel used for scoring; `None` if it was not measured.
     pub record: Option<ChannelRecord>,
 }
 
@@ -39,7 +39,7 @@ impl Channel {
         self.offset == Offset::Fixed
     }
 
-    /// Multiplies the differences of a curve by the weights of their values.
+    /// Multiplies the differences between two curves of the channel by the weights of the channel's values.
     pub fn weigh(&self, differences: &mut [f64]) {
         for (difference, weight) in differences.iter_mut().zip(&self.weights) {
             *difference *= weight;
@@ -64,7 +64,7 @@ pub struct Abscissa {
 /// Measured record of a channel, averaged over repeated cycles and sampled on the channel's abscissa.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChannelRecord {
-    /// Number of cycles averaged.
+    /// Number of measured cycles that were averaged.
     pub cycles: usize,
     /// Mean curve over the measured cycles, in the channel's unit.
     #[serde(with = "crate::curve")]

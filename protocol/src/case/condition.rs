@@ -4,6 +4,6 @@ use serde::{Deserialize, Serialize};
 /// Working condition under which the machine is simulated and measured, such as a speed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Condition {
-    /// Short name, e.g. `5rpm`.
+    /// Short name of the condition, e.g. `5rpm`.
     pub name: String,
 }

@@ -4,13 +4,14 @@
 //! worker's announcement ([`crate::announce::EffectDescriptor`]). This module holds only names and numbers.
 use serde::{Deserialize, Serialize};
 
-/// Effect with its parameter values.
+/// Effect that a case or a job adds to the machine, with its parameter values.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EffectSetting {
-    /// Fixed identifier, e.g. `pivot_friction`.
+    /// Fixed identifier of the effect, e.g. `pivot_friction`.
     pub id: String,
-    /// Names and values of parameters, in the units declared by the effect. Parameters not listed keep the
-    /// model's default: the absent value for a size, the typical value for a shape.
+    /// Names and values of the effect's parameters, in the units declared by the effect. A parameter not
+    /// listed keeps the model's default: for a size parameter the value at which the effect vanishes, for a
+    /// shape parameter its typical value.
     pub parameters: Vec<(String, f64)>,
 }
 

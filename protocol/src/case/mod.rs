@@ -27,7 +27,7 @@ use serde::{Deserialize, Serialize};
 pub struct Case {
     /// Name of the machine.
     pub name: String,
-    /// Kind of model and its model-specific settings.
+    /// Kind of model by which the machine is simulated, and its model-specific settings.
     pub model: ModelSettings,
     /// Effects added to the model, with their parameter values.
     pub effects: Vec<EffectSetting>,
@@ -37,7 +37,7 @@ pub struct Case {
     /// Unknowns, in the order of every individual's values; those that are parameters of [`Self::effects`]
     /// start at the values given there.
     pub unknowns: Vec<Unknown>,
-    /// Working conditions.
+    /// Working conditions under which the machine is simulated and measured.
     pub conditions: Vec<Condition>,
     /// Channels of the simulation under each condition, with their measured records.
     pub channels: Vec<Channel>,
@@ -70,7 +70,7 @@ impl Case {
             .filter_map(|(at, channel)| Some((at, channel, channel.record.as_ref()?)))
     }
 
-    /// Returns whether any channel was measured under a condition.
+    /// Returns whether any channel of a condition was measured.
     pub fn is_measured(&self, condition: usize) -> bool {
         self.measured(condition).next().is_some()
     }

@@ -1,7 +1,7 @@
 //! Kind of model of a case, with its model-specific settings.
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-/// Model-specific part of a case, opaque to everything except the model.
+/// Kind of model of a case with its settings, which only the model understands.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ModelSettings {
     /// Name of the kind of model; workers announce the kinds that they simulate.
@@ -9,7 +9,7 @@ pub struct ModelSettings {
     /// Encoded settings understood only by the model; written as hexadecimal digits in text formats.
     #[serde(serialize_with = "write", deserialize_with = "read")]
     pub settings: Vec<u8>,
-    /// Reproducibility of the results.
+    /// Reproducibility of the model's results on different machines.
     pub repeats: Reproducibility,
     /// Time limit of one simulation (s), where the model enforces one itself; `None` if the limit follows
     /// from the duration of other simulations.
@@ -21,17 +21,17 @@ pub struct ModelSettings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reproducibility {
-    /// Results are bitwise equal.
+    /// Results of equal jobs are bitwise equal on all machines.
     #[default]
     Bits,
     /// Results differ by at most this fraction of the root mean square of each channel.
     Within(f64),
-    /// Unknown reproducibility.
+    /// Nothing is known about the reproducibility of the results.
     Unknown,
 }
 
 impl ModelSettings {
-    /// Creates the settings of a model with bitwise reproducible results.
+    /// Creates the settings of a model whose results are bitwise reproducible.
     pub const fn exact(kind: String, settings: Vec<u8>) -> Self {
         Self {
             kind,

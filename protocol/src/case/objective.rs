@@ -1,7 +1,7 @@
 //! Objective of a calibration: weighted mean squared errors of selected channels.
 use serde::{Deserialize, Serialize};
 
-/// Weighted sum of mean squared errors.
+/// Objective of a calibration: weighted sum of the mean squared errors of selected channels.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Objective {
     /// Index of the calibrated condition; the first one if several are calibrated.
@@ -13,10 +13,10 @@ pub struct Objective {
     pub terms: Vec<Term>,
 }
 
-/// Channel in an objective, with its weight.
+/// Term of an objective: a channel with the weight of its mean squared error.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Term {
-    /// Name of the channel.
+    /// Name of the channel in the term.
     pub channel: String,
     /// Factor on the mean squared error of the channel.
     pub weight: f64,
@@ -29,7 +29,7 @@ pub enum Offset {
     /// No absolute zero: the mean difference is removed first, so only the variation counts.
     #[default]
     Free,
-    /// Absolute zero: a constant difference counts as an error.
+    /// Channel has an absolute zero: a constant difference counts as an error.
     Fixed,
 }
 
@@ -39,7 +39,7 @@ impl Objective {
         std::iter::once(self.condition).chain(self.others.iter().copied())
     }
 
-    /// Returns whether a condition is calibrated.
+    /// Returns whether a condition takes part in the objective.
     pub fn holds(&self, condition: usize) -> bool {
         self.conditions().any(|own| own == condition)
     }

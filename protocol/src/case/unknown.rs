@@ -14,24 +14,24 @@ pub enum Scale {
     Linear,
 }
 
-/// Unknown with its search interval.
+/// Unknown of a case: a number that a search varies, with its bounds and prior knowledge.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Unknown {
     /// Name in files and tables; `effect.parameter` for a parameter of an effect.
     pub name: String,
-    /// Description in words.
+    /// Description of the unknown in words.
     pub title: String,
-    /// Symbol, with an index after `_`; the name if the unknown has no symbol.
+    /// Symbol of the unknown for display, with an index after `_`; the name if it has no symbol.
     pub symbol: String,
-    /// Unit of the values, as text.
+    /// Unit of the unknown's values, as text.
     pub unit: String,
     /// Scale on which the unknown is searched.
     pub scale: Scale,
-    /// Start value of a search: the recommended value.
+    /// Value of the unknown at which a search starts: the recommended value.
     pub start: f64,
-    /// Lower bound of the search.
+    /// Lower bound of the unknown in a search.
     pub lower: f64,
-    /// Upper bound of the search.
+    /// Upper bound of the unknown in a search.
     pub upper: f64,
     /// Interval in which simulations usually succeed (coordinates); `None` for the whole search interval.
     pub trust: Option<[f64; 2]>,
@@ -75,7 +75,7 @@ pub struct Valley {
     pub stand_ins: Vec<Shift>,
 }
 
-/// Displacement of an unknown along a whole line of a scan.
+/// Displacement of another unknown from its value while a line of the scan is evaluated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shift {
     /// Name of the displaced unknown.
@@ -113,7 +113,7 @@ pub struct Tie {
 }
 
 impl Unknown {
-    /// Creates an unknown that is searched, without optional information.
+    /// Creates an unknown that is searched within its bounds, without optional information.
     pub fn new(
         name: impl Into<String>,
         unit: impl Into<String>,

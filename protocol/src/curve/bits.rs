@@ -1,6 +1,6 @@
 //! Rice coding of whole numbers at the level of bits, independent of curves.
 
-/// Maximum number of low bits of a difference, i.e. of the Rice parameter.
+/// Maximum Rice parameter, i.e. number of low bits that are written without unary coding.
 pub(super) const WIDEST: u8 = 32;
 /// Number of ones that marks an escape in the Rice code: the whole difference follows instead of its upper
 /// part.
@@ -11,7 +11,7 @@ const LONGEST_RUN: u64 = 24;
 #[error("invalid curve encoding: {0}")]
 pub(super) struct Malformed(pub(super) &'static str);
 
-/// Returns the number of bits of the Rice code of all differences with `width` low bits each.
+/// Returns the number of bits that the Rice code of all differences takes with Rice parameter `width`.
 pub(super) fn coded_bits(differences: &[u64], width: u8) -> u64 {
     let coded = |difference: &u64| match difference >> width {
         high @ 0..LONGEST_RUN => high + 1 + u64::from(width),

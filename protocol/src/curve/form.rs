@@ -174,7 +174,7 @@ fn read(bytes: &[u8]) -> Result<Vec<f64>, Malformed> {
     }
 }
 
-/// Inverse of taking differences: running sums of the given order restore a curve's multiples.
+/// Running sums of the given order, which restore a curve's multiples from their differences.
 struct Sums {
     before: [i64; HIGHEST_ORDER as usize],
     order: usize,

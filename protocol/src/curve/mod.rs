@@ -34,7 +34,7 @@ pub fn rounded(curve: &[f64], exponent: i32) -> Vec<f64> {
     curve.iter().map(round).collect()
 }
 
-/// Serialises a curve.
+/// Serialises a curve in the compact wire format.
 ///
 /// # Errors
 /// Errors of the serializer.
@@ -42,7 +42,7 @@ pub fn serialize<S: Serializer>(curve: &[f64], to: S) -> Result<S::Ok, S::Error>
     to.serialize_bytes(&form::encode(curve))
 }
 
-/// Deserialises a curve.
+/// Deserialises a curve from the compact wire format.
 ///
 /// # Errors
 /// Errors of the deserializer, and bytes that are not an encoded curve.
@@ -62,7 +62,7 @@ pub mod each {
     #[derive(Serialize)]
     struct Written<'a>(#[serde(with = "super")] &'a [f64]);
 
-    /// Serialises a list of curves.
+    /// Serialises a list of curves in the compact wire format.
     ///
     /// # Errors
     /// Errors of the serializer.
@@ -70,7 +70,7 @@ pub mod each {
         to.collect_seq(curves.iter().map(|curve| Written(curve)))
     }
 
-    /// Deserialises a list of curves.
+    /// Deserialises a list of curves from the compact wire format.
     ///
     /// # Errors
     /// Errors of the deserializer, and bytes that are not an encoded curve.

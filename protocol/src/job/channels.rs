@@ -1,4 +1,4 @@
-//! Result of a simulation with the channels of the case, as a diagnosis needs it.
+//! Result of a simulation limited to the case's channels, as needed by a diagnosis.
 use super::derivative::Derivative;
 use super::verdict::{Counters, Verdict};
 use crate::{
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// journal and reports all use the same numbers (`crate::curve`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Observation {
-    /// Verdict on how the run ended.
+    /// Verdict: whether the simulation was completed or how the simulated machine failed.
     pub verdict: Verdict,
     /// Work counters of the simulation (steps, iterations).
     pub counters: Counters,
@@ -21,7 +21,8 @@ pub struct Observation {
     /// run ended early.
     #[serde(with = "crate::curve::each")]
     pub curves: Vec<Vec<f64>>,
-    /// Derivatives with respect to the requested columns, in their order; empty for a failed run.
+    /// Derivatives of the channels with respect to the requested parameters, in the order of the request;
+    /// empty for a failed simulation.
     pub columns: Vec<Derivative>,
 }
 

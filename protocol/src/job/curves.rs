@@ -3,10 +3,10 @@ use super::derivative::Derivative;
 use super::verdict::{Counters, Verdict};
 use serde::{Deserialize, Serialize};
 
-/// Curves of one run, exactly as computed.
+/// Curves of one simulation with all further data that can be plotted, exactly as computed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Curves {
-    /// Verdict on how the run ended.
+    /// Verdict: whether the simulation was completed or how the simulated machine failed.
     pub verdict: Verdict,
     /// Work counters of the simulation (steps, iterations).
     pub counters: Counters,
@@ -15,9 +15,10 @@ pub struct Curves {
     /// Curves of the condition's channels, in the case's order and the channel's unit; truncated where the
     /// run ended early.
     pub channels: Vec<Vec<f64>>,
-    /// Derivatives with respect to the requested columns, in their order; empty for a failed run.
+    /// Derivatives of the channels with respect to the requested parameters, in the order of the request;
+    /// empty for a failed simulation.
     pub columns: Vec<Derivative>,
-    /// Wall time of the run including all its columns \[s\]; 0 if none were requested.
+    /// Wall time of the simulation including all its derivatives \[s\]; 0 if none were requested.
     pub columns_wall_s: f64,
     /// Further model output, in an encoding that only the model understands; empty if there is none.
     #[serde(with = "serde_bytes")]

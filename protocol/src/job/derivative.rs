@@ -1,4 +1,5 @@
-//! Sensitivities of a simulation: the requested columns of the Jacobian and their values.
+//! Derivatives of a simulation with respect to requested parameters, each a column of the Jacobian of the
+//! channels.
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -11,8 +12,9 @@ pub struct Column {
     /// Name of an unknown of the case, or `EFFECT.PARAMETER` of an effect, whether or not the case contains
     /// that effect.
     pub name: String,
-    /// Values of the parameters of an effect that is not part of the case, by name, in their declared units.
-    /// A parameter that is not listed takes its absent value (sizes) or its typical value (shapes).
+    /// Values, by name and in declared units, of the parameters of an effect that is not part of the case. A
+    /// parameter that is not listed takes the value at which the effect vanishes (sizes) or its typical value
+    /// (shapes).
     pub values: Vec<(String, f64)>,
 }
 
@@ -29,9 +31,9 @@ impl Column {
 /// Unit of change of a parameter to which a derivative refers.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Per {
-    /// Derivative per decade of the value.
+    /// Derivative per factor of ten in the parameter's value.
     Decade,
-    /// Derivative per one of the named unit of the value.
+    /// Derivative per one unit, named here, of the parameter's value.
     Unit(String),
 }
 
@@ -44,7 +46,7 @@ impl fmt::Display for Per {
     }
 }
 
-/// Derivative of all channels of a simulation with respect to one column.
+/// Derivative of all channels of a simulation with respect to one parameter, i.e. a column of the Jacobian.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Derivative {
     /// The model computed the derivative.
@@ -56,7 +58,7 @@ pub enum Derivative {
         /// four digits of a derivative are exact.
         curves: Vec<Vec<f32>>,
     },
-    /// The derivative is zero everywhere: in this model the column has no influence on any channel.
+    /// The derivative is zero everywhere: in this model the parameter has no influence on any channel.
     Nothing {
         /// Unit of change of the parameter to which the derivative refers.
         per: Per,
@@ -69,7 +71,7 @@ pub enum Derivative {
 }
 
 impl Derivative {
-    /// Returns [`Derivative::Missing`] for every column, for a model that computes no derivatives.
+    /// Returns [`Derivative::Missing`] for every requested derivative, for a model that computes none.
     pub fn none(columns: &[Column]) -> Vec<Self> {
         let none = |_: &Column| Self::Missing {
             reason: "this model gives no derivatives".to_owned(),

@@ -6,7 +6,7 @@ use std::fmt;
 /// Reason why a job could not be done.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Failure {
-    /// The run exceeded its deadline and was terminated.
+    /// The run of the job exceeded its deadline and was terminated.
     Deadline {
         /// Deadline of the run \[ms\].
         limit_ms: u64,
@@ -15,9 +15,9 @@ pub enum Failure {
     },
     /// The slot process that computed the job exited or was killed.
     Crashed {
-        /// Exit status or signal, in words.
+        /// Exit status or signal of the slot process, in words.
         how: String,
-        /// Files left in the run's folder.
+        /// Files left in the run's folder when the process ended.
         left: FailureFiles,
     },
     /// The worker was lost on every attempt at the job, as often as the retry limit allows.
@@ -27,12 +27,12 @@ pub enum Failure {
     },
     /// The worker does not accept this kind of job.
     Refused {
-        /// Reason given by the worker.
+        /// Reason given by the worker for not accepting the job.
         reason: String,
     },
     /// The case cannot be built into a model.
     Misconfigured {
-        /// Name of the field of the case.
+        /// Name of the case's field that is wrong.
         field: String,
         /// Description of the error in the field and of its remedy.
         problem: String,
@@ -49,13 +49,13 @@ impl Failure {
         }
     }
 
-    /// Creates a [`Failure::Crashed`] without files left by the run.
+    /// Creates a [`Failure::Crashed`] for a run that left no files.
     pub const fn crashed(how: String) -> Self {
         let left = FailureFiles::NONE;
         Self::Crashed { how, left }
     }
 
-    /// Creates a [`Failure::Deadline`] with its limit \[ms\] and without files left by the run.
+    /// Creates a [`Failure::Deadline`] with its limit \[ms\] for a run that left no files.
     pub const fn deadline(limit_ms: u64) -> Self {
         let left = FailureFiles::NONE;
         Self::Deadline { limit_ms, left }
@@ -102,6 +102,6 @@ impl fmt::Display for Failure {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the worker returned the result of a {answered} job instead of the requested kind")]
 pub struct UnexpectedAnswer {
-    /// Name of the kind of job that the answer belongs to.
+    /// Name of the kind of job to which the received answer belongs.
     pub answered: &'static str,
 }

@@ -5,16 +5,17 @@ use serde::{Deserialize, Serialize};
 /// Files in the folder of a failed run, without those that the case supplied.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FailureFiles {
-    /// Files, or ends of files, small enough to be transmitted.
+    /// Files left by the failed run, or the ends of long ones, small enough to be transmitted.
     pub files: Vec<File>,
-    /// Entries that were not transmitted as a whole because they are too long or not regular files.
+    /// Files or other folder entries that were not transmitted as a whole because they are too long or not
+    /// regular files.
     pub shortened: Vec<TruncatedFile>,
 }
 
 /// File of a failed run that was transmitted in part or not at all.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TruncatedFile {
-    /// Path relative to the run's folder.
+    /// Path of the file relative to the run's folder.
     pub path: String,
     /// Length of the file (bytes).
     pub bytes: u64,

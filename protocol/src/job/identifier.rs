@@ -10,7 +10,7 @@ pub struct Identifier {
 }
 
 impl Identifier {
-    /// Largest length of an identifier (bytes).
+    /// Maximum length of an identifier (bytes).
     pub const MAX_LENGTH: usize = 31;
 
     /// Creates an identifier; `None` if the text is too long or contains other characters than lower-case

@@ -56,13 +56,13 @@ pub mod kind {
 /// Unit of work: its answer is a pure function of the job and of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Job {
-    /// Simulate an individual.
+    /// Simulate an individual under one condition.
     Simulate(SimulateSpec),
     /// Do a job that only the case's model kind understands.
     Own {
-        /// Name of the job among those of the kind of model.
+        /// Name of the job within those defined by the model kind.
         name: String,
-        /// Request, encoded by the kind of model.
+        /// Request in an encoding that only the model kind understands.
         #[serde(with = "serde_bytes")]
         body: Vec<u8>,
     },
@@ -70,12 +70,12 @@ pub enum Job {
     Describe,
     /// Do nothing and return; measures latency and throughput of the bus.
     Nothing {
-        /// Bytes sent to the worker.
+        /// Bytes sent to the worker as ballast.
         #[serde(with = "serde_bytes")]
         payload: Vec<u8>,
-        /// Number of bytes to send back.
+        /// Number of bytes that the worker sends back.
         reply_bytes: u32,
-        /// Time for which the slot is occupied \[ms\].
+        /// Time for which the job occupies the worker's slot \[ms\].
         delay_ms: u32,
     },
 }
@@ -95,7 +95,7 @@ impl Job {
         }
     }
 
-    /// Returns the simulated individual; `None` for a job without a simulation.
+    /// Returns the individual that the job simulates; `None` for a job without a simulation.
     pub const fn individual(&self) -> Option<&Individual> {
         match self {
             Self::Simulate(spec) => Some(&spec.individual),
@@ -103,14 +103,14 @@ impl Job {
         }
     }
 
-    /// Returns the hash of the encoded job, which identifies this piece of work.
+    /// Returns the hash of the encoded job, by which equal jobs are recognised.
     pub fn work_hash(&self) -> ContentHash {
         // a job that cannot be encoded cannot be sent either; all of those share one name
         ContentHash::of(&wire::encode(self).unwrap_or_default())
     }
 }
 
-/// Answer to a [`Job`] that was done.
+/// Answer of a worker to a [`Job`] that was done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Answer {
     /// Answer to [`Reply::Score`].
@@ -164,7 +164,8 @@ impl Answer {
         }
     }
 
-    /// Returns the comparison with the recordings; `None` for a job that compares nothing.
+    /// Returns the comparison with the measured records; `None` for the answer to a job that compares
+    /// nothing.
     pub const fn evaluation(&self) -> Option<&Evaluation> {
         match self {
             Self::Scored(evaluation) => Some(evaluation),
@@ -190,9 +191,9 @@ impl Answer {
 /// Result of a [`Job`]: its answer or the reason of its failure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Outcome {
-    /// The job was done.
+    /// The job was done, with this answer.
     Done(Answer),
-    /// The job could not be done.
+    /// The job could not be done, for this reason.
     Failed(Failure),
 }
 
@@ -205,7 +206,7 @@ impl Outcome {
         }
     }
 
-    /// Returns the answer if the job was done.
+    /// Returns the answer if the job was done; `None` if it failed.
     pub const fn answer(&self) -> Option<&Answer> {
         match self {
             Self::Done(answer) => Some(answer),
@@ -213,7 +214,7 @@ impl Outcome {
         }
     }
 
-    /// Returns the answer as a result.
+    /// Converts the outcome into a `Result` with the answer.
     ///
     /// # Errors
     /// [`Failure`] if the job could not be done.

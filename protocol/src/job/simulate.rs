@@ -3,7 +3,7 @@ use super::derivative::Column;
 use crate::case::EffectSetting;
 use serde::{Deserialize, Serialize};
 
-/// A simulation of an individual under one condition.
+/// Request to simulate an individual under one condition.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulateSpec {
     /// Individual to simulate.
@@ -12,8 +12,8 @@ pub struct SimulateSpec {
     pub numerics: Numerics,
     /// Kind of answer requested.
     pub reply: Reply,
-    /// Columns of the requested derivatives, at most [`super::MAX_COLUMNS`]; derivatives are returned with
-    /// curves and with residuals.
+    /// Unknowns and effect parameters by which derivatives are requested, at most [`super::MAX_COLUMNS`];
+    /// derivatives are returned with curves and with residuals.
     pub columns: Vec<Column>,
 }
 
@@ -35,14 +35,14 @@ impl SimulateSpec {
 pub struct Numerics(#[serde(with = "serde_bytes")] pub Vec<u8>);
 
 impl Numerics {
-    /// No override: the numerical settings of the case apply.
+    /// Empty override: the numerical settings of the case apply.
     pub const FROM_CASE: Self = Self(Vec::new());
 }
 
 /// Individual under one condition: values of the unknowns, and effects in addition to those of the case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Individual {
-    /// Index of the condition in the case.
+    /// Index in the case of the condition under which the individual is simulated.
     pub condition: usize,
     /// Values of the unknowns in declared units, in the case's order.
     pub genes: Vec<f64>,
@@ -65,7 +65,7 @@ impl Individual {
 /// Kind of answer requested from a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Reply {
-    /// Agreement with the recordings: an [`super::Evaluation`].
+    /// Agreement with the measured records: an [`super::Evaluation`].
     Score {
         /// Whether the residual vector is returned too.
         with_residual: bool,
@@ -75,7 +75,7 @@ pub enum Reply {
     },
     /// Measured channels only: an [`super::Observation`].
     Channels,
-    /// All curves and pictures that can be drawn: a [`super::Curves`].
+    /// All curves and snapshots that can be plotted: a [`super::Curves`].
     Curves {
         /// Number of snapshots of the moving machine, over the whole run; 0 for none.
         pictures: u32,

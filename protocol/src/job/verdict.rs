@@ -11,7 +11,7 @@ pub enum Verdict {
     Failed {
         /// Cause of the failure, as named by the model.
         kind: Identifier,
-        /// Progress at the failure.
+        /// Progress of the simulation when it failed.
         reached: Reached,
     },
 }
@@ -50,7 +50,7 @@ impl Verdict {
     }
 }
 
-/// Progress of a failed simulation.
+/// Progress that a failed simulation had made: share of the static load or of the simulated time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Reached {
     /// Failure while the static load was applied: share of the load reached \[1\].
@@ -62,9 +62,9 @@ pub enum Reached {
 /// Work counters of one simulation, identical in every repetition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
-    /// Number of accepted time steps.
+    /// Number of time steps that the integrator accepted.
     pub steps: u64,
-    /// Number of rejected time steps.
+    /// Number of time steps that the integrator rejected and repeated.
     pub rejected_steps: u64,
     /// Number of Newton iterations, including those of the static equilibrium.
     pub newton_iterations: u64,

@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 pub struct LoadCard {
     /// Crank angle from bottom dead centre, equally spaced from 0, without 360 \[deg\].
     pub turn_deg: Vec<f64>,
-    /// Load, positive downwards \[N\]; one value per crank angle.
+    /// Load at the suspension point at each crank angle, positive downwards \[N\].
     pub load_n: Vec<f64>,
-    /// Smoothing applied to the card before use.
+    /// Smoothing applied to the load card before use.
     pub smoothing: Smoothing,
 }
 
@@ -16,10 +16,10 @@ pub struct LoadCard {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Smoothing {
-    /// No smoothing: the card is used as delivered.
+    /// No smoothing: the load card is used as delivered.
     None,
-    /// Only this many harmonics of the crank are kept.
+    /// Smoothing that keeps only this many harmonics of the crank rotation.
     Harmonics(u32),
-    /// Centred moving average over this many degrees of crank angle.
+    /// Smoothing by a centred moving average over this many degrees of crank angle.
     MovingAverageDeg(f64),
 }

@@ -1,9 +1,10 @@
-//! Unknowns of every machine: stiffness and damping of a rope and its contact (paper, section 5.1). Bounds,
-//! scale and prior knowledge of the unknowns belong to the case.
+//! Unknowns of every pumping unit: stiffness and damping of its ropes and of their contact with the heads
+//! (paper, section 5.1). Bounds, scale and prior knowledge of the unknowns belong to the case.
 use crate::unit::Unit;
 use serde::{Deserialize, Serialize};
 
-/// Coefficient of rope or contact; the order is that of the paper's chromosome and of a case's unknowns.
+/// Unknown stiffness or damping of the ropes or of their contact with the heads; the order is that of the
+/// paper's chromosome and of a case's unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Coefficient {
@@ -23,14 +24,14 @@ pub enum Coefficient {
     Cb4,
     /// Bending damping of a bushing, `C_55 = C_66`.
     Cb56,
-    /// Contact stiffness `K_c`.
+    /// Stiffness `K_c` of the contact between rope and heads.
     Kc,
-    /// Largest contact damping `C_c`.
+    /// Largest damping `C_c` of the contact between rope and heads.
     Cc,
 }
 
 impl Coefficient {
-    /// Every coefficient, in the order of the chromosome.
+    /// All coefficients of rope and contact, in the order of the paper's chromosome.
     pub const ALL: [Self; 10] = [
         Self::Kb1,
         Self::Kb23,
@@ -49,7 +50,7 @@ impl Coefficient {
         Self::ALL.into_iter().find(|one| one.as_str() == name)
     }
 
-    /// Returns the name used in files and in messages to other programs.
+    /// Returns the name of the coefficient used in files and in messages to other programs.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Kb1 => "kb1",
@@ -65,7 +66,7 @@ impl Coefficient {
         }
     }
 
-    /// Returns a short description for people.
+    /// Returns a short description of the coefficient for people.
     pub const fn title(self) -> &'static str {
         match self {
             Self::Kb1 => "axial stiffness",

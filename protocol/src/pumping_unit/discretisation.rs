@@ -6,18 +6,18 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Discretisation of space and time; absent fields keep the values of the case.
+/// Discretisation of space and time for one job; absent fields keep the values of the case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Discretisation {
     /// Length of a rope cylinder \[m\]; must divide the lengths of both ropes, which do not change.
     pub cylinder_length_m: Option<f64>,
     /// Crank angle simulated before the recorded revolution \[deg\].
     pub lead_in_deg: Option<f64>,
-    /// Number of modes of the back head.
+    /// Number of modes of the back head that are simulated.
     pub modes: Option<usize>,
     /// Time integration method.
     pub integrator: Option<Integrator>,
-    /// Largest time step \[s\].
+    /// Largest time step of the integrator \[s\].
     pub longest_step_s: Option<f64>,
     /// Whether the largest step is also used on a machine whose beam oscillates fast, where the step is
     /// shortened otherwise; needed to compare methods at a stated step.
@@ -25,7 +25,7 @@ pub struct Discretisation {
     /// Tolerance of the integrator, relative to its built-in error scales. A tolerance so large that no step
     /// is rejected gives a fixed step.
     pub tolerance: Option<f64>,
-    /// Limit on Newton iterations; the run ends when it is reached.
+    /// Largest number of Newton iterations of a simulation, which ends when it is reached.
     pub budget: Option<u64>,
 }
 

@@ -6,14 +6,14 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Curves of one revolution; every vector has one entry per crank angle reached.
+/// Curves of a simulated pumping unit over one crank revolution, one value per crank angle reached.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Simulation {
     /// Verdict of the simulation.
     pub verdict: Verdict,
     /// Work counters of the simulation.
     pub counters: Counters,
-    /// Wall time on the worker \[s\]; not part of the digest.
+    /// Wall time of the simulation on the worker \[s\]; not part of the digest of results.
     pub wall_s: f64,
     /// Crank angle from bottom dead centre \[deg\].
     pub turn_deg: Vec<f64>,
@@ -57,7 +57,7 @@ impl Simulation {
         }
     }
 
-    /// Decodes the model-specific part of the curves.
+    /// Decodes a pumping unit's simulation from the model-specific part of a job's answer.
     ///
     /// # Errors
     /// [`WireError`] if the curves come from another kind of model.
@@ -65,7 +65,7 @@ impl Simulation {
         wire::decode(&curves.details)
     }
 
-    /// Encodes the simulation together with the curves of the channels.
+    /// Encodes the simulation as the model-specific part of a job's answer, next to the given channel curves.
     ///
     /// # Errors
     /// [`WireError::TooLong`] beyond the size limit of a message.
@@ -82,7 +82,7 @@ impl Simulation {
     }
 }
 
-/// Energy balance of the recorded revolution \[J\].
+/// Energy balance of a pumping unit over the recorded revolution \[J\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
     /// Work of the crank pin on the connecting rod \[J\].
@@ -97,26 +97,26 @@ pub struct Energy {
     pub relative_error: f64,
 }
 
-/// Snapshot of the machine in the ground frame.
+/// Positions and rope forces of the moving machine at one crank angle, in the ground frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MachineSnapshot {
     /// Crank angle from bottom dead centre \[deg\].
     pub turn_deg: f64,
-    /// Crank pin x, y \[m\].
+    /// Position of the crank pin, x and y \[m\].
     pub crank_pin_m: [f32; 2],
     /// Beam angle \[deg\].
     pub beam_deg: f32,
-    /// Crossbeam end of the rod x, y \[m\].
+    /// Position of the connecting rod's end at the crossbeam, x and y \[m\].
     pub crossbeam_m: [f32; 2],
-    /// Suspension point x, y \[m\].
+    /// Position of the suspension point, x and y \[m\].
     pub suspension_m: [f32; 2],
-    /// Centres of the back rope's cylinders from the crossbeam on, x, y \[m\].
+    /// Positions (x, y) of the centres of the back rope's cylinders, beginning at the crossbeam \[m\].
     pub back_rope_m: Vec<[f32; 2]>,
     /// Axial force in the joint before each cylinder of the back rope \[N\].
     pub back_tension_n: Vec<f32>,
     /// Contact force on each cylinder of the back rope \[N\].
     pub back_contact_n: Vec<f32>,
-    /// Centres of the front rope's cylinders from the suspension on, x, y \[m\].
+    /// Positions (x, y) of the centres of the front rope's cylinders, beginning at the suspension \[m\].
     pub front_rope_m: Vec<[f32; 2]>,
     /// Axial force in the joint before each cylinder of the front rope \[N\].
     pub front_tension_n: Vec<f32>,

@@ -1,6 +1,7 @@
-//! Units of the parameters of the pumping unit's effects.
+//! Units of the parameters of effects that may be added to the model of a pumping unit.
 
-/// Symbols of all units that parameters of effects may have; each effect defines its quantity itself.
+/// Symbols of all units that a parameter of a pumping unit's effect may have; the effect defines which
+/// applies.
 pub const EFFECT_UNITS: [&str; 19] = [
     "1",
     "m",

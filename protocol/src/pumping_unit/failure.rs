@@ -11,12 +11,12 @@ pub const BEAM_OVERTRAVEL: Identifier = Identifier::new("beam_overtravel");
 pub const LOAD_NOT_LIFTED: Identifier = Identifier::new("load_not_lifted");
 /// Cause: a rope cylinder turned over.
 pub const TUMBLED_CYLINDER: Identifier = Identifier::new("tumbled_cylinder");
-/// Cause: the step size fell below its limit.
+/// Cause: the time step fell below its lower limit.
 pub const STEP_UNDERFLOW: Identifier = Identifier::new("step_underflow");
-/// Cause: the iteration budget was used up.
+/// Cause: the budget of Newton iterations was used up.
 pub const BUDGET: Identifier = Identifier::new("budget");
 
-/// All causes, each with a description that can be part of a sentence.
+/// All causes of a failed simulation, each with a description that can be part of a sentence.
 pub const ALL: [(Identifier, &str); 7] = [
     (
         OVERSTRETCHED_ROPE,

@@ -12,11 +12,13 @@ pub struct ModalHead {
     pub damping_ratio: f64,
     /// Angles of the s stations along the rope arc at which shapes are tabulated, ascending \[deg\].
     pub arc_deg: Vec<f64>,
-    /// Outward radial shape per mode and station [m per unit modal coordinate]; n x s.
+    /// Outward radial shape of each of n modes at each of s stations along the rope arc [m per unit modal
+    /// coordinate].
     pub radial: Vec<Vec<f64>>,
-    /// Tangential shape (towards increasing psi) per mode and station [m per unit modal coordinate]; n x s.
+    /// Tangential shape (towards increasing psi) of each of n modes at each of s stations along the rope arc
+    /// [m per unit modal coordinate].
     pub tangential: Vec<Vec<f64>>,
-    /// Gauge stress per mode and gauge [MPa per unit modal coordinate]; n x 4.
+    /// Gauge stress of each of n modes at each of four gauges [MPa per unit modal coordinate].
     pub gauge_stress_mpa: Vec<[f64; 4]>,
     /// Integrals over the head of density times `(phi_x, phi_y, x phi_y - y phi_x)`, with the shape `phi` of
     /// each mode; n x 3.
@@ -44,14 +46,16 @@ pub enum StressRecovery {
     ModeDisplacement,
 }
 
-/// Static influence lines of the gauges.
+/// Static influence lines: gauge stress per unit force of the rope, depending on the force's position on the
+/// rope arc.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Influence {
     /// Angles of the s stations along the rope arc at which the influence lines are tabulated, ascending
     /// \[deg\].
     pub psi_deg: Vec<f64>,
-    /// Gauge stress per newton of inward normal force at each station [MPa/N]; s x 4.
+    /// Stress of each of four gauges per newton of inward normal force at each of s stations [MPa/N].
     pub normal_mpa_per_n: Vec<[f64; 4]>,
-    /// Gauge stress per newton of tangential force towards increasing psi at each station [MPa/N]; s x 4.
+    /// Stress of each of four gauges per newton of tangential force towards increasing psi at each of s
+    /// stations [MPa/N].
     pub tangential_mpa_per_n: Vec<[f64; 4]>,
 }

@@ -36,7 +36,7 @@ pub struct Machine {
     pub twin_ropes: Option<TwinRopes>,
     /// Speed and load of each condition of the case, in the case's order.
     pub conditions: Vec<WorkingCondition>,
-    /// Settings of start, sampling and integration of a run.
+    /// Settings of start, sampling and time integration of a simulation.
     pub run: RunSettings,
 }
 
@@ -47,7 +47,7 @@ pub struct WorkingCondition {
     pub speed_rpm: f64,
     /// Counterweight moment at the crank [N m].
     pub counterweight_moment_n_m: f64,
-    /// Load at the suspension point over the crank angle.
+    /// Load at the suspension point as a function of the crank angle.
     pub card: LoadCard,
 }
 
@@ -55,7 +55,7 @@ impl Machine {
     /// Name of this kind of model in cases and announcements: double horse head.
     pub const KIND: &'static str = "dhh";
 
-    /// Decodes the machine of a case.
+    /// Decodes the pumping unit from the model settings of a case.
     ///
     /// # Errors
     /// [`WireError::Malformed`] for a case of another kind of model, or for settings of another version.
@@ -72,7 +72,7 @@ impl Machine {
         wire::decode(&case.model.settings)
     }
 
-    /// Encodes the machine as the model settings of a case.
+    /// Encodes the pumping unit as the model settings of a case.
     ///
     /// # Errors
     /// [`WireError::TooLong`] beyond the size limit of a message.
@@ -94,7 +94,7 @@ pub struct PumpingUnit {
 }
 
 impl PumpingUnit {
-    /// Decodes the machine of a case.
+    /// Decodes the machine data of a case and keeps them with the case.
     ///
     /// # Errors
     /// Those of [`Machine::of`].
@@ -103,7 +103,7 @@ impl PumpingUnit {
         Ok(Self { case, machine })
     }
 
-    /// Encodes the current machine into its case.
+    /// Returns the case with its model settings replaced by the current machine data.
     ///
     /// # Errors
     /// Those of [`Machine::settings`].

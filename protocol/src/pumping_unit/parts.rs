@@ -29,7 +29,7 @@ pub enum TurnSense {
 }
 
 impl std::fmt::Display for TurnSense {
-    /// Writes the name that the sense of rotation has in case files.
+    /// Writes the name of the crank's sense of rotation as in case files.
     fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         to.write_str(match self {
             Self::Clockwise => "clockwise",
@@ -42,9 +42,9 @@ impl std::fmt::Display for TurnSense {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Crank {
-    /// Shaft centre, x \[m\].
+    /// Centre of the crank shaft, x coordinate \[m\].
     pub center_x_m: f64,
-    /// Shaft centre, y \[m\].
+    /// Centre of the crank shaft, y coordinate \[m\].
     pub center_y_m: f64,
     /// Distance from the shaft to the crank pin \[m\].
     pub radius_m: f64,
@@ -58,7 +58,7 @@ pub struct Crank {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rod {
-    /// Distance from the crank pin to the revolute joint of the rope \[m\].
+    /// Length of the connecting rod from the crank pin to the revolute joint at the rope \[m\].
     pub length_m: f64,
     /// Mass of connecting rods and crossbeam together \[kg\].
     pub mass_kg: f64,
@@ -82,7 +82,7 @@ pub struct Suspension {
 pub struct Ropes {
     /// Diameter of a rope cylinder \[m\].
     pub diameter_m: f64,
-    /// Length of a cylinder \[m\].
+    /// Length of a rope cylinder \[m\].
     pub cylinder_length_m: f64,
     /// Density of the rope cylinders [kg/m3].
     pub density_kg_m3: f64,
@@ -94,9 +94,9 @@ pub struct Ropes {
     /// Tension of every rope joint at zero elongation (preload) \[N\]; default 0.
     #[serde(default)]
     pub preload_n: f64,
-    /// Number of cylinders between crossbeam and back head.
+    /// Number of back rope cylinders between crossbeam and back head.
     pub back_cylinders: usize,
-    /// Number of cylinders between front head and suspension point.
+    /// Number of front rope cylinders between front head and suspension point.
     pub front_cylinders: usize,
 }
 
@@ -115,9 +115,10 @@ pub enum RopeEnds {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// Exponent n of the penetration in the contact force.
+    /// Exponent n of the penetration in the law of the contact force between rope and heads.
     pub exponent: f64,
-    /// Penetration at which the damping reaches its full value, `d_max` \[m\].
+    /// Penetration of the rope into a head at which the contact damping reaches its full value, `d_max`
+    /// \[m\].
     pub full_damping_penetration_m: f64,
 }
 

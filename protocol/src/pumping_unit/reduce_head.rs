@@ -15,22 +15,22 @@ pub const REDUCE_HEAD: &str = "reduce_head";
 pub struct ReduceHeadSpec {
     /// Mesh of the head in the beam frame.
     pub mesh: HeadMesh,
-    /// Young's modulus \[Pa\].
+    /// Young's modulus of the head \[Pa\].
     pub young_pa: f64,
-    /// Poisson's ratio \[1\].
+    /// Poisson's ratio of the head \[1\].
     pub poisson: f64,
-    /// Density [kg/m3].
+    /// Density of the head [kg/m3].
     pub density_kg_m3: f64,
     /// Strain gauges of the head whose stress is returned.
     pub gauges: [HeadGauge; 4],
-    /// Centre of the rope arc \[m\].
+    /// Centre of the rope arc in the beam frame \[m\].
     pub center_m: [f64; 2],
     /// Angles of the s stations along the rope arc at which shapes and influence lines are returned,
     /// ascending \[deg\].
     pub arc_deg: Vec<f64>,
     /// Angles of the p points on the rope arc between which the static compliance is returned \[deg\].
     pub probes_deg: Vec<f64>,
-    /// Number of modes n.
+    /// Number n of head modes to return.
     pub modes: usize,
     /// Symmetry families from which the modes are taken.
     pub families: Vec<ModeFamily>,
@@ -74,7 +74,7 @@ pub enum ElementKind {
 }
 
 impl ElementKind {
-    /// Returns the number of nodes of an element.
+    /// Returns the number of nodes of an element of this type.
     pub const fn nodes(self) -> usize {
         match self {
             Self::Hexahedron => 8,
@@ -82,7 +82,7 @@ impl ElementKind {
         }
     }
 
-    /// Returns the number of nodes of a face.
+    /// Returns the number of nodes of an element face of this type.
     pub const fn face_nodes(self) -> usize {
         match self {
             Self::Hexahedron => 4,
@@ -100,7 +100,7 @@ pub struct HeadGauge {
     pub length_m: f64,
 }
 
-/// Symmetry of modes about the plane z = 0.
+/// Symmetry of the head's modes about the plane z = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ModeFamily {
@@ -110,27 +110,27 @@ pub enum ModeFamily {
     Antisymmetric,
 }
 
-/// Rope wrapped around the head, at rest.
+/// Rope wrapped around the head, at rest; a static load of the reduction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RopeWrap {
     /// Tension of the wrapped rope \[N\].
     pub tension_n: f64,
-    /// Angle at which the rope is fixed to the head \[deg\].
+    /// Angle on the rope arc at which the rope is fixed to the head \[deg\].
     pub anchor_deg: f64,
-    /// Angle at which the rope leaves the arc \[deg\].
+    /// Angle on the rope arc at which the rope leaves the head \[deg\].
     pub leaves_deg: f64,
 }
 
-/// Two ropes side by side on the head.
+/// Two ropes side by side on the head of a twin-rope machine.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RopePair {
     /// Distance of each rope from the plane z = 0 \[m\].
     pub offset_m: f64,
-    /// Number of antisymmetric modes to return.
+    /// Number of antisymmetric head modes to return.
     pub modes: usize,
 }
 
-/// Result of the reduction of a head.
+/// Result of the reduction of a head: modes, influence lines, compliance and mass properties.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReducedHead {
     /// The n returned modes, lowest first.
@@ -138,14 +138,14 @@ pub struct ReducedHead {
     /// Modes that were computed but couple less than the returned ones, lowest first; empty unless the
     /// request has load patterns.
     pub left_out: Vec<OmittedMode>,
-    /// Static gauge stress per newton of rope force at the stations.
+    /// Static gauge stress per newton of rope force, at each station along the rope arc.
     pub influence: Influence,
     /// Static gauge stress per unit acceleration of the beam along x and y [MPa per m/s2] and about the pivot
     /// [MPa per rad/s2]; 3 x 4.
     pub inertia_stress_mpa: [[f64; 4]; 3],
     /// Outward radial displacement of the arc at point j per newton of inward force at point i [m/N]; p x p.
     pub compliance_m_per_n: Vec<Vec<f64>>,
-    /// Antisymmetric tables for twin ropes; `None` unless requested.
+    /// Antisymmetric modes and influence lines of the head for twin ropes; `None` unless requested.
     pub twin: Option<TwinHead>,
     /// Mass of the meshed steel \[kg\].
     pub mass_kg: f64,
@@ -153,13 +153,13 @@ pub struct ReducedHead {
     pub center_of_mass_m: [f64; 2],
     /// Moment of inertia of the meshed steel about the pivot [kg m2].
     pub inertia_about_pivot_kg_m2: f64,
-    /// Number of unknown displacements in the solved half model.
+    /// Number of unknown displacements in the finite-element model of half the head, which is solved.
     pub unknowns: usize,
-    /// Number of linear solves (Lanczos steps) for the modes.
+    /// Number of linear solves (Lanczos steps) with which the modes were computed.
     pub lanczos_steps: usize,
     /// Wall time of the reduction on the worker \[s\].
     pub wall_s: f64,
-    /// Fields over the whole mesh; `None` unless requested.
+    /// Displacement and stress fields over the whole mesh; `None` unless requested.
     pub fields: Option<HeadFields>,
 }
 
@@ -170,16 +170,18 @@ impl ReducedHead {
     }
 }
 
-/// Mode shape with unit modal mass.
+/// Mode shape of the head with unit modal mass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeadMode {
     /// Symmetry family of the mode.
     pub family: ModeFamily,
-    /// Natural frequency \[Hz\].
+    /// Natural frequency of the mode \[Hz\].
     pub frequency_hz: f64,
-    /// Outward radial displacement at the stations [m per unit modal coordinate]; s.
+    /// Outward radial displacement of the mode at each station along the rope arc [m per unit modal
+    /// coordinate].
     pub radial: Vec<f64>,
-    /// Tangential displacement towards increasing psi at the stations [m per unit modal coordinate]; s.
+    /// Tangential displacement of the mode towards increasing psi at each station along the rope arc [m per
+    /// unit modal coordinate].
     pub tangential: Vec<f64>,
     /// Stress of the mode at each gauge [MPa per unit modal coordinate].
     pub gauge_stress_mpa: [f64; 4],
@@ -191,25 +193,24 @@ pub struct HeadMode {
     pub coupling: f64,
 }
 
-/// Mode that was computed but not returned.
+/// Mode of the head that was computed but not returned, because its coupling to the load is weaker.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OmittedMode {
     /// Symmetry family of the mode.
     pub family: ModeFamily,
-    /// Natural frequency \[Hz\].
+    /// Natural frequency of the mode \[Hz\].
     pub frequency_hz: f64,
     /// Largest share of a load pattern's static energy that this mode would represent \[1\].
     pub coupling: f64,
 }
 
-/// Fields over the whole mesh for pictures, in single precision.
+/// Displacement and stress fields over the whole mesh of the head, for pictures, in single precision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeadFields {
-    /// Displacement per mode and node [m per unit modal coordinate].
+    /// Displacement field of each mode: one displacement per node [m per unit modal coordinate].
     pub modes: Vec<Vec<[f32; 3]>>,
-    /// Displacement per node under the wrapped rope \[m\].
+    /// Displacement of each node under the wrapped rope \[m\].
     pub wrap_m: Vec<[f32; 3]>,
-    /// Stress per element, at its centre, under the wrapped rope: xx, yy, zz, xy, yz, zx
-    /// \[MPa\].
+    /// Stress at the centre of each element under the wrapped rope: xx, yy, zz, xy, yz, zx \[MPa\].
     pub wrap_stress_mpa: Vec<[f32; 6]>,
 }

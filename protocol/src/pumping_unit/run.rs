@@ -1,11 +1,11 @@
-//! Settings of start, sampling and integration of a run.
+//! Settings of start, sampling and time integration of a simulated run.
 use serde::{Deserialize, Serialize};
 
-/// Settings of start, sampling and integration of a run.
+/// Settings of start, sampling and time integration of a simulated run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunSettings {
-    /// Spacing of the output in crank angle \[deg\]; divides 360.
+    /// Spacing of the output samples in crank angle \[deg\]; divides 360.
     pub output_step_deg: f64,
     /// Crank angle simulated before the recorded revolution \[deg\].
     pub lead_in_deg: f64,
@@ -21,9 +21,9 @@ pub struct RunSettings {
     pub longest_step_s: f64,
     /// Tolerance of the integrator, relative to its built-in error scales.
     pub tolerance: f64,
-    /// Number of head modes that are simulated.
+    /// Number of modes of the back head that are simulated.
     pub modes: usize,
-    /// Newton iterations after which a run is given up.
+    /// Number of Newton iterations after which a simulation is ended as failed.
     #[serde(default = "iterations")]
     pub iteration_budget: u64,
 }
@@ -56,7 +56,7 @@ pub enum Integrator {
 }
 
 impl Integrator {
-    /// Every method.
+    /// All time integration methods.
     pub const ALL: [Self; 6] = [
         Self::TrBdf2,
         Self::Esdirk4,
@@ -66,7 +66,7 @@ impl Integrator {
         Self::Bdf5,
     ];
 
-    /// Returns the name used in case files.
+    /// Returns the name of the integration method used in case files.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::TrBdf2 => "tr_bdf2",

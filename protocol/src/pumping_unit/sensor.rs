@@ -24,8 +24,8 @@ impl Sensor {
         Self::Torque,
     ];
 
-    /// Creates the sensor's channel under a condition, on an output grid of crank angles \[deg\], without a
-    /// recording.
+    /// Creates the channel of this sensor under a condition, sampled at the crank angles `turn_deg` \[deg\],
+    /// without a measured record.
     pub fn channel(self, condition: usize, turn_deg: Vec<f64>) -> Channel {
         // the steps are about a thousandth of the noise that a cycle of a record has: 0.12 kPa, a
         // micrometre, 0.12 N m

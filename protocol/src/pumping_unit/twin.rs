@@ -3,8 +3,8 @@
 use super::Influence;
 use serde::{Deserialize, Serialize};
 
-/// Twin ropes. The values of a rope in [`super::Ropes`], [`super::Contact`] and the genes are those of both
-/// ropes together: each has half of every stiffness, damping and mass.
+/// Twin ropes. The rope's values in [`super::Ropes`], [`super::Contact`] and the searched coefficients are
+/// those of both ropes together: each rope has half of every stiffness, damping and mass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TwinRopes {
     /// Distance of each rope from the machine's plane z = 0 \[m\].
@@ -13,7 +13,7 @@ pub struct TwinRopes {
     pub back_length_difference_m: f64,
     /// Length of the front rope at -z minus that of the one at +z \[m\].
     pub front_length_difference_m: f64,
-    /// Number of out-of-plane (antisymmetric) modes that are simulated.
+    /// Number of out-of-plane (antisymmetric) modes of the back head that are simulated.
     pub modes: usize,
     /// Out-of-plane (antisymmetric) model of the back head.
     pub head: TwinHead,
@@ -23,19 +23,23 @@ pub struct TwinRopes {
 /// at the stations of [`super::ModalHead`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TwinHead {
-    /// Natural frequencies of the a antisymmetric modes, ascending \[Hz\].
+    /// Natural frequencies of the antisymmetric modes, ascending \[Hz\].
     pub frequencies_hz: Vec<f64>,
-    /// Outward radial shape per mode and station [m per unit modal coordinate]; a x s.
+    /// Outward radial shape of each antisymmetric mode at each station along the rope arc [m per unit modal
+    /// coordinate].
     pub radial: Vec<Vec<f64>>,
-    /// Tangential shape (towards increasing psi) per mode and station [m per unit modal coordinate]; a x s.
+    /// Tangential shape (towards increasing psi) of each antisymmetric mode at each station along the rope
+    /// arc [m per unit modal coordinate].
     pub tangential: Vec<Vec<f64>>,
-    /// Lateral shape along z per mode and station [m per unit modal coordinate]; a x s.
+    /// Lateral shape (along z) of each antisymmetric mode at each station along the rope arc [m per unit
+    /// modal coordinate].
     pub lateral: Vec<Vec<f64>>,
-    /// Gauge stress per mode and gauge [MPa per unit modal coordinate]; a x 4.
+    /// Stress of each antisymmetric mode at each of four gauges [MPa per unit modal coordinate].
     pub gauge_stress_mpa: Vec<[f64; 4]>,
     /// Static gauge stress per pair of opposite unit forces on the two ropes [MPa/N]. Normal: inwards at +z
     /// and outwards at -z. Tangential: towards increasing psi at +z, opposite at -z.
     pub influence: Influence,
-    /// Static gauge stress per newton along +z on either rope [MPa/N]; s x 4.
+    /// Static stress of each of four gauges per newton along +z on either rope, at each station along the
+    /// rope arc [MPa/N].
     pub lateral_mpa_per_n: Vec<[f64; 4]>,
 }

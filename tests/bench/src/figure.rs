@@ -23,7 +23,7 @@ struct Axis {
 }
 
 impl Axis {
-    /// Creates an axis that encloses all positive values; one decade if there are none.
+    /// Creates an axis that encloses all positive values given; one decade if there are none.
     #[expect(clippy::cast_possible_truncation, reason = "powers of ten of a number")]
     fn around(values: impl Iterator<Item = f64>, (from, to): (f64, f64)) -> Self {
         let powers = values.filter(|&v| v > 0.0).map(f64::log10);
@@ -46,7 +46,7 @@ impl Axis {
         self.from + (self.to - self.from) * (value.log10() - low) / (high - low)
     }
 
-    /// Returns the values of the tick marks.
+    /// Returns the values at the tick marks of the axis: powers of ten.
     fn ticks(&self) -> impl Iterator<Item = f64> {
         (self.powers.0..=self.powers.1).map(|power| 10_f64.powi(power))
     }
@@ -80,8 +80,8 @@ const fn color(integrator: Integrator) -> &'static str {
     }
 }
 
-/// Draws all methods: dots are runs, lines are the Pareto front of each method, a dashed line marks an error
-/// of one per cent.
+/// Draws the runs of all methods: dots are runs, lines are the Pareto front of each method, a dashed line
+/// marks an error of one per cent.
 pub(crate) fn error_against_work(all: &Comparison) -> String {
     let errors = all.points.iter().filter_map(|point| point.error);
     let errors = errors.map(|error| 100.0 * error).chain([WANTED]);

@@ -50,7 +50,7 @@ fn method(typed: &str) -> Result<Integrator, String> {
     })
 }
 
-/// Runs all methods and writes the comparison.
+/// Runs all integration methods and writes their comparison as table, CSV and figure.
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let machine = arguments.machine.load()?;
     let case = &machine.case;
@@ -94,7 +94,7 @@ fn limits(point: &Point) -> String {
     format!("{}, {:e} s", point.tolerance, point.longest_step_s)
 }
 
-/// Returns the error of a run in per cent, or the verdict of a failed run.
+/// Formats the error of a run in per cent, or the verdict of a failed run.
 fn end(point: &Point) -> String {
     match point.error {
         Some(error) => format!("{:.3} %", 100.0 * error),

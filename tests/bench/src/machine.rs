@@ -21,16 +21,15 @@ pub(crate) struct MachineChoice {
     condition: Option<String>,
 }
 
-/// Machine ready for simulation, also from several threads at once.
+/// Machine of a case under one condition, ready for simulation, also from several threads at once.
 pub(crate) struct Machine {
-    /// Case of the machine.
     pub(crate) case: Case,
     prepared: Prepared,
     condition: usize,
 }
 
 impl MachineChoice {
-    /// Reads the case and builds its models.
+    /// Reads the case and builds the machine's models for simulation.
     pub(crate) fn load(&self) -> anyhow::Result<Machine> {
         let case = load(&self.case, &Overrides::default())?;
         let condition = match &self.condition {
@@ -56,7 +55,7 @@ impl MachineChoice {
 }
 
 impl Machine {
-    /// Simulates an individual.
+    /// Simulates the machine with the parameter values of one individual.
     pub(crate) fn simulate(
         &self,
         genes: &[f64],

@@ -5,11 +5,8 @@ use serde::Serialize;
 /// Verdict and cost of one individual.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RunRecord {
-    /// Verdict of the individual's simulation.
     pub(crate) verdict: Verdict,
-    /// Work counters of the individual's simulation.
     pub(crate) counters: Counters,
-    /// Wall time of the individual's simulation \[s\].
     pub(crate) wall_s: f64,
 }
 

@@ -135,7 +135,7 @@ fn simulate(
     Ok(ended.into_iter().flatten().collect())
 }
 
-/// Formats the individuals as CSV: genes in declared units, verdict and cost.
+/// Formats the individuals as CSV: parameter values in the case's units, verdict and cost.
 fn rows(case: &Case, genes: &[Vec<f64>], ended: &[RunRecord]) -> anyhow::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let rest = [

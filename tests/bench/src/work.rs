@@ -13,7 +13,8 @@ use protocol::{
 };
 use serde::Serialize;
 
-/// Pairs of tolerance and largest step \[s\], from coarse to fine.
+/// Accuracy levels at which each method is run, from coarse to fine: pairs of tolerance \[1\] and largest
+/// step \[s\].
 const LADDER: [(f64, f64); 9] = [
     (1.0, 0.05),
     (1.0, 0.03),
@@ -29,10 +30,11 @@ const LADDER: [(f64, f64); 9] = [
 /// Tolerance and largest step \[s\] of the reference solution.
 const REFERENCE: (f64, f64) = (1e-3, 2e-3);
 
-/// Limit on Newton iterations of one point: ten times the most expensive ordinary run.
+/// Limit on Newton iterations of one run: ten times those of the most expensive ordinary run.
 const BUDGET: u64 = 120_000;
 
-/// Fixed step of the reference paper over the whole run; the tolerance is so large that no step is rejected.
+/// Integration settings of the reference paper: a fixed step, enforced by a tolerance so large that no step
+/// is rejected.
 const FIXED: Integration = Integration {
     integrator: Integrator::Bdf,
     longest_step_s: 1e-5,
@@ -46,7 +48,6 @@ struct Integration {
     integrator: Integrator,
     longest_step_s: f64,
     tolerance: f64,
-    /// Number of Newton iterations after which the run is ended.
     budget: u64,
 }
 
@@ -65,34 +66,28 @@ impl Integration {
 
 /// Settings of a comparison of time integration methods.
 pub(crate) struct Plan {
-    /// Gene values in declared units.
+    /// Values of the case's unknowns with which all runs are simulated, in the units of the case.
     pub(crate) genes: Vec<f64>,
     /// Time integration methods to compare.
     pub(crate) methods: Vec<Integrator>,
-    /// Number of levels of the ladder, from the coarsest; 0 for all.
+    /// Number of accuracy levels to run, from the coarsest; 0 for all.
     pub(crate) levels: usize,
     /// Whether the reference paper's fixed step is also run over the whole revolution, which takes as long as
     /// hundreds of ordinary runs.
     pub(crate) fixed: bool,
 }
 
-/// Accuracy and work of one run; a row of `integrators.csv`.
+/// Accuracy and work of one simulation with one integration method; a row of `integrators.csv`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Point {
-    /// Time integration method.
     pub(crate) integrator: Integrator,
-    /// Tolerance of the integrator.
     pub(crate) tolerance: f64,
-    /// Largest time step of the run \[s\].
     pub(crate) longest_step_s: f64,
-    /// Verdict of the simulation.
     #[serde(skip)]
     pub(crate) verdict: Verdict,
     /// Whether the whole revolution was simulated.
     pub(crate) complete: bool,
-    /// Number of accepted steps.
     pub(crate) steps: u64,
-    /// Number of rejected steps.
     pub(crate) rejected_steps: u64,
     /// Number of Newton iterations; for a Rosenbrock method, of linear solves.
     pub(crate) newton_iterations: u64,
@@ -100,7 +95,6 @@ pub(crate) struct Point {
     pub(crate) jacobians: u64,
     /// Number of factorisations of the tangent matrix.
     pub(crate) factorizations: u64,
-    /// Wall time \[s\].
     pub(crate) wall_s: f64,
     /// Largest root mean square difference of a gauge curve from the reference solution, divided by the
     /// gauge's range \[1\]; `None` unless complete.
@@ -131,12 +125,12 @@ impl Point {
     }
 }
 
-/// Results of all time integration methods; printed by `--output json`.
+/// Results of all time integration methods on one machine; printed by `--output json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Comparison {
     /// Difference between the two reference solutions: smallest error that can be resolved \[1\].
     pub(crate) resolution: f64,
-    /// Results of the runs, method by method, each from coarse to fine settings.
+    /// Results of the runs, method by method, each from coarse to fine integration settings.
     pub(crate) points: Vec<Point>,
     /// Result with the reference paper's fixed step; `None` unless requested.
     pub(crate) fixed_step: Option<Point>,

@@ -21,7 +21,8 @@ pub struct Effects {
 /// Parameter of an effect in `TABLE`: name, unit, sign, greatest value, typical value.
 type Number = (&'static str, &'static str, Sign, f64, f64);
 
-/// Effect in `TABLE`: identifier, title, part of the rig (joint), place in the simulation, and parameters.
+/// Effect in `TABLE`: identifier, title, part of the test rig on which it acts, place in the simulation, and
+/// parameters.
 type Row = (
     &'static str,
     &'static str,

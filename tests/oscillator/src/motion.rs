@@ -14,7 +14,7 @@ pub struct Oscillator {
     pub mass: f64,
     /// Stiffness of both springs in parallel [N/m].
     pub stiffness: f64,
-    /// Viscous damping [N s/m].
+    /// Viscous damping coefficient between mass and foundation [N s/m].
     pub damping: f64,
     /// Dry friction force on the mass \[N\]; not negative.
     pub friction: f64,
@@ -25,13 +25,13 @@ pub struct Oscillator {
 /// Excitation of the oscillator: shaker force and foundation motion, as functions of time.
 #[derive(Clone, Debug, Default)]
 pub struct Drive {
-    /// Force on the mass \[N\].
+    /// Force of the shaker on the mass \[N\].
     pub force: Sum,
     /// Displacement of the foundation \[m\].
     pub base: Sum,
 }
 
-/// State of the oscillator and its force sensor at one time.
+/// State of the oscillator's mass and of its force sensor at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
     /// Displacement of the mass \[m\].
@@ -67,7 +67,7 @@ impl Piece {
 pub struct Motion(Vec<Piece>);
 
 impl Motion {
-    /// Returns the state at a time \[s\]; `None` for an empty motion.
+    /// Returns the state of mass and sensor at a time \[s\]; `None` for an empty motion.
     pub fn state(&self, t: f64) -> Option<State> {
         let piece = self.0.iter().rev().find(|piece| piece.begins <= t);
         Some(piece.or(self.0.first())?.state(t))
@@ -119,7 +119,7 @@ impl Oscillator {
         Err(NotPeriodic)
     }
 
-    /// Computes the motion from an initial state over `span` \[s\].
+    /// Computes the motion from an initial state over a duration `span` \[s\].
     ///
     /// # Errors
     /// [`NotPeriodic`] if the motion alternates between sliding and standstill too often.

@@ -11,11 +11,11 @@ pub struct Settings {
     pub conditions: Vec<Excitation>,
 }
 
-/// Settings of the test rig.
+/// Settings of the oscillator that hold under all conditions.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RigSettings {
-    /// Displacement at which the mass would strike the stop \[mm\].
+    /// Displacement at which the oscillator's mass would strike the stop, which ends a simulation \[mm\].
     pub stop_mm: f64,
 }
 
@@ -46,7 +46,7 @@ pub struct Order {
 }
 
 impl Settings {
-    /// Parses the settings.
+    /// Parses the oscillator's settings from the text in a case.
     ///
     /// # Errors
     /// A message that says which field is wrong.

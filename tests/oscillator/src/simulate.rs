@@ -1,4 +1,4 @@
-//! One simulation of the test rig: motion of the mass and readings of the sensors.
+//! One simulation of the oscillator test rig: motion of the mass and readings of the sensors.
 //!
 //! Channels have their names and units of the case here; encoding of cases and jobs is handled elsewhere.
 use crate::{
@@ -28,7 +28,7 @@ pub struct Values {
     pub crosstalk_mm_per_n: f64,
 }
 
-/// A quantity that the rig measures.
+/// Quantity that a sensor of the oscillator measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sensor {
     /// Displacement of the mass \[mm\].
@@ -38,7 +38,7 @@ pub enum Sensor {
 }
 
 impl Sensor {
-    /// Returns the sensor of a channel of this name, and its unit.
+    /// Returns the sensor to which a channel name belongs, and the sensor's unit.
     pub fn named(name: &str) -> Option<(Self, &'static str)> {
         match name {
             "displacement" => Some((Self::Displacement, "mm")),
@@ -48,7 +48,7 @@ impl Sensor {
     }
 }
 
-/// Result of a simulation.
+/// Result of a simulation of the oscillator: curves of its sensors, or the cause of failure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
     /// Curve of each requested channel, up to the time at which the simulation ended.
@@ -59,13 +59,13 @@ pub struct Run {
     pub pieces: usize,
 }
 
-/// Failure kind: the mass strikes the stop.
+/// Failure kind: the oscillator's mass strikes the stop.
 pub const STRIKES: &str = "strikes_the_stop";
-/// Failure kind: the motion does not become periodic.
+/// Failure kind: the motion of the oscillator does not become periodic.
 pub const NOT_PERIODIC: &str = "no_common_rhythm";
 
-/// Simulates the rig. Each channel is a sensor with its abscissa values: degrees of the shaker's turn, or
-/// seconds after the release.
+/// Simulates the oscillator and returns the curves of the channels. Each channel is a sensor with its
+/// abscissa values: degrees of the shaker's turn, or seconds after the release.
 pub fn run(
     rig: &RigSettings,
     excitation: &Excitation,
@@ -126,7 +126,7 @@ fn reading(sensor: Sensor, state: &State, values: &Values) -> f64 {
     }
 }
 
-/// Builds the shaker's force and the foundation's motion.
+/// Builds the shaker's force and the foundation's motion as functions of time.
 fn drive(excitation: &Excitation, hz: f64, lead_deg: f64, effects: &Effects) -> Drive {
     let turn = TAU * hz;
     let lead = lead_deg.to_radians();

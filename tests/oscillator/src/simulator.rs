@@ -24,7 +24,7 @@ pub struct Oscillators;
 struct Prepared {
     case: Case,
     settings: Settings,
-    /// Sensors of the channels, condition by condition.
+    /// Sensors of the case's channels, one list for each condition.
     sensors: Vec<Vec<Sensor>>,
 }
 

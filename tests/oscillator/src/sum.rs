@@ -1,7 +1,7 @@
 //! Sums of complex exponentials, `Re sum_j a_j exp(s_j t)`, the form of every motion of a linear system.
 use nalgebra::Complex;
 
-/// Exponential term: amplitude and rate [1/s].
+/// Term of a sum of exponentials: complex amplitude and rate [1/s].
 type Term = (Complex<f64>, Complex<f64>);
 
 /// Real part of a sum of complex exponentials, a function of time.
@@ -9,7 +9,7 @@ type Term = (Complex<f64>, Complex<f64>);
 pub struct Sum(Vec<Term>);
 
 impl Sum {
-    /// Creates a single exponential.
+    /// Creates a sum with a single exponential.
     pub fn term(amplitude: Complex<f64>, rate: Complex<f64>) -> Self {
         Self(vec![(amplitude, rate)])
     }
@@ -25,12 +25,12 @@ impl Sum {
         Self::term(turned, Complex::new(0.0, rate))
     }
 
-    /// Returns the value at a time \[s\].
+    /// Returns the value of the sum at a time \[s\].
     pub fn at(&self, t: f64) -> f64 {
         self.0.iter().map(|(a, s)| (a * exp(s * t)).re).sum()
     }
 
-    /// Adds another sum.
+    /// Adds another sum of exponentials.
     #[must_use]
     pub fn plus(mut self, other: &Self) -> Self {
         self.0.extend_from_slice(&other.0);
@@ -44,19 +44,19 @@ impl Sum {
         Self(self.0.iter().map(|(a, s)| (a * transfer(*s), *s)).collect())
     }
 
-    /// Computes the time derivative.
+    /// Computes the time derivative of the sum.
     #[must_use]
     pub fn rate(&self) -> Self {
         self.filtered(|s| s)
     }
 
-    /// Shifts the origin of time to `t`.
+    /// Shifts the time origin of the sum to `t` \[s\].
     #[must_use]
     pub fn since(&self, t: f64) -> Self {
         self.filtered(|s| exp(s * t))
     }
 
-    /// Returns the greatest angular frequency in the sum [rad/s].
+    /// Returns the greatest angular frequency among the exponentials of the sum [rad/s].
     pub fn fastest(&self) -> f64 {
         self.0.iter().map(|(_, s)| s.im.abs()).fold(0.0, f64::max)
     }

@@ -72,11 +72,11 @@ pub struct Delivered<'a> {
     pub condition: &'a str,
     /// Crank speed [1/min].
     pub rpm: f64,
-    /// Approximate number of recorded cycles.
+    /// Approximate number of crank revolutions (cycles) in the record.
     pub cycles: usize,
-    /// Delivered load over one crank turn, at equally spaced angles \[N\].
+    /// Delivered load card: load at the suspension over one crank turn, at equally spaced angles \[N\].
     pub card: &'a [f64],
-    /// Samples that were received.
+    /// Samples of the test record that the wireless link delivered.
     pub samples: &'a [Sample],
     /// Number of samples that the wireless link lost.
     pub lost: usize,

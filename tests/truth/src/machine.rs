@@ -27,7 +27,7 @@ pub struct Resolution {
     pub step: f64,
     /// Number of head modes simulated in addition to those of the case, limited to those available.
     pub more_modes: usize,
-    /// Number of samples per crank revolution.
+    /// Number of samples per crank revolution at which sensor readings are computed.
     pub samples: usize,
 }
 
@@ -65,8 +65,8 @@ const MEDIAN_COEFFICIENTS: [(Coefficient, f64); 10] = [
     (Coefficient::Cc, 1020.0),
 ];
 
-/// Standard deviation of the logarithm of a drawn coefficient; the distribution is truncated at twice this
-/// value.
+/// Standard deviation of the natural logarithm of a drawn rope coefficient; the distribution is truncated at
+/// twice this value.
 const SPREAD: f64 = 0.35;
 
 /// Draws rope coefficients, in the units and the order of the case's unknowns; parameters of the case's
@@ -89,10 +89,10 @@ pub fn draw_coefficients(case: &Case, draw: &mut RandomStream) -> anyhow::Result
     genes.collect()
 }
 
-/// Relative changes of load and speed for one simulated turn.
+/// Relative changes of load and speed under which one crank turn is simulated.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Variation {
-    /// Relative increase of the load's deviation from its mean.
+    /// Relative increase of the load swing: the load's deviation from its mean.
     pub load: f64,
     /// Relative increase of the crank speed.
     pub speed: f64,

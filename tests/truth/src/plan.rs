@@ -18,17 +18,17 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stratum {
-    /// One effect that the library contains, of a realistic size.
+    /// Stratum with one effect that the library contains, of a realistic size.
     Single,
-    /// No hidden effect.
+    /// Stratum without a hidden effect.
     Zero,
-    /// Two effects that the library contains.
+    /// Stratum with two effects that the library contains.
     Double,
-    /// One effect that the library does not contain.
+    /// Stratum with one effect that the library does not contain.
     Outside,
-    /// One effect that the library contains, too small to be detected.
+    /// Stratum with one effect that the library contains, too small to be detected.
     Below,
-    /// A delivered card that lacks the load's higher harmonics.
+    /// Stratum with a delivered load card that lacks the load's higher harmonics.
     Card,
 }
 
@@ -69,7 +69,7 @@ impl Stratum {
 pub struct SetSpec {
     /// Seed of all random draws.
     pub seed: u64,
-    /// Stratum of the set.
+    /// Stratum of the set: the kind of its hidden effects.
     pub stratum: Stratum,
     /// Effects to hide instead of drawn ones.
     pub requested_effects: Vec<EffectKind>,
@@ -80,11 +80,11 @@ pub struct SetSpec {
     pub noise: f64,
     /// Number of cycles of each record.
     pub cycles: usize,
-    /// Resolution of the truth simulation.
+    /// Resolution of the simulation of the true machine in space and time.
     pub fineness: Resolution,
     /// Standard deviations of instrument, bearing and balance errors.
     pub tolerance: Tolerance,
-    /// Recorded channels.
+    /// Channels that are recorded in addition to angle and load.
     pub channels: Channels,
 }
 
@@ -145,7 +145,7 @@ impl SetSpec {
 pub struct Answer {
     /// Seed of all random draws.
     pub seed: u64,
-    /// Stratum of the set.
+    /// Stratum of the set: the kind of its hidden effects.
     pub stratum: Stratum,
     /// Name of the case.
     pub case: String,
@@ -155,12 +155,12 @@ pub struct Answer {
     pub cycles: usize,
     /// Drawn rope coefficients by name, in the case's units.
     pub genes: std::collections::BTreeMap<String, f64>,
-    /// Hidden effects.
+    /// Effects hidden in the set of records.
     pub effects: Vec<AnswerEffect>,
     /// Values of the nuisance parameters: errors of instruments, bearing and balance.
     #[serde(default)]
     pub nuisances: Nuisances,
-    /// Recorded channels.
+    /// Channels that are recorded in addition to angle and load.
     #[serde(default)]
     pub channels: Channels,
 }
@@ -174,9 +174,9 @@ pub struct AnswerEffect {
     pub listed: bool,
     /// Name of the parameter that is the effect's size.
     pub parameter: String,
-    /// Size of the effect.
+    /// Size of the hidden effect, in `unit`.
     pub value: f64,
-    /// Unit of the size.
+    /// Unit of the hidden effect's size.
     pub unit: String,
     /// Size of the effect as a multiple of its typical size.
     pub times_scale: f64,

@@ -6,11 +6,11 @@ use crate::verdict::{Limit, Nuisance, Verdict};
 /// Test set of records with its true answer and the verdict of the diagnosis.
 #[derive(Clone, Debug)]
 pub struct Trial {
-    /// Name of the set.
+    /// Name of the set of records.
     pub name: String,
     /// True hidden effects and other drawn values.
     pub answer: Answer,
-    /// Verdict of the diagnosis.
+    /// Verdict of the diagnosis on the set of records.
     pub verdict: Verdict,
 }
 
@@ -41,7 +41,7 @@ impl Outcome {
 }
 
 impl Trial {
-    /// Classifies the verdict with regard to the first hidden effect.
+    /// Classifies the diagnosis's verdict with regard to the first hidden effect.
     pub fn outcome(&self) -> Outcome {
         if self.first_is_right() {
             Outcome::NamedFirst

@@ -70,7 +70,7 @@ impl Sealed {
         Ok((sealed, commitment(&bytes)))
     }
 
-    /// Returns the name of the next set: a hash of the salt and the number of sets.
+    /// Returns the name of the next set of records: a hash of the salt and the number of sets.
     pub fn name(&self) -> String {
         let mut hasher = blake3::Hasher::new();
         hasher.update(self.salt.as_bytes());

@@ -9,10 +9,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Presets, seeds and records to compare.
+/// Comparison of calibrations to run: search presets, seeds and records.
 #[derive(Debug)]
 pub struct Searches<'a> {
-    /// The case folder.
+    /// Case folder of the machine that is calibrated.
     pub case: &'a Path,
     /// Folders of further records, each named as its answer; the case's own record is calibrated first.
     pub records: &'a [PathBuf],
@@ -20,11 +20,11 @@ pub struct Searches<'a> {
     pub answers: &'a [PathBuf],
     /// Path of the program under test.
     pub horsehead: &'a Path,
-    /// Names of the search presets.
+    /// Names of the search presets to compare.
     pub presets: &'a [String],
     /// Seeds used with each preset.
     pub seeds: &'a [u64],
-    /// Name of the unknown whose calibrated value is compared with the hidden value.
+    /// Name of the unknown whose calibrated value is compared with the hidden (true) value of the record.
     pub unknown: &'a str,
     /// Folder for runs and results.
     pub out: &'a Path,
@@ -37,11 +37,11 @@ pub struct Outcome {
     pub unknown: f64,
     /// Objective value of the calibrated individual.
     pub objective: f64,
-    /// Number of simulations.
+    /// Number of simulations that the calibration ran.
     pub jobs: f64,
     /// Cost in equivalent plain simulations: a simulation with derivatives counts as 5 + 0.1 per unknown.
     pub equivalent_simulations: f64,
-    /// Wall time (s).
+    /// Wall time of the calibration (s).
     pub seconds: f64,
 }
 
@@ -67,7 +67,8 @@ struct Objective {
 type Outcomes = BTreeMap<(usize, usize), Vec<Outcome>>;
 
 impl Searches<'_> {
-    /// Runs the missing calibrations and returns the table of all; reports each calibration through `say`.
+    /// Runs the missing calibrations and returns the table of all results; reports each calibration through
+    /// `say`.
     ///
     /// # Errors
     /// File system errors; a calibration that fails; answers that cannot be read.
@@ -187,7 +188,7 @@ impl Searches<'_> {
     }
 }
 
-/// Computes the outcome of a calibration from its JSON result and its CSV table of evaluations.
+/// Reads the outcome of a calibration from its JSON result and its CSV table of evaluations.
 fn outcome(result: &[u8], log: &str, unknown: &str) -> anyhow::Result<Outcome> {
     let result: Result = serde_json::from_slice(result)?;
     let value = result.genes.get(unknown);

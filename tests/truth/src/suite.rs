@@ -20,30 +20,30 @@ use std::time::{Duration, Instant};
 pub struct Suite<'a> {
     /// Parameters of the pumping unit whose records are simulated.
     pub unit: PumpingUnit,
-    /// Case folder of the machine.
+    /// Case folder of the pumping unit, passed to every diagnosis.
     pub case: &'a Path,
     /// Folder for record sets, run folders, the answer file and verdicts.
     pub out: &'a Path,
     /// Path of the program under test.
     pub horsehead: &'a Path,
-    /// Seed of all random draws.
+    /// Seed from which the random seeds of all record sets are derived.
     pub seed: u64,
     /// Time since the start of the run after which no further set is started.
     pub time_limit: Option<Duration>,
 }
 
-/// Difference between the random seeds of the first sets of consecutive strata.
+/// Difference between the first random seeds of two consecutive strata (classes of record sets).
 const STRATUM_SEED_STRIDE: u64 = 1000;
-/// Number of consecutive sets of a stratum of which one has records of only two gauges.
+/// Interval, in sets of one stratum, at which a set gets records of only two gauges (every fourth).
 const TWO_GAUGE_PERIOD: u64 = 4;
 
 impl Suite<'_> {
-    /// Returns the path of the answer file.
+    /// Returns the path of the answer file, which holds the hidden effects of all record sets.
     pub fn answers(&self) -> PathBuf {
         self.out.join("answers.json")
     }
 
-    /// Returns the path of the verdict folder.
+    /// Returns the path of the folder in which the verdict of each diagnosed set is stored.
     pub fn verdicts(&self) -> PathBuf {
         self.out.join("verdicts")
     }
@@ -92,8 +92,8 @@ impl Suite<'_> {
         Ok(())
     }
 
-    /// Returns the specifications of all sets with the strata interleaved, so that a run stopped early has
-    /// some sets of each.
+    /// Returns the specifications of all requested record sets, with the strata interleaved so that a run
+    /// stopped early has some sets of each stratum.
     fn orders(&self, counts: &[(Stratum, u16)]) -> Vec<SetSpec> {
         let place = |stratum: Stratum| {
             let all = Stratum::ALL.iter().position(|other| *other == stratum);
@@ -122,7 +122,8 @@ impl Suite<'_> {
         all.into_iter().map(order).collect()
     }
 
-    /// Makes the record set of a specification unless it exists; returns the set's name.
+    /// Makes the record set of a specification, unless the answer file already lists it; returns the set's
+    /// name.
     fn make_set(&self, order: &SetSpec) -> anyhow::Result<String> {
         let mut sealed = Sealed::load_or_new(&self.answers())?;
         let same = |answer: &crate::plan::Answer| {

@@ -4,7 +4,7 @@ use crate::plan::Stratum;
 use crate::scoring::{Outcome, Trial};
 use std::fmt::{Result, Write as _};
 
-/// Formats a proportion with its Clopper-Pearson 95 % interval.
+/// Formats `hits / trials` as a percentage with its Clopper-Pearson 95 % confidence interval.
 fn share(hits: usize, trials: usize) -> String {
     if trials == 0 {
         return "-".to_owned();
@@ -53,7 +53,7 @@ impl<'a> Table<'a> {
         writeln!(self.text, "| {metric} | {target} | {value} |")
     }
 
-    /// Writes a table line with the share of the trials in `among` that pass `test`.
+    /// Writes a line of the metric table: the share of the trials in `among` for which `test` holds.
     fn share(
         &mut self,
         metric: &str,

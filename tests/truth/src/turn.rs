@@ -7,15 +7,15 @@ use simulation::run::Observe;
 use simulation::system::State;
 use simulation::system::System;
 
-/// Curves over one crank revolution, sampled at equal time intervals from turn 0; the sample after the last
-/// equals the first.
+/// Curves of gauge stress, position, torque and back-rope forces over one crank revolution, sampled at equal
+/// time intervals from crank turn angle 0; periodic, so the first sample also follows the last.
 #[derive(Clone, Debug, Default)]
 pub struct Turn {
     /// Duration of the revolution \[s\].
     pub period: f64,
     /// Stress at gauges 1 to 4 \[MPa\].
     pub stress: [Vec<f64>; 4],
-    /// Height of the suspension point over its lowest design place \[m\].
+    /// Height of the suspension point above its lowest position by design \[m\].
     pub position: Vec<f64>,
     /// Net torque at the crank [N m].
     pub torque: Vec<f64>,
@@ -28,17 +28,17 @@ pub struct Turn {
 }
 
 impl Turn {
-    /// Number of samples.
+    /// Number of samples per curve.
     pub fn len(&self) -> usize {
         self.tension.len()
     }
 
-    /// Whether the turn has no samples.
+    /// Whether the curves have no samples.
     pub fn is_empty(&self) -> bool {
         self.tension.is_empty()
     }
 
-    /// Returns the recorded channels: stress at gauges 1 to 4, position, torque.
+    /// Returns the curves that a record contains: stress at gauges 1 to 4, position, torque.
     pub fn recorded(&self) -> Vec<Vec<f64>> {
         let mut channels = self.stress.to_vec();
         channels.push(self.position.clone());
@@ -66,7 +66,7 @@ pub fn shifted(curve: &[f64], ahead: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Observer that records the curves of a [`Turn`] during a simulation.
+/// Observer of a simulation that samples the curves of a [`Turn`].
 #[derive(Debug, Default)]
 pub struct Watch {
     recorder: Recorder,
@@ -74,7 +74,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Returns the recorded turn of the observed machine.
+    /// Returns the curves sampled from the observed machine as a [`Turn`].
     pub fn turn(self, machine: &Machine, law: &RopeLaw) -> Turn {
         let curves = self.recorder.curves;
         let [position, ..] = curves.suspension;

@@ -11,10 +11,11 @@ use std::path::Path;
 pub struct Verdict {
     /// Overall result of the diagnosis: `nothing_detected`, `named`, `ambiguous`, `unlisted` or `unresolved`.
     pub verdict: String,
-    /// Effects added to the model, followed by members of their ambiguity sets.
+    /// Effects estimated by the diagnosis: those added to the model, then other members of their ambiguity
+    /// sets (effects that the record cannot tell apart).
     #[serde(default)]
     pub effects: Vec<EffectEstimate>,
-    /// Rounds of the diagnosis, each with its added effect and ambiguity set.
+    /// Rounds of the diagnosis; each adds one effect and lists the effects it could not be told apart from.
     #[serde(default)]
     pub rounds: Vec<Round>,
     /// Smallest sizes of effects that the diagnosis can detect.
@@ -31,10 +32,11 @@ pub struct Verdict {
     pub nuisances: Vec<Nuisance>,
 }
 
-/// Effect that the record cannot reveal because changes of the unknown coefficients imitate it.
+/// Effect that the diagnosis cannot detect in the record because changes of the unknown model coefficients
+/// imitate it.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Absorbed {
-    /// Identifier of the effect.
+    /// Identifier of the effect that the record cannot reveal.
     pub id: String,
 }
 
@@ -43,18 +45,18 @@ pub struct Absorbed {
 pub struct Nuisance {
     /// Identifier of the instrument effect or of the channel gain to which the parameter belongs.
     pub id: String,
-    /// Name of the parameter.
+    /// Name of the nuisance parameter within its effect or gain.
     pub parameter: String,
     /// 95 % confidence interval of the parameter.
     pub ci95: [f64; 2],
 }
 
-/// Effect listed in a verdict.
+/// Effect listed in a verdict, with its estimated parameters.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub struct EffectEstimate {
     /// Identifier of the effect.
     pub id: String,
-    /// Whether the effect was added to the model.
+    /// Whether the diagnosis added the effect to the model, rather than only listing it in an ambiguity set.
     #[serde(default)]
     pub added: bool,
     /// Estimated parameters of the effect by name.
@@ -62,16 +64,16 @@ pub struct EffectEstimate {
     pub parameters: BTreeMap<String, Size>,
 }
 
-/// Estimated parameter of an effect.
+/// Estimated value of an effect's parameter, with its confidence interval.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Size {
-    /// Estimated value.
+    /// Estimated parameter value.
     pub value: f64,
-    /// 95 % confidence interval of the parameter; `None` where there is none.
+    /// 95 % confidence interval of the parameter; `None` if the diagnosis gives none.
     pub ci95: Option<[Option<f64>; 2]>,
 }
 
-/// Round of a diagnosis.
+/// Round of a diagnosis, in which at most one effect is added to the model.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub struct Round {
     /// Identifier of the effect added in this round, if any.
@@ -84,11 +86,12 @@ pub struct Round {
 /// Smallest detectable size of an effect.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Limit {
-    /// Identifier of the effect.
+    /// Identifier of the effect to which the detection limit belongs.
     pub id: String,
     /// Name of the parameter that measures the size of the effect.
     pub parameter: String,
-    /// Smallest detectable size; `None` where recalibrated coefficients imitate the effect.
+    /// Smallest detectable value of the parameter; `None` if changed model coefficients imitate the effect at
+    /// any size.
     pub size: Option<f64>,
 }
 
@@ -104,7 +107,7 @@ struct Closed {
 }
 
 impl Verdict {
-    /// Reads a verdict from the JSON output of a diagnosis.
+    /// Reads a verdict from a file with the JSON output of a diagnosis.
     ///
     /// # Errors
     /// A file that cannot be read or is no verdict.
@@ -118,12 +121,12 @@ impl Verdict {
         })
     }
 
-    /// Returns whether the verdict claims that an effect of any kind is present.
+    /// Returns whether the verdict claims that some effect is present, whether or not it can name the effect.
     pub fn claims(&self) -> bool {
         matches!(self.verdict.as_str(), "named" | "ambiguous" | "unlisted")
     }
 
-    /// Returns whether the verdict names effects.
+    /// Returns whether the verdict names specific effects, alone or as an ambiguity set.
     pub fn has_names(&self) -> bool {
         matches!(self.verdict.as_str(), "named" | "ambiguous")
     }

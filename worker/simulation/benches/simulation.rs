@@ -14,7 +14,7 @@ use simulation::sensitivity::{self, Coefficient, Column, ColumnOrigin, Derivativ
 use simulation::settle::{guess, minimize};
 use simulation::system::{Equations, StateRef, StateShift, System};
 
-/// Returns the reference machine with the real unit's 72 + 114 cylinders of 50 mm.
+/// Returns the reference machine with 72 + 114 rope cylinders of 50 mm, as on the real pumping unit.
 fn machine() -> Machine {
     let mut description = reference::description();
     description.rope.pitch = 0.05;
@@ -23,7 +23,7 @@ fn machine() -> Machine {
     Machine::new(description, 2).expect("the description is complete")
 }
 
-/// Returns the recommended and the optimised coefficients of the paper's Table 3.
+/// Returns the two sets of rope coefficients in the paper's Table 3: the recommended and the optimised one.
 fn laws() -> [(&'static str, simulation::model::description::RopeLaw); 2] {
     let optimised = reference::law();
     let mut recommended = optimised;
@@ -37,8 +37,8 @@ fn laws() -> [(&'static str, simulation::model::description::RopeLaw); 2] {
     [("recommended", recommended), ("optimised", optimised)]
 }
 
-/// Measures force evaluation, tangent with factorisation, and linear solution, each at the start of a run
-/// under load.
+/// Measures three kernels at the start of a run under load: evaluation of forces, assembly with factorisation
+/// of the tangent matrix, and linear solution.
 fn kernels(criterion: &mut Criterion) {
     let machine = machine();
     let drive = Drive {
@@ -131,8 +131,8 @@ fn settles(criterion: &mut Criterion) {
     });
 }
 
-/// Measures runs that also integrate sensitivities, against the plain run: with respect to the ten
-/// coefficients and a friction, and to all sizes of the catalogue.
+/// Measures simulation runs that also integrate sensitivities, against the plain run: with respect to the ten
+/// rope coefficients and one friction moment, and to all size parameters of the effect catalogue.
 fn columns(criterion: &mut Criterion) {
     let mut description = reference::description();
     description.rope.pitch = 0.05;

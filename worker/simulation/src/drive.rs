@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 
 type V2 = Vector2<f64>;
 
-/// Start-up of the crank from rest to full speed.
+/// Motion of the crank: start-up from rest to a constant full speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
     /// Crank turn angle at rest, from bottom dead centre \[rad\].
@@ -21,9 +21,9 @@ pub struct Drive {
 pub struct DriveState {
     /// Time since the start from rest \[s\].
     pub time: f64,
-    /// Turn angle from bottom dead centre \[rad\].
+    /// Crank turn angle from bottom dead centre \[rad\].
     pub turn: f64,
-    /// Position \[m\], velocity and acceleration of the crank pin in the frame W.
+    /// Position of the crank pin in the world frame W \[m\], with its velocity and acceleration.
     pub pin: [V2; 3],
     /// Angle of the crank pin about the shaft \[rad\].
     pub pin_angle: f64,
@@ -34,8 +34,8 @@ pub struct DriveState {
 }
 
 impl Drive {
-    /// Returns turn angle, rate and acceleration at time `t`; the acceleration is continuous over the
-    /// start-up.
+    /// Returns the crank's turn angle, its rate and its acceleration at time `t`; the acceleration is
+    /// continuous over the start-up.
     pub fn turn(&self, t: f64) -> [f64; 3] {
         if t >= self.ramp {
             return [
@@ -55,7 +55,7 @@ impl Drive {
         ]
     }
 
-    /// Returns the time at which a turn angle after the start-up is reached \[s\].
+    /// Returns the time at which the crank, running at full speed, reaches a turn angle \[s\].
     pub fn time_at(&self, turn: f64) -> f64 {
         (turn - self.start) / self.speed + 0.5 * self.ramp
     }

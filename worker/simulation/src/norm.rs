@@ -3,37 +3,36 @@
 //! Coordinates that determine measured quantities (beam, rod, suspension, modes) have tight tolerances, the
 //! cylinders of a rope loose ones.
 
-/// Tolerance of Newton's method for a cylinder position \[m\]; the constants that follow are those of a
-/// cylinder angle \[rad\], of beam and rod angle \[rad\], and of a modal coordinate [kg^1/2 m].
+/// Tolerance of Newton's method for a cylinder's position \[m\]. `TURN` is that for a cylinder's angle
+/// \[rad\], `ANGLE` for the angles of beam and rod \[rad\], `MODAL` for a modal coordinate [kg^1/2 m].
 pub(crate) const LENGTH: f64 = 2e-6;
 const TURN: f64 = 2e-5;
 pub(crate) const ANGLE: f64 = 1e-6;
 pub(crate) const MODAL: f64 = 2e-6;
 
-/// Returns the square of `x`.
 pub(crate) fn square(x: f64) -> f64 {
     x * x
 }
 
-/// Returns the larger of a norm and an absolute value; NaN propagates, so that it is not lost in the maximum.
+/// Returns the larger of `norm` and the absolute value of `x`, or NaN if `x` is NaN.
 pub(crate) fn worst(norm: f64, x: f64) -> f64 {
     let x = x.abs();
     if norm < x || x.is_nan() { x } else { norm }
 }
 
-/// Returns the largest change of the cylinders' coordinates, in units of Newton's tolerance, or `norm` if
-/// that is larger.
+/// Returns the larger of `norm` and the largest Newton correction of a cylinder's coordinate, in units of
+/// Newton's tolerance.
 pub(crate) fn cylinders_newton(norm: f64, change: &[f64], width: usize) -> f64 {
     cylinders(norm, change, width, [LENGTH, TURN])
 }
 
-/// Returns the largest local error of the cylinders' coordinates, in units of its tolerance, or `norm` if
-/// that is larger.
+/// Returns the larger of `norm` and the largest local error of a cylinder's coordinate, in units of the error
+/// tolerance.
 pub(crate) fn cylinders_error(norm: f64, error: &[f64], width: usize) -> f64 {
     cylinders(norm, error, width, [2e-4, 5e-3])
 }
 
-/// Returns the scaled maximum norm of cylinder coordinates, or `norm` if that is larger. Of the `width`
+/// Returns the larger of `norm` and the scaled maximum norm of the cylinders' coordinates. Of the `width`
 /// coordinates of a cylinder, lengths come first: two in the plane, three in space.
 fn cylinders(norm: f64, x: &[f64], width: usize, [length, turn]: [f64; 2]) -> f64 {
     let largest = if width == 3 {
@@ -46,7 +45,7 @@ fn cylinders(norm: f64, x: &[f64], width: usize, [length, turn]: [f64; 2]) -> f6
     worst(worst(norm, largest[0] / length), largest[1] / turn)
 }
 
-/// Returns the largest absolute value of each of the `W` coordinates over all cylinders.
+/// Returns the largest absolute value over all cylinders of each of a cylinder's `W` coordinates.
 fn largest<const W: usize>(x: &[f64]) -> [f64; W] {
     // each comparison waits for the one before it: four of them side by side
     const ROWS: usize = 4;
@@ -72,7 +71,7 @@ fn largest<const W: usize>(x: &[f64]) -> [f64; W] {
 mod tests {
     use super::*;
 
-    /// Checks that signs are ignored and that NaN persists in the norm whatever values follow.
+    /// Checks that the error norm ignores signs and stays NaN once a NaN has entered it.
     #[test]
     fn the_worst_value_is_kept() {
         assert_eq!(worst(1.0, -2.0).to_bits(), 2.0_f64.to_bits());

@@ -15,7 +15,7 @@ use crate::sensitivity::{self, Coefficient, Column, ColumnOrigin, Derivative, De
 use crate::statistics::Statistics;
 use std::sync::Arc;
 
-/// Returns a synthetic curve over the stations of the arc.
+/// Returns a synthetic table over the stations of the head's arc, in place of a mode shape or influence line.
 fn wave(k: u32, scale: f64) -> Vec<f64> {
     (0..27)
         .map(|i| scale * libm::sin(0.3 + 0.21 * f64::from(k + 1) * f64::from(i)))
@@ -226,7 +226,7 @@ pub fn columns() -> Vec<u64> {
     bits
 }
 
-/// Returns the settings of the fingerprint runs: a short run-up to full speed.
+/// Returns run settings for the fingerprint runs, with a short run-up to full speed.
 fn quick() -> RunSettings {
     RunSettings {
         lead_in: 20_f64.to_radians(),
@@ -235,7 +235,7 @@ fn quick() -> RunSettings {
     }
 }
 
-/// Returns the machine with a sixth of the cylinders and three times the crank speed.
+/// Reduces a machine to a sixth of its cylinders and triples its crank speed.
 fn small(mut description: Description) -> Description {
     description.crank.speed *= 3.0;
     description.rope.pitch *= 6.0;

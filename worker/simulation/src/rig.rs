@@ -18,30 +18,31 @@ use nalgebra::Vector3;
 
 type V3 = Vector3<f64>;
 
-/// End condition of the chain.
+/// End condition of the rig's chain of cylinders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End {
-    /// Free end; loads on it have a potential.
+    /// Free end of the chain; the loads on it have a potential.
     Free {
-        /// Force on the outer end of the cylinder, of constant direction in W \[N\].
+        /// Force on the outer end of the end cylinder, of constant direction in the world frame W \[N\].
         force: V3,
-        /// Torque about the cylinder's own axis [N m].
+        /// Torque on the end cylinder about its own axis [N m].
         twist: f64,
-        /// Torque on the end cylinder about the z axis of W [N m].
+        /// Torque on the end cylinder about the z axis of the world frame W [N m].
         turn: f64,
     },
-    /// End joined to the ground.
+    /// End of the chain joined to the ground.
     Held {
-        /// Position in W of the joint to the ground \[m\].
+        /// Position of the joint to the ground, in the world frame W \[m\].
         place: V3,
-        /// Direction of the chain's axis at the joint, in the plane, from +x \[rad\].
+        /// Direction of the chain's axis at the joint to the ground, as an angle from +x in the plane
+        /// \[rad\].
         angle: f64,
-        /// Law of the joint: clamped, or revolute by [`Bushing::revolute`].
+        /// Law of the joint to the ground: clamped, or revolute by [`Bushing::revolute`].
         law: Bushing,
     },
 }
 
-/// Drum about the z axis, fixed in W, and the law of a cylinder's contact with it.
+/// Drum about the z axis, fixed in the world frame W, and the law of a cylinder's contact with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drum {
     /// Centre of the drum \[m\].
@@ -52,10 +53,10 @@ pub struct Drum {
     pub law: Impact,
 }
 
-/// Parameters of a test rig.
+/// Parameters of a rope test rig.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setup {
-    /// Chain of cylinders, in blocks starting at 0.
+    /// Chain of cylinders of the rig, whose coordinate blocks start at 0.
     pub chain: Chain,
     /// Acceleration of gravity [m/s2].
     pub gravity: V3,
@@ -77,7 +78,7 @@ pub struct Rig {
 }
 
 impl End {
-    /// Returns a free end without loads.
+    /// Returns a free end of a chain without loads.
     pub fn free() -> Self {
         Self::Free {
             force: V3::zeros(),
@@ -118,7 +119,7 @@ impl Setup {
 }
 
 impl Rig {
-    /// Creates a rig and allocates its loads.
+    /// Creates the equations of motion of a rig and allocates the buffers for its loads.
     pub fn new(setup: Setup) -> Self {
         Self {
             setup,
@@ -146,7 +147,8 @@ impl Rig {
             .collect()
     }
 
-    /// Returns the position in W of the end of cylinder `j` on the head's side \[m\].
+    /// Returns the position in the world frame W of the end of cylinder `j` that faces the end of the chain
+    /// \[m\].
     pub fn outer_end(&self, j: usize) -> V3 {
         let pose = &self.state.poses[j];
         pose.p + pose.axis() * (0.5 * self.setup.chain.pitch)

@@ -20,24 +20,24 @@ pub struct RunSettings {
     pub method: Method,
     /// Turn angle before bottom dead centre at which the crank starts \[rad\].
     pub lead_in: f64,
-    /// Duration of the run-up to full speed \[s\].
+    /// Duration of the crank's run-up to full speed \[s\].
     pub ramp: f64,
     /// Number of samples over the recorded revolution.
     pub samples: usize,
     /// Tolerated local error per time step, as a multiple of the built-in tolerances of the coordinates.
     pub tolerance: f64,
-    /// Longest step \[s\] while the swing of the beam on its ropes is slow; it limits how coarsely the ropes'
-    /// own modes are resolved.
+    /// Longest time step \[s\] while the swing of the beam on its ropes is slow; it determines how well
+    /// vibrations of the ropes are resolved.
     pub longest_step: f64,
     /// Natural frequency of the beam's swing on its ropes ([`swing_rate`]) above which the longest step
     /// shrinks in inverse proportion [rad/s]; infinite for a constant longest step.
     pub slow_swing: f64,
     /// Maximum number of Newton iterations of a run.
     pub budget: u64,
-    /// Part of the iteration budget available from the start; the rest is released in proportion to the
-    /// simulated time. A run that stalls in chatter thus ends early.
+    /// Number of Newton iterations of the budget available from the start; the rest is released in proportion
+    /// to the simulated time. A run that stalls in chatter thus ends early.
     pub head_start: u64,
-    /// Limits beyond which a state is no longer physically meaningful for this machine.
+    /// Limits of motion beyond which the run ends as failed.
     pub limits: Limits,
     /// Damping of the steps of the equilibrium solver; results do not depend on it.
     pub damping: Damping,
@@ -67,8 +67,7 @@ impl Default for RunSettings {
 }
 
 impl RunSettings {
-    /// Returns the motion of crank and load over time, including the run-up of a machine's crank to full
-    /// speed.
+    /// Returns crank motion and load over time, including the run-up of the crank to full speed.
     pub(crate) fn drive(&self, machine: &Machine) -> Drive {
         Drive {
             start: -self.lead_in + machine.extensions.index_offset().min(0.0),
@@ -77,7 +76,6 @@ impl RunSettings {
         }
     }
 
-    /// Returns the time of a sample of the recorded revolution \[s\].
     pub(crate) fn sampled(&self, machine: &Machine, drive: &Drive, sample: usize) -> f64 {
         let turn = TAU * sample as f64 / self.samples as f64;
         drive.time_at(machine.extensions.index_offset() + turn)
@@ -93,7 +91,7 @@ impl RunSettings {
 
 /// Observer of a run: receives every step, and every sample of the recorded revolution.
 pub trait Observe {
-    /// Called once in static equilibrium, before any motion.
+    /// Receives the static equilibrium from which the run starts, before any motion.
     fn begin(&mut self, _system: &mut System<RopeMachine<'_>>, _state: &State) {}
 
     /// Called after an accepted step, before axial laws store their memory. The loads held by `system` are
@@ -106,22 +104,22 @@ pub trait Observe {
     ) {
     }
 
-    /// Called at sample `index` with the interpolated `state`; the loads held by `system` are not necessarily
-    /// those of this state.
+    /// Receives sample `index` of the recorded revolution as the interpolated `state`; the loads held by
+    /// `system` are not necessarily those of this state.
     fn sample(&mut self, index: usize, system: &mut System<RopeMachine<'_>>, state: &State);
 
-    /// Called when the revolution is complete; its samples are `spacing` \[s\] apart.
+    /// Receives the end of a completed revolution, whose samples are `spacing` \[s\] apart.
     fn complete(&mut self, _machine: &Machine, _spacing: f64) {}
 }
 
 /// Result of a run, apart from its samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunResult {
-    /// Verdict: complete, or the kind of failure.
+    /// Verdict of the run: complete, or the kind of failure.
     pub verdict: Verdict,
     /// Computational cost of the run.
     pub statistics: Statistics,
-    /// Work over the recorded revolution \[J\].
+    /// Work of crank, load and dissipation over the recorded revolution \[J\].
     pub work: Powers,
     /// Increase of kinetic and potential energy over the recorded revolution \[J\].
     pub stored: f64,

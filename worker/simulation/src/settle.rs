@@ -20,7 +20,7 @@ pub use feasibility::overload;
 pub use guess::guess;
 pub use minimize::{Damping, minimize, minimize_within};
 
-/// Maximum number of iterations of a minimisation before the continuation is used.
+/// Maximum number of iterations of the minimisation that is tried before the continuation.
 const DIRECT: u32 = 50;
 /// Number of iterations (factorisations) after which a search for one equilibrium starts no further step. It
 /// covers the minimisation from a given start, the one from the geometric guess, and the continuation, whose

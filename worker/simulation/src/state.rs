@@ -1,6 +1,6 @@
 //! State of the equations of motion, and data types for its evaluation.
 
-/// Coordinates, rates and accelerations at a time.
+/// State of the equations of motion: coordinates, rates and accelerations at a time.
 #[derive(Debug, PartialEq)]
 pub struct State {
     /// Time \[s\].
@@ -13,7 +13,7 @@ pub struct State {
     pub a: Vec<f64>,
 }
 
-/// Implementation by hand, since a derived `clone_from` would allocate instead of reusing the vectors.
+/// Manual implementation, since a derived `clone_from` would allocate instead of reusing the vectors.
 impl Clone for State {
     fn clone(&self) -> Self {
         Self {
@@ -80,7 +80,7 @@ pub struct StateShift {
 }
 
 impl StateShift {
-    /// Shift with zero factors: the matrix is the stiffness alone.
+    /// Factors of zero for inertia and damping: the matrix is the stiffness `-K` alone.
     pub const NONE: Self = Self {
         mass: 0.0,
         damping: 0.0,
@@ -90,16 +90,16 @@ impl StateShift {
 /// Powers at one instant, or their integrals over time (work).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Powers {
-    /// Power of the crank pin on the rod \[W\].
+    /// Power of the crank pin on the rod \[W\]; as work \[J\].
     pub input: f64,
-    /// Power of the suspension point on the load \[W\].
+    /// Power of the suspension point on the load \[W\]; as work \[J\].
     pub output: f64,
-    /// Power dissipated in joints, contact and head \[W\].
+    /// Power dissipated in joints, contact and head \[W\]; as work \[J\].
     pub dissipated: f64,
 }
 
 impl Powers {
-    /// Adds other powers multiplied by `weight`; with a time step as weight the result is work.
+    /// Adds `other` multiplied by `weight`; if the weight is a time step, powers are integrated to work.
     pub const fn add(&mut self, weight: f64, powers: &Self) {
         self.input += weight * powers.input;
         self.output += weight * powers.output;

@@ -3,9 +3,9 @@
 /// Work of one simulation, including the search for equilibrium.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
-    /// Number of accepted steps.
+    /// Number of accepted time steps.
     pub steps: u64,
-    /// Number of steps rejected by the error test.
+    /// Number of time steps rejected by the error test.
     pub error_rejections: u64,
     /// Number of steps rejected because Newton's method did not converge.
     pub newton_rejections: u64,
@@ -13,8 +13,8 @@ pub struct Statistics {
     pub newton_iterations: u64,
     /// Number of evaluations of the generalised forces.
     pub force_evaluations: u64,
-    /// Number of evaluations of the tangent.
+    /// Number of evaluations of the tangent matrix.
     pub jacobians: u64,
-    /// Number of factorisations.
+    /// Number of factorisations of the iteration matrix.
     pub factorizations: u64,
 }

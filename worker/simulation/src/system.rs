@@ -18,10 +18,12 @@ pub trait Equations {
     /// they result.
     fn forces(&mut self, at: StateRef<'_>, force: &mut [f64]);
 
-    /// Computes `out -= M(q) a`, for one column or for several columns side by side.
+    /// Computes `out -= M(q) a`, for one vector of accelerations or for several vectors side by side in SIMD
+    /// lanes.
     fn subtract_inertia<T: MatrixEntry>(&self, q: &[f64], a: &[T], out: &mut [T]);
 
-    /// Fills `matrix` with `mass M - damping D - K`.
+    /// Fills `matrix` with the iteration matrix `mass M - damping D - K`, with the factors `mass` and
+    /// `damping` of `shift`.
     fn tangent(&self, at: LoadedState<'_>, shift: StateShift, matrix: &mut Bordered);
 
     /// Fills the first matrix with `-K`, the second as [`Equations::tangent`] does.
@@ -45,10 +47,11 @@ pub trait Equations {
         matrix: &mut Bordered,
     );
 
-    /// Returns the largest absolute change of any coordinate, in units of the accuracy of Newton's method.
+    /// Returns the largest change of any coordinate in a Newton step, in units of the accuracy required of
+    /// Newton's method.
     fn newton_norm(&self, change: &[f64]) -> f64;
 
-    /// Returns the norm of the local error, in units of the error tolerance.
+    /// Returns the norm of the local error of a time step, in units of the error tolerance.
     fn error_norm(&self, error: &[f64]) -> f64;
 
     /// Computes input, output and dissipated power for the accelerations `a`.
@@ -70,7 +73,7 @@ pub trait Static: Equations {
 pub struct LoadedState<'a>(StateRef<'a>);
 
 impl<'a> LoadedState<'a> {
-    /// Returns the state.
+    /// Returns the coordinates and rates for which the loads were computed.
     pub const fn state(self) -> StateRef<'a> {
         self.0
     }
@@ -79,21 +82,21 @@ impl<'a> LoadedState<'a> {
 /// Equations of motion with their iteration matrix and their work counters.
 #[derive(Debug)]
 pub struct System<E> {
-    /// The equations.
+    /// Equations of motion of the system.
     pub equations: E,
     /// Work counters since the system was created.
     pub statistics: Statistics,
     matrix: Bordered,
 }
 
-/// Loads of a state, together with mutable access to the system that stores them.
+/// Access to the loads of a state, and to the system that stores them.
 #[derive(Debug)]
 pub struct Loads<'s, 'q, E> {
     system: &'s mut System<E>,
     at: LoadedState<'q>,
 }
 
-/// Loads kept after their state is released, while Newton's method corrects that state.
+/// Loads of a state that remain stored while Newton's method corrects that state.
 #[derive(Debug)]
 pub struct KeptLoads<'s, E> {
     equations: &'s E,
@@ -109,7 +112,7 @@ impl<E: Equations> KeptLoads<'_, E> {
 }
 
 impl<E: Equations> System<E> {
-    /// Creates a system and allocates its matrix.
+    /// Creates a system from its equations of motion and allocates its iteration matrix.
     pub fn new(equations: E) -> Self {
         Self {
             matrix: equations.matrix(),
@@ -118,7 +121,7 @@ impl<E: Equations> System<E> {
         }
     }
 
-    /// Returns the number of coordinates.
+    /// Returns the number of coordinates of the system.
     pub fn len(&self) -> usize {
         self.matrix.len()
     }
@@ -169,7 +172,7 @@ impl<E: Equations> System<E> {
         Ok(())
     }
 
-    /// Solves with the last factorisation, in place.
+    /// Solves a linear system with the last factorised matrix, in place.
     pub fn solve(&self, x: &mut [f64]) {
         self.matrix.solve(x);
     }
@@ -181,12 +184,12 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
         self.at.state()
     }
 
-    /// Returns the equations.
+    /// Returns the equations of motion that store the loads.
     pub const fn equations(&self) -> &E {
         &self.system.equations
     }
 
-    /// Returns the work counters.
+    /// Returns the work counters of the system.
     pub const fn statistics(&mut self) -> &mut Statistics {
         &mut self.system.statistics
     }
@@ -238,7 +241,7 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
         factorize(statistics, matrix)
     }
 
-    /// Factorises the matrix that [`Self::exact_tangent`] would fill.
+    /// Factorises the exact iteration matrix, as defined at [`Self::exact_tangent`].
     ///
     /// # Errors
     /// [`SingularPivot`] naming the unknown whose pivot vanished.
@@ -253,7 +256,7 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
         factorize(statistics, matrix)
     }
 
-    /// Computes the powers of the forces for the accelerations `a`.
+    /// Computes input, output and dissipated power for the accelerations `a`.
     pub fn powers(&self, a: &[f64]) -> Powers {
         self.system.equations.powers(self.at, a)
     }
@@ -265,7 +268,7 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
         }
     }
 
-    /// Solves with the last factorisation, in place.
+    /// Solves a linear system with the last factorised matrix, in place.
     pub fn solve(&self, x: &mut [f64]) {
         self.system.solve(x);
     }

@@ -38,7 +38,7 @@ pub enum Verdict {
     Complete,
     /// The simulation ended early.
     Failed {
-        /// Reason of the failure.
+        /// Reason why the simulation ended early.
         kind: Failure,
         /// Progress made before the failure.
         reached: Reached,

@@ -19,7 +19,7 @@ use simulation::system::System;
 #[global_allocator]
 static ALLOCATOR: dhat::Alloc = dhat::Alloc;
 
-/// Observer that counts the heap blocks allocated up to the second and up to the last sample.
+/// Test observer that counts heap blocks allocated by a run, up to its second and up to its last sample.
 #[derive(Default)]
 struct Blocks {
     first: Option<u64>,

@@ -18,7 +18,7 @@ enum Form {
     Dakota(dakota::Form),
 }
 
-/// All templates of a case.
+/// Templates of all input files of an external program.
 #[derive(Debug)]
 pub(super) struct Templates {
     all: Vec<Template>,
@@ -43,9 +43,8 @@ impl Templates {
         Ok(Self { all, widths })
     }
 
-    /// Returns path and text of every filled input file, for values by parameter name in the case's order. A
-    /// value is rounded to its parameter's narrowest PEST field in all files, so that every file holds the
-    /// same number.
+    /// Returns path and text of every filled input file, for given parameter values. A value is rounded to
+    /// its parameter's narrowest PEST field in all files, so that every file holds the same number.
     pub(super) fn filled(
         &self,
         values: &[(String, f64)],

@@ -6,7 +6,7 @@ use protocol::{
 };
 use std::collections::BTreeMap;
 
-/// Parsed rules for reading the output files.
+/// Parsed rules for extracting values from the output files of an external program.
 #[derive(Debug)]
 pub(super) struct Readings {
     all: Vec<(String, Form)>,
@@ -22,11 +22,11 @@ enum Form {
 /// Texts of the output files of one run of an external program, and the values read from them.
 #[derive(Debug, Default)]
 pub(super) struct Outputs {
-    /// Values by name, from PEST instructions, Dakota results and equations.
+    /// Values by name, extracted by PEST instructions, from Dakota results and by equations.
     pub(super) named: BTreeMap<String, f64>,
     /// Text of each output file, in the order of the readings.
     texts: Vec<String>,
-    /// Whether the program's results file itself reports a failure (Dakota's `fail`).
+    /// Whether the results file itself reports that the run failed (Dakota's `fail`).
     pub(super) is_fail: bool,
 }
 
@@ -57,7 +57,7 @@ impl Readings {
         lists.flatten().collect()
     }
 
-    /// Returns the names of the output files.
+    /// Returns the names of the output files that the program must write.
     pub(super) fn files(&self) -> impl Iterator<Item = &str> {
         self.all.iter().map(|(file, _)| file.as_str())
     }
@@ -174,7 +174,7 @@ pub(super) fn evaluate_equations(
     equations.iter().map(sum).collect()
 }
 
-/// Interpolates a curve, given by its abscissa points `at` and its values, linearly at the points `places`.
+/// Interpolates a curve (abscissa points `at`, ordinates `values`) linearly at the abscissa points `places`.
 fn resample(file: &str, at: &[f64], values: &[f64], places: &[f64]) -> Result<Vec<f64>, String> {
     if at.len() != values.len() || at.is_empty() {
         return Err(format!(

@@ -17,12 +17,12 @@ use std::{
 /// size of the ends of longer files.
 const MAX_WHOLE_BYTES: u64 = 256 << 10;
 const MAX_TAIL_BYTES: u64 = 64 << 10;
-/// Number of bytes kept from the end of a longer file.
+/// Number of bytes kept of the end of a file that is too long to be sent whole.
 const TAIL_BYTES: u64 = 16 << 10;
-/// Largest number of files that are listed.
+/// Largest number of files of a failed run that are listed in its failure.
 const MOST_FILES: usize = 1000;
 
-/// File or other entry found in the run's folder.
+/// File or other directory item found in the folder of a failed run.
 struct Found {
     path: String,
     bytes: u64,
@@ -107,7 +107,7 @@ fn list(root: &Path, below: &str, found: &mut Vec<Found>) -> io::Result<()> {
     Ok(())
 }
 
-/// Returns whether a file is unchanged from the case, or is the folder's lock.
+/// Returns whether a file of the run's folder is unchanged from the case, or is the folder's lock file.
 fn is_unchanged(root: &Path, one: &Found, own: &[File]) -> bool {
     let name = one.path.strip_prefix(super::scratch::WORK);
     let name = name.and_then(|rest| rest.strip_prefix('/'));

@@ -1,8 +1,8 @@
 //! Models that are external programs: input files, a process, output files.
 //!
 //! ```text
-//! values -> templates (fill) -> folder (scratch) -> process (run) -> readings -> curves (gather)
-//!                                                              \-> files of a failed run (left)
+//! values -> templates (fill) -> folder (scratch) -> process (run) -> output files -> curves (gather)
+//!                                                                \-> files of a failed run (leftover_files)
 //! ```
 //!
 //! The computer on which the worker runs decides which programs may be started: a case can only choose an

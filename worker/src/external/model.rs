@@ -41,7 +41,7 @@ pub(super) struct Prepared {
     place: PathBuf,
     /// Exit statuses that mean a failed run rather than a crash, with the failure kind of each.
     verdicts: Vec<(i32, Identifier)>,
-    /// Number of evaluations so far.
+    /// Number of evaluations performed so far.
     evaluations: AtomicU64,
     /// Number of failures whose folder contents were sent.
     sent: AtomicU64,
@@ -241,7 +241,7 @@ impl Prepared {
     }
 }
 
-/// Returns the observation of a run that the program itself reports as failed.
+/// Returns the outcome of a run that the program itself reports as failed, with the failure kind.
 fn failed(kind: Identifier) -> Observation {
     Observation {
         verdict: Verdict::Failed {

@@ -17,9 +17,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Interval at which the amount of output is checked.
+/// Interval at which the amount of output that a running program has written is checked.
 const POLL_INTERVAL: Duration = Duration::from_millis(500);
-/// Number of bytes shown from the end of a program's output; `LINES` is the limit in lines.
+/// Number of bytes shown from the end of a program's output; `LINES` is the largest number of lines shown.
 const LAST: u64 = 2000;
 const LINES: usize = 8;
 /// Environment variables of this process that are passed to every program.
@@ -141,7 +141,7 @@ fn watch(
     })
 }
 
-/// Describes an exit status, with the last lines of the program's output.
+/// Describes a program's exit status, with the last lines of its output.
 pub(super) fn describe_status(status: ExitStatus, scratch: &Scratch) -> String {
     // a shell says the signal that ended what it had started
     let of_child = status.code().filter(|code| (129..160).contains(code));

@@ -14,38 +14,37 @@ use std::{
     time::Duration,
 };
 
-/// Prefix of the names of all evaluation folders.
 const PREFIX: &str = "horsehead-";
 
-/// Name of the file in a working folder that is locked while the folder is in use; `KEPT` names the file that
-/// marks a folder as kept.
+/// Name of the file in a working folder that is locked while the folder is in use. `KEPT` is the name of the
+/// file that marks a folder to be kept for inspection.
 pub(super) const LOCK: &str = "lock";
 const KEPT: &str = "kept";
-/// Subfolder in which the program works.
+/// Name of the subfolder of a working folder in which the program runs.
 pub(super) const WORK: &str = "work";
 /// Age up to which a working folder without a lock file counts as still being created.
 const NEW: Duration = Duration::from_mins(1);
 
-/// Counter for the names of this process's folders.
+/// Counter from which the working folders of this process get distinct names.
 static NUMBER: AtomicU64 = AtomicU64::new(0);
 
 /// Working folder of one evaluation.
 #[derive(Debug)]
 pub(super) struct Scratch {
     root: PathBuf,
-    /// Lock that marks the folder as in use.
+    /// Lock file of the working folder, locked while the folder is in use.
     _lock: fs::File,
-    /// Whether the folder is kept when dropped.
+    /// Whether the working folder is kept for inspection when this value is dropped.
     kept: bool,
 }
 
-/// Returns the directory in which the working folders of a program's entry are created.
+/// Returns the directory in which the working folders for an allowed program are created.
 pub(super) fn place(entry: &AllowEntry) -> PathBuf {
     entry.folder.clone().unwrap_or_else(std::env::temp_dir)
 }
 
 impl Scratch {
-    /// Creates and locks a new folder.
+    /// Creates a new working folder and locks it.
     pub(super) fn new(place: &Path) -> io::Result<Self> {
         let make = |path: &Path| fs::DirBuilder::new().mode(0o700).create(path);
         let root = loop {
@@ -68,7 +67,7 @@ impl Scratch {
         Ok(scratch)
     }
 
-    /// Returns the program's working directory.
+    /// Returns the folder in which the program runs.
     pub(super) fn work(&self) -> PathBuf {
         self.root.join(WORK)
     }
@@ -87,7 +86,7 @@ impl Scratch {
         Ok(())
     }
 
-    /// Writes a file below the working directory; other paths are refused.
+    /// Writes a file below the program's working directory; a path that leads elsewhere is refused.
     pub(super) fn write(&self, path: &str, content: &[u8], mode: u32) -> io::Result<()> {
         let target = self.inside(path)?;
         if let Some(folder) = target.parent() {
@@ -104,7 +103,8 @@ impl Scratch {
         io::Write::write_all(&mut file, content)
     }
 
-    /// Returns a path below the working directory; other paths are refused.
+    /// Returns the absolute path of a file below the program's working directory; a path that leads elsewhere
+    /// is refused.
     pub(super) fn inside(&self, path: &str) -> io::Result<PathBuf> {
         if !is_below(Path::new(path)) {
             return Err(io::Error::other(format!(
@@ -114,12 +114,12 @@ impl Scratch {
         Ok(self.work().join(path))
     }
 
-    /// Returns the root of the folder, which contains lock, output and working directory.
+    /// Returns the path of the working folder, which contains lock, output and the program's directory.
     pub(super) fn root(&self) -> &Path {
         &self.root
     }
 
-    /// Returns the size of the folder's contents (bytes).
+    /// Returns the total size of the working folder's contents (bytes).
     pub(super) fn bytes(&self) -> u64 {
         bytes(&self.root)
     }

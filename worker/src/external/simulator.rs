@@ -1,4 +1,4 @@
-//! Simulator for external programs: one kind of model for each entry of this machine's list.
+//! Simulator for external programs: one kind of model for each program that this computer allows.
 use super::model::Prepared;
 use crate::simulator::{Model, Simulator};
 use exchange::allow::{self, AllowEntry, Allowed};
@@ -77,7 +77,7 @@ impl Simulator for Externals {
 }
 
 /// Returns a description of each entry in the list of allowed programs, for the worker's announcement; runs
-/// the entries' version commands, which may take time.
+/// the version command of each entry, which may take time.
 fn described() -> Vec<ModelDescriptor> {
     let allowed = allow::read(&allow::path()).unwrap_or_else(|problem| {
         tracing::warn!("the list of allowed programs cannot be read, so no external program will be started: {problem}");
@@ -92,8 +92,8 @@ fn described() -> Vec<ModelDescriptor> {
     described.collect()
 }
 
-/// Returns a digest of the output of an entry's version command, if it has one, to distinguish computers with
-/// different versions of the program.
+/// Returns a digest of the output of a program's version command, or of nothing without such a command, to
+/// distinguish computers with different versions of the program.
 fn digest(entry: &AllowEntry) -> String {
     let said = entry.version.split_first().map(|(program, arguments)| {
         let output = Command::new(program)

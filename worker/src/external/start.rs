@@ -9,7 +9,7 @@ use rustix::process::{
 };
 use std::{ffi::OsString, io, os::unix::process::CommandExt, process::Command};
 
-/// Program to execute, and its limits.
+/// Program to execute in place of this process, and its resource limits.
 #[derive(Clone, Debug, Args)]
 pub struct Start {
     /// Address space of the program \[MiB\]; 0 for no limit

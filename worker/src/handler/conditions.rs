@@ -73,7 +73,6 @@ fn concatenate_derivatives(
     Derivative::Curves { per, curves }
 }
 
-/// Flattens the curves of a residual's derivative into one.
 fn flatten(curves: Vec<Vec<f32>>) -> Vec<f32> {
     curves.into_iter().flatten().collect()
 }

@@ -1,4 +1,4 @@
-//! Evaluates a job to its outcome, for every kind of model: replies and scores.
+//! Evaluates a job of any kind of model to its outcome: a score or a specific reply.
 //!
 //! The outcome is a pure function of case and job; this module does not know slots or links.
 mod conditions;
@@ -36,7 +36,7 @@ impl Prepared {
         })
     }
 
-    /// Evaluates one job.
+    /// Evaluates one job of the case to its outcome.
     pub fn evaluate(&self, job: &Job) -> Outcome {
         match job {
             Job::Simulate(spec) => self.simulate(spec).into(),

@@ -1,4 +1,4 @@
-//! Job that does nothing: it serves to measure the message bus and needs no case.
+//! Job that does nothing, used to measure the message bus; it needs no case.
 use protocol::job::{Answer, Failure, Job, Outcome};
 use std::{thread, time::Duration};
 

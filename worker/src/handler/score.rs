@@ -1,4 +1,4 @@
-//! Compares a simulation with the recording of its condition.
+//! Compares a simulation with the measured record of its condition.
 //!
 //! A run that fails is graded: every complete run is better than a failure in motion (the later the better),
 //! which is better than a failure under static load (the more load carried the better).
@@ -8,13 +8,13 @@ use protocol::job::{
     to_single_precision,
 };
 
-/// Fitness of a failure in motion just before the end, far above the error of any complete run;
-/// `FAILED_UNDER_LOAD` is that of a failure just below full static load.
+/// Fitness assigned to a run that fails in motion just before its end, far above the error of any complete
+/// run; `FAILED_UNDER_LOAD` is assigned to one that fails just below full static load.
 const FAILED_IN_MOTION: f64 = 1e6;
 const FAILED_UNDER_LOAD: f64 = 1e7;
 
-/// Compares the curves of a run, one per channel of its condition in the channel's unit, with the recording;
-/// channels without a record are ignored.
+/// Compares the curves of a run, one per channel of its condition in the channel's unit, with the measured
+/// record; channels without a record are ignored.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] if the condition has no record, or none for the channels of the objective.
@@ -85,12 +85,13 @@ fn graded(reached: Reached) -> f64 {
 struct Compared<'a> {
     name: &'a str,
     score: ChannelScore,
-    /// Residual (measured minus simulated after offset removal), times the weights of the values.
+    /// Residual of the channel: measured minus simulated values after offset removal, times the channel's
+    /// weights.
     residual: Vec<f64>,
 }
 
-/// Returns the score of a channel and its residual (measured minus simulated after offset removal), times the
-/// weights.
+/// Compares a channel's simulated curve with its measured record; returns the score and the residual
+/// (measured minus simulated after offset removal), times the weights.
 fn compared(
     at: usize,
     channel: &Channel,
@@ -277,8 +278,8 @@ mod tests {
         assert!((fixed.mse - 2.5).abs() < 1e-15);
     }
 
-    /// Checks that derivatives of a residual equal the change of the residual when the curves change, with
-    /// and without offset removal.
+    /// Checks that derivatives of the objective's residual equal its change when the curves change, with and
+    /// without offset removal.
     #[test]
     fn derivatives_are_those_of_the_residual() {
         let record = |mean: [f64; 4]| ChannelRecord {

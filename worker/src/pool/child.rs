@@ -18,7 +18,7 @@ use std::{
     time::Duration,
 };
 
-/// Environment variable that marks all processes started by a slot process as belonging to it.
+/// Environment variable that marks a slot process and all processes started by it as belonging to the slot.
 const MARK: &str = "HORSEHEAD_SLOT_PROCESS";
 
 /// Counter of the slot processes started by this worker.
@@ -27,7 +27,7 @@ static NUMBER: AtomicU64 = AtomicU64::new(0);
 /// Processor time of a slot process since its start; all zero where the system does not report it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct ProcessorUsage {
-    /// Time for which the process had a processor.
+    /// Time for which the slot process had a processor.
     pub(super) computed: Duration,
     /// Time for which the process was ready without a processor, excluding a wait that is still going on.
     pub(super) waited: Duration,
@@ -86,7 +86,7 @@ impl Child {
         Ok(child)
     }
 
-    /// Sends a job to the process, preceded by the case if that is not the one sent last.
+    /// Sends a job to the slot process, preceded by its case unless that was the last case sent.
     pub(super) fn run(&mut self, job: Box<Job>, case: Option<&CaseBytes>) -> io::Result<()> {
         if let Some(case) = case.filter(|case| self.case != Some(case.hash)) {
             let message = ToSlot::Case(case.bytes.to_vec());
@@ -124,7 +124,7 @@ impl Child {
         look
     }
 
-    /// Ends the process and describes its end.
+    /// Ends the slot process and describes how it ended.
     pub(super) fn end(mut self) -> String {
         self.kill();
         let ended = self.process.wait();

@@ -15,9 +15,9 @@ use std::{
 };
 use tokio::sync::mpsc::UnboundedSender;
 
-/// Interval of a keeper's pulse, which shows that the thread is responsive.
+/// Interval at which a keeper thread shows that it is responsive.
 const PULSE: Duration = Duration::from_millis(500);
-/// Shortest pause before an overdue job that got no processor is checked again.
+/// Shortest pause before the keeper checks again a job that is past its deadline but waited for a processor.
 const MIN_RECHECK: Duration = Duration::from_millis(20);
 
 #[derive(Debug)]
@@ -49,7 +49,8 @@ struct Current {
     deadline: Duration,
     /// Time for which the slot's process had waited for a processor before this job.
     waited: Duration,
-    /// Processor time of the slot process at the last check for an overdue job; checks begin at the deadline.
+    /// Processor time that the slot process had used when the job was last checked after its deadline; `None`
+    /// before the first check.
     seen: Option<Duration>,
 }
 

@@ -1,4 +1,4 @@
-//! Tasks that a pool receives, and results that it returns.
+//! Tasks that the pool of slots receives, and results that it returns.
 use protocol::{
     id::ContentHash,
     job::{Job, Outcome},
@@ -6,12 +6,12 @@ use protocol::{
 };
 use std::{path::PathBuf, sync::Arc, time::Duration};
 
-/// Encoded case, in the form in which it is sent to slots.
+/// Encoded case with its content hash, as sent to slot processes.
 #[derive(Clone, Debug)]
 pub struct CaseBytes {
     /// Content hash of the case.
     pub hash: ContentHash,
-    /// Encoded case.
+    /// Bytes of the encoded case.
     pub bytes: Arc<[u8]>,
 }
 
@@ -37,10 +37,10 @@ pub struct Task {
     pub case: Option<CaseBytes>,
 }
 
-/// Notification that a slot is free again.
+/// Notification that a slot has finished its job and is free again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Freed {
-    /// Index of the slot.
+    /// Index of the slot that is free again.
     pub slot: usize,
     /// Attempt that the slot worked on.
     pub attempt: Attempt,

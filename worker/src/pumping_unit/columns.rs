@@ -15,9 +15,9 @@ use simulation::{
     sensitivity::{self, Coefficient, Column, ColumnOrigin, DerivativePlan, PlanError},
 };
 
-/// Returns the columns that the reference individual of a case is differentiated by, one of each kind: a
-/// coefficient, a size and a shape parameter of an effect, and a generic force. Effects of the case keep
-/// their values.
+/// Returns the derivatives that every worker computes for the reference individual of a case, one of each
+/// kind: by a coefficient, by a size and a shape parameter of an effect, and by a generic force. Effects of
+/// the case keep their values.
 pub(super) fn reference(case: &Case) -> Vec<job::Column> {
     let present = |effect: &str| case.effects.iter().any(|own| own.id == effect);
     let mut shape = job::Column::new("pivot_friction.creep");
@@ -45,15 +45,14 @@ pub(super) fn reference(case: &Case) -> Vec<job::Column> {
     .collect()
 }
 
-/// Columns (derivatives) of a job, planned on the machine that it simulates.
+/// Derivatives that a job requests, planned on the machine that it simulates.
 pub(super) struct Columns {
-    /// Plan by which the simulation computes the columns.
     pub(super) plan: DerivativePlan,
     per: Vec<Per>,
 }
 
 impl Columns {
-    /// Plans the columns of a job; `None` for a job without columns.
+    /// Plans the derivatives that a job requests; `None` for a job without derivatives.
     ///
     /// # Errors
     /// [`Failure::Misconfigured`] naming the first column that cannot be requested.
@@ -91,7 +90,8 @@ impl Columns {
         Ok(Some(Self { plan, per }))
     }
 
-    /// Converts the computed columns to protocol derivatives, with a curve for each channel of a condition.
+    /// Converts the computed derivatives to those of the protocol, with a curve for each channel of a
+    /// condition.
     pub(super) fn into_derivatives(
         self,
         case: &Case,
@@ -106,8 +106,8 @@ impl Columns {
     }
 }
 
-/// Converts a column of the protocol to that of the simulation, and returns the unit per which its derivative
-/// is taken.
+/// Converts a requested derivative from the protocol's type to the simulation's, and returns the unit per
+/// which it is taken.
 fn named((at, column): (usize, &job::Column)) -> Result<(Column, Per), Failure> {
     let job::Column { name, values } = column;
     if let Some(own) = pumping_unit::Coefficient::named(name) {

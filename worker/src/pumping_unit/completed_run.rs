@@ -1,4 +1,4 @@
-//! Completed simulation, before it is turned into a reply.
+//! Completed simulation of a pumping unit, before its conversion to a reply.
 use super::{columns::Columns, machines::Machines};
 use super::{
     genes::rope_law,
@@ -15,21 +15,22 @@ use simulation::{
 };
 use std::time::Instant;
 
-/// Results of a completed simulation.
+/// Results of a completed simulation of a pumping unit.
 pub(super) struct CompletedRun {
     pub(super) verdict: Verdict,
     pub(super) counters: Counters,
     pub(super) curves: Curves,
     pub(super) result: RunResult,
-    /// Lowest design position of the suspension \[m\].
+    /// Height of the suspension point at its lowest design position \[m\].
     pub(super) lowest_suspension_m: f64,
     pub(super) wall_s: f64,
-    /// Derivatives by the columns of the job; empty if the run failed.
+    /// Derivatives that the job requests; empty if the run failed.
     pub(super) columns: Vec<Derivative>,
 }
 
 impl CompletedRun {
-    /// Simulates an individual with the columns of the job, recording the curves that `recorder` selects.
+    /// Simulates an individual with the derivatives that the job requests, recording the curves that
+    /// `recorder` selects.
     ///
     /// # Errors
     /// [`Failure::Misconfigured`] when condition, genes, effects or discretisation do not fit the case.

@@ -63,7 +63,7 @@ pub(super) fn run(
     })
 }
 
-/// Returns the number of samples between two recorded shapes; 0 where no pictures are wanted.
+/// Returns the number of samples between two recorded shapes of the machine; 0 if no shapes are requested.
 fn samples_apart(pictures: u32, step_deg: f64) -> usize {
     if pictures > 0 {
         #[expect(

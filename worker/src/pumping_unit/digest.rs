@@ -1,4 +1,4 @@
-//! Digest of this build's numerics.
+//! Digest of this build's numerics, which shows whether two workers compute the same bits.
 use super::effect;
 use protocol::id::ContentHash;
 use std::sync::OnceLock;

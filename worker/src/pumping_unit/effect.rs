@@ -1,4 +1,5 @@
-//! Effects: conversion of descriptions to the protocol, and of settings to the simulation.
+//! Conversion of effects between protocol and simulation: descriptions to the protocol, settings to the
+//! simulation.
 use super::genes::individual;
 use protocol::announce::{self, EffectDescriptor, ParameterDescriptor};
 use protocol::case::{Case, EffectSetting};
@@ -96,7 +97,7 @@ pub(super) fn check_units(
     Ok(())
 }
 
-/// Returns the case's effects with the parameter values given by an individual's genes.
+/// Returns the case's effects with the parameter values that an individual's searched values give them.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] when the number of values differs from the number of genes, or a gene is a
@@ -155,7 +156,8 @@ pub(super) fn check_genes(case: &Case) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Rewords a failure of an effect's setting so that it refers to the search interval of a gene.
+/// Rewords a failure caused by an effect's setting so that it names the search interval of the unknown
+/// instead.
 fn of_search(failure: Failure, label: &str) -> Failure {
     if let Failure::Misconfigured { field, problem } = failure {
         return Failure::misconfigured(

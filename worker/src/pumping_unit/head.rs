@@ -58,7 +58,8 @@ pub(super) fn curves(rows: &[[f64; 4]]) -> Vec<Vec<f64>> {
     (0..4).map(|gauge| line(gauge).collect()).collect()
 }
 
-/// Returns first station and spacing \[rad\] of a table's stations, which must be equally spaced.
+/// Returns the first station and the spacing \[rad\] of a table over the head's arc, whose stations must be
+/// equally spaced.
 fn grid(field: &str, degrees: &[f64]) -> Result<(f64, f64), Failure> {
     let [first, second, ..] = degrees else {
         return Err(Failure::misconfigured(field, "needs at least two stations"));

@@ -1,4 +1,4 @@
-//! Construction of the simulated machine of a case under one of its conditions.
+//! Construction of the machine to simulate from a case and one of its conditions.
 use super::{effect, head::head, twins};
 use protocol::{
     case::{EffectSetting, merged},
@@ -16,11 +16,11 @@ pub fn machine(unit: &PumpingUnit, condition: usize) -> Result<Machine, Failure>
     build(unit, condition, &unit.case.effects)
 }
 
-/// Builds the machine of an individual: the case's effects take the values of the genes, and effects of the
-/// job replace effects of the case with the same id.
+/// Builds the machine of an individual: the case's effects take the values of the searched unknowns (genes),
+/// and effects of the job replace effects of the case with the same id.
 ///
 /// # Errors
-/// As [`machine`]; an effect that is refused is named by its place in the merged list.
+/// As [`machine`]; an effect that is refused is named by its position in the merged list.
 pub fn machine_with(unit: &PumpingUnit, individual: &Individual) -> Result<Machine, Failure> {
     let own = effect::of_individual(&unit.case, &individual.genes)?;
     build(
@@ -114,7 +114,7 @@ pub(super) fn description(
     })
 }
 
-/// Returns the load card after smoothing \[N\].
+/// Returns a condition's load card after smoothing \[N\].
 fn card(condition: &WorkingCondition) -> Vec<f64> {
     let load = &condition.card.load_n;
     let n = load.len();

@@ -16,8 +16,8 @@ use std::borrow::Cow;
 #[derive(Debug)]
 pub(super) struct Machines {
     pub(super) unit: PumpingUnit,
-    /// Machines with the case's effects at their stated values and the case's discretisation, one per
-    /// condition.
+    /// Prebuilt machines, one per condition: effects at the values that the case states, discretisation of
+    /// the case.
     plain: Vec<Machine>,
 }
 

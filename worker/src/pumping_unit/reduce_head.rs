@@ -1,4 +1,4 @@
-//! Modal reduction of the back head, requested by a job: plain data in, plain data out, without a case.
+//! Modal reduction of a back head, requested by a job; mesh and result are plain data, and no case is needed.
 use protocol::pumping_unit::{Influence, TwinHead};
 use protocol::{
     job::Failure,
@@ -14,7 +14,7 @@ use std::time::Instant;
 
 const MEGAPASCAL_PER_PASCAL: f64 = 1e-6;
 
-/// Runs a modal reduction.
+/// Runs the modal reduction of a back head.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] saying why the mesh cannot be reduced.
@@ -141,7 +141,7 @@ fn four(pascal: &[f64]) -> [f64; 4] {
     four
 }
 
-/// Converts a table of readings of four gauges, row by row, from pascals to megapascals.
+/// Converts a table of readings of four gauges from pascals to megapascals.
 fn table(rows: &[Vec<f64>]) -> Vec<[f64; 4]> {
     rows.iter().map(|row| four(row)).collect()
 }

@@ -1,10 +1,10 @@
-//! Case with another discretisation of the same machine.
+//! Refinement of a case: the same machine with another discretisation of its ropes.
 use protocol::{
     job::Failure,
     pumping_unit::{Discretisation, PumpingUnit},
 };
 
-/// Returns a case with another discretisation.
+/// Returns a case whose ropes are divided into cylinders of another length.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] when cylinders of that length do not fill the ropes exactly.

@@ -4,7 +4,7 @@ use protocol::pumping_unit::failure;
 use simulation::statistics::Statistics;
 use simulation::verdict;
 
-/// Converts a verdict to that of the protocol.
+/// Converts a simulation's verdict to the protocol's type.
 pub(super) const fn verdict(verdict: &verdict::Verdict) -> job::Verdict {
     match verdict {
         verdict::Verdict::Complete => job::Verdict::Complete,
@@ -26,7 +26,7 @@ pub(super) const fn verdict(verdict: &verdict::Verdict) -> job::Verdict {
     }
 }
 
-/// Converts work counters to those of the protocol.
+/// Converts a simulation's work counters to the protocol's type.
 pub(super) const fn counters(statistics: &Statistics) -> Counters {
     Counters {
         steps: statistics.steps,

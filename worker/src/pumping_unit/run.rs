@@ -1,4 +1,4 @@
-//! Settings of a run: start, sampling and integration.
+//! Settings of a pumping unit's run: start, sampling and integration.
 use protocol::pumping_unit::{Discretisation, Integrator, Machine};
 use simulation::integrator::method::Method;
 use simulation::integrator::tableau::{ESDIRK4, TR_BDF2};

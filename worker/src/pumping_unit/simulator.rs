@@ -1,4 +1,4 @@
-//! Pumping unit as a [`Simulator`], one kind of model among others.
+//! Pumping unit as a [`Simulator`], one of the kinds of model that a worker can simulate.
 use super::{
     columns, completed_run::CompletedRun, curves, digest, effect, machines::Machines, reduce_head,
 };

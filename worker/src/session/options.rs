@@ -3,14 +3,14 @@ use crate::simulator::Simulators;
 use protocol::id::WorkerId;
 use std::{path::PathBuf, time::Duration};
 
-/// Options of a session.
+/// Options of a worker's session with its coordinator.
 #[derive(Clone, Debug)]
 pub struct SessionOptions {
     /// Kinds of model that the worker simulates.
     pub simulators: Simulators,
     /// Id of the worker.
     pub id: WorkerId,
-    /// Number of jobs computed at a time.
+    /// Number of jobs that the worker computes at a time.
     pub slots: usize,
     /// Program whose `slot` subcommand runs as the slot process; usually the worker's own executable.
     pub program: PathBuf,
@@ -22,17 +22,17 @@ pub struct SessionOptions {
     pub embedded: bool,
 }
 
-/// Reason why a session ended.
+/// Reason why a worker's session ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Ending {
     /// The worker was asked to end, for example by a signal.
     Asked,
     /// The run to which an embedded worker belongs is over.
     RunOver,
-    /// There was no work during the idle timeout.
+    /// The worker had no work during the idle timeout.
     Idle,
-    /// The coordinator refused the worker, for this reason.
+    /// The coordinator refused the worker, with this message as the reason.
     Refused(String),
-    /// The link is closed.
+    /// The link to the coordinator is closed.
     Unlinked,
 }

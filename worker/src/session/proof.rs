@@ -18,19 +18,19 @@ use protocol::{
 };
 use std::time::Duration;
 
-/// Attempt id of the reference individual; no coordinator gives it to a job.
+/// Attempt id under which the reference individual runs; no coordinator gives it to a job.
 pub(super) const ATTEMPT: Attempt = Attempt {
     job: JobId(u64::MAX),
     attempt: AttemptId(u32::MAX),
 };
 
-/// Time limit of the reference individual.
+/// Time limit for computing the reference individual.
 const DEADLINE: Duration = Duration::from_mins(10);
 
 /// Progress of the proof that this worker computes correct results.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Progress {
-    /// The proof is still to be computed.
+    /// The proof has yet to be computed.
     Missing,
     /// A slot is computing the proof.
     Running,

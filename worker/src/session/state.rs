@@ -23,10 +23,10 @@ use std::{
 };
 use tokio::task::{JoinError, JoinSet};
 
-/// Interval of the heartbeats.
+/// Interval at which a worker sends heartbeats to the coordinator.
 const HEARTBEAT_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Consequence of a message: continue or end.
+/// Consequence of a message for the session: continue or end.
 #[derive(Debug)]
 pub(super) enum Step {
     Go,
@@ -391,7 +391,7 @@ impl State {
         }
     }
 
-    /// Discards queue, results and running jobs of a run that is over.
+    /// Discards queue, results and running jobs, because the run they belong to is over.
     fn forget(&mut self) {
         self.admitted = false;
         self.waiting.clear();

@@ -9,7 +9,7 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-/// Allow-list entry as a case proposes it.
+/// Allow-list entry that a case proposes, so that a machine's workers may run the case's program.
 #[derive(Debug)]
 pub struct EntryProposal {
     /// Name of the allow-list entry that the case refers to.

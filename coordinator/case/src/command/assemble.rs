@@ -444,7 +444,7 @@ impl Assembly<'_> {
         self.model.verdicts.iter().map(verdict).collect()
     }
 
-    /// Converts a problem in a template or an instruction file to a case error.
+    /// Converts a problem in a PEST template or instruction file to a case error.
     fn problem(&self, way: &[DocumentStep<'_>], problem: &Problem) -> CaseError {
         let place = problem
             .line

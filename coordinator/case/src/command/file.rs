@@ -2,7 +2,7 @@
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::PathBuf};
 
-/// Part of a case file that only the kind `command` reads.
+/// Part of a case file that is read only for the kind `command`, whose models are programs of the user's own.
 #[derive(Debug, Deserialize)]
 pub(super) struct CommandCaseFile {
     pub(super) model: ModelEntry,
@@ -38,8 +38,8 @@ pub(super) struct ModelEntry {
     pub(super) parameters: BTreeMap<String, ParameterEntry>,
 }
 
-/// Input file that is written for every individual; exactly one of `template`, `braces` and `dakota` states
-/// its form.
+/// Input file that is written for each set of parameter values before the program runs; exactly one of
+/// `template`, `braces` and `dakota` states its form.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct InputEntry {
@@ -49,7 +49,7 @@ pub(super) struct InputEntry {
     pub(super) dakota: Option<String>,
 }
 
-/// Output file that the program writes.
+/// Output file that the program writes, with the form in which it is read.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct OutputEntry {
@@ -66,7 +66,7 @@ pub(super) struct EquationEntry {
     pub(super) terms: Vec<TermEntry>,
 }
 
-/// Term of an equation: a parameter with its factor.
+/// Term of an equation: a parameter, or its logarithm, multiplied by a factor.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TermEntry {
@@ -76,7 +76,7 @@ pub(super) struct TermEntry {
     pub(super) log: bool,
 }
 
-/// Name, factor and offset with which an unknown is written.
+/// Name, factor and offset with which an unknown is written to the program's input files.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ParameterEntry {
@@ -91,32 +91,32 @@ const fn one() -> f64 {
     1.0
 }
 
-/// Fields of a condition that only the kind `command` reads.
+/// Keys of a `[[conditions]]` table that only the kind `command` reads.
 #[derive(Debug, Deserialize)]
 pub(super) struct ConditionEntry {
     #[serde(default)]
     pub(super) values: BTreeMap<String, f64>,
 }
 
-/// Fields of a channel that only the kind `command` reads.
+/// Keys of a `[[channels]]` table that only the kind `command` reads.
 #[derive(Debug, Deserialize)]
 pub(super) struct ChannelEntry {
     pub(super) name: String,
     pub(super) source: Option<SourceEntry>,
 }
 
-/// Source of a channel's values.
+/// Source of a channel's values in the program's output: named values, a table column or a JSON pointer.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SourceEntry {
-    /// Names of single values, one for each abscissa point.
+    /// Names of single output values, one for each abscissa point of the channel.
     pub(super) named: Option<Vec<String>>,
-    /// Output file with the values.
+    /// Name of the output file from which the channel's values are read.
     pub(super) file: Option<String>,
-    /// Column of the output table.
+    /// Name of the output table's column with the channel's values.
     pub(super) column: Option<String>,
-    /// JSON pointer to the values in the output file.
+    /// JSON pointer to the channel's values in the output file.
     pub(super) values: Option<String>,
-    /// Column or JSON pointer of the abscissa.
+    /// Column or JSON pointer of the abscissa values that belong to the channel's values.
     pub(super) at: Option<String>,
 }

@@ -13,7 +13,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Maximum number of files of a case.
+/// Maximum number of files that a case may send to the workers.
 const MOST_FILES: usize = 10_000;
 
 /// Reads the files and folders that a case names, sorted by path and without duplicates.

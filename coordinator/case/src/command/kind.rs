@@ -18,10 +18,11 @@ use protocol::{
     wire,
 };
 
-/// Maximum deadline of one run (s): a week.
+/// Maximum deadline that a case may state for one run of its program (s): a week.
 const LONGEST_S: f64 = 604_800.0;
 
-/// Maximum of the tolerance between machines, as a share of a channel's root mean square.
+/// Upper limit of the `reference_tolerance` that a case may state for differences between machines, as a
+/// share of a channel's root mean square.
 const MOST_TOLERANCE: f64 = 1.0;
 
 /// Kind of model for programs of the user's own.

@@ -23,13 +23,14 @@ const NOISE_TO_STEP_LOG2: f64 = 10.0;
 /// Channel of a case with its measured record, as read from the files.
 pub(super) struct ReadChannel {
     pub(super) channel: Channel,
-    /// Values of each measured cycle; empty for a channel without a record.
+    /// Measured values of the channel, cycle by cycle; empty for a channel without a record.
     pub(super) cycles: Vec<Vec<f64>>,
     /// Part of the channel that is held out from the fits of a diagnosis.
     pub(super) held_out: HeldOutEntry,
-    /// Correlation of the noise between successive values, if stated.
+    /// Correlation of the channel's noise between successive values, if the case states it.
     pub(super) correlation: Option<f64>,
-    /// Standard deviation of the model error, below which no model is expected to fit, if stated.
+    /// Standard deviation of the model error of this channel, below which no model is expected to fit, if the
+    /// case states it.
     pub(super) model_error: Option<f64>,
     /// Name of the record's file and of its condition, if the folder of `--measured` lacks the file.
     pub(super) missing: Option<(String, String)>,
@@ -66,7 +67,7 @@ impl RecordSources<'_> {
     }
 }
 
-/// Reads every channel.
+/// Reads every channel of the case, with its measured record if it has one.
 ///
 /// # Errors
 /// Returns an error for an unknown condition, an invalid noise or spacing, and any fault of a record.
@@ -97,7 +98,7 @@ pub(super) fn read(
     entries.iter().enumerate().map(read).collect()
 }
 
-/// Channel entry of the case file with its index.
+/// `[[channels]]` table of the case file with its index, for reading and checking it.
 struct ChannelReader<'a> {
     document: &'a Document,
     index: usize,
@@ -216,7 +217,7 @@ impl ChannelReader<'_> {
         ))
     }
 
-    /// Checks the stated noise correlation and model error.
+    /// Checks that the noise correlation and the model error that a channel states are in range.
     fn check_errors(&self) -> Result<(), CaseError> {
         let entry = self.entry;
         let correlation = entry.correlation.filter(|rho| !(0.0..1.0).contains(rho));
@@ -242,7 +243,7 @@ impl ChannelReader<'_> {
         Ok(())
     }
 
-    /// Returns the abscissa points and the measured values at them.
+    /// Returns the abscissa points of the channel and the measured values at them, cycle by cycle.
     fn places_and_cycles(
         &self,
         place: &RecordSources<'_>,
@@ -301,7 +302,8 @@ impl ChannelReader<'_> {
         Ok(read)
     }
 
-    /// Returns equally spaced abscissa points.
+    /// Returns equally spaced abscissa points from the first point, the spacing and the number that the case
+    /// states.
     fn spaced(&self, points: PointsEntry) -> Result<Vec<f64>, CaseError> {
         let PointsEntry { first, step, count } = points;
         let ascends = step > 0.0 && step.is_finite() && first.is_finite();

@@ -10,9 +10,9 @@ use toml::Table;
 /// Model-specific part of a case, which is passed on to the model as TOML text.
 #[derive(Serialize)]
 struct ModelSettingsToml<'a> {
-    /// Table `[model]` without `kind`.
+    /// Table `[model]` of the case file without its key `kind`.
     model: &'a Table,
-    /// Tables `[[conditions]]` without `name`.
+    /// Tables `[[conditions]]` of the case file without their key `name`.
     conditions: Vec<&'a Table>,
 }
 

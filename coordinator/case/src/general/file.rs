@@ -5,7 +5,7 @@ use serde::Deserialize;
 use std::path::PathBuf;
 use toml::Table;
 
-/// Whole case file.
+/// Content of a `case.toml` in its general form.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CaseFile {
@@ -21,7 +21,7 @@ pub(super) struct CaseFile {
     pub(super) effects: Vec<CaseEffect>,
 }
 
-/// Kind of the model, and the settings that only the model interprets.
+/// `[model]` table: kind of the model, and the settings that only the model interprets.
 #[derive(Debug, Deserialize)]
 pub(super) struct ModelEntry {
     pub(super) kind: String,
@@ -48,12 +48,13 @@ pub(super) struct UnknownEntry {
     pub(super) tie: Option<Tie>,
     pub(super) prior: Option<PriorEntry>,
     pub(super) valley: Option<Valley>,
-    /// Finite-difference step: a share of the value on a logarithmic scale, otherwise in the unknown's unit.
+    /// Finite-difference step for derivatives by the unknown: a share of the value on a logarithmic scale,
+    /// otherwise in the unknown's unit.
     pub(super) difference: Option<f64>,
     pub(super) suspect: Option<String>,
 }
 
-/// Condition, with settings that only the model interprets.
+/// `[[conditions]]` table: a condition, with settings that only the model interprets.
 #[derive(Debug, Deserialize)]
 pub(super) struct ConditionEntry {
     pub(super) name: String,
@@ -64,7 +65,7 @@ pub(super) struct ConditionEntry {
     pub(super) own: Table,
 }
 
-/// Channel: a quantity under one condition.
+/// `[[channels]]` table: a quantity under one condition.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ChannelEntry {
@@ -74,12 +75,12 @@ pub(super) struct ChannelEntry {
     pub(super) condition: String,
     pub(super) abscissa: AbscissaEntry,
     pub(super) noise: Option<f64>,
-    /// Correlation of the noise between successive values.
+    /// Correlation of the channel's noise between successive values.
     pub(super) correlation: Option<f64>,
-    /// Standard deviation of the model error, below which no model is expected to fit.
+    /// Standard deviation of the model error of the channel, below which no model is expected to fit.
     pub(super) model_error: Option<f64>,
-    /// Treatment of the sensor's zero: compare absolute values (fixed), or values after removal of the mean
-    /// difference (free); that of the objective unless stated.
+    /// Treatment of the sensor's zero for this channel: whether absolute values are compared (fixed), or
+    /// values after removal of the mean difference (free); the objective's treatment unless stated.
     pub(super) offset: Option<Offset>,
     /// Part of the record that is held out from the fits of a diagnosis.
     #[serde(default)]
@@ -94,13 +95,13 @@ pub(super) struct ChannelEntry {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(untagged)]
 pub(super) enum HeldOutEntry {
-    /// Whole record if true, nothing if false.
+    /// Boolean form: the whole record is held out if true, none of it if false.
     Whole(bool),
-    /// Segment of the abscissa, including its ends.
+    /// Interval of the abscissa, including its ends, whose values are held out.
     Segment(SegmentEntry),
 }
 
-/// Segment of an abscissa.
+/// Interval of a channel's abscissa that is held out from the fits.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SegmentEntry {
@@ -114,7 +115,7 @@ impl Default for HeldOutEntry {
     }
 }
 
-/// Abscissa of a channel.
+/// Abscissa of a channel: its name, unit, period and points.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AbscissaEntry {
@@ -125,7 +126,7 @@ pub(super) struct AbscissaEntry {
     pub(super) points: Option<PointsEntry>,
 }
 
-/// Equally spaced abscissa points.
+/// Equally spaced abscissa points: the first point, the spacing and the number.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PointsEntry {
@@ -134,24 +135,24 @@ pub(super) struct PointsEntry {
     pub(super) count: u32,
 }
 
-/// File and columns of a channel's record.
+/// File of a channel's measured record, and the columns to be read from it.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RecordEntry {
     pub(super) file: PathBuf,
-    /// Name of the column with the abscissa points.
+    /// Name of the record's column with the abscissa points.
     pub(super) at: String,
-    /// Name of the column with the values.
+    /// Name of the record's column with the measured values.
     pub(super) column: String,
-    /// Name of the column with the cycle numbers.
+    /// Name of the record's column with the cycle numbers.
     pub(super) cycle: Option<String>,
-    /// Name of the column with the weights of the values.
+    /// Name of the record's column with the weights of the values.
     pub(super) weight: Option<String>,
-    /// Filter for the rows that belong to this channel.
+    /// Filter for the rows of the record file that belong to this channel.
     pub(super) rows: Option<RowsEntry>,
 }
 
-/// Filter for table rows: those with the text `is` in a column.
+/// Filter for rows of a record file: those with the text `is` in a column are read.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RowsEntry {

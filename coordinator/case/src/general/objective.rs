@@ -79,7 +79,8 @@ pub(super) fn read(
     })
 }
 
-/// Returns the indices of the named conditions; refuses duplicates and held-out conditions.
+/// Returns the indices of the conditions that the objective names; refuses duplicates and held-out
+/// conditions.
 fn conditions_of(
     document: &Document,
     wanted: &[String],
@@ -112,7 +113,8 @@ fn conditions_of(
     Ok(found)
 }
 
-/// Checks that each condition of the objective has a record of at least one term.
+/// Checks that each condition of the objective has a measured record of at least one of the objective's
+/// channels.
 fn check_measured(
     document: &Document,
     terms: &[TermEntry],
@@ -144,7 +146,8 @@ fn check_measured(
     Ok(())
 }
 
-/// Checks that a term names a measured channel of the conditions, only once and with a positive weight.
+/// Checks that a term of the objective names a measured channel of the conditions, only once and with a
+/// positive weight.
 fn check_term(
     document: &Document,
     terms: &[TermEntry],

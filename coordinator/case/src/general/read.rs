@@ -66,7 +66,7 @@ pub fn read(source: &RecordFolder<'_>) -> Result<Loaded, CaseError> {
     })
 }
 
-/// Returns the record of a condition with each cycle separately; `None` if nothing was measured.
+/// Returns the measured record of a condition with each cycle separately; `None` if nothing was measured.
 ///
 /// # Errors
 /// Returns an error if the channels of the condition have different numbers of cycles.

@@ -120,7 +120,7 @@ fn check_weights(
     Ok(())
 }
 
-/// Returns the index of the table row at which each cycle begins.
+/// Returns for each cycle of a record the index of the table row at which it begins.
 fn begins(
     path: &Path,
     table: &CsvTable,

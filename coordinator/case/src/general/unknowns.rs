@@ -9,7 +9,7 @@ use super::{
 };
 use protocol::case::{Scale, Unknown, check_unknowns};
 
-/// Reads the unknowns.
+/// Reads the unknowns of a case file.
 ///
 /// # Errors
 /// Returns an error for a name with characters that are not allowed, a duplicate name, and everything that

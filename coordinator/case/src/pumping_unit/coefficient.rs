@@ -4,7 +4,7 @@ use super::{recommended::Formula, schema::CaseFile};
 use protocol::pumping_unit::Coefficient;
 use std::f64::consts::PI;
 
-/// Isotropic elastic material.
+/// Elastic constants of an isotropic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Elastic {
     /// Young's modulus \[Pa\].

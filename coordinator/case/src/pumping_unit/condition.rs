@@ -18,7 +18,7 @@ use protocol::{
 };
 use std::path::{Path, PathBuf};
 
-/// Everything from which the conditions of a pumping-unit case are read.
+/// Inputs from which the working conditions of a pumping-unit case are read.
 #[derive(Debug, Clone, Copy)]
 struct Conditions<'a> {
     /// Folder of the case, and the folder whose cards and records of the same names replace those of the
@@ -27,7 +27,7 @@ struct Conditions<'a> {
     file: &'a CaseFile,
 }
 
-/// Condition with its working data, record and notes.
+/// Working condition of a pumping unit as read from its files, with its gauge record and notes.
 #[derive(Debug)]
 pub(super) struct ReadCondition {
     pub(super) condition: Condition,
@@ -62,7 +62,7 @@ pub(super) fn read_all(
 }
 
 impl Conditions<'_> {
-    /// Reads a condition with its load card and record.
+    /// Reads a working condition with its load card and gauge record.
     fn condition(&self, index: usize) -> Result<ReadCondition, CaseError> {
         let Some(entry) = self.file.conditions.get(index) else {
             return Err(damaged(

@@ -17,7 +17,7 @@ use protocol::{
 };
 use std::{fmt, path::Path};
 
-/// Key figures of a case.
+/// Key figures of a pumping-unit case, for the summary of `horsehead case check`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeyFigures {
     /// Name of the machine in the case.
@@ -37,9 +37,9 @@ pub struct KeyFigures {
     pub head_mass_kg: f64,
     /// Unknowns of the case.
     pub genes: Vec<Unknown>,
-    /// Effects beyond the baseline model.
+    /// Effects that the case adds to the baseline model.
     pub effects: Vec<CaseEffect>,
-    /// Key figures of each condition.
+    /// Key figures of each working condition.
     pub conditions: Vec<ConditionFigures>,
     /// Name of the calibrated condition, and the terms of its objective.
     pub objective: (String, Vec<Term>),
@@ -211,7 +211,7 @@ impl fmt::Display for KeyFigures {
 }
 
 impl KeyFigures {
-    /// Writes the lines on machine, ropes, head, unknowns and effects.
+    /// Writes the lines of the summary about machine, ropes, head, unknowns and effects.
     fn write_machine(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Envelope {
             beam_deg: [low, high],

@@ -8,7 +8,7 @@ use crate::{
 use protocol::pumping_unit::{ModalHead, TwinRopes};
 use std::path::Path;
 
-/// Flexible head as read from its files.
+/// Flexible back head of a pumping unit as read from its files: modes, influence lines and mesh.
 pub(super) struct ReadHead {
     pub(super) head: ModalHead,
     pub(super) provenance: head::Provenance,
@@ -23,7 +23,7 @@ pub(super) struct ReadHead {
     pub(super) stale: Option<CaseError>,
 }
 
-/// Reads modes, influence lines and, if the case names one, the mesh that they belong to.
+/// Reads the back head's modes and influence lines and, if the case names one, the mesh that they belong to.
 pub(super) fn read(
     folder: &Path,
     document: &Document,

@@ -163,7 +163,7 @@ fn valley() -> Valley {
     }
 }
 
-/// Checks that a unit has the dimension of a coefficient.
+/// Checks that the unit stated for a rope or contact coefficient has the right dimension.
 pub(super) fn check_unit(
     document: &Document,
     way: &[DocumentStep<'_>],
@@ -186,7 +186,7 @@ pub(super) fn check_unit(
     ))
 }
 
-/// Checks that a coefficient is positive and finite, as its logarithmic scale requires.
+/// Checks that a rope or contact coefficient is positive and finite, as its logarithmic scale requires.
 pub(super) fn check_value(
     document: &Document,
     way: &[DocumentStep<'_>],

@@ -38,9 +38,9 @@ struct ModesFile {
 pub struct GaugePlace {
     /// Coordinate along the machine, from the beam pivot towards the well \[m\].
     pub x_m: f64,
-    /// Upward coordinate \[m\].
+    /// Upward coordinate of the gauge \[m\].
     pub y_m: f64,
-    /// Out-of-plane coordinate \[m\].
+    /// Out-of-plane coordinate of the gauge \[m\].
     pub z_m: f64,
     /// Length of the strain gauge's measuring grid \[m\].
     pub length_m: f64,
@@ -105,7 +105,7 @@ pub(super) fn read(modes: &Path, influence: &Path) -> Result<(ModalHead, Provena
     Ok((head, provenance))
 }
 
-/// Checks the order and ranges of the modes.
+/// Checks that the head's modes ascend in frequency and have values in range.
 fn check_modes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
     ascending(&modes.frequencies_hz).map_err(|at| {
         field(
@@ -159,7 +159,8 @@ fn check_modes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
     check_shapes(path, modes)
 }
 
-/// Checks the shape of the tables: a row of values for every mode, and a value for every station.
+/// Checks the shape of the head's mode tables: a row of values for every mode, and a value for every station
+/// on the arc.
 fn check_shapes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
     let count = modes.frequencies_hz.len();
     let stations = modes.arc_deg.len();
@@ -215,7 +216,8 @@ fn field(path: &Path, field: &str, value: String, allowed: &str, help: &str) -> 
     }
 }
 
-/// Reads the influence lines: `psi_deg`, four normal and four tangential columns.
+/// Reads the head's influence lines: the angle column `psi_deg`, then the stress of the four gauges per unit
+/// normal and per unit tangential force.
 fn read_influence(path: &Path, arc_deg: &[f64]) -> Result<Influence, CaseError> {
     let bytes = file::read(path, "the influence lines, `flexible_head.influence_file`")?;
     let table = CsvTable::read(
@@ -294,7 +296,7 @@ fn ascending(values: &[f64]) -> Result<(), usize> {
     broken.map_or(Ok(()), |at| Err(at + 1))
 }
 
-/// Formats an entry of a list for a message; `absent` if there is none.
+/// Formats a number of a list for an error message; `absent` if the list is shorter.
 fn number(values: &[f64], at: usize) -> String {
     values
         .get(at)

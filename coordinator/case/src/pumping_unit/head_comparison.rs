@@ -15,7 +15,7 @@ const INERT: f64 = 1e-6;
 /// Comparison of a newly reduced back head with the tables of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeadComparison {
-    /// Match of each new mode with the table.
+    /// Modes of the newly reduced head, each paired with the most similar mode of the case's table.
     pub modes: Vec<ModeMatch>,
     /// Frequencies of the table's modes that do not move the rope surface and so are not excited by a rope
     /// \[Hz\].
@@ -137,8 +137,8 @@ fn half_range(curve: &[f64]) -> f64 {
     0.5 * (high - low)
 }
 
-/// Returns for each gauge the largest difference between two tables of influence lines, relative to the old
-/// table's largest value.
+/// Returns for each gauge the largest difference between two tables of influence lines, relative to the
+/// largest value of the older table.
 fn difference(new: &Influence, old: &Influence) -> [f64; 4] {
     [0, 1, 2, 3].map(|gauge| {
         let (mut most, mut size) = (0.0_f64, 0.0_f64);
@@ -182,7 +182,7 @@ pub const fn wrapped_turn(turn: &QuasiStaticTurn, anchor_deg: f64) -> WrappedTur
 }
 
 impl WrappedTurn<'_> {
-    /// Returns the contact angle and the tension of the rope at every crank angle.
+    /// Returns the contact angle and the tension of the back rope at every crank angle.
     fn each(&self) -> impl Iterator<Item = (f64, f64)> {
         let places = self.turn.contact_deg.iter().copied();
         places.zip(self.turn.tension_n.iter().copied())

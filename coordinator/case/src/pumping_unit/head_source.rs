@@ -29,11 +29,11 @@ pub struct HeadSource {
     pub gauges: [HeadGauge; 4],
     /// Whether the case's tables of modes and influence lines are missing or were computed from other inputs.
     pub stale: bool,
-    /// File of the modes.
+    /// File to which the modes of the reduced head are written.
     pub modes_file: PathBuf,
-    /// File of the influence lines.
+    /// File to which the influence lines of the reduced head are written.
     pub influence_file: PathBuf,
-    /// File of the tables for a pair of ropes, if the case has one.
+    /// File to which the tables for a pair of ropes are written, if the case has one.
     pub twin_file: Option<PathBuf>,
 }
 

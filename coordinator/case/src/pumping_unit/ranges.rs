@@ -6,7 +6,7 @@ use crate::{
     error::{CaseError, Faults},
 };
 
-/// Minimum and maximum value, and the unit for messages.
+/// Allowed range of a number of the case file, with its unit for messages.
 struct Range(f64, f64, &'static str);
 
 const LENGTH: Range = Range(1.0e-3, 100.0, "m");
@@ -25,7 +25,7 @@ const DIFFERENCE: Range = Range(-0.05, 0.05, "m");
 /// Maximum number of head modes in a simulation, in-plane and out-of-plane together.
 const MOST_MODES: usize = 24;
 
-/// Checks the range of every number.
+/// Checks the range of every number of a case file.
 ///
 /// # Errors
 /// Returns all numbers outside their ranges, with range and unit.

@@ -38,11 +38,10 @@ pub(super) struct Resolved {
     pub loaded: Loaded,
     /// Facts about each condition's record, in the order of the conditions.
     pub(super) facts: Vec<Option<RecordFacts>>,
-    /// Range of motion of beam and ropes.
+    /// Range of motion of beam and ropes over one crank turn.
     pub(super) envelope: Envelope,
-    /// Machine of the case.
     pub(super) machine: Machine,
-    /// Flexible head; tables computed from another mesh are accepted at this stage.
+    /// Flexible head of the machine; tables computed from another mesh are not refused yet.
     pub(super) head: ReadHead,
     pub(super) flexible: FlexibleHead,
     pub(super) twins: Option<TwinRopesEntry>,

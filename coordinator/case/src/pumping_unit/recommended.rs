@@ -9,9 +9,9 @@ use std::fmt;
 /// Recommended value of an unknown as stated in the case file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Recommended {
-    /// Number in the unit of the unknown.
+    /// Recommended value as a number in the unit of the unknown.
     Value(f64),
-    /// Result of a formula.
+    /// Formula that computes the recommended value.
     Formula(Formula),
 }
 
@@ -28,7 +28,7 @@ impl Formula {
     const ALL: [Self; 2] = [Self::Eq3, Self::Hertz];
     const WORDS: &'static [&'static str] = &[Self::Eq3.word(), Self::Hertz.word()];
 
-    /// Returns the formula's name as in case files.
+    /// Returns the name of the formula as it is written in case files.
     pub(super) const fn word(self) -> &'static str {
         match self {
             Self::Eq3 => "eq3",

@@ -18,7 +18,6 @@ use std::{collections::BTreeMap, path::PathBuf};
 #[serde(deny_unknown_fields)]
 pub(super) struct CaseFile {
     pub(super) name: String,
-    /// Kind of the model.
     #[expect(
         dead_code,
         reason = "a key of the form; it was looked at before the rest was read"
@@ -40,12 +39,13 @@ pub(super) struct CaseFile {
     pub(super) front_head: FrontHead,
     pub(super) back_head: BackHead,
     pub(super) flexible_head: FlexibleHead,
-    /// Settings of two parallel ropes on each head; one rope per head if absent.
+    /// Settings of two parallel ropes on each head; absent for one rope per head.
     pub(super) twin_ropes: Option<TwinRopesEntry>,
     /// Effects (extra physical mechanisms) that the machine has beyond the plain model; none unless stated.
     #[serde(default)]
     pub(super) effects: Vec<CaseEffect>,
-    /// Unknowns by coefficient; every coefficient is required.
+    /// Recommended value, bounds and prior of each rope and contact coefficient; every coefficient is
+    /// required.
     pub(super) genes: BTreeMap<Coefficient, GeneEntry>,
     pub(super) conditions: Vec<ConditionEntry>,
     /// Objective of a calibration; required where there is a gauge record.
@@ -53,7 +53,7 @@ pub(super) struct CaseFile {
     pub(super) run: RunSettings,
 }
 
-/// `[model]` table.
+/// `[model]` table of a pumping-unit case, which states only the kind of the model.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ModelEntry {
@@ -91,9 +91,9 @@ pub(super) struct FlexibleHead {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RopeMaterial {
-    /// Young's modulus \[GPa\].
+    /// Young's modulus of the rope \[GPa\].
     pub(super) young_gpa: f64,
-    /// Poisson's ratio \[1\].
+    /// Poisson's ratio of the rope \[1\].
     pub(super) poisson: f64,
 }
 
@@ -138,19 +138,19 @@ const fn steel_poisson() -> f64 {
     0.3
 }
 
-/// Recommended value, bounds and prior of one coefficient.
+/// Recommended value, bounds and prior that a case states for one rope or contact coefficient.
 #[derive(Debug, Deserialize)]
 #[serde(
     deny_unknown_fields,
     expecting = "a table with bounds and unit; write `{ recommended = 1e8, lower = 1e6, upper = 1e10, unit = \"N/m\" }`"
 )]
 pub(super) struct GeneEntry {
-    /// Recommended value in `unit`, or the formula that computes it.
+    /// Recommended value of the coefficient in `unit`, or the formula that computes it.
     pub(super) recommended: Recommended,
     pub(super) lower: f64,
     pub(super) upper: f64,
     pub(super) unit: Unit,
-    /// Prior knowledge in addition to the bounds.
+    /// Prior of the coefficient in addition to its bounds.
     pub(super) prior: Option<PriorEntry>,
 }
 
@@ -171,7 +171,7 @@ const fn no_smoothing() -> Smoothing {
     Smoothing::None
 }
 
-/// Objective of a calibration.
+/// Objective of a calibration: a working condition and weighted gauges.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ObjectiveEntry {

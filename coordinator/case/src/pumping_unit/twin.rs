@@ -13,7 +13,7 @@ use protocol::pumping_unit::{Influence, ModalHead, TwinHead, TwinRopes};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// Remedy text in errors about the head's tables for twin ropes.
+/// Remedy that errors about the head's tables for twin ropes suggest.
 const REMEDY: &str = "`horsehead head CASE --write` computes the tables";
 
 /// Tables of the head for twin ropes, as stored in the file.

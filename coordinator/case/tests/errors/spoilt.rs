@@ -60,7 +60,8 @@ impl Copy {
         fs::write(self.path(file), format!("{before}{until}{after}")).unwrap();
     }
 
-    /// Adds the effect `pivot_friction` with further lines to the case file.
+    /// Adds an `[[effects]]` table for `pivot_friction`, with the given further lines, to the copied case
+    /// file.
     pub(super) fn effect(&self, lines: &str) {
         let added = format!("[[effects]]\nid = \"pivot_friction\"\n{lines}\n\n[objective]");
         self.replace(TOML, "[objective]", &added);

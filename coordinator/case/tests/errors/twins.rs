@@ -2,7 +2,7 @@
 use super::spoilt::{Copy, MESH, Spoilt, TOML, TWINS};
 use std::fs;
 
-/// Adds a `[twin_ropes]` table with further lines to the case file.
+/// Adds a `[twin_ropes]` table with the given lines to the copied case file.
 fn twins(c: &Copy, lines: &str) {
     let added = format!("[twin_ropes]\n{lines}\nhead_file = \"{TWINS}\"\n\n[genes]");
     c.replace(TOML, "[genes]", &added);

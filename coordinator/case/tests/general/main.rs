@@ -18,7 +18,6 @@ const SLOW: &str =
     "cycle,phase_deg,force_n\n1,0,1\n1,90,3\n1,180,6\n1,270,3\n2,0,1\n2,90,3\n2,180,4\n2,270,3\n";
 const FAST: &str = "time_s,force_n\n0,1\n0.1,2.5\n0.3,2\n";
 
-/// Case in a temporary folder.
 struct Case(TempDir);
 
 impl Case {

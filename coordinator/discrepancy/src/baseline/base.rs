@@ -6,18 +6,19 @@ use crate::record::noise::NoiseSource;
 use crate::record::whitened::WhitenedRecord;
 use crate::thresholds::{STATED, WITHIN};
 
-/// Baseline of all tests.
+/// Baseline of all hypothesis tests: the recalibrated model without further effects.
 pub(crate) struct Baseline {
-    /// Fitted record, whitened with the metric of all tests.
+    /// Fitted record, whitened with the noise metric of all hypothesis tests.
     pub(crate) record: WhitenedRecord,
     /// Fit of the recalibrated model.
     pub(crate) fit: Fit,
-    /// Numerical check of the model; `None` where no finer model completes.
+    /// Comparison of the recalibrated model with a finer discretisation; `None` where no finer model
+    /// completes.
     pub(crate) preflight: Option<Preflight>,
     /// Descriptions of the instruments whose estimated error was far beyond tolerance in the model without
     /// effects, and which are therefore constrained to their tolerance.
     pub(crate) instruments: Vec<String>,
-    /// Remarks for the user.
+    /// Remarks on the baseline for the user.
     pub(crate) notes: Vec<String>,
 }
 
@@ -45,7 +46,8 @@ impl Baseline {
         self.is_noise(fit.chi_squared(), fit.tangent().parameters(), level)
     }
 
-    /// Returns how the noise level of the record is known.
+    /// Returns whether the noise level of the record was measured by repeated cycles, stated or estimated
+    /// from one curve.
     pub(crate) const fn known(&self) -> NoiseSource {
         self.record.metric.known()
     }

@@ -1,8 +1,9 @@
 //! Budget of a diagnosis: number of simulations per stage. Time is not limited, so that the result does not
 //! depend on the number of workers.
 //!
-//! A stage that has used up its budget begins no further optional work (valley search, round, challenger).
-//! Work in progress is finished, so the budget may be exceeded by one such unit.
+//! A stage that has used up its budget begins no further optional work, such as a search for a narrow
+//! minimum, a round of tests or the refit of a generic force. Work in progress is finished, so the budget may
+//! be exceeded by one such unit.
 use crate::laboratory::{Laboratory, Stage};
 use protocol::job::{Observation, SimulateSpec};
 

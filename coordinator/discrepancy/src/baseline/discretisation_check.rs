@@ -1,4 +1,5 @@
-//! Numerical check: change of the curves by a finer discretisation that recalibration cannot absorb.
+//! Numerical check of a model: the change of its curves by a finer discretisation that recalibration cannot
+//! absorb.
 //!
 //! A finer model is simulated at the fitted point; the difference, projected off the tangent space, becomes a
 //! part of the noise (an adequacy floor), so that no effect is named for an error of the coarser
@@ -23,9 +24,9 @@ pub struct Preflight {
     /// Root mean square of the part of the difference that recalibration cannot absorb, by channel, in the
     /// channel's unit.
     pub rms_left: Vec<f64>,
-    /// Standard error of the record's mean by channel, as root mean square over the compared entries.
+    /// Standard error of the record's mean by channel, as root mean square over the compared values.
     pub standard_error: Vec<f64>,
-    /// Spectral entries of the difference that recalibration cannot absorb, by channel.
+    /// Spectral coefficients, by channel, of the part of the difference that recalibration cannot absorb.
     pub left: Spectra,
     /// Whether the simulation with all refinements completed; otherwise the difference is the sum over the
     /// single refinements that completed.
@@ -88,8 +89,8 @@ pub(crate) async fn changed<L: Laboratory>(
     Ok(sum.map(|difference| (difference, false)))
 }
 
-/// Returns the curves of a fitted point in each finer numerics minus those in the usual numerics; `None`
-/// where a simulation failed.
+/// Returns the curves at a fitted point under each finer discretisation minus those under the usual one;
+/// `None` where a simulation failed.
 async fn differences<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     (fit, coarse): (&Fit, &Curves),
@@ -107,7 +108,8 @@ async fn differences<L: Laboratory>(
     Ok(seen.into_iter().map(|fine| fine.map(less)).collect())
 }
 
-/// Evaluates a difference of the curves relative to a record and to a fit that absorbs a part of it.
+/// Evaluates the difference of the curves to a finer discretisation, relative to a record and to a fit that
+/// absorbs a part of it.
 fn preflight(on: &WhitenedRecord, absorbing: &Fit, difference: Curves, whole: bool) -> Preflight {
     let metric = &on.metric;
     let left = metric.unwhiten(&left(metric, absorbing, &difference));

@@ -18,17 +18,17 @@ use crate::record::whitened::WhitenedRecord;
 use crate::thresholds::{BEYOND, WITHIN};
 use nalgebra::DVector;
 
-/// Reason why no baseline exists.
+/// Reason why no baseline could be constructed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BaselineError {
-    /// No fit could be simulated to its end.
+    /// No fit of the model without effects could be simulated to its end.
     NothingCompletes,
-    /// No simulations were left for the recalibration.
+    /// The budget of simulations was used up before the recalibration.
     RanOut,
 }
 
 impl BaselineError {
-    /// Returns in words why no baseline exists.
+    /// Returns in words why no baseline could be constructed.
     pub(crate) const fn reason(self) -> &'static str {
         match self {
             Self::NothingCompletes => {

@@ -9,7 +9,7 @@ use crate::model::unknowns::{FittedModel, Point};
 use search::space::Axis;
 use search::strategy::{EvaluationResult, Residual, SearchPlan, build, preset};
 
-/// Name of the preset of a global search, and its random seed.
+/// Settings of a global search: the name of its preset, and its random seed.
 pub(crate) type Search = (&'static str, u64);
 
 /// Returns starts for the fit: the best points of a global search, best first, that differ clearly in at

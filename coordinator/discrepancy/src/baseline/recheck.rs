@@ -12,7 +12,7 @@ use search::least_squares::{Linearized, Prior, Variable};
 /// Comparison of a model about to be accepted with a finer discretisation of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Checked {
-    /// Change of the curves by the finer discretisation.
+    /// Change of the curves of the new model by the finer discretisation.
     pub(crate) preflight: Preflight,
     /// Gain of log evidence over the previous model, divided by the dispersion (nats), with the change by the
     /// finer model counted as noise.
@@ -59,8 +59,8 @@ pub(crate) async fn check_against_finer<L: Laboratory>(
     }))
 }
 
-/// Returns the weight of each residual entry when a numerical error counts as additional noise, as far as its
-/// power exceeds that of the error already included in the metric.
+/// Returns the weight of each entry of the residual when a numerical error counts as additional noise, as far
+/// as its power exceeds that of the error already included in the metric.
 fn floor(metric: &Metric, error: &DVector<f64>, known: &DVector<f64>) -> DVector<f64> {
     let weight = |own: f64, known: f64| 1.0 / (1.0 + (own - known).max(0.0)).sqrt();
     metric.powers(error).zip_map(&metric.powers(known), weight)

@@ -6,11 +6,11 @@ use crate::model::experiments::Experiments;
 
 /// Simulator, inputs and baseline of a running diagnosis.
 pub(crate) struct Session<'a, L> {
-    /// Simulator of the experiments.
+    /// Simulator that runs the experiments of the diagnosis.
     pub(crate) lab: &'a mut L,
     /// Baseline: the recalibrated model and its metric.
     pub(crate) base: &'a Baseline,
-    /// Case, records and candidate effects.
+    /// Inputs of the diagnosis: case, records and candidate effects.
     pub(crate) inputs: &'a Inputs,
 }
 

@@ -97,7 +97,7 @@ impl Traits {
     }
 }
 
-/// Returns the index of the largest value.
+/// Returns the index of the largest of several powers.
 fn strongest(powers: impl Iterator<Item = f64>) -> Option<usize> {
     let by_power = |(_, a): &(usize, f64), (_, b): &(usize, f64)| a.total_cmp(b);
     powers.enumerate().max_by(by_power).map(|(k, _)| k)

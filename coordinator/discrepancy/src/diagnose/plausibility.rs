@@ -10,17 +10,17 @@ use crate::thresholds::{AT_BOUND, WITHIN};
 pub(crate) struct Size {
     /// Identifier of the effect.
     pub(crate) effect: String,
-    /// Name of the effect's size parameter.
+    /// Name of the parameter that sets the effect's size.
     pub(crate) parameter: String,
     pub(crate) value: f64,
     /// 95 % confidence interval of the size.
     pub(crate) interval: [f64; 2],
     /// Lower and upper bound of the size in the search.
     pub(crate) bounds: [f64; 2],
-    /// Value at which the effect vanishes.
+    /// Value of the size at which the effect vanishes.
     pub(crate) absent: f64,
-    /// For the error of an instrument, which is never exactly zero: standard deviation that is expected
-    /// without any effect.
+    /// Standard deviation of an instrument's error that is expected without any effect, for an effect that
+    /// stands for such an error; otherwise `None`.
     pub(crate) tolerance: Option<f64>,
 }
 
@@ -52,7 +52,7 @@ impl Size {
     }
 }
 
-/// Returns the first reason against the sizes of the effects, if there is one.
+/// Returns the first reason against naming effects of these sizes, if there is one.
 pub(crate) fn doubt(sizes: &[Size]) -> Option<String> {
     for size in sizes {
         let Size {

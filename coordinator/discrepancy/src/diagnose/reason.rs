@@ -18,7 +18,7 @@ pub(crate) struct Rejection {
     pub(crate) suspect: Option<String>,
     /// Reason why the effects are not named, although the basis of the tests is reliable.
     pub(crate) doubt: Option<String>,
-    /// Description of the residual that the answer leaves, if it is more than noise.
+    /// Description of the residual that remains after fitting the answer, if it is more than noise.
     pub(crate) left: Option<String>,
 }
 
@@ -87,7 +87,7 @@ pub(crate) fn reason(
     })
 }
 
-/// Adds remarks on numerical error and on effects excluded from the tests.
+/// Adds remarks on numerical error, and on effects excluded from the tests, to a diagnosis.
 pub(crate) fn remarks(inputs: &Inputs, diagnosis: &mut Diagnosis) {
     let (of, check) = match (&diagnosis.preflight_after, &diagnosis.preflight) {
         (Some(after), _) => ("the answer", Some(after)),

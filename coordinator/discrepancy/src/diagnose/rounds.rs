@@ -21,7 +21,7 @@ use protocol::announce::EffectDescriptor;
 
 /// Number of rounds of a diagnosis in which the narrow minimum of the misfit is searched.
 const LOOKS: usize = 2;
-/// Minimum number of candidate effects that are refitted.
+/// Minimum number of candidate effects that are refitted in a round.
 const RIVALS: usize = 3;
 
 /// Maximum number of repetitions of the rounds after an effect was removed or replaced.

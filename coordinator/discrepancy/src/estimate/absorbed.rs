@@ -19,9 +19,9 @@ pub struct Absorbed {
     pub measurement: String,
 }
 
-/// Absorbed share from which an effect is reported.
+/// Share of an effect's signature that the unknowns must absorb for the effect to be reported as absorbed.
 const MOST: f64 = 0.9;
-/// Largest number of effects that are reported.
+/// Maximum number of absorbed effects that are reported.
 const MAX_REPORTED: usize = 8;
 /// Minimum share of an effect that a separate test of an unknown must make visible to be recommended.
 const MIN_VISIBLE_SHARE: f64 = 0.2;
@@ -52,7 +52,7 @@ pub(crate) fn absorbed(round: &Round, fit: &Fit) -> Vec<Absorbed> {
     all.into_iter().map(told).collect()
 }
 
-/// Returns the share of a signature that a tangent space absorbs.
+/// Returns the share of an effect's signature that lies in a tangent space, so that the unknowns absorb it.
 fn taken(signature: &DMatrix<f64>, tangent: &Tangent) -> f64 {
     let whole = signature.norm_squared();
     let left = signature.dot(&tangent.project_columns(signature));

@@ -31,9 +31,9 @@ pub struct ParameterEstimate {
     pub name: String,
     /// Unit of the parameter.
     pub unit: String,
-    /// Most likely value.
+    /// Most likely value of the parameter.
     pub value: f64,
-    /// 95 % interval.
+    /// 95 % interval of the parameter.
     pub interval: [f64; 2],
 }
 

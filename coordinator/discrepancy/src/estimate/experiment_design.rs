@@ -37,7 +37,7 @@ pub struct IndistinguishablePair {
 const MULTIPLE: f64 = 3.0;
 
 /// Candidate effect that the record can detect, with the amount of each of its sizes at which it is compared,
-/// in scales.
+/// as a multiple of the parameter's scale.
 struct Visible<'a> {
     suspect: &'a CandidateEffect,
     amounts: Vec<f64>,
@@ -110,8 +110,8 @@ pub(crate) async fn weigh<L: Laboratory>(
         .collect())
 }
 
-/// Returns the amount of each size at which an effect is compared, in scales; `None` for an effect that
-/// cannot be detected.
+/// Returns the amount of each size at which an effect is compared, as a multiple of the parameter's scale;
+/// `None` for an effect that cannot be detected.
 fn amounts(suspect: &CandidateEffect, limits: &[Limit]) -> Option<Vec<f64>> {
     let each = sizes(&suspect.effect).into_iter().map(|k| {
         let parameter = &suspect.effect.parameters[k];
@@ -133,7 +133,7 @@ fn scaled(signature: &DMatrix<f64>, amounts: &[f64]) -> DMatrix<f64> {
     signature
 }
 
-/// Linearised model under another condition.
+/// Model under another condition, linearised in the unknowns and in the sizes of the effects.
 struct LinearizedCurves {
     jacobian: DMatrix<f64>,
     signatures: Vec<DMatrix<f64>>,

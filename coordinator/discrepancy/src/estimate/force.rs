@@ -1,5 +1,5 @@
-//! Probe force (a force without a physical cause) that explains the residual better than every listed effect:
-//! where it acts, its form, its amplitude and the gap that it closes.
+//! Generic force (a force without a physical cause) that explains the residual better than every listed
+//! effect: where it acts, its form, its amplitude and the misfit that it removes.
 use crate::estimate::spread::Spread;
 use crate::hypothesis::generic_force::Challenger;
 use crate::hypothesis::round::Round;
@@ -8,10 +8,10 @@ use crate::model::probe;
 use crate::record::metric::Metric;
 use crate::validation::compare::GapRow;
 
-/// Probe force with its amplitude and the gap that it closes.
+/// Generic force with its estimated amplitude and the misfit that it removes.
 #[derive(Clone, Debug)]
 pub struct ForceEstimate {
-    /// Identifier of the force; for a harmonic, that of the stronger phase.
+    /// Identifier of the generic force; for a harmonic, that of the stronger phase.
     pub id: String,
     /// Joint at which the force acts.
     pub joint: String,
@@ -31,12 +31,12 @@ pub struct ForceEstimate {
     pub ln_evidence: f64,
     /// Fit of the model with the force.
     pub fit: Fit,
-    /// Gap before and after the force is added, by record.
+    /// Misfit to each record before and after the force is added.
     pub rows: Vec<GapRow>,
 }
 
-/// Builds the report of a probe force (`challenger`) that beat the model `before` in a round; the gaps by
-/// record are still empty.
+/// Builds the report of a generic force (`challenger`) that beat the model `before` in a round; the misfits
+/// by record are still empty.
 pub(crate) fn force(
     challenger: Challenger,
     (before, metric): (&Fit, &Metric),

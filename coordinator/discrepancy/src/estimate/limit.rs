@@ -12,11 +12,11 @@ use serde::Serialize;
 pub struct Limit {
     /// Identifier of the effect.
     pub id: String,
-    /// Name of the parameter.
+    /// Name of the parameter that sets the effect's size.
     pub parameter: String,
-    /// Unit of the parameter.
+    /// Unit of the detection limit.
     pub unit: String,
-    /// Smallest size that would be detected; infinite where recalibration absorbs the effect.
+    /// Smallest size of the effect that would be detected; infinite where recalibration absorbs the effect.
     pub size: f64,
     /// Largest size within the parameter's bounds.
     #[serde(skip)]

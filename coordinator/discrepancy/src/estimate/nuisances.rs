@@ -10,20 +10,21 @@ use serde::Serialize;
 pub struct NuisanceEstimate {
     /// Identifier of the effect that the nuisance parameter stands for, or of the gain of a channel.
     pub id: String,
-    /// Name of the parameter.
+    /// Name of the nuisance parameter.
     pub parameter: String,
-    /// Most likely value, as a difference from the absent one.
+    /// Most likely value of the nuisance parameter, as the difference from the value at which it has no
+    /// effect.
     pub value: f64,
     /// Unit of the value.
     pub unit: String,
-    /// 95 % interval from the prior and the record together.
+    /// 95 % interval of the nuisance parameter, from its prior and the record together.
     #[serde(rename = "ci95")]
     pub interval: [f64; 2],
     /// Prior standard deviation of the nuisance parameter.
     pub tolerance: f64,
-    /// Whether the value lies within three prior standard deviations.
+    /// Whether the estimated value lies within three prior standard deviations.
     pub within: bool,
-    /// Whether the tolerance is assumed rather than stated.
+    /// Whether the prior standard deviation is assumed rather than stated.
     pub assumed: bool,
 }
 

@@ -17,7 +17,7 @@ pub struct CandidateEffect {
     pub rungs: Vec<Vec<f64>>,
     /// Whether the curves change in proportion to the effect's size.
     pub linear: bool,
-    /// Whitened change of the curves per unit of each size; columns in the order of the sizes.
+    /// Whitened change of the curves per unit of each size of the effect; one matrix column per size.
     pub signature: DMatrix<f64>,
     /// Scaled parameters at which each signature column was computed, with all other sizes absent.
     pub taken: Vec<Vec<f64>>,

@@ -21,7 +21,8 @@ use search::least_squares::LeastSquaresSettings;
 /// Generic force under test: a single form, or both phases of a harmonic.
 #[derive(Clone, Debug)]
 struct Form<'a> {
-    /// Components of the force, in descending order of their score-test statistic.
+    /// Components of the generic force (one, or the two phases of a harmonic), in descending order of their
+    /// score-test statistic.
     parts: Vec<&'a CandidateEffect>,
     signature: DMatrix<f64>,
     statistic: f64,
@@ -35,13 +36,13 @@ pub(crate) struct Challenger {
     pub(crate) id: String,
     /// Reduction of `chi^2` by adding the force and refitting.
     pub(crate) removed: f64,
-    /// Log evidence of the refit (nats).
+    /// Log evidence of the model refitted with the force (nats).
     pub(crate) log_evidence: f64,
-    /// Refit with the force.
+    /// Fit of the model with the force.
     pub(crate) fit: Fit,
 }
 
-/// Maximum number of generic forces that are refitted.
+/// Maximum number of generic forces that are refitted in a round.
 const TRIED: usize = 3;
 
 /// Returns the generic force that beats the best named effect of a round, if there is one.

@@ -23,7 +23,7 @@ const AT_ONCE: usize = 4;
 pub(crate) struct JointRefit {
     /// Identifiers of the effects, in descending order of their individual statistic.
     pub(crate) members: Vec<String>,
-    /// Joint fit; the effects are the last ones of its model.
+    /// Joint fit of the effects, which are the last ones of its model.
     pub(crate) fit: Fit,
 }
 

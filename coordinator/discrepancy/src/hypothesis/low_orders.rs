@@ -14,12 +14,12 @@ use crate::record::whitened::WhitenedRecord;
 use protocol::announce::EffectDescriptor;
 use search::least_squares::LeastSquaresSettings;
 
-/// Highest order of the period that is compared: half the order of the lowest mode of a typical machine with
-/// ringing modes.
+/// Highest harmonic order of the period that is compared: half the order of the lowest mode of a typical
+/// machine with ringing modes.
 const HIGHEST: usize = 30;
-/// Number of candidate effects that are refitted.
+/// Number of candidate effects that are refitted to the low orders.
 const REFITS: usize = 6;
-/// Number of refits, the likeliest, that are returned.
+/// Number of refits to the low orders that are returned: the likeliest ones.
 const LIKELIEST: usize = 2;
 
 /// Returns the models with one more effect, fitted to the low orders of the record, likeliest first; empty

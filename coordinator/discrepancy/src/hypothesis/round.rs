@@ -5,14 +5,15 @@ use crate::hypothesis::refit::Refitted;
 use crate::linear::score::{chi_squared_tail, family_wise};
 use crate::model::fit::Fit;
 
-/// Tests, refits and decision of one round.
+/// Round of hypothesis tests in a diagnosis: tests of all candidate effects, refits of the likeliest, and the
+/// decision.
 #[derive(Clone, Debug)]
 pub struct Round {
     /// Tests of all named effects, in the library's order.
     pub candidates: Vec<CandidateEffect>,
-    /// Tests, refits and decision of one round of a diagnosis.
+    /// Tests of the generic forces, with which the named effects are compared.
     pub generics: Vec<CandidateEffect>,
-    /// Tests of all named candidate effects, in the library's order.
+    /// Refits of the likeliest candidate effects, in descending order of their log evidence.
     pub refits: Vec<Refitted>,
     /// Log evidence of the current model, without a further effect.
     pub null_evidence: f64,
@@ -24,14 +25,14 @@ pub struct Round {
     /// Ambiguity set: identifiers of the effects that the record cannot distinguish from the added one, best
     /// first; empty if no effect was added.
     pub set: Vec<String>,
-    /// Identifier of the added effect, if any.
+    /// Identifier of the effect that the round added, if any.
     pub added: Option<String>,
     /// Number of effects ranked by evidence and prediction when the ranking replaced the effect that was
     /// added first; 1 if it was not replaced.
     pub ranked: usize,
     /// Whether the added effect is one of several that were found together.
     pub together: bool,
-    /// Reason why no effect was added.
+    /// Reason why the round added no effect.
     pub reason: Option<String>,
 }
 
@@ -65,7 +66,7 @@ impl Round {
         (log_evidence - self.null_evidence) / self.dispersion
     }
 
-    /// Withdraws the added effect and records the reason.
+    /// Withdraws the effect that the round added, and records the reason.
     pub(crate) fn withdraw(&mut self, reason: String) {
         self.added = None;
         self.set.clear();

@@ -53,14 +53,15 @@ impl Probe {
     }
 }
 
-/// Target magnitude of the projected change of the curves, in standard deviations.
+/// Magnitude, in standard deviations of the noise, that a probe's projected change of the curves shall have;
+/// the size is chosen accordingly.
 const WANTED: f64 = 4.0;
 /// Acceptable range of the projected change of the curves, in standard deviations; probes outside are
 /// simulated again with another size.
 const USABLE: [f64; 2] = [1.0, 20.0];
 /// Minimum cosine between derivative and finite difference for an effect to count as linear in its size.
 const LINEAR: f64 = 0.98;
-/// Number of values at which each shape parameter is tested.
+/// Number of values at which each shape parameter of an effect is tested.
 const SHAPES: usize = 6;
 /// Sizes of the ladder on which non-linear effects are tested, as shares of the range from the absent value
 /// to the bound.
@@ -221,7 +222,7 @@ fn spread(probes: &mut [Probe]) {
     }
 }
 
-/// Simulates the selected probes that have no signature yet.
+/// Simulates the selected probes that have no finite difference yet, and stores it.
 async fn take<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
@@ -244,7 +245,8 @@ async fn take<L: Laboratory>(
     Ok(())
 }
 
-/// Tests non-linear effects on ladders of sizes; all sizes of an effect are at the same rung.
+/// Tests non-linear effects on ladders of sizes; all sizes of an effect are set to the same share of their
+/// ranges.
 async fn climb<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,

@@ -25,9 +25,9 @@ const SHARE: f64 = 0.3;
 /// Minimum gain of evidence, as a share of the best refit's, for which a candidate effect is refitted from
 /// the deepest minimum found.
 const HOPEFUL: f64 = 0.1;
-/// Dispersion above which the unknowns of competing refits and other stiffness and contact values are tried,
-/// as a share of the dispersion that indicates a missed narrow minimum: a too soft contact also leaves such a
-/// residual.
+/// Dispersion, as a share of that which indicates a missed narrow minimum, above which fits also start from
+/// the unknowns of competing refits and from other stiffness and contact values: too soft a contact leaves
+/// such a residual, too.
 const LOOSE: f64 = 0.5;
 /// Maximum number of successive searches for narrow minima in a round; each starts where the previous one
 /// ended.

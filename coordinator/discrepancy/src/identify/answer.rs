@@ -36,13 +36,14 @@ pub struct UnknownEstimate {
     pub name: String,
     /// Unit of the unknown.
     pub unit: String,
-    /// Most likely value.
+    /// Most likely value of the unknown.
     pub value: f64,
-    /// Lower and upper end of the 95 % interval, where the profile rises by 3.84; `None` for an open end.
+    /// Lower and upper end of the unknown's 95 % interval, where the profile rises by 3.84; `None` for an
+    /// open end.
     pub interval: [Option<f64>; 2],
     /// How the profile ends on the lower and on the upper side: risen, bound reached, failed or given up.
     pub ends: [IntervalEnd; 2],
-    /// Sides (lower, upper) on which the record limits the unknown.
+    /// Sides (lower, upper) on which the record bounds the unknown.
     pub seen: Determination,
     /// Names of other unknowns whose estimates are strongly correlated with this one, with the correlations.
     pub correlated: Vec<(String, f64)>,
@@ -55,18 +56,19 @@ pub struct UnknownEstimate {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Determination {
-    /// Bounded on both sides.
+    /// The record bounds the unknown on both sides.
     Both,
-    /// Bounded below only.
+    /// The record bounds the unknown below only.
     LowerBound,
-    /// Bounded above only.
+    /// The record bounds the unknown above only.
     UpperBound,
-    /// Bounded on neither side.
+    /// The record bounds the unknown on neither side.
     NotSeen,
 }
 
 impl Determination {
-    /// Creates the value from two flags: whether the profile rises below and above the estimate.
+    /// Returns on which sides an unknown is bounded, given whether its profile rises below and above the
+    /// estimate.
     pub const fn of(below: bool, above: bool) -> Self {
         match (below, above) {
             (true, true) => Self::Both,
@@ -81,13 +83,13 @@ impl Determination {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum IntervalEnd {
-    /// Rise of `-2 ln L` by 3.84, the end of a 95 % interval.
+    /// The profile rises by 3.84 in `-2 ln L`, which is the end of a 95 % interval.
     Rises,
     /// The bound of the search is reached before the profile has risen by 3.84.
     Bound,
     /// Simulations fail before the profile has risen by 3.84: a limit of the model, not of the record.
     Fails,
-    /// The maximum number of points is reached before the profile has risen by 3.84.
+    /// The maximum number of computed points is reached before the profile has risen by 3.84.
     GivenUp,
 }
 
@@ -98,7 +100,7 @@ pub struct Direction {
     /// Standard deviation along the direction: decades, or half-widths of the search interval for unknowns on
     /// a linear scale; infinite where the record does not determine the direction.
     pub sd_decades: f64,
-    /// Unknowns with their components of the unit vector, largest first.
+    /// Components of the direction's unit vector along the unknowns, largest first.
     pub parts: Vec<DirectionPart>,
     /// Description of the combination of unknowns in words.
     pub words: String,
@@ -125,11 +127,11 @@ pub struct Band {
 /// Predicted curve with its 95 % band.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BandCurve {
-    /// Most likely curve.
+    /// Curve at the most likely values of the unknowns.
     pub likeliest: Vec<f64>,
-    /// Lower end of the band.
+    /// Lower limit of the 95 % band at each abscissa point.
     pub low: Vec<f64>,
-    /// Upper end of the band.
+    /// Upper limit of the 95 % band at each abscissa point.
     pub high: Vec<f64>,
 }
 
@@ -150,7 +152,8 @@ impl BandCurve {
 pub struct FurtherMeasurement {
     /// Description of the measurement.
     pub measurement: String,
-    /// Unknowns whose standard deviation the measurement would at least halve, strongest reduction first.
+    /// Unknowns whose standard deviation the further measurement would at least halve, strongest reduction
+    /// first.
     pub pins: Vec<DeterminedUnknown>,
 }
 
@@ -173,7 +176,7 @@ pub(crate) struct Sensitivity {
     pub(crate) condition: usize,
     /// Curves of all channels of the condition at the fit.
     pub(crate) curves: Curves,
-    /// Changes of the curves per unit of each variable; `None` where the change is unknown.
+    /// Changes of the curves per unit of each variable of the fit; `None` where the change is unknown.
     pub(crate) changes: Vec<Option<Curves>>,
     /// Curves of the same channels at other points that are compatible with the record.
     pub(crate) others: Vec<Curves>,

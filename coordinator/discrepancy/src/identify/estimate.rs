@@ -7,7 +7,7 @@ use super::profiles::Profiles;
 /// Absolute correlation above which two unknowns are reported as correlated.
 const TRADES: f64 = 0.7;
 
-/// Returns the estimates of all unknowns of a fit, in the order of the axes.
+/// Returns the estimates of all unknowns of a fit, with intervals from their profiles.
 pub(super) fn estimates(walked: &Profiles) -> Vec<UnknownEstimate> {
     (0..walked.fit.model.space.dimension())
         .map(|k| estimate(walked, k))

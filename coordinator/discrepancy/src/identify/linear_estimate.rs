@@ -14,7 +14,8 @@ use crate::record::whitened::WhitenedRecord;
 use search::least_squares::LeastSquaresSettings;
 
 /// Estimates the searched unknowns with linear intervals from the record of the calibrated condition, at the
-/// start of the inputs. Returns `None` without a record or a start, or if the simulation does not complete.
+/// start point that the inputs state. Returns `None` without a record or a start point, or if the simulation
+/// does not complete.
 ///
 /// # Errors
 /// Returns an error if no worker is left to simulate, or the user stops the run.

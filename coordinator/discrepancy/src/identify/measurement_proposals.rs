@@ -16,7 +16,7 @@ use protocol::case::Channel;
 const CYCLES: f64 = 4.0;
 /// Ratio of new to present standard deviation below which an unknown counts as determined by a measurement.
 const PINNED: f64 = 0.5;
-/// Maximum number of measurements that are reported.
+/// Maximum number of proposed further measurements that are reported.
 const TOLD: usize = 8;
 
 /// Returns the possible further measurements that would determine at least one unknown, most informative

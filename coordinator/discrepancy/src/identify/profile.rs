@@ -5,7 +5,7 @@
 //! here.
 use super::answer::IntervalEnd;
 
-/// The rise of `-2 ln L` at the ends of a 95 % interval of one unknown.
+/// Rise of `-2 ln L` at the ends of a 95 % interval of one unknown.
 pub(super) const RISE: f64 = 3.84;
 /// Relative tolerance on the rise of a profile within which the end of its side counts as found.
 pub(super) const NEAR: f64 = 0.3;
@@ -14,41 +14,41 @@ const LONGEST: f64 = 1.0;
 /// Maximum number of points computed on one side of a profile.
 const MOST: usize = 12;
 
-/// A point of a profile.
+/// Point of a profile likelihood, at which one unknown is held and all other variables are refitted.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ProfilePoint {
-    /// Value at which the unknown was held (scaled coordinate).
+    /// Value at which the unknown is held (scaled coordinate).
     pub(super) at: f64,
     /// Cost of the refit with the unknown held at that value.
     pub(super) cost: f64,
-    /// Values of all variables at the point.
+    /// Values of all variables of the fit at the profile point.
     pub(super) x: Vec<f64>,
 }
 
-/// One side of the profile of an unknown.
+/// Side of an unknown's profile likelihood, above or below the estimate.
 #[derive(Clone, Debug)]
 pub(super) struct Side {
     /// Index of the unknown whose profile this is.
     pub(super) unknown: usize,
-    /// 1 for the upper side, -1 for the lower side.
+    /// Direction of the side from the estimate: 1 for the upper side, -1 for the lower side.
     pub(super) sign: f64,
-    /// The bound of the search on this side (coordinate).
+    /// Search bound of the unknown on this side (scaled coordinate).
     pub(super) bound: f64,
     /// Distance from the estimate at which the quadratic approximation predicts the end of the side.
     pub(super) predicted: f64,
-    /// Points of the profile on this side.
+    /// Computed points of the profile on this side.
     pub(super) marks: Vec<ProfilePoint>,
-    /// Value nearest to the estimate at which no simulation completes, if any.
+    /// Value of the unknown nearest to the estimate at which no simulation completes, if any.
     wall: Option<f64>,
     looks: usize,
 }
 
-/// Next step on a side of a profile.
+/// Next step of the search for the end of a profile's side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum ProfileStep {
     /// Compute the profile at this value (scaled coordinate).
     Look(f64),
-    /// End of the side: its type, and the value of the unknown (scaled coordinate).
+    /// The side has ended: type of the end, and the value of the unknown there (scaled coordinate).
     Over(IntervalEnd, f64),
 }
 

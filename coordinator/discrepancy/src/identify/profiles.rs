@@ -19,18 +19,18 @@ use search::least_squares::LeastSquaresSettings;
 /// Minimum amount by which a profile point must lie below the fit to count as a better fit, as a share of the
 /// rise that ends a side.
 const BETTER: f64 = 0.05;
-/// Maximum number of restarts from a better fit.
+/// Maximum number of times that all profiles are restarted from a better fit.
 const AGAIN: usize = 2;
 
-/// A fit with the profiles of its unknowns.
+/// Best fit with the profile likelihoods of all its unknowns.
 pub(super) struct Profiles {
-    /// The best fit.
+    /// Best fit, from which the profiles start.
     pub(super) fit: Fit,
     /// Linearised uncertainty of the variables of the fit.
     pub(super) spread: Spread,
     /// Covariance of the fit's variables for a dispersion of one; `None` where it is singular.
     pub(super) covariance: Option<DMatrix<f64>>,
-    /// Lower and upper side of each unknown.
+    /// Lower and upper side of the profile of each unknown.
     pub(super) sides: Vec<Side>,
     /// Rise of the cost that ends the interval of each unknown: the squared quantile of the interval, times
     /// the dispersion, times the variance inflation by the autocorrelation of the residual.
@@ -52,7 +52,7 @@ impl Profiles {
     }
 }
 
-/// Follows all profiles from a fit to their ends.
+/// Follows the profiles of all unknowns from a fit to their ends.
 pub(super) async fn walk<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: Fit,

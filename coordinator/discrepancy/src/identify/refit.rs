@@ -15,9 +15,10 @@ const LITTLE: f64 = 1.0 - NEAR;
 /// Minimum gain of a step, as a share of the rise that ends a profile side; after a smaller gain the Jacobian
 /// is computed anew.
 const GAIN: f64 = 0.02;
-/// Step lengths that are tried in parallel, as shares of the full step.
+/// Lengths of a Gauss-Newton step that are tried in parallel, as shares of the full step.
 const TRIED: [f64; 2] = [1.0, 0.3];
-/// Maximum number of steps of a refit. [`JACOBIANS`] is the maximum number of its new Jacobians.
+/// Maximum number of steps of a refit with one unknown held. [`JACOBIANS`] is the maximum number of its new
+/// Jacobians.
 const STEPS: usize = 8;
 const JACOBIANS: usize = 2;
 
@@ -33,7 +34,7 @@ struct Descent {
     residual: DVector<f64>,
     cost: f64,
     jacobian: DMatrix<f64>,
-    /// Number of Jacobians computed for this refit so far.
+    /// Number of Jacobians computed so far for this refit.
     own: usize,
     /// Whether the Jacobian was computed at the current point.
     fresh: bool,

@@ -1,8 +1,8 @@
 //! Settings of the fits of an identifiability analysis.
 use search::least_squares::LeastSquaresSettings;
 
-/// Settings of the fit in which no unknown is held: to full convergence, with variables of negligible
-/// curvature held.
+/// Settings of the fit in which no unknown is held: it iterates to full convergence, and variables of
+/// negligible curvature keep their values.
 pub(super) const FREE: LeastSquaresSettings = LeastSquaresSettings {
     iterations: 20,
     gradient: 3e-3,

@@ -48,8 +48,8 @@ pub(crate) fn log_determinant(factor: &Cholesky<f64, Dyn>) -> f64 {
     diagonal.iter().map(|d| 2.0 * libm::log(*d)).sum()
 }
 
-/// Returns the indices of the models whose log evidence, divided by a dispersion, lies within `margin` nats
-/// of the best, best first.
+/// Returns the indices of the models whose log evidence, divided by `dispersion`, lies within `margin` nats
+/// of the best model's; the best model comes first.
 pub fn ambiguity_set(evidences: &[f64], dispersion: f64, margin: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..evidences.len())
         .filter(|&i| evidences[i].is_finite())

@@ -11,7 +11,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 /// Requirements that an effect must meet to be detected, used for detection limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DetectionThreshold {
-    /// p-value below which the effect's own score test must fall.
+    /// Largest p-value of an effect's own score test at which the effect counts as detected.
     pub p_value: f64,
     /// Variance of the residual in units of the noise variance.
     pub dispersion: f64,
@@ -72,9 +72,9 @@ pub fn similarity(a: &DMatrix<f64>, b: &DMatrix<f64>, tangent: &Tangent) -> f64 
     }
 }
 
-/// Returns `D_jk^2` for every pair (row j, column k): the part of effect j that no amount of effect k and no
-/// recalibration explains. Of an effect with several sizes the least visible one counts. Sizes are those of
-/// the signatures.
+/// Returns `D_jk^2` for every pair of effects (row j, column k): the squared length of the part of effect j's
+/// signature that neither effect k nor recalibration explains. Of an effect with several size parameters the
+/// least visible one counts. Effects have the sizes to which their signatures belong.
 pub fn distances(signatures: &[DMatrix<f64>], tangent: &Tangent) -> DMatrix<f64> {
     let projected: Vec<DMatrix<f64>> = signatures
         .iter()
@@ -88,7 +88,7 @@ pub fn distances(signatures: &[DMatrix<f64>], tangent: &Tangent) -> DMatrix<f64>
     })
 }
 
-/// Separation of two effects of a list.
+/// Distinguishability of a pair of effects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Separation {
     /// Indices of the two effects, in ascending order.
@@ -98,7 +98,8 @@ pub struct Separation {
     pub relative_distance: f64,
 }
 
-/// Returns the separations of all pairs at the signatures' sizes under a dispersion, in the list's order.
+/// Returns the distinguishability of all pairs of effects, which are given by their signatures, for a
+/// residual of the given dispersion.
 pub fn pairs(signatures: &[DMatrix<f64>], tangent: &Tangent, dispersion: f64) -> Vec<Separation> {
     let distances = distances(signatures, tangent);
     let n = signatures.len();

@@ -12,11 +12,11 @@ use statrs::distribution::{ChiSquared, ContinuousCDF as _, FisherSnedecor, Stude
 pub struct Score {
     /// Test statistic `T^2`.
     pub statistic: f64,
-    /// Degrees of freedom: number of the effect's sizes that recalibration does not absorb.
+    /// Degrees of freedom of the statistic: number of the effect's sizes that recalibration does not absorb.
     pub freedom: usize,
-    /// Tail probability, before any correction for the number of tests.
+    /// Tail probability of the statistic under the null hypothesis, not corrected for the number of tests.
     pub p_value: f64,
-    /// Estimated sizes, in the units of the signatures.
+    /// Estimated sizes of the effect, in the units of the signatures.
     pub size: Vec<f64>,
     /// Standard deviations of the estimated sizes; infinite for a size that recalibration absorbs completely.
     pub deviation: Vec<f64>,

@@ -7,7 +7,6 @@ use nalgebra::{DMatrix, DVector, Matrix};
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Subset {
     pub(crate) members: Vec<usize>,
-    /// Estimated sizes of the members in their order, in the units of the signatures.
     pub(crate) sizes: Vec<f64>,
     /// Decrease of `chi^2` less two per estimated size (Akaike's penalty).
     pub(crate) merit: f64,
@@ -15,18 +14,18 @@ pub(crate) struct Subset {
 
 /// Normal equations of all effects, from which any subset can be estimated.
 pub(crate) struct Subsets {
-    /// Information matrix `G^T B G` of all columns; `gain` is `G^T r`.
+    /// Information matrix `G^T B G` of the signatures of all effects; `gain` is `G^T r`.
     information: DMatrix<f64>,
     gain: DVector<f64>,
-    /// Index of the first column, and number of columns, of each effect in the normal equations.
+    /// Index of the first signature column, and number of columns, of each effect in the normal equations.
     columns: Vec<(usize, usize)>,
-    /// Whether the size that belongs to each column cannot be negative.
+    /// Whether the size parameter that belongs to each signature column cannot be negative.
     positive: Vec<bool>,
 }
 
 impl Subsets {
-    /// Builds the normal equations from signatures (a column is the change of the whitened prediction per
-    /// unit of one size), each with flags for the sizes that cannot be negative.
+    /// Builds the normal equations from the effects' signatures (a column is the change of the whitened
+    /// prediction per unit of one size), each with flags for the sizes that cannot be negative.
     pub(crate) fn new(
         residual: &DVector<f64>,
         signatures: &[(&DMatrix<f64>, Vec<bool>)],
@@ -53,8 +52,8 @@ impl Subsets {
         }
     }
 
-    /// Returns the `kept` best subsets of `count` effects, the best first; subsets whose estimate violates
-    /// the sign of a size are left out.
+    /// Returns the `kept` subsets of `count` effects with the greatest merit, best first; subsets in which a
+    /// size has a sign that is not allowed are left out.
     pub(crate) fn best(&self, count: usize, kept: usize) -> Vec<Subset> {
         let mut all: Vec<Subset> = Vec::new();
         let mut members: Vec<usize> = (0..count).collect();

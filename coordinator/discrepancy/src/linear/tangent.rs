@@ -20,7 +20,6 @@ pub(crate) fn free(at: &Linearized, variables: &[Variable]) -> Vec<usize> {
 /// Projector onto the complement of a tangent space, regularised by the priors.
 #[derive(Clone, Debug)]
 pub struct Tangent {
-    /// Indices of the free variables.
     free: Vec<usize>,
     jacobian: DMatrix<f64>,
     /// Cholesky factor of `J^T J + L`; `None` where no variable is free.
@@ -68,7 +67,8 @@ impl Tangent {
         })
     }
 
-    /// Returns, for each free variable, its index and the step by which it moves to explain a vector.
+    /// Returns the step of each free variable, with the variable's index, that best explains a whitened
+    /// vector.
     pub(crate) fn estimate(&self, x: &DVector<f64>) -> Vec<(usize, f64)> {
         let Some(factor) = &self.factor else {
             return Vec::new();
@@ -81,7 +81,7 @@ impl Tangent {
             .collect()
     }
 
-    /// Returns the part of a vector that the free variables do not explain.
+    /// Returns the part of a whitened vector that changes of the free variables do not explain.
     pub fn project(&self, x: &DVector<f64>) -> DVector<f64> {
         match &self.factor {
             None => x.clone(),
@@ -89,7 +89,7 @@ impl Tangent {
         }
     }
 
-    /// Returns the part of each column that the free variables do not explain.
+    /// Returns the part of each column of a matrix that changes of the free variables do not explain.
     pub fn project_columns(&self, x: &DMatrix<f64>) -> DMatrix<f64> {
         match &self.factor {
             None => x.clone(),

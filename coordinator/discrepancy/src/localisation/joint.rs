@@ -15,42 +15,42 @@ use serde::Serialize;
 /// Evidence for a periodic force at one joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointEvidence {
-    /// Name of the joint.
+    /// Name of the joint at which the force acts.
     pub joint: String,
-    /// Log Bayes factor against no force (nats).
+    /// Log Bayes factor of a periodic force at the joint against no force (nats).
     pub log_bayes: f64,
-    /// Most likely force, as harmonics.
+    /// Most likely force at the joint, as harmonics of the period.
     pub force: Vec<Harmonic>,
-    /// Unit of the force.
+    /// Unit of the force's harmonics.
     pub unit: String,
 }
 
 /// One harmonic of a periodic force.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Harmonic {
-    /// Order of the period; 0 for a constant.
+    /// Order of the harmonic (cycles per period); 0 for a constant.
     pub order: usize,
     /// Whether the harmonic is a sine rather than a cosine of the phase.
     pub sine: bool,
-    /// Amplitude, in the unit of the joint's force.
+    /// Amplitude of the harmonic, in the unit of the joint's force.
     pub amplitude: f64,
 }
 
 /// Signature of a periodic force at one joint: whitened change of the curves per harmonic of the force.
 #[derive(Clone, Debug)]
 pub struct Latent {
-    /// Name of the joint.
+    /// Name of the joint at which the force acts.
     pub joint: String,
     /// Whitened change of the curves by each harmonic; one row per residual entry, one column per harmonic.
     pub columns: DMatrix<f64>,
-    /// Harmonics, with the amplitudes for which the columns were computed.
+    /// Harmonics of the force, with the amplitudes for which the signature columns were computed.
     pub parts: Vec<Harmonic>,
-    /// Unit of the harmonics' amplitudes.
+    /// Unit of the amplitudes of the force's harmonics.
     pub unit: String,
 }
 
 impl JointEvidence {
-    /// Returns the most likely force at a phase of the period (deg), in its unit.
+    /// Returns the most likely force of the joint at a phase of the period (deg), in the force's unit.
     pub fn force_at(&self, phase_deg: f64) -> f64 {
         let part = |part: &Harmonic| {
             let angle = part.order as f64 * phase_deg.to_radians();
@@ -65,7 +65,7 @@ impl JointEvidence {
     }
 }
 
-/// Ranks all joints by their evidence, the most likely first.
+/// Ranks all joints by the evidence for a periodic force there, the most likely joint first.
 pub fn rank(latents: &[Latent], residual: &DVector<f64>, tangent: &Tangent) -> Vec<JointEvidence> {
     let mut ranked: Vec<JointEvidence> = latents
         .iter()
@@ -75,7 +75,7 @@ pub fn rank(latents: &[Latent], residual: &DVector<f64>, tangent: &Tangent) -> V
     ranked
 }
 
-/// Returns how many joints of a ranking, from the first on, cannot be told apart.
+/// Returns the number of leading joints of a ranking that the record cannot tell apart.
 pub fn indistinguishable(ranked: &[JointEvidence], dispersion: f64) -> usize {
     let best = ranked.first().map_or(0.0, |first| first.log_bayes);
     let margin = (AMBIGUITY_MARGIN * dispersion).max(JOINTS * best);

@@ -10,30 +10,30 @@ use nalgebra::{Complex, DVector};
 use search::random::{Phase, Streams};
 use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
-/// Entry of the map of orders that exceeds noise significantly.
+/// Channel and order of the period at which the residual exceeds noise significantly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Peak {
-    /// Index of the channel.
+    /// Index of the channel in the record.
     pub channel: usize,
     /// Order of the period (harmonic number).
     pub order: usize,
     /// Squared modulus of the whitened Fourier coefficient over its mean under noise.
     pub ratio: f64,
-    /// Tail probability of this single entry under noise, not corrected for the number of entries.
+    /// Tail probability of the power ratio under noise, not corrected for the number of channels and orders.
     pub p_value: f64,
 }
 
-/// Map of orders by channel, with the entries that exceed noise.
+/// Map of the residual's power by channel and order of the period, with the significant peaks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrderMap {
     /// Squared modulus of each whitened Fourier coefficient over its mean under noise, by channel and order.
     pub ratio: Vec<Vec<f64>>,
-    /// Significant entries, the strongest first.
+    /// Significant peaks of the map, the strongest first.
     pub peaks: Vec<Peak>,
 }
 
-/// Maps a whitened residual. `freedom` is the number of degrees of freedom of the noise variances, `level`
-/// the allowed share of false entries. A channel without a period has no orders.
+/// Builds the map of orders of a whitened residual. `freedom` is the number of degrees of freedom of the
+/// noise variances, `level` the allowed share of false peaks. A channel without a period has no orders.
 pub fn map(residual: &Residual<'_>, freedom: f64, level: f64) -> OrderMap {
     let bins = residual.metric.bins();
     let mut ratio = vec![Vec::new(); bins.len()];

@@ -3,12 +3,12 @@ use crate::linear::tangent::Tangent;
 use crate::record::metric::Metric;
 use nalgebra::DVector;
 
-/// A whitened residual.
+/// Whitened residual of a fit to a record.
 #[derive(Clone, Copy, Debug)]
 pub struct Residual<'a> {
-    /// Whitened residual vector, measured less simulated.
+    /// Whitened residual of the fit, measured less simulated.
     pub values: &'a DVector<f64>,
-    /// Metric in which the residual is whitened.
+    /// Metric of the record, in which the residual is whitened.
     pub metric: &'a Metric,
     /// Tangent space of the fit: directions of the residual that recalibration has already removed.
     pub tangent: &'a Tangent,

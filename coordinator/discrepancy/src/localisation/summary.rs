@@ -12,16 +12,16 @@ use crate::record::whitened::WhitenedRecord;
 use crate::thresholds::MAPS;
 use nalgebra::DVector;
 
-/// Location of the disagreement between simulation and measurement.
+/// Maps of the abscissa, orders and joints at which simulation and measurement disagree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Localisation {
-    /// Map by abscissa and channel.
+    /// Map of the residual by abscissa and channel.
     pub along: window_test::AlongMap,
-    /// Map by channel and order of the period, where there is a period.
+    /// Map of the residual by channel and order of the period; `None` for a record without a period.
     pub order: order::OrderMap,
     /// Joints at which a periodic force would explain the residual, the most likely first.
     pub joints: Vec<joint::JointEvidence>,
-    /// Number of joints, from the first on, that cannot be told apart.
+    /// Number of leading joints in `joints` that the record cannot tell apart.
     pub equivalent: usize,
 }
 
@@ -36,7 +36,7 @@ impl Localisation {
     }
 }
 
-/// Computes the maps of the residual of the recalibrated model.
+/// Computes the maps of where the residual of the recalibrated model differs from noise.
 pub(crate) async fn localise<L: Laboratory>(
     session: &mut Session<'_, L>,
 ) -> Result<Localisation, L::Error> {

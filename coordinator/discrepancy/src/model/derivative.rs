@@ -11,8 +11,8 @@ use protocol::announce::EffectDescriptor;
 use protocol::job::{Column, Derivative};
 use search::derivative::DerivativeTerm;
 
-/// Returns the chain-rule terms (derivative column and rate) of the derivative by the `k`-th unknown of a
-/// model at a point.
+/// Returns the chain-rule terms (derivative column and rate) of the curves' derivative by the `k`-th unknown
+/// of a model at a point.
 fn terms(model: &FittedModel, x: &[f64], k: usize) -> Vec<DerivativeTerm> {
     if k >= model.first_of(0) {
         return term_of_added(model, x, k).into_iter().collect();
@@ -135,14 +135,14 @@ impl DerivativeRequest {
         }
     }
 
-    /// Returns the derivative columns to be simulated.
+    /// Returns the derivative columns that a job must ask the simulator for.
     pub(crate) fn columns(&self) -> Vec<Column> {
         let terms = self.changes.iter().flatten();
         terms.map(|term| term.column.clone()).collect()
     }
 
-    /// Combines simulated columns into the requested derivatives in the record's channels; `None` for a
-    /// derivative that lacks a column. Derivatives by gains are computed from the simulated curves.
+    /// Combines simulated derivative columns into the requested derivatives of the record's channels; `None`
+    /// for a derivative that lacks a column. Derivatives by gains are computed from the simulated curves.
     pub(crate) fn changes(
         &self,
         columns: &[Derivative],

@@ -12,26 +12,26 @@ use search::least_squares::{
 };
 use search::strategy::Residual;
 
-/// Means of running simulations for a record: the laboratory, the record with which simulations are compared,
-/// and the stage whose budget they use.
+/// Context for running simulations: the laboratory, the record with which simulations are compared, and the
+/// stage of the diagnosis whose budget they use.
 #[derive(Debug)]
 pub struct Experiments<'a, L> {
     /// Laboratory that runs the simulations.
     pub lab: &'a mut L,
     /// Record with which simulations are compared.
     pub on: &'a WhitenedRecord,
-    /// Stage of the diagnosis for which the simulations are counted.
+    /// Stage of the diagnosis to whose budget the simulations are charged.
     pub stage: Stage,
 }
 
 impl<L: Laboratory> Experiments<'_, L> {
-    /// Returns a view that compares simulations with another record, in the same laboratory.
+    /// Returns this context for simulations that are compared with another record.
     pub fn for_record<'b>(&'b mut self, on: &'b WhitenedRecord) -> Experiments<'b, L> {
         let (lab, stage) = (&mut *self.lab, self.stage);
         Experiments { lab, on, stage }
     }
 
-    /// Returns a view that charges simulations to the budget of another stage.
+    /// Returns this context for simulations that are charged to the budget of another stage.
     pub fn for_stage(&mut self, stage: Stage) -> Experiments<'_, L> {
         let (lab, on) = (&mut *self.lab, self.on);
         Experiments { lab, on, stage }
@@ -114,15 +114,15 @@ impl<L: Laboratory> Experiments<'_, L> {
         Ok(wanted.into_iter().zip(observed).map(seen).collect())
     }
 
-    /// Computes first-order changes of a fit's curves by terms of its model; `None` where there is no term or
-    /// the laboratory provides no derivatives.
+    /// Computes first-order changes of a fit's simulated curves, each by one chain-rule term; `None` where
+    /// there is no term or the laboratory does not compute derivatives.
     pub(crate) async fn changes(
         &mut self,
         fit: &Fit,
         terms: Vec<Option<DerivativeTerm>>,
     ) -> Result<Vec<Option<Curves>>, L::Error> {
-        /// Maximum number of derivative terms in one simulation: more terms lower the cost of each term,
-        /// several simulations occupy several slots.
+        /// Maximum number of derivative terms per simulation. A larger number lowers the cost per term; a
+        /// smaller one spreads the terms over more worker slots.
         const TOGETHER: usize = 80;
         let mut changes = vec![None; terms.len()];
         if !self.lab.differentiates() {
@@ -299,8 +299,7 @@ pub(crate) struct Linearization {
 }
 
 impl Linearization {
-    /// Whitens the residual and its derivatives in the metric of a record; the residual is measured less
-    /// simulated.
+    /// Whitens the residual (measured less simulated) and its derivatives in the metric of a record.
     fn whitened(&self, on: &WhitenedRecord) -> EvaluatedPoint {
         let column = |change: &Option<Curves>| Some(-on.metric.whiten(change.as_ref()?));
         EvaluatedPoint {

@@ -9,9 +9,9 @@ use search::least_squares::{LeastSquares, Variable};
 /// Model with the final state of its fit.
 #[derive(Clone, Debug)]
 pub struct Fit {
-    /// Fitted model.
+    /// Model whose unknowns were fitted.
     pub model: FittedModel,
-    /// Least-squares search at its end: point, residual, Jacobian.
+    /// Final state of the least-squares search: point, residual and Jacobian.
     pub search: LeastSquares,
     /// Simulated curves at the fitted point.
     pub curves: Curves,
@@ -23,7 +23,7 @@ impl Fit {
         &self.search.best().x
     }
 
-    /// Returns the unknowns as variables of the search.
+    /// Returns the model's unknowns as variables of a search, starting at the fitted values.
     pub fn variables(&self) -> &[Variable] {
         self.search.variables()
     }
@@ -33,7 +33,7 @@ impl Fit {
         self.at(self.x().to_vec())
     }
 
-    /// Returns the fitted model at other values of its unknowns.
+    /// Returns the model at the values `x` of its unknowns instead of the fitted ones.
     pub fn at(&self, x: Vec<f64>) -> Point {
         Point {
             model: self.model.clone(),
@@ -41,7 +41,7 @@ impl Fit {
         }
     }
 
-    /// Returns the model with one more effect at scaled values of its parameters.
+    /// Returns the model with one more effect, given by the scaled values of the effect's parameters.
     pub fn with(&self, effect: &EffectDescriptor, own: &[f64]) -> Point {
         self.point().with(effect, own)
     }
@@ -94,7 +94,7 @@ impl Fit {
     }
 }
 
-/// Returns the fit with the smallest `chi^2` among those that did not fail.
+/// Returns the fit with the smallest `chi^2`, ignoring failed fits.
 pub(crate) fn closest(fits: Vec<Option<Fit>>) -> Option<Fit> {
     let left = |a: &Fit, b: &Fit| a.chi_squared().total_cmp(&b.chi_squared());
     fits.into_iter().flatten().min_by(left)

@@ -4,7 +4,8 @@
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
 use protocol::case::Unknown;
 
-/// Typical size of an off unknown, as a share of the larger part of its interval beside the absent value.
+/// Typical size at which a switched-off unknown is tested, as a share of the larger part of its interval
+/// beside the absent value.
 const SHARE: f64 = 0.25;
 
 /// Unknowns that are off and are tested together as one candidate effect.
@@ -17,7 +18,7 @@ pub struct InactiveUnknowns {
 }
 
 impl InactiveUnknowns {
-    /// Collects the unknowns of a case that are off, grouped by candidate effect.
+    /// Collects the switched-off unknowns of a case, grouped by the candidate effect that they form.
     pub fn of(unknowns: &[Unknown]) -> Vec<Self> {
         let mut all: Vec<Self> = Vec::new();
         for (position, unknown) in unknowns.iter().enumerate() {

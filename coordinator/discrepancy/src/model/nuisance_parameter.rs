@@ -9,7 +9,7 @@ use crate::record::nuisance::{Acts, Nuisance};
 use protocol::announce::EffectDescriptor;
 use search::least_squares::{Prior, Variable};
 
-/// Largest distance of a nuisance parameter from its absent value (standard deviations).
+/// Bound of a nuisance parameter: largest distance from its absent value (prior standard deviations).
 const FARTHEST: f64 = 30.0;
 /// Initial finite-difference step of a nuisance parameter (prior standard deviations).
 const STEP: f64 = 0.5;
@@ -17,12 +17,12 @@ const STEP: f64 = 0.5;
 /// Nuisance parameter, with the effect of the library that it stands for.
 #[derive(Clone, Debug)]
 pub struct NuisanceParameter {
-    /// Description of the nuisance parameter.
+    /// Measurement error that the parameter describes.
     pub nuisance: Nuisance,
-    /// Effect that the nuisance parameter stands for, and the position of its parameter; `None` for the gain
-    /// of a channel.
+    /// Library effect that simulates the measurement error, and the index of its size parameter; `None` for
+    /// the gain of a channel.
     effect: Option<(EffectDescriptor, usize)>,
-    /// Largest distance from the absent value (standard deviations).
+    /// Largest allowed distance of the parameter from its absent value (prior standard deviations).
     pub(crate) farthest: f64,
 }
 
@@ -49,7 +49,7 @@ impl NuisanceParameter {
         nuisances.iter().filter_map(one).collect()
     }
 
-    /// Returns the effect that the nuisance parameter stands for, and the position of its parameter.
+    /// Returns the library effect that simulates the nuisance parameter, and the index of its size parameter.
     pub(crate) fn effect(&self) -> Option<(&EffectDescriptor, usize)> {
         self.effect.as_ref().map(|(effect, k)| (effect, *k))
     }
@@ -84,7 +84,8 @@ impl NuisanceParameter {
         }
     }
 
-    /// Converts standard deviations into scales of the effect's parameter; zero for a gain.
+    /// Converts a value of the nuisance parameter from prior standard deviations into units of the scale of
+    /// the effect's parameter; zero for a gain.
     pub(crate) fn in_scales(&self, x: f64) -> f64 {
         self.effect().map_or(0.0, |(effect, k)| {
             x * self.nuisance.deviation / effect.parameters[k].scale
@@ -101,8 +102,8 @@ impl NuisanceParameter {
     }
 }
 
-/// Collects the effects that nuisance parameters stand for, each once, with their scaled parameter values.
-/// Each nuisance parameter comes with its value (standard deviations).
+/// Collects the library effects that simulate nuisance parameters, each effect once, with its scaled
+/// parameter values. `nuisances` gives each nuisance parameter with its value (prior standard deviations).
 pub(crate) fn effects<'a>(
     nuisances: impl Iterator<Item = (&'a NuisanceParameter, f64)>,
 ) -> Vec<(&'a EffectDescriptor, Vec<f64>)> {

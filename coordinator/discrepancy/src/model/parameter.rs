@@ -101,7 +101,8 @@ pub(crate) fn positive(effect: &EffectDescriptor) -> Vec<bool> {
     sizes(effect).into_iter().map(of).collect()
 }
 
-/// Sets the sizes in the scaled values of an effect to estimates, each clamped to its bounds.
+/// Replaces the size parameters among the scaled values of an effect by estimates, each clamped to its
+/// bounds.
 pub(crate) fn sized(
     effect: &EffectDescriptor,
     mut own: Vec<f64>,

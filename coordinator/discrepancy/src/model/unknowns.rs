@@ -24,20 +24,20 @@ const STEP: f64 = 0.02;
 /// already shifts resonances.
 const LONGEST: f64 = 0.7;
 
-/// Model of a case with added effects.
+/// Model that is fitted: a case's unknowns, nuisance parameters of the record and added effects.
 #[derive(Clone, Debug)]
 pub struct FittedModel {
-    /// Space of the case's unknowns that are searched.
+    /// Search space of the case's unknowns.
     pub space: Space,
-    /// Unknowns of the case that are off.
+    /// Switched-off unknowns of the case, each tested as a candidate effect.
     pub off: Vec<InactiveUnknowns>,
     /// Nuisance parameters of the record; those that an added effect stands for are ignored.
     pub nuisances: Vec<NuisanceParameter>,
-    /// Added effects, in the order in which they were added.
+    /// Effects added to the model, in the order in which they were added.
     pub added: Vec<EffectDescriptor>,
-    /// Prior of an unknown for which the case states only bounds.
+    /// Default prior of those unknowns for which the case states only bounds.
     pub unstated: DefaultPrior,
-    /// Index of an unknown that is held at its start.
+    /// Index of an unknown of the case that is held at its start value; `None` if all are free.
     pub fixed_unknown: Option<usize>,
 }
 
@@ -90,7 +90,7 @@ impl FittedModel {
         self.indexed_nuisances().map(|(k, one)| (one, x[k]))
     }
 
-    /// Returns the index of the first unknown of the added effect at `position`.
+    /// Returns the index, in a point's vector, of the first parameter of the added effect at `position`.
     pub fn first_of(&self, position: usize) -> usize {
         let before = self.added.iter().take(position);
         let nuisances = self.active_nuisances().count();
@@ -140,7 +140,7 @@ impl FittedModel {
         all
     }
 
-    /// Returns the values of all unknowns of the case at a point, in declared units.
+    /// Returns the values of all unknowns of the case at the point `x`, in the units that the case declares.
     pub fn genes(&self, x: &[f64]) -> Vec<f64> {
         let mut values = self.space.values(&x[..self.space.dimension()]);
         for (off, setting) in self.settings(x) {
@@ -168,18 +168,18 @@ impl FittedModel {
     }
 }
 
-/// A model at values of its unknowns.
+/// Fitted model at given values of its unknowns.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// Model.
+    /// Model to which the values belong.
     pub model: FittedModel,
-    /// Values of the unknowns, one each.
+    /// Values of the model's unknowns, one per unknown.
     pub x: Vec<f64>,
 }
 
 impl Point {
-    /// Adds an effect at scaled values of its parameters. The value of a nuisance parameter that the effect
-    /// replaces is added to them.
+    /// Adds an effect to the model, at scaled values of its parameters. The value of a nuisance parameter
+    /// that the effect replaces is added to that of the effect's parameter.
     #[must_use]
     pub fn with(mut self, effect: &EffectDescriptor, own: &[f64]) -> Self {
         let mut own = own.to_vec();
@@ -218,7 +218,7 @@ impl Point {
         self
     }
 
-    /// Applies the gains of the record's channels to simulated curves.
+    /// Multiplies simulated curves by the instrument gains of the record's channels at this point.
     pub(crate) fn apply_gains(&self, record: &Record, curves: &mut Curves) {
         apply_gains(self.model.nuisance_values(&self.x), record, curves);
     }

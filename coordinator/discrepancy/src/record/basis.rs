@@ -14,21 +14,21 @@ type C = Complex<f64>;
 /// waves.
 const WAVES: usize = 240;
 
-/// Channels that share an abscissa, and the basis in which they are compared.
+/// Channels of a record that share an abscissa, and the basis in which their curves are compared.
 #[derive(Clone, Debug)]
 pub struct ChannelGroup {
     /// Indices of the channels in the record, ascending.
     pub channels: Vec<usize>,
-    /// Common abscissa of the channels.
+    /// Abscissa that all channels of the group share.
     pub abscissa: Abscissa,
-    /// Basis in which the channels are compared.
+    /// Basis in which the curves of the group are compared.
     pub basis: Basis,
 }
 
 /// Basis of a group's curves; it includes a curve's constant where its channel has a fixed zero.
 #[derive(Clone, Debug)]
 pub enum Basis {
-    /// Orders of the period.
+    /// Fourier coefficients of a periodic abscissa, by order of the period.
     Orders(Orders),
     /// Innovations of samples, with a correlation length for each channel of the group.
     Samples(Vec<Samples>),
@@ -43,7 +43,7 @@ impl Basis {
         }
     }
 
-    /// Returns the number of real numbers per entry: 2 for an order, 1 for a sample.
+    /// Returns the number of real numbers per basis coefficient: 2 for an order, 1 for a sample.
     pub const fn parts(&self) -> usize {
         match self {
             Self::Orders(_) => 2,
@@ -92,8 +92,8 @@ impl Basis {
         }
     }
 
-    /// Returns the root mean square of the curve with the given entries; `row` is the index of its channel in
-    /// the group.
+    /// Returns the root mean square of the curve with the given basis coefficients; `row` is the index of its
+    /// channel in the group.
     pub fn rms(&self, row: usize, entries: &[C]) -> f64 {
         match self {
             Self::Orders(_) => (2.0 * entries.iter().map(C::norm_sqr).sum::<f64>()).sqrt(),
@@ -101,9 +101,9 @@ impl Basis {
         }
     }
 
-    /// Returns the variance of a noise entry relative to white noise of the same standard deviation, for
-    /// noise with a correlation from one value to the next: a first-order process is stronger at low orders,
-    /// and innovations of samples are as strong as the noise itself.
+    /// Returns the variance of a basis coefficient of correlated noise relative to white noise of the same
+    /// standard deviation: first-order autoregressive noise is stronger at low orders; innovations of samples
+    /// are as strong as the noise itself.
     pub fn shape_of_noise(&self, correlation: f64, place: usize) -> f64 {
         match self {
             Self::Orders(orders) => {
@@ -115,7 +115,7 @@ impl Basis {
         }
     }
 
-    /// Returns the variance of an entry of white noise with a given standard deviation.
+    /// Returns the variance of a basis coefficient of white noise with a given standard deviation.
     pub fn variance_of_noise(&self, deviation: f64) -> f64 {
         match self {
             Self::Orders(orders) => deviation * deviation / orders.samples() as f64,
@@ -123,7 +123,7 @@ impl Basis {
         }
     }
 
-    /// Returns the standard deviation of a curve whose entries have the given standard deviations.
+    /// Returns the standard deviation of a curve from the standard deviations of its basis coefficients.
     pub fn deviation(&self, entries: &[f64]) -> f64 {
         let square: f64 = entries.iter().map(|d| d * d).sum();
         match self {
@@ -133,9 +133,9 @@ impl Basis {
         }
     }
 
-    /// Returns the waves (Fourier coefficients) of a channel, from its whitened entries: the entries
+    /// Returns the waves (Fourier coefficients) of a channel from its whitened basis coefficients: these
     /// themselves for orders, else a Fourier transform over the samples. Real and imaginary part of a wave
-    /// each have the variance of a real entry.
+    /// each have the variance of a real basis coefficient.
     pub fn waves(&self, row: usize, entries: Vec<C>) -> Vec<C> {
         match self {
             Self::Orders(_) => entries,
@@ -186,12 +186,13 @@ impl ChannelGroup {
         groups.into_iter().map(group).collect()
     }
 
-    /// Returns whether the channels are compared by orders.
+    /// Returns whether the group's curves are compared by orders of a period.
     pub const fn is_periodic(&self) -> bool {
         matches!(self.basis, Basis::Orders(_))
     }
 
-    /// Returns the entries of this group's channels; `curves` holds those of all channels.
+    /// Returns the basis coefficients of the curves of this group's channels; `curves` holds those of all
+    /// channels.
     pub fn transform(&self, curves: &[Vec<f64>]) -> Spectra {
         let channels = self.channels.iter().enumerate();
         channels
@@ -282,7 +283,8 @@ fn samples(
         .collect()
 }
 
-/// Returns the powers, each averaged over the neighbouring entries in which noise is about as strong.
+/// Returns the powers of a curve's basis coefficients, each averaged over the neighbouring coefficients at
+/// which noise is about as strong.
 pub(crate) fn smoothed(basis: &Basis, powers: &[f64]) -> Vec<f64> {
     let mean = |place: usize| {
         let about = basis.neighbours(place);

@@ -2,10 +2,10 @@
 use crate::record::basis::{Basis, ChannelGroup};
 use nalgebra::Complex;
 
-/// Largest number of bins of an abscissa.
+/// Maximum number of bins into which an abscissa is divided.
 pub const BINS: usize = 120;
 
-/// Equal bins of an abscissa.
+/// Division of an abscissa into equal bins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bins {
     /// Start of the first bin, in the abscissa's unit.
@@ -19,7 +19,7 @@ pub struct Bins {
 }
 
 impl Bins {
-    /// Divides a group's abscissa into bins: no more than there are samples.
+    /// Divides the abscissa of a channel group into bins, at most as many as there are samples.
     pub fn of(group: &ChannelGroup) -> Self {
         let points = &group.abscissa.points;
         let from = points.first().copied().unwrap_or_default();
@@ -53,7 +53,7 @@ impl Bins {
         }
     }
 
-    /// Returns the mean over each window of `width` bins, indexed by its first bin.
+    /// Returns the mean of the values in each window of `width` bins, indexed by the window's first bin.
     pub(crate) fn moving_mean(&self, values: &[f64], width: usize) -> Vec<f64> {
         let n = values.len();
         let mut sum: f64 = values.iter().take(width).sum();
@@ -67,8 +67,8 @@ impl Bins {
     }
 }
 
-/// Returns a channel's whitened entries as values along the abscissa, one per bin; `row` is the index of the
-/// channel in its group.
+/// Returns a channel's whitened basis coefficients as values along the abscissa, one per bin; `row` is the
+/// index of the channel in its group.
 pub(crate) fn along(group: &ChannelGroup, row: usize, entries: &[Complex<f64>]) -> Vec<f64> {
     match &group.basis {
         Basis::Orders(_) => turn(entries),

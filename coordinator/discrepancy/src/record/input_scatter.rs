@@ -7,12 +7,12 @@
 pub enum InputScatter {
     /// Shift of a cycle's curves along the abscissa.
     Abscissa {
-        /// Bound of the shift of a cycle, in the unit of the abscissa.
+        /// Largest shift of a cycle along the abscissa, in the abscissa's unit.
         tolerance: f64,
     },
     /// Effect of the library that acts on the input; ignored where the library lacks it.
     Effect {
-        /// Identifier of the effect.
+        /// Identifier of the effect in the library.
         id: String,
         /// Standard deviation of the effect's first size from cycle to cycle, in that size's unit.
         deviation: f64,

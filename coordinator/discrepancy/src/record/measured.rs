@@ -7,7 +7,7 @@ use std::ops::Range;
 /// Curves of one cycle: channel by channel, in the channel's unit, on its abscissa.
 pub type Curves = Vec<Vec<f64>>;
 
-/// A channel of a record.
+/// Channel of a measured record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recorded {
     /// Index of the simulated curve with which the channel is compared, among the channels of its condition.
@@ -26,13 +26,13 @@ pub struct Recorded {
     /// Standard deviation of the model error in the channel's unit, below which no model is accurate; it adds
     /// to the noise. `None` unless stated.
     pub model_error: Option<f64>,
-    /// Names, unit, abscissa and noise of the channel; the measured values are the record's cycles.
+    /// Names, unit, abscissa and noise of the channel. The measured values are in [`Record::cycles`].
     pub channel: Channel,
 }
 
 impl Recorded {
-    /// Creates a recorded channel from a channel of a case; `curve` is its index among those of its
-    /// condition. The gap is counted on channels that have a record in the case.
+    /// Creates a channel of a record from a channel of a case; `curve` is its index among the channels of its
+    /// condition. The gap is counted on channels for which the case has a measured record.
     pub fn new(curve: usize, channel: &Channel) -> Self {
         Self {
             curve,
@@ -83,9 +83,9 @@ impl Recorded {
 pub struct Record {
     /// Index of the condition in the case.
     pub condition: usize,
-    /// Channels, in the order of all curves; those that are held out stand last.
+    /// Channels of the record, in the order of the curves of each cycle; held-out channels stand last.
     pub channels: Vec<Recorded>,
-    /// Complete cycles, indexed by cycle, channel and sample.
+    /// Measured curves of the complete cycles, indexed by cycle, channel and sample.
     pub cycles: Vec<Curves>,
     /// Whether the whole record is held out: it takes part in no fit or test and is compared at the end only.
     pub held_out: bool,
@@ -96,11 +96,11 @@ pub struct Record {
 /// Record divided into a fitted part and held-out parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Split {
-    /// Part that is fitted.
+    /// Part of the record to which models are fitted.
     pub fitted: Record,
-    /// Held-out cycles of the fitted channels.
+    /// Record of the held-out cycles, with the fitted channels.
     pub cycles: Record,
-    /// Held-out channels or parts of channels.
+    /// Record of the held-out channels or parts of channels.
     pub channels: Record,
 }
 
@@ -127,7 +127,7 @@ impl Record {
         [first, abscissa.period.map_or(last, |period| first + period)]
     }
 
-    /// Returns the stated standard deviation of a value of a channel.
+    /// Returns the standard deviation of the noise of one value of a channel, as the data sheet states it.
     pub fn noise(&self, channel: usize) -> Option<f64> {
         self.channels[channel].channel.noise
     }
@@ -214,7 +214,6 @@ impl Record {
         all
     }
 
-    /// Returns the record restricted to the channels that are held out, or to those that are not.
     fn of_channels(&self, held_out: bool) -> Self {
         let all = 0..self.channels.len();
         let kept: Vec<usize> = all
@@ -254,7 +253,7 @@ impl Record {
         scatter(&self.cycles)
     }
 
-    /// Returns the mean over the cycles.
+    /// Returns the curves of the mean over the record's cycles.
     pub fn mean(&self) -> Curves {
         mean_of(&self.cycles.iter().collect::<Vec<_>>())
     }
@@ -274,7 +273,7 @@ pub(crate) fn scatter(cycles: &[Curves]) -> Vec<f64> {
     (0..whole.len()).map(of).collect()
 }
 
-/// Returns the difference of curves divided by `per`: a finite difference.
+/// Returns the difference quotient of two sets of curves: `of` less `from`, divided by `per`.
 pub(crate) fn difference(of: &Curves, from: &Curves, per: f64) -> Curves {
     let channels = of.iter().zip(from);
     channels

@@ -13,26 +13,27 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;
 
-/// Whitening transform of curves.
+/// Linear transform of a record's curves into units of their uncertainty (whitening).
 #[derive(Clone, Debug)]
 pub struct Metric {
     blocks: Vec<Block>,
     channels: usize,
     known: NoiseSource,
-    /// Orthonormal directions of the marginalised errors, and the share by which each is shortened.
+    /// Orthonormal directions of the marginalised errors in whitened space, and the share by which each is
+    /// shortened.
     shrunk: Option<(DMatrix<f64>, DVector<f64>)>,
 }
 
-/// Part of a whitened vector that belongs to one group of channels, ordered by entry, channel, real and
-/// imaginary part.
+/// Range of a whitened vector that belongs to one group of channels, ordered by basis coefficient, channel,
+/// real and imaginary part.
 #[derive(Clone, Debug)]
 struct Block {
     group: ChannelGroup,
-    /// Inverse Cholesky factor of the channels' noise covariance, by entry.
+    /// Inverse Cholesky factor of the noise covariance between the group's channels, by basis coefficient.
     factors: Vec<DMatrix<C>>,
-    /// Degrees of freedom of the noise variances, by entry.
+    /// Degrees of freedom of the noise variances of the group, by basis coefficient.
     freedoms: Vec<f64>,
-    /// Index in the whitened vector at which the group's part begins.
+    /// Index in the whitened vector at which the group's range begins.
     begin: usize,
 }
 
@@ -45,8 +46,8 @@ impl Block {
         self.group.basis.parts()
     }
 
-    /// Returns the factor that gives the real and imaginary part of an entry variance 1: sqrt(2) for complex
-    /// entries, else 1.
+    /// Returns the factor that gives real and imaginary part of a whitened coefficient variance 1: sqrt(2)
+    /// for complex coefficients, else 1.
     fn scale(&self) -> f64 {
         if self.parts() == 2 {
             // a circular complex variable of variance 1 has parts of variance 1/2
@@ -60,12 +61,13 @@ impl Block {
         self.parts() * self.rows() * self.factors.len()
     }
 
-    /// Returns the index in the whitened vector of entry `place` of the group's channel `row`.
+    /// Returns the index in the whitened vector of basis coefficient `place` of the group's channel `row`.
     fn at(&self, place: usize, row: usize) -> usize {
         self.begin + self.parts() * (place * self.rows() + row)
     }
 
-    /// Returns an entry of a whitened vector as a complex number.
+    /// Returns basis coefficient `place` of the group's channel `row` from a whitened vector, as a complex
+    /// number.
     fn entry(&self, whitened: &DVector<f64>, place: usize, row: usize) -> C {
         let at = self.at(place, row);
         let imaginary = if self.parts() == 2 {
@@ -76,7 +78,8 @@ impl Block {
         Complex::new(whitened[at], imaginary)
     }
 
-    /// Returns all entries of a channel in a whitened vector; `row` is the channel's index in the group.
+    /// Returns all basis coefficients of one channel from a whitened vector; `row` is the channel's index in
+    /// the group.
     fn entries(&self, whitened: &DVector<f64>, row: usize) -> Vec<C> {
         let places = 0..self.factors.len();
         places
@@ -114,7 +117,7 @@ impl Block {
         }
     }
 
-    /// Returns the standard deviations of the entries of a channel's mean.
+    /// Returns the standard deviations of the basis coefficients of a channel's mean over the cycles.
     fn deviations(&self, row: usize) -> Vec<f64> {
         let deviation = |factor: &DMatrix<C>| {
             let lower = factor.clone().try_inverse();
@@ -126,8 +129,9 @@ impl Block {
 }
 
 impl Metric {
-    /// Builds the metric from the Hermitian covariances of the mean's entries, for groups that together hold
-    /// all channels of a record. An entry whose covariance is not positive definite is left out.
+    /// Builds the metric from the Hermitian covariances of the mean's basis coefficients, for groups that
+    /// together hold all channels of a record. A coefficient whose covariance is not positive definite is
+    /// left out.
     pub fn new(groups: &[ChannelGroup], noise: &Noise) -> Self {
         let mut begin = 0;
         let block =
@@ -162,7 +166,7 @@ impl Metric {
         }
     }
 
-    /// Returns whether the noise was estimated, stated or guessed.
+    /// Returns the source of the noise covariances: estimated from cycles, stated or guessed.
     pub const fn known(&self) -> NoiseSource {
         self.known
     }
@@ -214,7 +218,7 @@ impl Metric {
         each.fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the number of channels.
+    /// Returns the number of channels that the metric compares.
     pub const fn channels(&self) -> usize {
         self.channels
     }
@@ -258,8 +262,8 @@ impl Metric {
         self.shrunk = Some((u, lost));
     }
 
-    /// Inverts the whitening: returns the entries of a whitened vector by channel. Marginalised directions
-    /// stay shortened.
+    /// Returns the basis coefficients of a whitened vector by channel, in physical units: the inverse of the
+    /// whitening, except that marginalised directions stay shortened.
     pub fn unwhiten(&self, whitened: &DVector<f64>) -> Spectra {
         let mut out = vec![Vec::new(); self.channels];
         for block in &self.blocks {
@@ -268,7 +272,7 @@ impl Metric {
         out
     }
 
-    /// Returns the basis entries (orders or innovations) of curves, by channel, without whitening.
+    /// Returns the basis coefficients (orders or innovations) of curves, by channel, without whitening.
     pub fn entries(&self, curves: &Curves) -> Spectra {
         self.by_channel(|block, row| {
             let curve = &curves[block.group.channels[row]];
@@ -276,12 +280,13 @@ impl Metric {
         })
     }
 
-    /// Returns the derivatives of curves by their abscissas.
+    /// Returns the derivative of each curve by its abscissa.
     pub(crate) fn slopes(&self, curves: &Curves) -> Curves {
         self.by_channel(|block, row| block.group.slope(&curves[block.group.channels[row]]))
     }
 
-    /// Returns the root mean square of the curve of each channel's entries, in the channel's unit.
+    /// Returns the root mean square of the curve that each channel's basis coefficients describe, in the
+    /// channel's unit.
     pub fn rms(&self, spectra: &Spectra) -> Vec<f64> {
         self.by_channel(|block, row| {
             block
@@ -302,12 +307,13 @@ impl Metric {
         self.by_channel(|block, row| block.group.basis.waves(row, block.entries(whitened, row)))
     }
 
-    /// Returns a whitened vector as values along each channel's abscissa, one per bin.
+    /// Returns a whitened vector as values along each channel's abscissa, one value per bin of
+    /// [`Self::bins`].
     pub fn along(&self, whitened: &DVector<f64>) -> Vec<Vec<f64>> {
         self.by_channel(|block, row| along(&block.group, row, &block.entries(whitened, row)))
     }
 
-    /// Returns the bins of the abscissas, by channel.
+    /// Returns the bins into which each channel's abscissa is divided.
     pub fn bins(&self) -> Vec<Bins> {
         self.by_channel(|block, _| Bins::of(&block.group))
     }
@@ -359,7 +365,8 @@ impl Metric {
         parts
     }
 
-    /// Returns for each entry of a whitened vector the mean power of its neighbourhood, in noise variances.
+    /// Returns, for each element of a whitened vector, the mean power of its neighbouring basis coefficients,
+    /// in noise variances.
     pub fn powers(&self, whitened: &DVector<f64>) -> DVector<f64> {
         let mut out = DVector::zeros(self.len());
         for block in &self.blocks {
@@ -379,7 +386,8 @@ impl Metric {
         out
     }
 
-    /// Applies a function to every channel and returns the results in the record's order.
+    /// Applies a function to every channel, given by its group and its index there; returns the results in
+    /// the channel order of the record.
     fn by_channel<T>(&self, of: impl Fn(&Block, usize) -> T) -> Vec<T> {
         let of = &of;
         let each = self.blocks.iter().flat_map(|block| {

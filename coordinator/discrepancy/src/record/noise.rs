@@ -15,14 +15,15 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;
 
-/// Source of the knowledge of a record's noise.
+/// Way in which a record's noise is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoiseSource {
     /// Measured: estimated from the scatter of several cycles.
     Measured,
-    /// Single cycle, with the noise stated for every channel.
+    /// Stated: record of a single cycle, with the noise stated for every channel.
     Stated,
-    /// Single cycle, with no noise stated for some channel: estimated from the roughness of the curve.
+    /// Estimated: record of a single cycle without stated noise for some channel, whose noise is taken from
+    /// the roughness of its curve.
     Estimated,
 }
 
@@ -33,15 +34,16 @@ impl NoiseSource {
     }
 }
 
-/// Covariance of the entries of a record's mean.
+/// Noise covariance of the basis coefficients of a record's mean over the cycles.
 #[derive(Clone, Debug)]
 pub struct Noise {
-    /// Covariances of the mean over the cycles, by group and entry; channels x channels.
+    /// Noise covariances of the mean over the cycles, by channel group and basis coefficient; each matrix is
+    /// channels x channels.
     pub covariances: Vec<Vec<DMatrix<C>>>,
-    /// Source of the knowledge of the noise.
+    /// Way in which the noise is known.
     pub known: NoiseSource,
-    /// Degrees of freedom of the variances, by group and entry; infinite where they were not estimated from
-    /// cycles.
+    /// Degrees of freedom of the noise variances, by channel group and basis coefficient; infinite where they
+    /// were not estimated from cycles.
     pub freedoms: Vec<Vec<f64>>,
 }
 
@@ -82,8 +84,8 @@ impl Noise {
         }
     }
 
-    /// Adds the stated model error of the channels: spread equally over all compared entries, and independent
-    /// of the number of cycles.
+    /// Adds the stated model error of the channels to the covariances: equally over all compared basis
+    /// coefficients, and independent of the number of cycles.
     fn add_model_error(&mut self, record: &Record, groups: &[ChannelGroup]) {
         for (group, covariances) in groups.iter().zip(&mut self.covariances) {
             let places = covariances.len() as f64;
@@ -110,8 +112,8 @@ impl Noise {
         }
     }
 
-    /// Adds an error with known entries (for example the numerical error of the model), by channel, smoothed
-    /// over neighbours and taken as independent between channels.
+    /// Adds an error with known basis coefficients (for example the numerical error of the model) to the
+    /// covariances, by channel, smoothed over neighbouring coefficients and independent between channels.
     pub fn add_error(&mut self, groups: &[ChannelGroup], spectra: &[Vec<C>]) {
         for (group, covariances) in groups.iter().zip(&mut self.covariances) {
             for (row, &channel) in group.channels.iter().enumerate() {

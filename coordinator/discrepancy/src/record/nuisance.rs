@@ -6,28 +6,29 @@
 /// Constant error of a measurement with a known standard deviation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nuisance {
-    /// Identifier of the library's effect that the error is, or name of a channel's gain.
+    /// Identifier of the library's effect that models the error, or name of the channel gain.
     pub id: String,
     /// Name of the effect's size parameter that the error sets.
     pub parameter: String,
     /// Unit of the error's standard deviation.
     pub unit: String,
-    /// Way in which the error acts.
+    /// Way in which the error acts on the compared curves.
     pub acts: Acts,
-    /// Standard deviation about the absent value.
+    /// Standard deviation of the error about its absent value.
     pub deviation: f64,
-    /// Whether the value is never negative: its prior is half a normal distribution.
+    /// Whether the error is never negative: its prior is half a normal distribution.
     pub never_negative: bool,
-    /// Whether the standard deviation is a usual value for such instruments, not stated in the data sheet.
+    /// Whether the error's standard deviation is a usual value for such instruments, not stated in the data
+    /// sheet.
     pub assumed: bool,
 }
 
 /// Way in which a nuisance parameter acts on the compared curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Acts {
-    /// Effect of the library with the same identifier; ignored where the library lacks it.
+    /// Acts as the library effect with the same identifier; ignored where the library lacks that effect.
     Effect,
-    /// Gain of a channel, which reads `(1 + x) y`.
+    /// Acts as the gain of a channel, which then reads `(1 + x) y`.
     Gain {
         /// Index of the channel's curve among those of its condition.
         curve: usize,

@@ -13,13 +13,13 @@ use protocol::case::Channel;
 
 type C = Complex<f64>;
 
-/// Innovations of curves on a grid, under one correlation length.
+/// Transform of curves on a grid of samples into innovations, for one correlation length of the noise.
 #[derive(Clone, Debug)]
 pub struct Samples {
     /// Correlation of each sample with the one before it; 0 for the first.
     rho: Vec<f64>,
-    /// Householder vectors of the reflections that turn slow curves into the first entries: the constant, and
-    /// where the constant counts the first order of the span as well.
+    /// Householder vectors of the reflections that turn slow curves into the first coefficients: the constant
+    /// and, if constants count, the first order of the span.
     householder_vectors: Vec<Vec<f64>>,
     /// Norm of the part of each slow curve that is orthogonal to the ones before it.
     lengths: Vec<f64>,
@@ -33,14 +33,14 @@ pub struct Samples {
 const ORDER_SHOWS: usize = 8;
 
 impl Samples {
-    /// Creates the transform on the grid of a channel, for noise of a correlation length in the abscissa's
-    /// unit; 0 for independent samples.
+    /// Creates the transform for a channel's grid of samples and a correlation length of the noise, in the
+    /// abscissa's unit; 0 for independent samples.
     pub fn of(channel: &Channel, length: f64) -> Self {
         let points = &channel.abscissa.points;
         Self::new(points, &channel.weights, channel.is_absolute(), length)
     }
 
-    /// Creates the transform on an ascending grid, with at least two points where the constant does not
+    /// Creates the transform for an ascending grid of samples, with at least two samples if constants do not
     /// count.
     fn new(points: &[f64], weights: &[f64], absolute: bool, length: f64) -> Self {
         let gaps = points.windows(2).map(|pair| pair[1] - pair[0]);
@@ -102,18 +102,18 @@ impl Samples {
         least.map_or_else(|| Self::of(channel, 0.0), |(_, samples)| samples)
     }
 
-    /// Returns the number of entries of a curve.
+    /// Returns the number of transformed coefficients of a curve.
     pub fn len(&self) -> usize {
         self.rho.len().saturating_sub(self.left_out())
     }
 
-    /// Returns whether the constant of a curve counts.
+    /// Returns whether the constant of a curve counts as disagreement.
     pub const fn is_absolute(&self) -> bool {
         self.absolute
     }
 
-    /// Returns the number of leading entries that are slow curves (constant, first order of the span) instead
-    /// of innovations.
+    /// Returns the number of leading coefficients that are slow curves (constant, first order of the span)
+    /// instead of innovations.
     pub const fn slow(&self) -> usize {
         if self.absolute {
             self.householder_vectors.len()
@@ -122,8 +122,8 @@ impl Samples {
         }
     }
 
-    /// Returns the number of leading reflected innovations that are left out of the entries, since the
-    /// constant does not count.
+    /// Returns the number of leading reflected innovations that are dropped because the constant does not
+    /// count.
     const fn left_out(&self) -> usize {
         if self.absolute {
             0
@@ -132,7 +132,8 @@ impl Samples {
         }
     }
 
-    /// Returns entries sample by sample: slow curves are transformed back to their values at each sample.
+    /// Returns coefficients sample by sample: those of slow curves are transformed back to values at each
+    /// sample.
     pub fn by_sample(&self, entries: &[C]) -> Vec<f64> {
         let row: Vec<f64> = entries.iter().map(|e| e.re).collect();
         if self.absolute {
@@ -142,18 +143,18 @@ impl Samples {
         }
     }
 
-    /// Returns whether a curve has no entries.
+    /// Returns whether a transformed curve has no coefficients.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Returns the entries of a curve; their imaginary part is zero.
+    /// Returns the transformed coefficients of a curve; their imaginary part is zero.
     pub fn transform(&self, curve: &[f64]) -> Vec<C> {
         let turned = self.reflected(self.innovations(curve)).into_iter();
         turned.skip(self.left_out()).map(C::from).collect()
     }
 
-    /// Returns the curve with the given entries, up to a constant where the constant does not count.
+    /// Returns the curve with the given transformed coefficients, up to a constant if constants do not count.
     pub fn curve(&self, entries: &[C]) -> Vec<f64> {
         let left_out = std::iter::repeat_n(0.0, self.left_out());
         let all = left_out.chain(entries.iter().map(|e| e.re));
@@ -170,8 +171,8 @@ impl Samples {
         curve
     }
 
-    /// Returns the root mean square of the curve with the given entries, about its mean where the constant
-    /// does not count.
+    /// Returns the root mean square of the curve with the given transformed coefficients, about its mean if
+    /// constants do not count.
     pub fn rms(&self, entries: &[C]) -> f64 {
         power(&self.curve(entries), self.is_absolute()).sqrt()
     }
@@ -216,8 +217,8 @@ impl Samples {
     }
 }
 
-/// Returns the curves that have entries of their own: the constant, and where it counts both phases of the
-/// first order of the span. A single value with a fixed zero has none.
+/// Returns the slow curves that have coefficients of their own: the constant and, if constants count, both
+/// phases of the first order of the span. A single value with a fixed zero has none.
 fn slow_curves(points: &[f64], absolute: bool) -> Vec<Vec<f64>> {
     let n = points.len();
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
@@ -258,7 +259,6 @@ mod tests {
     use protocol::case::{Abscissa, Offset};
     use search::random::{Phase, Streams};
 
-    /// Creates a channel on a grid, with optional weights.
     fn channel(points: &[f64], weights: &[f64], absolute: bool) -> Channel {
         Channel {
             abscissa: Abscissa {
@@ -277,7 +277,6 @@ mod tests {
         }
     }
 
-    /// Returns a grid of `n` points with unequal steps.
     fn uneven(n: usize) -> Vec<f64> {
         let step = |k: usize| 0.01 * (1.0 + 0.5 * (k as f64).sin());
         (0..n)

@@ -5,14 +5,14 @@
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
-/// Entries (basis coefficients) of curves, channel by channel.
+/// Basis coefficients (orders or innovations) of curves, channel by channel.
 pub type Spectra = Vec<Vec<Complex<f64>>>;
 
 /// Discrete Fourier transform on a grid of equally spaced phases, from 0 on, without the end of the period.
 #[derive(Clone, Debug)]
 pub struct Orders {
     highest: usize,
-    /// Unit vectors `exp(-i phi)` at the grid's phases.
+    /// Phasors `exp(-i phi)` at the phases of the grid.
     turn: Vec<Complex<f64>>,
 }
 
@@ -39,7 +39,7 @@ impl Orders {
         self.turn.len()
     }
 
-    /// Computes one coefficient of a curve of [`Self::samples`] values.
+    /// Returns the Fourier coefficient of one order for a curve of [`Self::samples`] values.
     pub fn coefficient(&self, curve: &[f64], order: usize) -> Complex<f64> {
         let n = self.turn.len();
         let mut sum = Complex::new(0.0, 0.0);
@@ -54,14 +54,14 @@ impl Orders {
         sum / n as f64
     }
 
-    /// Computes the coefficients of orders 1 to the highest.
+    /// Returns the Fourier coefficients of a curve, from order 1 to the highest.
     pub fn transform(&self, curve: &[f64]) -> Vec<Complex<f64>> {
         (1..=self.highest)
             .map(|order| self.coefficient(curve, order))
             .collect()
     }
 
-    /// Returns the curve, without its mean, that has these coefficients.
+    /// Returns the curve, without its mean, that has the given Fourier coefficients.
     pub fn curve(&self, coefficients: &[Complex<f64>]) -> Vec<f64> {
         let n = self.turn.len();
         let value = |i: usize| -> f64 {

@@ -9,18 +9,18 @@ use protocol::job::Numerics;
 /// Record with the metric in which residuals are whitened.
 #[derive(Clone, Debug)]
 pub struct WhitenedRecord {
-    /// Measured record, calibration cycles only.
+    /// Measured record, without held-out cycles.
     pub record: Record,
-    /// Metric of the record.
+    /// Metric in which the record's mean and residuals are whitened.
     pub metric: Metric,
-    /// The whitened mean of the record.
+    /// Whitened mean over the cycles of the record.
     pub measured: DVector<f64>,
     /// Numerical settings of the simulations that are compared with the record.
     pub numerics: Numerics,
 }
 
 impl WhitenedRecord {
-    /// Joins a record and a metric.
+    /// Whitens the mean of a record with a metric.
     pub fn new(record: Record, metric: Metric, numerics: Numerics) -> Self {
         let measured = metric.whiten(&record.mean());
         Self {
@@ -31,8 +31,8 @@ impl WhitenedRecord {
         }
     }
 
-    /// Builds the metric of a record from its own noise, with orders up to `highest`, without errors of its
-    /// input.
+    /// Whitens a record with the metric of its own noise, with orders up to `highest` and without errors of
+    /// its input.
     pub fn under_own_noise(record: Record, highest: usize, numerics: Numerics) -> Self {
         let groups = ChannelGroup::of(&record, highest, &[]);
         let metric = Metric::new(&groups, &Noise::estimate(&record, &groups, &[]));

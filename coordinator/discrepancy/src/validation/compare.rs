@@ -15,16 +15,16 @@ use crate::record::whitened::WhitenedRecord;
 use crate::validation::gap_closure::{Closed, gap_closure};
 use crate::validation::scoring_metric::ScoringMetric;
 
-/// Gaps of the models before and after effects are added, on one record.
+/// Gap between record and model on one record, before and after the answer's effects are added.
 #[derive(Clone, Debug)]
 pub struct GapRow {
-    /// Index of the condition.
+    /// Index of the record's working condition in the case.
     pub condition: usize,
     /// Role of the record: fitted, or which kind of held-out data it is.
     pub part: DataRole,
     /// Whether the case itself holds this record out: by its condition, its channels or parts of channels.
     pub held_out: bool,
-    /// Gap on the record before and after effects are added.
+    /// Gap on the record before and after effects are added, and the share that they close.
     pub closed: Closed,
     /// Curves simulated by the model before effects are added, by channel.
     pub before: Curves,
@@ -44,7 +44,7 @@ pub enum DataRole {
     /// Parts of channels of the calibrated condition that took no part in the fit; no channel is held out as
     /// a whole.
     Segment,
-    /// Another condition.
+    /// Record of another working condition than the calibrated one.
     Condition,
     /// Blocks of the fitted record, each left out of the fit in turn.
     LeftOut,
@@ -66,14 +66,13 @@ impl DataRole {
     }
 }
 
-/// Record on which an answer is validated.
+/// Measured record on which the answer of a diagnosis is validated.
 #[derive(Clone, Debug)]
 pub(crate) struct ValidationRecord<'a> {
-    /// Measured record.
     pub(crate) record: &'a Record,
     /// Cycles of the same channels and condition with the same scatter as the record, including its own.
     pub(crate) alike: Vec<Curves>,
-    /// Scale that expresses residuals in units of the record's own uncertainty.
+    /// Metric that expresses residuals of the record in units of its own uncertainty.
     pub(crate) scale: ScoringMetric,
     /// Role of the record: fitted, or which kind of held-out data it is.
     pub(crate) part: DataRole,
@@ -195,13 +194,12 @@ fn instruments(fit: &Fit, record: &Record, curves: &Curves) -> Vec<Curves> {
     .collect()
 }
 
-/// Multiplies curves by a number.
 fn scaled(mut curves: Curves, by: f64) -> Curves {
     curves.iter_mut().flatten().for_each(|value| *value *= by);
     curves
 }
 
-/// Compares two models on records; a record on which one of them fails has no row.
+/// Computes the gaps of two models on validation records; a record on which a model fails is left out.
 pub(crate) async fn compare<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     records: &[ValidationRecord<'_>],

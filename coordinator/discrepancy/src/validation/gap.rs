@@ -10,13 +10,13 @@ use crate::record::spectrum::Orders;
 use protocol::case::ChannelRecord;
 use std::ops::RangeInclusive;
 
-/// Number of equal sectors of an abscissa.
+/// Number of equal sectors of an abscissa over which a gap is distributed.
 pub const SECTORS: usize = 12;
 
-/// Bands of orders of the period.
+/// Bands of orders of the period over which a gap is distributed.
 pub const BANDS: [RangeInclusive<usize>; 4] = [1..=5, 6..=30, 31..=120, 121..=usize::MAX];
 
-/// Remaining disagreement at one channel.
+/// Disagreement between record and simulation that remains at one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gap {
     /// Mean squared residual, in the channel's unit squared.
@@ -26,9 +26,9 @@ pub struct Gap {
     pub noise: f64,
     /// Mean square of the measured curve about its mean, in the channel's unit squared.
     pub variance: f64,
-    /// Share of the squared residual per sector of [`SECTORS`], from the first sample on.
+    /// Share of the channel's squared residual in each of the [`SECTORS`] sectors of the abscissa, in order.
     pub sectors: Vec<f64>,
-    /// Share of the squared residual per band of [`BANDS`].
+    /// Share of the channel's squared residual in each of the [`BANDS`].
     pub bands: [f64; BANDS.len()],
 }
 
@@ -64,8 +64,8 @@ impl Gap {
         })
     }
 
-    /// Returns the gap: residual above the noise over the measured variance; 0 where the noise explains
-    /// everything.
+    /// Returns the gap of the channel: mean squared residual above the noise, divided by the measured
+    /// variance; 0 where the noise explains everything.
     pub fn share(&self) -> f64 {
         (self.mse - self.noise).max(0.0) / self.variance
     }
@@ -76,12 +76,12 @@ impl Gap {
         (self.noise > 0.0).then(|| (self.mse / self.noise).sqrt())
     }
 
-    /// Returns the sector with the largest share: its number from 0, and the share.
+    /// Returns the sector with the largest share of the squared residual: its index from 0, and the share.
     pub fn worst_sector(&self) -> (usize, f64) {
         largest(&self.sectors).unwrap_or_default()
     }
 
-    /// Returns the band with the largest share: its orders, and the share.
+    /// Returns the band with the largest share of the squared residual: its orders, and the share.
     pub fn worst_band(&self) -> (RangeInclusive<usize>, f64) {
         let (k, share) = largest(&self.bands).unwrap_or_default();
         (BANDS[k].clone(), share)
@@ -93,7 +93,7 @@ fn largest(shares: &[f64]) -> Option<(usize, f64)> {
     shares.iter().copied().enumerate().max_by(by_size)
 }
 
-/// Divides parts by their sum; leaves zeros where the sum is zero.
+/// Divides values by their sum, in place; sets them to zero where the sum is zero.
 fn shares(parts: &mut [f64]) {
     let sum: f64 = parts.iter().sum();
     if sum > 0.0 {
@@ -112,7 +112,8 @@ fn sectors(residual: &[f64]) -> Vec<f64> {
     parts
 }
 
-/// Returns the share of the residual's power per band; the orders end at half the number of samples.
+/// Returns the share of a residual's power in each of the [`BANDS`]; orders end at half the number of
+/// samples.
 fn bands(residual: &[f64]) -> [f64; BANDS.len()] {
     let n = residual.len();
     let orders = Orders::new(n, n / 2);

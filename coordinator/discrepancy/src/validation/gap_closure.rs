@@ -73,7 +73,7 @@ pub fn gap_closure(record: &Record, alike: &[Curves], before: &Curves, after: &C
     }
 }
 
-/// Cycles to resample from: at least two.
+/// Cycles from which a bootstrap resamples, at least two.
 struct Bootstrap<'a> {
     cycles: &'a [Curves],
     mean: Curves,
@@ -106,10 +106,10 @@ impl<'a> Bootstrap<'a> {
 
 /// Reference for computing gaps of simulated curves: the mean of a record's channels, with their variances.
 struct GapReference {
-    /// Number of cycles.
+    /// Number of cycles of the record.
     cycles: f64,
     mean: Curves,
-    /// Channels on which the gap is counted, and their variances.
+    /// Indices of the channels on which the gap is counted, with their variances.
     channels: Vec<(usize, f64)>,
     /// Whether the mean of a residual counts in the gap, by channel: true for channels with a fixed zero.
     absolute: Vec<bool>,
@@ -141,8 +141,8 @@ impl GapReference {
         (self.mse(&self.mean, simulated) - self.noise).max(0.0)
     }
 
-    /// Returns the squared residual of `mean` less `simulated` over the measured variance, averaged over the
-    /// channels.
+    /// Returns the mean squared residual of `mean` less `simulated`, each divided by the measured variance
+    /// and averaged over the channels.
     fn mse(&self, mean: &Curves, simulated: &Curves) -> f64 {
         let each = self.channels.iter().map(|&(c, whole)| {
             let pairs = mean[c].iter().zip(&simulated[c]);

@@ -42,22 +42,22 @@ use search::least_squares::{Linearized, Variable};
 /// Predictive score of an answer on one record that took no part in the fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
-    /// Index of the condition.
+    /// Index of the record's working condition in the case.
     pub condition: usize,
     /// Kind of held-out data that the record is; never [`DataRole::Fitted`].
     pub part: DataRole,
-    /// Predictive score: log ratio of the record's densities with and without the answer (nats).
+    /// Score: log ratio of the record's probability densities with and without the answer's effects (nats).
     pub nats: f64,
 }
 
 /// Predictive scores of one model relative to another.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Scores {
-    /// Score of each record.
+    /// Predictive score on each record.
     pub(crate) records: Vec<Prediction>,
-    /// Score of all records as one; `None` where there is no record.
+    /// Predictive score on all records jointly (nats); `None` where there is no record.
     pub(crate) together: Option<f64>,
-    /// Part and condition of records on which the model fails and the other one does not.
+    /// Role and condition index of each record on which the model fails although the other model does not.
     pub(crate) failed: Vec<(DataRole, usize)>,
 }
 
@@ -71,9 +71,9 @@ impl Scores {
     }
 }
 
-/// Scores a model against another on all data that took no part in the fit. Records whose noise is neither
-/// estimated from cycles nor stated are skipped; where no record is held out, blocks of the fitted record are
-/// left out in turn.
+/// Computes the predictive scores of a model against another on all data that took no part in the fit.
+/// Records whose noise is neither estimated from cycles nor stated are skipped; where no record is held out,
+/// blocks of the fitted record are left out in turn.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -210,7 +210,7 @@ pub(crate) struct Predicted {
 }
 
 impl Predicted {
-    /// Stacks several records into one.
+    /// Stacks the residuals and Jacobians of several records into one.
     pub(crate) fn stacked(all: &[Self]) -> Self {
         let rows = all.iter().map(|one| one.residual.len()).sum();
         let columns = all.first().map_or(0, |one| one.jacobian.ncols());

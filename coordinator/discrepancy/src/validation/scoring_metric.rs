@@ -71,14 +71,14 @@ impl ScoringMetric {
         self.metric.len()
     }
 
-    /// Returns whether the record's noise was estimated, stated or guessed.
+    /// Returns the source of the record's noise: estimated from cycles, stated or guessed.
     pub(crate) const fn known(&self) -> NoiseSource {
         self.metric.known()
     }
 }
 
-/// Divides each row by the factor by which the standard deviation of its entry is underestimated, given its
-/// degrees of freedom.
+/// Divides each row of whitened columns by the factor by which its standard deviation is underestimated,
+/// given its degrees of freedom.
 pub(crate) fn divide_by_student_deviation(
     metric: &Metric,
     mut columns: DMatrix<f64>,

@@ -14,12 +14,12 @@ use protocol::case::{Abscissa, Channel, Offset};
 use search::least_squares::Linearized;
 use search::random::{Phase, Stream, Streams};
 
-/// Number of samples of a channel.
+/// Number of samples per channel in each test record.
 pub(crate) const SAMPLES: usize = 300;
 /// Correlation length of the noise of each channel (s); `SIZES` holds its standard deviations.
 const LENGTHS: [f64; 2] = [0.05, 0.02];
 pub(crate) const SIZES: [f64; 2] = [0.03, 0.2];
-/// Weight of the innovation that both channels' noise shares.
+/// Weight of the random component that the noise of both channels shares.
 const COMMON: f64 = 0.6;
 
 /// Returns the sampling times (s), with unequal steps and a start other than zero.
@@ -60,7 +60,7 @@ fn channel(curve: usize, noise: Option<f64>) -> Recorded {
     }
 }
 
-/// Draws noise of both channels, correlated along each and between them, with unknown offsets.
+/// Draws noise of two channels, correlated along each and between them, with unknown offsets.
 fn noise(stream: &mut Stream) -> Curves {
     let times = times();
     let mut state = [0.0; 2];
@@ -112,8 +112,8 @@ fn zero() -> Curves {
     vec![vec![0.0; SAMPLES]; 2]
 }
 
-/// Returns the metric of a record's own noise, the degrees of freedom of its variances, and the whitened
-/// mean.
+/// Returns, for a test record, the metric of its own noise, the degrees of freedom of the noise variances,
+/// and the whitened mean.
 fn whitened(record: &Record) -> (Metric, f64, DVector<f64>) {
     let groups = ChannelGroup::of(record, 120, &[]);
     let noise = Noise::estimate(record, &groups, &[]);

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 /// Number of samples per turn of the crank.
 pub(crate) const SAMPLES: usize = 144;
-/// Highest order that is compared.
+/// Highest order of the crank's turn that is compared.
 pub(crate) const ORDERS: usize = 40;
 /// Crank speeds of the two conditions, relative to that of the first.
 pub(crate) const SPEED: [f64; 2] = [1.0, 0.8];
@@ -116,7 +116,7 @@ pub(crate) fn size(name: &str, unit: &str, typical: f64, sign: Sign) -> Paramete
     }
 }
 
-/// Creates an effect as a worker announces it.
+/// Creates a test effect's descriptor, as a worker announces it.
 pub(crate) fn effect(
     id: &str,
     joint: &str,

@@ -12,11 +12,8 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 pub(crate) struct Healthy {
     /// Detection limits of all effects on the healthy machine.
     pub(crate) limits: Vec<Limit>,
-    /// Verdict on the healthy machine.
     pub(crate) verdict: Verdict,
-    /// Parameters that would have to vary along the abscissa or with the condition.
     pub(crate) wander: Vec<ParameterDrift>,
-    /// Summary of the diagnosis in one line.
     pub(crate) line: String,
 }
 

@@ -338,8 +338,8 @@ fn of_line(seed: u64, correlation: f64, stated: Option<f64>) -> (IdentificationR
     (all, half)
 }
 
-/// Returns the half-width, and whether the interval contains the truth, for both unknowns of the straight
-/// line.
+/// Returns, for constant and slope of the straight line, the half-width of the interval and whether the
+/// interval contains the true value.
 fn ends_of_line(all: &IdentificationResult) -> [(f64, bool); 2] {
     let of = |k: usize| {
         let own = named(all, ["constant", "slope"][k]);

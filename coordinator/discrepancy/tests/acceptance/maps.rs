@@ -25,7 +25,7 @@ fn simulate(point: &Point) -> Curves {
     MACHINE.observe(&spec).curves
 }
 
-/// Returns the machine without effects at the given genes.
+/// Returns the machine model without effects, with the unknowns `genes`.
 fn plain(genes: &[f64]) -> Point {
     Point {
         model: FittedModel::plain(space()),
@@ -33,7 +33,7 @@ fn plain(genes: &[f64]) -> Point {
     }
 }
 
-/// Returns the change of the curves per decade of each gene, by central differences.
+/// Returns the change of the simulated curves per decade of each unknown, by central differences.
 fn slopes(x: &[f64]) -> Vec<Curves> {
     const STEP: f64 = 0.01;
     let at = |k: usize, step: f64| {
@@ -140,7 +140,7 @@ fn maps_of_noise_are_empty_in_nineteen_of_twenty() {
     assert!(share(clear) <= 4.0, "{clear} of {sets}");
 }
 
-/// Periodic forces at one joint: the change of the curves and the harmonic order of each.
+/// Periodic probe forces at one joint: the change of the curves by each force, and its harmonic order.
 struct Forces {
     joint: String,
     changes: Vec<Curves>,

@@ -10,7 +10,7 @@ use discrepancy::record::noise::NoiseSource;
 use discrepancy::validation::compare::DataRole;
 use discrepancy::verdict::Verdict;
 
-/// Returns healthy machines and machines with one planted effect.
+/// Returns true machines for the robustness tests: healthy ones, and ones with one planted effect.
 fn sample() -> Vec<Truth> {
     let named = named();
     let mut all = vec![Truth::healthy(6000), Truth::healthy(6001)];
@@ -170,7 +170,7 @@ fn noise_that_was_wrongly_assumed_is_said() {
     }
 }
 
-/// Asserts that an answer claims nothing.
+/// Asserts that a diagnosis makes no claim: no named effect and no unlisted force.
 fn withheld(answer: &Diagnosis) {
     let quiet = [Verdict::NothingDetected, Verdict::Unresolved];
     assert!(quiet.contains(&answer.verdict), "{}", line(answer));

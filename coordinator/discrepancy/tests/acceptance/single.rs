@@ -86,7 +86,8 @@ fn reaches(counted: u64, of: u64, aim: f64) -> bool {
     chance.cdf(counted) > 0.05
 }
 
-/// Returns whether the interval of the planted size contains it, and the relative error of the estimate.
+/// Returns whether the interval of the planted effect's size contains the true size, and the relative error
+/// of the estimate.
 fn size_of(answer: &Diagnosis, effect: &EffectDescriptor, truth: &Truth) -> (bool, f64) {
     let own = sizes(effect).into_iter();
     let planted = &truth.effects[0].1;

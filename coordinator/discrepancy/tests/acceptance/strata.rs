@@ -27,7 +27,7 @@ pub(crate) fn limits(truth: &Truth) -> Vec<Limit> {
     own.limits.clone()
 }
 
-/// Returns the named effects of the library.
+/// Returns the effects of the library that have a physical cause.
 pub(crate) fn named() -> Vec<&'static EffectDescriptor> {
     MACHINE.library().iter().filter(|e| !e.generic).collect()
 }

@@ -14,18 +14,15 @@ use std::task::{Context, Poll, Waker};
 /// Stand-in machine that the tool simulates.
 pub(crate) static MACHINE: LazyLock<Machine> = LazyLock::new(Machine::new);
 
-/// Settings of a trial.
+/// Settings of a trial: record, diagnosis and faults of the laboratory.
 #[derive(Clone, Debug)]
 pub(crate) struct Setup {
-    /// Channels of the record.
     pub(crate) channels: Vec<usize>,
-    /// Cycles of the record.
+    /// Number of cycles of the record.
     pub(crate) cycles: usize,
-    /// Thresholds of the diagnosis.
     pub(crate) thresholds: Thresholds,
-    /// Effects that the diagnosis may consider.
     pub(crate) library: Vec<EffectDescriptor>,
-    /// Loss of one run in this many; 0 loses none.
+    /// Reciprocal of the share of simulation runs that are lost; 0 loses none.
     pub(crate) lost_every: u64,
     /// Pairs of a library label and the machine's own identifier, where the two differ.
     pub(crate) labels: Vec<(String, String)>,

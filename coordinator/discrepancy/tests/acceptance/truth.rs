@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// Number of time steps per turn.
 const STEPS: usize = 720;
-/// Maximum number of turns until the motion is periodic.
+/// Maximum number of turns after which the simulated motion must be periodic.
 const TURNS: usize = 60;
 
 /// Effect of the true machine that is not in the library.
@@ -32,7 +32,7 @@ pub(crate) enum Unlisted {
 /// True machine with its hidden effects and its noise.
 #[derive(Clone, Debug)]
 pub(crate) struct Truth {
-    /// Genes as decades from the recommended values.
+    /// True values of the machine's unknowns, as decades from the recommended values.
     pub(crate) genes: [f64; 10],
     /// Hidden effects of the library with their parameter values, in the library's order.
     pub(crate) effects: Vec<(String, Vec<f64>)>,
@@ -45,7 +45,7 @@ pub(crate) struct Truth {
 }
 
 impl Truth {
-    /// Returns a healthy machine whose genes are drawn at random around the recommended values.
+    /// Returns a healthy machine whose unknowns are drawn at random around the recommended values.
     pub(crate) fn healthy(seed: u64) -> Self {
         let mut stream = Streams::new(seed, 7).at(0, Phase::Initial, 0);
         let spread = [0.10, 0.15, 0.3, 0.2, 0.25, 0.25, 0.3, 0.2, 0.12, 0.25];
@@ -105,7 +105,8 @@ struct TimeIntegration<'a> {
 /// Sensor readings at one angle: four gauges, position, torque.
 type Reading = [f64; 6];
 
-/// Lags of rod, beam, head and swinging mass, then their rates.
+/// State of the time integration: lags of rod, beam, head and swinging mass behind the drive, then the rates
+/// of the lags.
 type State = [f64; 8];
 
 impl TimeIntegration<'_> {
@@ -355,7 +356,7 @@ impl TimeIntegration<'_> {
     }
 }
 
-/// Standard deviation of the noise of one sample, by channel.
+/// Standard deviation of the noise of one sample, by channel: gauges (MPa), position, torque.
 const NOISE: [f64; 6] = [0.25, 0.2, 0.25, 0.2, 2e-3, 0.4];
 /// Correlation of the noise from sample to sample.
 const CORRELATION: f64 = 0.5;
@@ -367,7 +368,7 @@ const ANGLE_TOLERANCE_DEG: f64 = 0.1;
 /// Channels of a full record, as indices of an observation's curves: four gauges, position, torque.
 pub(crate) const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
 
-/// Returns a channel of a record with its stated noise; gauges (curves 0 to 3) count towards the gap.
+/// Creates a record's channel with its stated noise; the gap is counted on gauges (curves 0 to 3) only.
 pub(crate) fn recorded(curve: usize, samples: usize, noise: Option<f64>) -> Recorded {
     let step = 360.0 / samples as f64;
     let channel = Channel {
@@ -469,7 +470,7 @@ fn cycle(
         .collect()
 }
 
-/// Returns cycles of pure noise in all channels.
+/// Returns cycles in which all channels hold noise only.
 pub(crate) fn cycles_of_noise(seed: u64, cycles: usize) -> Vec<Curves> {
     let streams = Streams::new(seed, 13);
     let one = |k: usize| {

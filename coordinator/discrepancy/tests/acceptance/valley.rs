@@ -36,12 +36,12 @@ const SHARES: [[f64; 4]; 2] = [[0.09, 0.05, -0.06, 0.04], [-0.05, 0.06, 0.04, -0
 const STATIC: [f64; 4] = [0.5, -0.35, 0.45, 0.3];
 /// Stress that rotates with the crank independently of the load, by gauge (MPa).
 const WEIGHT: [f64; 4] = [2.0, 1.5, -1.0, 2.5];
-/// Stiffness of the rope's contact relative to the contact gene; in series with the rope.
+/// Stiffness of the rope's contact relative to the searched contact stiffness; in series with the rope.
 const CONTACT: f64 = 80.0;
 /// Standard deviation of the noise of a sample (MPa).
 const NOISE: f64 = 0.05;
 
-/// True values of a machine: genes in decades, clock error of the load card (deg).
+/// True values of a test machine: unknowns in decades, clock error of the load card (deg).
 #[derive(Clone, Copy)]
 struct Ringing {
     stiffness: f64,
@@ -71,7 +71,7 @@ fn library() -> Vec<EffectDescriptor> {
     ]
 }
 
-/// Returns the gauges over a turn: static response, two modes, rotating weight.
+/// Returns the gauge stresses over a turn of the crank: static response, two rope modes, rotating weight.
 fn gauges(genes: [f64; 3], clock: f64, lag: f64, gain: f64) -> Curves {
     let [rope, loss, contact] = genes;
     let stiffness = 1.0 / (1.0 / rope + 1.0 / (CONTACT * contact));
@@ -150,7 +150,7 @@ fn whole(truth: Ringing) -> WhitenedRecord {
     WhitenedRecord::under_own_noise(record(truth), ORDERS, Numerics::FROM_CASE)
 }
 
-/// Returns a view for simulations that compares with a record and is charged to the basin stage.
+/// Creates a simulation context that compares with a record and is charged to the global search stage.
 fn basin<'a>(lab: &'a mut ByCurves, on: &'a WhitenedRecord) -> Experiments<'a, ByCurves> {
     Experiments {
         lab,
@@ -190,7 +190,8 @@ fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
     now(diagnose(&mut ByCurves(|spec| Some(ropes(spec))), &inputs))
 }
 
-/// Returns chi-squared per entry of the diagnosed model, and its stiffness (decades).
+/// Returns `chi^2` per element of the residual of the diagnosed model, and the model's rope stiffness
+/// (decades).
 fn end(diagnosis: &Diagnosis) -> (f64, f64) {
     let fit = diagnosis.after.as_ref().expect("a model");
     let n = fit.search.best().residual.len();

@@ -27,7 +27,7 @@ impl JobCost {
 /// Cost of each job, by job number.
 pub type Costs = BTreeMap<u64, JobCost>;
 
-/// Adds the cost of a finished job.
+/// Records the cost of a finished job in the table of costs.
 pub(super) fn add(costs: &mut Costs, finished: &Finished) {
     costs.insert(finished.job().0, JobCost::of(finished));
 }

@@ -14,19 +14,19 @@ pub struct JobUse {
     pub results: u64,
     /// Number of results in which the simulated machine failed before completion.
     pub machine_failed: u64,
-    /// Median wall-clock time in the slot \[s\].
+    /// Median wall-clock time of a job of this kind in its worker slot \[s\].
     pub median_s: f64,
-    /// 95 % quantile of the wall-clock time in the slot \[s\].
+    /// 95 % quantile of the wall-clock time of a job of this kind in its worker slot \[s\].
     pub usual_s: f64,
-    /// Longest wall-clock time in the slot \[s\].
+    /// Longest wall-clock time of a job of this kind in its worker slot \[s\].
     pub longest_s: f64,
-    /// Total wall-clock time in the slot \[s\].
+    /// Total wall-clock time of the jobs of this kind in their worker slots \[s\].
     pub wall_s: f64,
-    /// Total processor time \[s\].
+    /// Total processor time of the jobs of this kind \[s\].
     pub processor_s: f64,
 }
 
-/// Accumulator of job statistics.
+/// Accumulator of the statistics of a run's jobs.
 #[derive(Debug, Default)]
 pub(super) struct Jobs {
     kinds: BTreeMap<&'static str, Kind>,
@@ -54,7 +54,7 @@ impl Jobs {
         kind.machine_failed += u64::from(failed);
     }
 
-    /// Returns the statistics by kind, and the jobs that were given up with the reason.
+    /// Returns the job statistics by kind of job, and the numbers of the jobs given up with the reason.
     pub(super) fn counted(self) -> (BTreeMap<&'static str, JobUse>, Vec<(u64, String)>) {
         let used = |(name, mut kind): (&'static str, Kind)| {
             kind.times_us.sort_unstable();

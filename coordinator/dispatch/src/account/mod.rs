@@ -15,7 +15,7 @@ use protocol::{
 };
 use std::{collections::BTreeMap, path::Path};
 
-/// Smallest share of slot time for which a cause of loss is reported \[1\].
+/// Minimum share of slot time from which a cause of lost slot time is reported \[1\].
 const NOTABLE: f64 = 0.02;
 
 /// Slot use of the workers of one host.
@@ -27,9 +27,9 @@ pub struct HostUse {
     pub slots: u32,
     /// Accepted results from the host's workers.
     pub done: u64,
-    /// Attempts that failed on the host.
+    /// Number of attempts at jobs that failed on the host.
     pub failed: u64,
-    /// Slot time of the host's workers by use.
+    /// Slot time of the host's workers, divided by what the slots did.
     pub spent: Spent,
 }
 
@@ -38,19 +38,19 @@ pub struct HostUse {
 pub struct RunAccount {
     /// Number of coordinator processes that worked on the run.
     pub processes: u32,
-    /// Number of results recorded.
+    /// Number of results recorded in the run's journal.
     pub results: u64,
     /// Total working time of the coordinator processes, as far as accounted \[s\].
     pub wall_s: f64,
     /// Statistics of results by kind of job.
     pub jobs: BTreeMap<&'static str, JobUse>,
-    /// Jobs that were given up, by number, with the reason.
+    /// Numbers of the jobs that were given up, each with the reason.
     pub given_up: Vec<(u64, String)>,
     /// Number of attempts that failed, on any worker.
     pub failed: u64,
-    /// Account of each worker, summed over the coordinator processes.
+    /// Slot time and results of each worker, summed over the coordinator processes.
     pub workers: Vec<WorkerAccount>,
-    /// Slot time of all workers by use.
+    /// Slot time of all workers, divided by what the slots did.
     pub spent: Spent,
     /// Reasons why workers left, with their counts; the most frequent first.
     pub left: Vec<(String, u64)>,

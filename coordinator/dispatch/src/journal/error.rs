@@ -23,7 +23,7 @@ pub enum JournalError {
         folder.display()
     )]
     Locked {
-        /// Run folder.
+        /// Folder of the locked run.
         folder: PathBuf,
     },
     /// The run was begun with another command, case or settings.
@@ -33,9 +33,9 @@ pub enum JournalError {
         folder.display(), what.join(", another ")
     )]
     Differs {
-        /// Run folder.
+        /// Folder of the run that was begun otherwise.
         folder: PathBuf,
-        /// Descriptions of the differences, with both values.
+        /// Descriptions of the differences between the existing and the requested run, with both values.
         what: Vec<String>,
     },
     /// The journal was written by another version of this program.
@@ -57,7 +57,7 @@ pub enum JournalError {
         path.display()
     )]
     Unidentified {
-        /// Path of the journal.
+        /// Path of the journal without identification.
         path: PathBuf,
     },
     /// The journal was deleted during the run.
@@ -73,7 +73,7 @@ pub enum JournalError {
     /// A record cannot be encoded or decoded.
     #[error(transparent)]
     Wire(#[from] WireError),
-    /// The journal's thread has ended.
+    /// The thread that writes the journal has ended.
     #[error("the journal is closed")]
     Closed,
 }

@@ -34,7 +34,7 @@ pub(super) fn read(folder: &Path) -> Result<Option<(RunId, RunHeader)>, JournalE
     }
 }
 
-/// Writes the copy of the journal's first record into a run folder, atomically.
+/// Writes the copy of the journal's first record into a run folder as an atomic replacement of the file.
 pub(super) fn write(folder: &Path, run: RunId, header: &RunHeader) -> Result<(), JournalError> {
     let header = header.clone();
     let bytes = record(&Event::Begun { run, header })?;

@@ -20,7 +20,7 @@ pub(super) struct Results {
 }
 
 impl Results {
-    /// Creates the index from jobs and the offsets of their results' bodies, in file order.
+    /// Creates the index from pairs of a job and the file offset of its result's record body, in file order.
     pub(super) fn new(path: &Path, results: Vec<(JobId, u64)>) -> Result<Self, JournalError> {
         let file = File::open(path).map_err(|source| JournalError::Io {
             doing: "open",
@@ -34,7 +34,7 @@ impl Results {
         })
     }
 
-    /// Returns the jobs with results, in ascending order.
+    /// Returns the jobs that have a result in the journal, in ascending order.
     pub(super) fn jobs(&self) -> impl Iterator<Item = JobId> + '_ {
         self.index.0.iter().map(|(job, _)| *job)
     }

@@ -56,7 +56,7 @@ pub struct OpenedRun {
     /// Workers connected when the last process ended without closing the run; they may still hold jobs and
     /// results.
     pub present: BTreeSet<WorkerId>,
-    /// Number of records read, and damage found.
+    /// Report on reading the journal: number of records, and damage found.
     pub report: ReadReport,
 }
 
@@ -191,7 +191,8 @@ impl Journal {
         }
     }
 
-    /// Waits until all queued events are on the disk; gives up if the disk cannot be written now.
+    /// Waits until all queued events are on the disk; gives up if the disk does not accept them at that
+    /// moment.
     pub fn close(&mut self) {
         self.closing.store(true, Ordering::Relaxed);
         self.to_writer = None;
@@ -220,14 +221,14 @@ impl Drop for Journal {
     }
 }
 
-/// State of a run, folded from the events of its journal.
+/// State of a run, accumulated from the events of its journal.
 #[derive(Default)]
 struct RecoveredRun {
     begun: Option<(RunId, RunHeader)>,
     epoch: u32,
     model_digest: Option<String>,
     proof: Option<ReferenceResult>,
-    /// Workers that joined and did not leave, with the epoch in which they joined.
+    /// Workers that joined the run and did not leave, with the coordinator process (epoch) that they joined.
     present: BTreeMap<WorkerId, u32>,
     results: Vec<(JobId, u64)>,
 }

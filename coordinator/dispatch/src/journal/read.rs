@@ -77,7 +77,7 @@ pub struct ReadReport {
     pub records: u64,
     /// Damaged stretches that were skipped.
     pub damage: Vec<Damage>,
-    /// End of the last readable record (bytes).
+    /// File offset of the end of the last readable record (bytes).
     pub end: u64,
 }
 

@@ -11,12 +11,12 @@ pub const HEAD: &str = "journal.head";
 /// Name of the lock within a run's folder.
 pub const LOCK: &str = "lock";
 
-/// Mark at the start of each record; the last byte is the version, as a digit.
+/// Mark at the start of each journal record; the last byte is the format version, as a digit.
 pub const MARK: [u8; 4] = [b'H', b'H', b'J', b'0' + VERSION];
-/// Length of the header before a record's body (bytes).
+/// Length of the header before the body of a journal record (bytes).
 pub(super) const RECORD_HEADER: usize = 12;
 
-/// Encodes an event as a record.
+/// Encodes an event as a journal record: header and body.
 pub(super) fn record(event: &Event) -> Result<Vec<u8>, wire::WireError> {
     let body = wire::encode(event)?;
     let length = u32::try_from(body.len()).map_err(|_| wire::WireError::TooLong {
@@ -31,7 +31,8 @@ pub(super) fn record(event: &Event) -> Result<Vec<u8>, wire::WireError> {
     Ok(record)
 }
 
-/// Returns the checksum of a record, computed over the length too, so that a damaged length is detected.
+/// Returns the checksum of a journal record, computed over the body's length too, so that a damaged length is
+/// detected.
 pub(super) fn checksum(length: u32, body: &[u8]) -> u32 {
     let mut hasher = crc32fast::Hasher::new();
     hasher.update(&length.to_le_bytes());

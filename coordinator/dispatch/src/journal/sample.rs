@@ -23,7 +23,7 @@ pub(crate) fn finished(job: u64, wall_us: u64, outcome: Outcome) -> Event {
     }))
 }
 
-/// Returns the event of a job's result; results differ between jobs.
+/// Returns the journal event of a sample result, which differs between jobs.
 pub(crate) fn result(job: u64) -> Event {
     finished(
         job,

@@ -24,7 +24,7 @@ fn open(folder: &Path) -> Result<(Journal, OpenedRun), JournalError> {
     Journal::open(folder, &header(), RunId(5), 17, |_| {})
 }
 
-/// Writes and closes a journal with results 1 to `jobs`; returns its bytes.
+/// Writes a journal with the results of jobs 1 to `jobs` and closes it; returns the file's bytes.
 fn written(folder: &Path, jobs: u64) -> Vec<u8> {
     let (journal, _) = open(folder).unwrap();
     for job in 1..=jobs {
@@ -34,7 +34,7 @@ fn written(folder: &Path, jobs: u64) -> Vec<u8> {
     fs::read(folder.join(FILE)).unwrap()
 }
 
-/// Reads the results by job, the run's identifier, and the damage.
+/// Reads a journal's results by job, the run's identifier, and the damage found.
 fn read(path: &Path) -> (BTreeMap<u64, Event>, Option<RunId>, Vec<Damage>) {
     let (mut results, mut begun) = (BTreeMap::new(), None);
     let report = fold(path, |_, event| match event {

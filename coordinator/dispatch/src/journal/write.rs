@@ -17,20 +17,20 @@ use std::{
 /// Pause between attempts to write to a full disk.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// Report of the writing thread.
+/// Report of the thread that writes the journal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum WriterReport {
     /// Results of these jobs are on the disk.
     Stored(Vec<JobId>),
-    /// Writing fails for the given reason; it is retried every second.
+    /// Writing the journal fails for the given reason; it is retried every second.
     Paused(String),
-    /// Writing succeeds again.
+    /// Writing the journal succeeds again.
     Resumed,
-    /// The file was deleted; records written to it now are lost when this process ends.
+    /// The journal file was deleted; records written to it now are lost when this process ends.
     Deleted,
 }
 
-/// Storage to which records are written.
+/// Storage to which journal records are written.
 pub(super) trait Medium {
     /// Appends bytes; after an error any part of them may have been written.
     fn add(&mut self, bytes: &[u8]) -> io::Result<()>;
@@ -62,10 +62,10 @@ impl Medium for File {
     }
 }
 
-/// State of the writing thread.
+/// State of the thread that writes the journal.
 pub(super) struct Writer<M, F> {
     medium: M,
-    /// End of the last durable record (bytes).
+    /// File offset of the end of the last durable record (bytes).
     end: u64,
     /// Whether bytes of a failed write may lie behind `end`.
     needs_truncation: bool,
@@ -76,8 +76,8 @@ pub(super) struct Writer<M, F> {
 }
 
 impl<M: Medium, F: FnMut(WriterReport)> Writer<M, F> {
-    /// Creates a writer that appends from offset `end` (bytes); `closing` makes it give up on a disk that
-    /// cannot be written.
+    /// Creates a journal writer that appends from offset `end` (bytes); while `closing` is set, it gives up
+    /// on a disk that cannot be written.
     pub(super) const fn new(medium: M, end: u64, said: F, closing: Arc<AtomicBool>) -> Self {
         Self {
             medium,
@@ -90,7 +90,7 @@ impl<M: Medium, F: FnMut(WriterReport)> Writer<M, F> {
         }
     }
 
-    /// Writes events in batches until the sender is dropped.
+    /// Writes queued events to the journal in batches until their sender is dropped.
     pub(super) fn run(&mut self, events: &mpsc::Receiver<Event>) {
         let mut batch = Vec::new();
         while let Ok(first) = events.recv() {
@@ -133,8 +133,8 @@ impl<M: Medium, F: FnMut(WriterReport)> Writer<M, F> {
         }
     }
 
-    /// Retries the write of a batch until it succeeds; returns `false` if the write fails while the journal
-    /// is being closed.
+    /// Writes a batch of records, with retries until it succeeds; returns `false` if writing fails while the
+    /// journal is being closed.
     fn write_with_retry(&mut self, batch: &[u8]) -> bool {
         while let Err(error) = self.write(batch) {
             if self.closing.load(Ordering::Relaxed) {
@@ -193,7 +193,6 @@ mod tests {
     }
 
     impl State {
-        /// Creates a mock disk with a capacity (bytes) and a number of failures to come.
         fn with(room: usize, bad: usize) -> Self {
             Self {
                 bytes: Vec::new(),
@@ -247,8 +246,8 @@ mod tests {
         }
     }
 
-    /// Writes results 0 to `jobs` onto a mock disk that fills up and fails; `relief` is called at the first
-    /// pause. Returns the bytes on the disk and the writer's reports.
+    /// Writes the results of jobs 0 to `jobs` onto a mock disk that fills up and fails; `relief` is called at
+    /// the first pause. Returns the bytes on the disk and the writer's reports.
     fn written(
         jobs: u64,
         state: State,

@@ -34,7 +34,7 @@ pub struct Dispatch {
     engine: JoinHandle<RunSummary>,
     listening: Vec<Locator>,
     recorded: usize,
-    /// Control socket, if it could be opened.
+    /// Control socket of the run; `None` if it could not be opened.
     control: Option<Control>,
 }
 
@@ -154,7 +154,7 @@ impl Dispatch {
         self.requests.send(asked).map_err(|_| DispatchError::Closed)
     }
 
-    /// Waits for the next result, in the order of arrival. Cancel safe.
+    /// Waits for the next job result, in the order of arrival. Cancel safe.
     ///
     /// # Errors
     /// The reason why the run cannot go on; afterwards only [`Self::close`] is useful.
@@ -165,7 +165,7 @@ impl Dispatch {
             .unwrap_or(Err(DispatchError::Closed))
     }
 
-    /// Returns the state of the run, at most some hundredths of a second old.
+    /// Returns the state of the run (jobs, workers, slot time), at most some hundredths of a second old.
     pub fn snapshot(&self) -> Snapshot {
         self.snapshot
             .lock()

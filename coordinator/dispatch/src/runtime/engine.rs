@@ -40,7 +40,8 @@ const TICK: Duration = Duration::from_millis(250);
 const FRESH: Duration = Duration::from_millis(20);
 /// Maximum number of queued messages handled before the scheduler core checks its deadlines.
 const MOST_WAITING: usize = 1 << 16;
-/// Time limit for the last results to reach the journal at the end, if the disk is not full.
+/// Time limit at the end of a run for the last results to reach the journal; not applied while the disk is
+/// full.
 const LAST_WRITE: Duration = Duration::from_secs(1);
 
 /// Request of the run's owner to the engine.
@@ -50,14 +51,14 @@ pub(super) enum Request {
         id: JobId,
         job: Box<Job>,
     },
-    /// Request from the control socket.
+    /// Request that arrived on the control socket.
     Control(PendingRequest),
 }
 
 /// Summary of a run, from opening to closing in this process.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunSummary {
-    /// Final state of the run, including the account of slot time.
+    /// State of the run when it was closed, including the account of slot time.
     pub last: Snapshot,
     /// Number of results taken from the journal instead of being computed.
     pub replayed: u64,
@@ -70,7 +71,7 @@ type Deliver = UnboundedSender<Result<Completed, DispatchError>>;
 /// Pause of a run whose journal cannot be written.
 #[derive(Debug)]
 struct Pause {
-    /// Error of the operating system.
+    /// Error of the operating system that prevents writing.
     why: String,
     /// Time at which the run ends if the journal still cannot be written.
     ends: tokio::time::Instant,
@@ -89,11 +90,12 @@ pub(super) struct Engine<L> {
     begun: Instant,
     sleep: SuspendDetector,
     replayed: u64,
-    /// Pause while the journal cannot be written; `None` for a deleted journal, which is not waited for.
+    /// Current pause, while the journal cannot be written; `None` for a deleted journal, which is not waited
+    /// for.
     paused: Option<Pause>,
-    /// Maximum duration of a pause.
+    /// Maximum duration of a pause for a journal that cannot be written.
     pause_limit: Duration,
-    /// Whether a pause exceeded its limit; nothing is waited for any more.
+    /// Whether a pause exceeded its limit, so that the run ends without waiting for the journal.
     given_up: bool,
     /// Time at which the snapshot must be renewed; `None` if nothing has changed.
     stale_at: Option<tokio::time::Instant>,
@@ -177,7 +179,7 @@ impl<L: CoordinatorEnd> Engine<L> {
         pause.map(|pause| pause.ends)
     }
 
-    /// Ends the run because a pause exceeded its limit.
+    /// Ends the run because its journal could not be written for longer than the pause limit.
     fn give_up(&mut self) {
         self.given_up = true;
         if let Some(pause) = &self.paused {
@@ -225,7 +227,7 @@ impl<L: CoordinatorEnd> Engine<L> {
         }
     }
 
-    /// Answers a control request and drains workers as requested.
+    /// Answers a request from the control socket, draining workers as requested.
     fn ask(&mut self, question: &ControlRequest) -> ControlReply {
         let crew = self.core.worker_statuses(self.begun.elapsed());
         let (drains, reply) =

@@ -8,10 +8,10 @@ use std::time::Duration;
 /// Reason why a run cannot be opened or cannot continue.
 #[derive(Debug, thiserror::Error)]
 pub enum DispatchError {
-    /// The journal cannot be used.
+    /// Error of the run's journal.
     #[error(transparent)]
     Journal(#[from] JournalError),
-    /// The bus cannot be used.
+    /// Error of the message bus between coordinator and workers.
     #[error(transparent)]
     Link(#[from] LinkError),
     /// The worker program is missing.
@@ -31,7 +31,7 @@ pub enum DispatchError {
     /// Local workers end repeatedly without a result, and no other workers can join.
     #[error("the local workers keep ending without a result (the last one {how})")]
     LocalWorkers {
-        /// Exit of the last local worker, in words.
+        /// Description of how the last local worker exited.
         how: String,
     },
     /// The journal holds the result of a different job under this number.
@@ -39,7 +39,7 @@ pub enum DispatchError {
         "the journal of this run holds the result of a different job {job}: this build submits other jobs than the build that began the run; continue with that build, or choose another run folder"
     )]
     JobDiffers {
-        /// Number of the job.
+        /// Number of the job whose results differ.
         job: JobId,
     },
     /// The journal could not be written for longer than the pause limit.
@@ -49,17 +49,17 @@ pub enum DispatchError {
         limit.as_secs()
     )]
     Paused {
-        /// Error of the operating system.
+        /// Error of the operating system that prevents writing the journal.
         why: String,
-        /// Pause limit.
+        /// Maximum duration of a pause while the journal cannot be written.
         limit: Duration,
     },
     /// The address to listen on is in use, or is not an address of this machine.
     #[error("cannot listen on {locator}: {source}")]
     Listen {
-        /// Address as a locator.
+        /// Address in the notation of the bus (locator), e.g. `tcp/0.0.0.0:7447`.
         locator: String,
-        /// Error of the operating system.
+        /// Error of the operating system when listening on the address.
         source: std::io::Error,
     },
     /// The scheduler core stopped the run.

@@ -28,7 +28,8 @@ pub(super) fn allow_connections() {
     }
 }
 
-/// Checks that listening on an address is permitted and possible, before anything is created or started.
+/// Checks that listening on an address is permitted (encrypted, or insecure listening allowed) and possible,
+/// before anything is created or started.
 pub(super) fn admissible(locator: &Locator, insecure: bool) -> Result<(), DispatchError> {
     locator.permit(insecure)?;
     let at = (locator.bare_host(), locator.port);

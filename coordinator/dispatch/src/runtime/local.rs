@@ -23,18 +23,18 @@ use std::{
 };
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
-/// Polling interval of the worker processes.
+/// Interval at which the state of local worker processes is polled.
 const LOOK: Duration = Duration::from_millis(50);
-/// Maximum number of restarts of a worker without a result of the run in between; more than the number of
-/// crashes after which the core gives up a job.
+/// Maximum number of restarts of a local worker while the run gets no result; more than the number of crashes
+/// after which the scheduler core gives up a job.
 const RESTARTS: u32 = 8;
 /// Running time after which a worker's restart count is reset.
 const WORKED: Duration = Duration::from_mins(1);
 /// Exit status of a worker that was refused or told to end; a restart would fail again.
 const REFUSED: i32 = 3;
-/// Pause before the first restart; doubled each time up to [`LONGEST_PAUSE`].
+/// Pause before the first restart of a local worker; doubled for each further one up to [`LONGEST_PAUSE`].
 const PAUSE: Duration = Duration::from_millis(100);
-/// Longest pause before a restart.
+/// Longest pause before a local worker is restarted.
 const LONGEST_PAUSE: Duration = Duration::from_millis(800);
 /// Time limit for workers to end by themselves before they are killed.
 const PATIENCE: Duration = Duration::from_millis(1500);
@@ -44,7 +44,8 @@ const LAST_WORDS: Duration = Duration::from_millis(200);
 /// Maximum length of a worker's output that is forwarded as one line (bytes).
 const LONGEST_LINE: u64 = 64 << 10;
 
-/// Event of the local workers, each with a description of the exit: one ended, was given up, or all were.
+/// Event of the local worker processes: one ended, one was given up, or all were; each with a description of
+/// the exit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum LocalEvent {
     Ended { how: String },
@@ -52,7 +53,7 @@ pub(super) enum LocalEvent {
     AllGivenUp { how: String },
 }
 
-/// Local workers, ended and waited for on drop.
+/// Worker processes on this machine; on drop they are ended and waited for.
 #[derive(Debug)]
 pub(super) struct LocalWorkers {
     events: UnboundedReceiver<LocalEvent>,
@@ -63,7 +64,7 @@ pub(super) struct LocalWorkers {
 }
 
 impl LocalWorkers {
-    /// Starts `count` workers with one slot each.
+    /// Starts `count` local worker processes with one slot each.
     pub(super) fn start(
         path: PathBuf,
         connect: &Locator,
@@ -121,12 +122,12 @@ impl LocalWorkers {
         }
     }
 
-    /// Counts a result of the run, as a sign of progress.
+    /// Counts a result of the run; results show that restarting local workers is worthwhile.
     pub(super) fn note_result(&self) {
         self.results.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Waits for the next event. Cancel safe.
+    /// Waits for the next event of a local worker. Cancel safe.
     pub(super) async fn event(&mut self) -> Option<LocalEvent> {
         self.events.recv().await
     }
@@ -143,7 +144,7 @@ impl Drop for LocalWorkers {
     }
 }
 
-/// Worker program and the address that it connects to.
+/// Path of the worker program, and the coordinator's address to which it connects.
 struct Program {
     path: PathBuf,
     connect: String,
@@ -152,7 +153,7 @@ struct Program {
 /// Standard error of a worker, forwarded line by line; the last line is kept.
 struct WorkerOutput {
     last: Arc<Mutex<String>>,
-    /// Channel that is disconnected at the end of the output.
+    /// Channel that is disconnected when the worker's output ends.
     over: mpsc::Receiver<()>,
 }
 
@@ -194,16 +195,16 @@ impl WorkerOutput {
     }
 }
 
-/// Local worker process with its restart history.
+/// Worker process on this machine, with its restart history.
 struct LocalWorker {
     child: Option<Child>,
     said: WorkerOutput,
     begun: Instant,
-    /// Number of results of the run when the worker last ended.
+    /// Number of results of the run at the last exit of the worker.
     results: u64,
-    /// Number of consecutive exits without a result in between.
+    /// Number of consecutive exits of the worker without a result of the run in between.
     restarts: u32,
-    /// Whether the worker ended because it was refused.
+    /// Whether the worker ended because the coordinator refused it.
     refused: bool,
     pause: Duration,
     again_at: Option<Instant>,
@@ -234,7 +235,7 @@ impl LocalWorker {
         })
     }
 
-    /// Returns how the worker ended, if it just did.
+    /// Returns a description of the exit if the worker process has ended since the last call.
     fn ended(&mut self) -> Option<String> {
         let how = match self.child.as_mut()?.try_wait() {
             Ok(None) => return None,

@@ -19,7 +19,7 @@ pub const WORKER_PROGRAM: &str = "HORSEHEAD_WORKER";
     beside.display()
 )]
 pub struct LocateError {
-    /// Folder of this program.
+    /// Folder of the running program, in which the worker program was expected.
     beside: PathBuf,
 }
 

@@ -3,7 +3,7 @@ use super::control::messages::{ControlReply, ControlRequest, HeldJob, WorkerPhas
 use crate::scheduler::{ConnectedWorker, Drain};
 use protocol::{id::WorkerId, name::NO_CERTIFICATE};
 
-/// Returns the workers that a control request drains, with the way to drain each, and the reply.
+/// Answers a control request: returns the workers to drain, with the way to drain each, and the reply.
 pub(super) fn answer(
     question: &ControlRequest,
     crew: Vec<ConnectedWorker>,

@@ -157,7 +157,7 @@ fn agreement(core: &mut Core, proof: &ReferenceResult) -> Result<(), String> {
     })
 }
 
-/// Removes and refuses a worker that has already joined.
+/// Removes a worker that has already joined from the run and tells it the reason.
 fn expel(core: &mut Core, worker: WorkerId, reason: String) -> Option<bool> {
     let member = dismiss(core, worker, "it was refused", core.clocks.now)?;
     refuse(core, worker, member.announcement.host, reason);

@@ -14,7 +14,7 @@ const MOST_SLOTS: u32 = 4096;
 /// Maximum number of workers of a run, as protection against floods of announcements.
 const MOST_WORKERS: usize = 16 << 10;
 
-/// Maximum length of the name of a host, build or model (bytes).
+/// Maximum length of the name of a host, build or model in a worker's announcement (bytes).
 const MOST_NAME: usize = 255;
 
 /// Maximum encoded length of the list of job kinds (bytes), ten times the usual length; `MOST_MODELS` is that

@@ -30,7 +30,7 @@ pub(super) fn assign(core: &mut Core, now: Duration) {
     core.queue.extend(passed_over);
 }
 
-/// Returns the least loaded worker that may have the job.
+/// Returns the least loaded worker that may be given a job; `None` if there is none.
 fn pick(core: &Core, job: JobId) -> Option<WorkerId> {
     let pending = core.jobs.get(&job)?;
     let policy = &core.options.policy;

@@ -28,7 +28,7 @@ pub(super) fn drain(core: &mut Core, worker: WorkerId, how: Drain, now: Duration
     }
 }
 
-/// Ends drained workers that were asked to end and hold no job.
+/// Sends the order to end to drained workers whose drain requested it and that hold no job.
 pub(super) fn end_drained(core: &mut Core, now: Duration) {
     let ends = |(worker, how): (&WorkerId, &Drain)| how.end.then_some(*worker);
     let ending: Vec<WorkerId> = core.drained.iter().filter_map(ends).collect();
@@ -46,8 +46,8 @@ pub(super) fn end_drained(core: &mut Core, now: Duration) {
     }
 }
 
-/// Sends a worker the order to end, if a drain requested its end, and returns whether it did. The message may
-/// be lost; the worker then announces itself again.
+/// Sends a worker the order to end, if a drain requested that the worker end, and returns whether the order
+/// was sent. The message may be lost; the worker then announces itself again.
 pub(super) fn turn_away(core: &mut Core, worker: WorkerId) -> bool {
     let ends = core.drained.get(&worker).is_some_and(|how| how.end);
     if ends {

@@ -16,8 +16,8 @@ use protocol::{
 use std::{mem, time::Duration};
 
 impl Core {
-    /// Handles an input at time `now`, measured from any fixed moment; returns the commands to execute in
-    /// order.
+    /// Handles an input to the scheduler core at time `now`, measured from any fixed moment; returns the
+    /// commands that the runtime must execute, in order.
     pub fn handle(&mut self, input: Input, now: Duration) -> Vec<Command> {
         self.clocks.advance(now);
         membership::compensate_stall(self, now);

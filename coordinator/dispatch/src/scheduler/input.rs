@@ -14,9 +14,10 @@ use std::time::Duration;
 /// Options for draining a worker.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Drain {
-    /// Whether the worker returns its jobs at once; otherwise it finishes them.
+    /// Whether the drained worker returns its jobs to the coordinator at once; otherwise it finishes them
+    /// first.
     pub now: bool,
-    /// Whether the worker ends once it holds no job; otherwise it stays idle.
+    /// Whether the drained worker's process ends once it holds no job; otherwise it stays connected and idle.
     pub end: bool,
 }
 
@@ -56,14 +57,14 @@ pub enum Input {
     },
     /// Results were safely written to the journal.
     Stored {
-        /// Jobs whose results are safe.
+        /// Jobs whose results are now safely in the journal.
         jobs: Vec<JobId>,
     },
-    /// The journal became writable or unwritable; it is writable initially.
+    /// Whether the journal can be written, sent at each change; the journal counts as writable initially.
     Writable(bool),
-    /// The machine was suspended, and its clock stood still.
+    /// Report that the coordinator's machine was suspended, during which its clock stood still.
     Suspended {
-        /// Duration of the suspend.
+        /// Duration for which the coordinator's machine was suspended.
         time: Duration,
     },
     /// A worker is to be drained.
@@ -73,11 +74,11 @@ pub enum Input {
         /// Options of the drain: whether jobs are returned at once, and whether the worker ends.
         how: Drain,
     },
-    /// Time has passed; deadlines must be checked.
+    /// Periodic call without other input, at which deadlines and timeouts are checked.
     Tick,
     /// No further jobs are to be assigned; accepted results are still written.
     Finish,
-    /// The run ends.
+    /// End of the run, of which the workers must be notified.
     Close,
 }
 
@@ -86,7 +87,7 @@ pub enum Input {
 pub enum Command {
     /// Send a message to a worker.
     Send {
-        /// Recipient.
+        /// Worker to which the message is sent.
         to: WorkerId,
         /// Message to send to the worker.
         message: ToWorker,
@@ -97,7 +98,7 @@ pub enum Command {
     Record(Event),
     /// Deliver a result to the submitter of the job.
     Deliver(Completed),
-    /// Report to the user.
+    /// Show a notice to the user.
     Notice(Notice),
     /// Stop the run, which cannot continue.
     Stop(StopReason),

@@ -17,7 +17,7 @@ impl JobSet {
         self.at_or_before(job.0).is_some_and(|(_, to)| job.0 <= to)
     }
 
-    /// Adds a job.
+    /// Adds a job id to the set; no effect if the set contains it already.
     pub fn insert(&mut self, job: JobId) {
         let id = job.0;
         let before = self.at_or_before(id);

@@ -85,8 +85,8 @@ pub(super) fn requeue(core: &mut Core, worker: WorkerId, job: JobId) {
     }
 }
 
-/// Leaves a queued job with a worker that reports holding an attempt of the job already, dispatched by an
-/// earlier coordinator process.
+/// Registers a queued job as leased to a worker that reports already holding an attempt of the job,
+/// dispatched by an earlier coordinator process.
 pub(super) fn adopt(core: &mut Core, job: JobId, now: Duration) {
     if !core.queue.contains(&job) {
         return;

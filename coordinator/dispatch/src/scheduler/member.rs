@@ -12,7 +12,7 @@ use std::time::Duration;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lease {
     pub(super) attempt: Attempt,
-    /// Time at which the order was last sent.
+    /// Time at which the order to run the leased attempt was last sent to the worker.
     pub(super) sent: Duration,
     /// Time at which the worker first reported that the attempt was running.
     pub(super) running: Option<Duration>,
@@ -20,7 +20,7 @@ pub(super) struct Lease {
     /// Slot time spent on the leased attempt until the worker's slot time was last brought up to date by
     /// [`Member::settle`].
     pub(super) held: Duration,
-    /// Whether the order was sent while the worker had an idle slot.
+    /// Whether the worker had an idle slot when the order to run the leased attempt was sent.
     pub(super) sent_to_idle_slot: bool,
 }
 
@@ -38,7 +38,7 @@ impl Lease {
     }
 }
 
-/// An admitted worker.
+/// Worker that was admitted to the run, with its leases and its slot-time account.
 #[derive(Clone, Debug)]
 pub(super) struct Member {
     pub(super) announcement: Announcement,
@@ -53,7 +53,7 @@ pub(super) struct Member {
     pub(super) runs_quarantined_job: bool,
     /// Whether the worker is drained, that is, gets no new jobs.
     pub(super) drained: bool,
-    /// Attempts that the worker reports holding of jobs not (yet) submitted.
+    /// Attempts that the worker reports holding although their jobs were not (yet) submitted in this process.
     pub(super) claims: Vec<Attempt>,
     /// Attempts withdrawn from the worker, each with the time of withdrawal; the worker may still run them
     /// until it receives the cancellation.
@@ -95,7 +95,7 @@ impl Member {
         self.ready && !self.runs_quarantined_job && !self.drained
     }
 
-    /// Returns the number of idle slots.
+    /// Returns the number of the worker's slots without a job.
     pub(super) fn idle(&self) -> usize {
         self.slots().saturating_sub(self.leases.len())
     }

@@ -1,5 +1,5 @@
-//! Membership of workers: return after a restart, leaving, loss by a broken connection or silence, and stalls
-//! of the coordinator.
+//! Membership of workers: return after a coordinator restart, departure, loss by a broken connection or
+//! silence, and compensation of stalls of the coordinator.
 use super::{
     admission_rules::sanitized,
     lease::requeue,

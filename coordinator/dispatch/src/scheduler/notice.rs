@@ -14,7 +14,7 @@ const MOST_NAMED: usize = 5;
 pub enum Notice {
     /// A worker joined the run.
     Joined {
-        /// The worker's name.
+        /// Identifier of the worker that joined.
         worker: WorkerId,
         /// Host name of the worker.
         host: String,
@@ -23,32 +23,32 @@ pub enum Notice {
     },
     /// A worker left in an orderly way.
     Left {
-        /// The worker's name.
+        /// Identifier of the worker that left.
         worker: WorkerId,
         /// Reason given by the worker.
         reason: String,
     },
     /// A worker was lost.
     Lost {
-        /// The worker's name.
+        /// Identifier of the lost worker.
         worker: WorkerId,
         /// Symptom by which the loss was detected.
         reason: String,
-        /// Number of the worker's jobs that are requeued.
+        /// Number of jobs of the lost worker that are requeued.
         jobs: usize,
     },
     /// A worker was refused admission.
     Refused {
-        /// The worker's name.
+        /// Identifier of the refused worker.
         worker: WorkerId,
         /// Host name of the worker.
         host: String,
-        /// Reason, as sent to the worker.
+        /// Reason for the refusal, as sent to the worker.
         reason: String,
     },
     /// A worker uses another version of the wire protocol.
     OtherVersion {
-        /// The worker's name.
+        /// Identifier of the worker with the other protocol version.
         worker: WorkerId,
         /// Version found in the worker's message.
         version: u8,

@@ -15,8 +15,8 @@
 use protocol::case::{Case, Reproducibility};
 use std::time::Duration;
 
-/// Times and limits; the defaults are measured to give no false loss on a machine with thirty
-/// times more runnable threads than cores.
+/// Time limits and retry limits of the scheduler; the defaults are measured to give no false loss of a worker
+/// on a machine with thirty times more runnable threads than cores.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Policy {
     /// Silence after which a worker is lost (default 4 s; heartbeats come every second).
@@ -27,14 +27,14 @@ pub struct Policy {
     /// Time for which a coordinator that resumes a run waits for workers of the previous process before it
     /// dispatches the jobs they may hold (default 3 s: workers try to connect every 2 s).
     pub rejoin_grace: Duration,
-    /// Time for which the coordinator waits for results after the last of the expected workers has returned
-    /// (default 500 ms).
+    /// Time for which a restarted coordinator waits for results after the last of the expected workers has
+    /// returned (default 500 ms).
     pub delivery_grace: Duration,
     /// Gap between two calls of the core beyond which the coordinator process itself counts as stalled
     /// (default 1 s).
     pub stall_after: Duration,
-    /// Length of a stall of the coordinator from which on workers may have dropped their connections (default
-    /// 2 s: they do after 3 s of silence).
+    /// Shortest stall of the coordinator during which workers may have dropped their connections (default 2
+    /// s; workers do so after 3 s of silence).
     pub disconnecting_stall: Duration,
     /// Time allowed for reconnecting after a stall of the coordinator of at least `disconnecting_stall`,
     /// before a worker's silence counts again (default 3 s: workers try every 2 s).
@@ -54,17 +54,19 @@ pub struct Policy {
     /// Number of accepted but unstored results beyond which no job is dispatched (default 1024), so that a
     /// slow disk does not fill the memory.
     pub most_unstored: usize,
-    /// Deadline while fewer than [`Self::deadline_samples`] jobs are done (default 120 s).
+    /// Deadline of an attempt while fewer than [`Self::deadline_samples`] jobs of its kind are done (default
+    /// 120 s).
     pub first_deadline: Duration,
     /// Deadline for the reduction of a horse head, before samples exist; requested once, and its time grows
     /// with the mesh (default 30 min).
     pub reduction_deadline: Duration,
-    /// Lower limit of the deadline (default 10 s).
+    /// Lower limit of the deadline derived from measured job times (default 10 s).
     pub least_deadline: Duration,
-    /// Ratio of the deadline to the 95th percentile of the time of recent jobs of the kind (default 4).
+    /// Ratio of an attempt's deadline to the 95th percentile of the durations of recent jobs of its kind
+    /// (default 4).
     pub deadline_factor: u32,
-    /// Ratio of the deadline to the longest time that any job of the kind took in this process (default 2): a
-    /// duration that succeeded once must stay allowed.
+    /// Minimum ratio of an attempt's deadline to the longest time that any job of its kind took in this
+    /// process (default 2): a duration that succeeded once must stay allowed.
     pub longest_time_factor: u32,
     /// Number of finished jobs of a kind needed before their times are used to set deadlines and start copies
     /// (default 5).
@@ -93,9 +95,9 @@ pub struct Policy {
 }
 
 impl Policy {
-    /// Returns the policy for a case's model. A model with a time limit of its own is left to end its runs
-    /// itself and is given up only long after; a model whose results are not bitwise repeatable is never
-    /// copied, since the first result counts.
+    /// Returns the policy for a case's model. A model with a time limit of its own ends its runs itself, so
+    /// its jobs are given up only long after that limit; a model whose results are not bitwise repeatable is
+    /// never copied, since the first result counts.
     pub fn of(case: &Case) -> Self {
         /// Assumed upper limit of the number of runs that wait ahead of a given run on a machine that
         /// executes fewer runs simultaneously than it has slots.

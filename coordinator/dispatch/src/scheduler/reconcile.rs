@@ -52,7 +52,7 @@ fn mark(core: &mut Core, from: WorkerId, beat: &Heartbeat, now: Duration) {
     });
 }
 
-/// Resends orders of leases that the heartbeat does not mention.
+/// Sends the orders of those leases again that the worker's heartbeat does not mention.
 fn resend(core: &mut Core, from: WorkerId, beat: &Heartbeat, now: Duration) {
     let resend_after = core.options.policy.resend_after;
     let Some(member) = core.members.get_mut(&from) else {

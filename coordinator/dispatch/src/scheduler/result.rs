@@ -1,4 +1,5 @@
-//! Handling of results and failures: acceptance, delivery, acknowledgement, retry and abandonment.
+//! Handling of the results and failures of jobs: acceptance, delivery, acknowledgement, retry and
+//! abandonment.
 use super::{
     completed::Completed,
     input::Command,
@@ -15,11 +16,11 @@ use protocol::{
 };
 use std::{collections::BTreeMap, time::Duration};
 
-/// Ratio of the running time after which the coordinator ends an attempt itself to the deadline that the
-/// worker enforces; large because the worker does not count the time for which a job got no processor.
+/// Multiple of an attempt's deadline after which the coordinator ends the attempt itself; large, because the
+/// worker, which enforces the deadline, does not count the time for which a job got no processor.
 const OVERDUE_FACTOR: u32 = 8;
-/// Additional time after `PATIENCE` times the deadline, before the coordinator ends an attempt, for the
-/// worker to report that it ended the attempt itself.
+/// Additional time beyond `OVERDUE_FACTOR` times the deadline that the coordinator gives the worker to report
+/// an overdue attempt as ended, before it ends the attempt itself.
 const GRACE: Duration = Duration::from_secs(10);
 
 /// Handles a result or failure delivered by a worker.
@@ -77,8 +78,8 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
     }
 }
 
-/// Returns whether the job already has a result; if so, acknowledges the attempt now or once the accepted
-/// result is stored.
+/// Returns whether the job of a delivered attempt already has a result; if so, acknowledges the attempt now
+/// or once the accepted result is stored.
 fn is_duplicate(core: &mut Core, from: WorkerId, attempt: Attempt) -> bool {
     if let Some(waiting) = core.storing.get_mut(&attempt.job) {
         if !waiting.contains(&(from, attempt)) {
@@ -93,8 +94,8 @@ fn is_duplicate(core: &mut Core, from: WorkerId, attempt: Attempt) -> bool {
     true
 }
 
-/// Returns a failure if a worker's result carries another work hash than the job it was sent, that is, if the
-/// worker decodes jobs differently from this build.
+/// Returns a failure if a worker's result carries another hash of the job's content than the job it was sent,
+/// that is, if the worker decodes jobs differently from this build.
 fn work_mismatch(pending: &Pending, done: &Done) -> Option<Failure> {
     (pending.work != done.work).then(|| Failure::Refused {
         reason: format!(
@@ -152,7 +153,7 @@ fn deliver(core: &mut Core, id: JobId, cost: Cost, outcome: Outcome) {
     }));
 }
 
-/// Marks results as stored and acknowledges them to their workers.
+/// Marks results as stored in the journal and acknowledges them to the workers that delivered them.
 pub(super) fn stored(core: &mut Core, jobs: Vec<JobId>) {
     let mut acknowledged: BTreeMap<WorkerId, Vec<Attempt>> = BTreeMap::new();
     for job in jobs {

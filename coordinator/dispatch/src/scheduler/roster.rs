@@ -3,7 +3,7 @@ use super::{lease::requeue, member::Member, state::Core};
 use protocol::{event::Event, id::WorkerId};
 use std::time::Duration;
 
-/// Removes a worker, books its running attempts as lost and records its last account.
+/// Removes a worker from the run, books its running attempts as lost and records its last slot-time account.
 pub(super) fn remove(
     core: &mut Core,
     worker: WorkerId,

@@ -21,7 +21,8 @@ pub(super) struct Clocks {
     pub(super) computing: Duration,
     barrier: Duration,
     starved: Duration,
-    /// State of the run since the clocks were last advanced (`now`).
+    /// State of the run since the time `now` to which the clocks were last advanced; determines the clock
+    /// that runs.
     doing: WorkState,
 }
 
@@ -80,10 +81,10 @@ impl AttemptUse {
     }
 }
 
-/// Slot time of one worker, by use.
+/// Slot-time account of one worker: time by kind of use.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SlotTime {
-    /// Clocks of the run up to which this account has been brought up to date.
+    /// Readings of the run's clocks when this account was last brought up to date.
     settled_at: Clocks,
     useful: Duration,
     barrier: Duration,
@@ -97,7 +98,7 @@ pub(super) struct SlotTime {
 }
 
 impl SlotTime {
-    /// Creates an empty account starting at the current clocks.
+    /// Creates an empty slot-time account that starts at the current clocks.
     pub(super) fn since(clocks: &Clocks) -> Self {
         Self {
             settled_at: *clocks,
@@ -105,13 +106,13 @@ impl SlotTime {
         }
     }
 
-    /// Returns the time that has passed since this account was last brought up to date.
+    /// Returns the time that has passed since this slot-time account was last brought up to date.
     pub(super) fn unsettled(&self, clocks: &Clocks) -> Duration {
         clocks.now.saturating_sub(self.settled_at.now)
     }
 
-    /// Returns the account brought up to the given clocks, adding idle time of `idle` slots; for a worker
-    /// that is not `ready` all of it counts as starved.
+    /// Returns the worker's slot-time account brought up to the given clocks, adding the idle time of `idle`
+    /// slots; for a worker that is not `ready` all of it counts as starved.
     pub(super) fn until(mut self, clocks: &Clocks, idle: u32, ready: bool) -> Self {
         let barrier = clocks.barrier.saturating_sub(self.settled_at.barrier);
         let starved = clocks.starved.saturating_sub(self.settled_at.starved);
@@ -125,7 +126,7 @@ impl SlotTime {
         self
     }
 
-    /// Adds the duration of an ended attempt under its use.
+    /// Adds the slot time `spent` on an ended attempt to the account, under the attempt's use.
     pub(super) fn add(&mut self, what: AttemptUse, spent: Duration) {
         let kind = match what {
             AttemptUse::Useful(_) => &mut self.useful,

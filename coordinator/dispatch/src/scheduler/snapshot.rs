@@ -57,7 +57,7 @@ pub struct WorkerSnapshot {
     reason = "nobody below needs to know what is shown of the state"
 )]
 impl Core {
-    /// Returns a snapshot of the state at the given time.
+    /// Returns a snapshot of the scheduler core's state at the given time.
     pub fn snapshot(&self, now: Duration) -> Snapshot {
         let mut spent = self.counts.departed_slot_time;
         let mut clocks = self.clocks;

@@ -43,17 +43,18 @@ pub struct CoreOptions {
     pub model_digest: Option<String>,
     /// Repeatability of results across machines (bitwise, within a tolerance, or unknown).
     pub repeats: Reproducibility,
-    /// Expected result of the case's reference individual; `None` until the first worker has proved its own.
+    /// Expected result of the case's reference individual, which workers simulate to prove their numerics;
+    /// `None` until the first worker has delivered its own.
     pub proof: Option<ReferenceResult>,
     /// Jobs whose results are in the journal.
     pub finished: JobSet,
     /// Workers that outlived the previous coordinator process and may hold jobs and results of it.
     pub expected: BTreeSet<WorkerId>,
-    /// Time and retry limits.
+    /// Time limits and retry limits of the scheduler.
     pub policy: Policy,
 }
 
-/// Scheduler state machine.
+/// Scheduler state machine: jobs, workers and leases of one coordinator process.
 #[derive(Debug)]
 pub struct Core {
     pub(super) options: CoreOptions,
@@ -80,7 +81,7 @@ pub struct Core {
     /// Time since which jobs have waited without any worker.
     pub(super) no_worker_since: Option<Duration>,
     pub(super) no_worker_notified: bool,
-    /// Effects that all workers must support; `None` until the first worker joins.
+    /// Model effects that all workers must support; `None` until the first worker joins.
     pub(super) effects: Option<Vec<String>>,
     pub(super) clocks: Clocks,
     /// Moving average of the overhead per job: time from the order to an idle slot until the result, less the
@@ -156,7 +157,7 @@ impl Pending {
     reason = "what all files use lies here, what uses them all in the inbox"
 )]
 impl Core {
-    /// Creates a core without workers and jobs.
+    /// Creates a scheduler core without workers and jobs.
     pub fn new(mut options: CoreOptions) -> Self {
         let finished = mem::take(&mut options.finished);
         Self {
@@ -210,7 +211,8 @@ impl Core {
         self.queue.is_empty() && !self.jobs.is_empty() && self.may_give_out()
     }
 
-    /// Returns whether a pending job must run alone.
+    /// Returns whether a pending job must run alone on a worker, because several workers that held it were
+    /// lost.
     pub(super) const fn must_run_alone(&self, pending: &Pending) -> bool {
         pending.failures.is_suspect(&self.options.policy)
     }
@@ -222,7 +224,7 @@ impl Core {
         self.times.deadline(pending.job.kind(), overdue, policy)
     }
 
-    /// Removes a job that has its result or is given up.
+    /// Removes a job that has its result or is given up from the pending jobs, and returns it.
     pub(super) fn forget(&mut self, job: JobId) -> Option<Pending> {
         self.queue.remove(&job);
         self.suspects.remove(&job);

@@ -81,8 +81,8 @@ fn most_idle(core: &Core, suits: impl Fn(WorkerId) -> bool) -> Option<WorkerId> 
         .map(|(id, _)| *id)
 }
 
-/// Returns the jobs held by a single worker that has run them for suspiciously long, with that worker;
-/// longest first.
+/// Returns the jobs that exactly one worker holds and has run for suspiciously long, with that worker;
+/// longest running first.
 fn slow(core: &mut Core) -> Vec<(WorkerId, JobId)> {
     for member in core.members.values_mut() {
         member.settle(&core.clocks);

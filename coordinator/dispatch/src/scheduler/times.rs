@@ -18,7 +18,7 @@ struct KindStats {
     longest: Duration,
     /// 95th percentile of the duration of recent jobs.
     percentile_95: Option<Duration>,
-    /// Number of jobs finished since the percentile was last computed.
+    /// Number of jobs of one kind finished since their 95th percentile was last computed.
     since: usize,
 }
 
@@ -28,10 +28,10 @@ impl JobDurations {
     /// Number of finished jobs of a kind after which the 95th percentile of their durations is computed
     /// again.
     const RENEW: usize = 8;
-    /// Percentile of job durations that counts as the usual duration \[percent\].
+    /// Percentile of the durations of recent jobs from which deadlines and copies are derived \[percent\].
     const USUAL: usize = 95;
 
-    /// Adds the duration of a finished job.
+    /// Adds the duration of a finished job to the statistics of its kind.
     pub(super) fn add(&mut self, kind: &'static str, wall_us: u64, policy: &Policy) {
         let kind = self.0.entry(kind).or_default();
         if kind.recent.len() == Self::KEPT {

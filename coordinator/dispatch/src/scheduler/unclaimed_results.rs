@@ -29,8 +29,8 @@ struct Held {
 }
 
 impl UnclaimedResults {
-    /// Keeps a result that arrived before its job was submitted, if it is the first of that job and there is
-    /// room.
+    /// Keeps a result that arrived before its job was submitted, if it is the first of that job and the
+    /// limits on number and size allow it.
     pub(super) fn put(&mut self, from: WorkerId, done: Done) {
         let job = done.attempt.job;
         if self.held.len() >= MOST || self.held.contains_key(&job) {
@@ -53,7 +53,7 @@ impl UnclaimedResults {
         Some((from, done))
     }
 
-    /// Returns the encoded size of the results held \[bytes\].
+    /// Returns the total encoded size of the results held for jobs not yet submitted \[bytes\].
     #[cfg(test)]
     pub(super) const fn bytes(&self) -> usize {
         self.bytes

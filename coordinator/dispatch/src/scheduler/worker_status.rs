@@ -10,11 +10,11 @@ pub struct ConnectedWorker {
     pub id: WorkerId,
     /// Host name of the worker.
     pub host: String,
-    /// Number of simultaneous jobs.
+    /// Number of jobs that the worker can run simultaneously.
     pub slots: u32,
     /// Version and build profile of the worker program.
     pub build: String,
-    /// Whether the worker has the case and has proved its numerics.
+    /// Whether the worker has the case and has proved that its results agree with those of the run.
     pub is_ready: bool,
     /// Whether the worker is being drained and gets no new jobs.
     pub is_drained: bool,

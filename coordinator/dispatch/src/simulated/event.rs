@@ -16,11 +16,12 @@ pub enum Fault {
     Thaw,
 }
 
-/// Event on the simulated clock.
+/// Event of the simulated cluster, scheduled at a simulated time.
 #[derive(Clone)]
 pub(super) enum ClusterEvent {
     Up(WorkerId, FromWorker),
-    /// End of the coordinator's handling of a worker's message, which the scheduler core now receives.
+    /// End of the coordinator's handling time of a worker's message, at which the scheduler core receives the
+    /// message.
     Heard(WorkerId, FromWorker),
     Down(WorkerId, ToWorker),
     End(WorkerId, Attempt),

@@ -34,7 +34,7 @@ use std::{
 pub const MODEL: &str = "model";
 /// Hash of the case that every simulated worker holds.
 pub const CASE: ContentHash = ContentHash([7; 32]);
-/// Proof that every simulated worker computes for the reference individual.
+/// Result of the reference individual by which every simulated worker proves its numerics.
 pub const PROOF: ReferenceResult = ReferenceResult::Bits(ContentHash([8; 32]));
 
 /// Builds the announcement of a simulated worker with one slot and the given model digest.
@@ -58,7 +58,7 @@ pub fn announcement(digest: &str) -> Announcement {
 /// Configuration of a simulated cluster.
 #[derive(Clone, Copy)]
 pub struct ClusterSetting {
-    /// Number of workers.
+    /// Number of simulated workers in the cluster.
     pub workers: u64,
     /// Number of slots per worker.
     pub slots: usize,
@@ -107,7 +107,7 @@ pub struct Cluster {
     setting: ClusterSetting,
     /// Computing time by job number, in place of the lognormal distribution.
     pub job_durations: Option<Box<dyn Fn(u64) -> Duration>>,
-    /// Attempts whose results have already been charged with handling time.
+    /// Attempts for whose results the coordinator's simulated handling time has already been counted.
     charged: BTreeSet<Attempt>,
     /// Reason why the core stopped the run, if it did.
     stopped: Option<StopReason>,
@@ -118,7 +118,7 @@ pub struct Cluster {
     workers: BTreeMap<WorkerId, SimulatedWorker>,
     /// Outcomes of the finished jobs, by job number.
     pub results: BTreeMap<u64, Outcome>,
-    /// Outcomes delivered by the core but not yet passed to the source.
+    /// Outcomes delivered by the core but not yet passed to the job source.
     undelivered_outcomes: Vec<(JobId, Outcome)>,
     /// Slot-time accounts recorded by the core.
     pub accounts: Vec<Event>,
@@ -171,7 +171,8 @@ impl Cluster {
         cluster
     }
 
-    /// Schedules a fault of the worker at an index; a replacement worker has the index of its predecessor.
+    /// Schedules a fault at the simulated time `at` for the worker with index `place`; a replacement worker
+    /// has the index of its predecessor.
     pub fn fault(&mut self, at: Duration, place: u64, fault: Fault) {
         self.schedule(at, ClusterEvent::Fault(place, fault));
     }
@@ -187,8 +188,8 @@ impl Cluster {
         self.events.insert((self.now + delay, self.sequence), what);
     }
 
-    /// Schedules the delivery of a message after a random delay, which may reorder messages; the message may
-    /// be lost or duplicated.
+    /// Schedules the delivery of a message between worker and coordinator after a random delay, which may
+    /// reorder messages; the message may be lost or duplicated.
     fn send(&mut self, what: ClusterEvent) {
         let first = self.sequence;
         if self.unit(2, first) < self.setting.loss {

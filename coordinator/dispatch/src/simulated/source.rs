@@ -63,13 +63,13 @@ impl JobSource for Generations {
     }
 }
 
-/// Source that runs a search, with a function in place of the simulation.
+/// Job source that runs a search strategy, with a function evaluated in place of the simulation.
 pub struct SimulatedSearch<'a> {
-    /// Search strategy.
+    /// Search strategy that proposes the jobs.
     pub strategy: Box<dyn Strategy>,
     /// Objective evaluated in place of the simulation, for given genes.
     pub tell: &'a dyn Fn(&[f64]) -> EvaluationResult,
-    /// Number of the first proposal that is not evaluated.
+    /// Number of proposals, from the first one on, that are evaluated; later ones are not.
     pub limit: u64,
     open: BTreeMap<u64, Vec<f64>>,
     log: blake3::Hasher,

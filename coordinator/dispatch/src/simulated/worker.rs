@@ -49,11 +49,11 @@ pub fn outcome(job: &Job) -> Outcome {
     }
 }
 
-/// Simulated worker without computation: slots, orders and unacknowledged results.
+/// Simulated worker that computes nothing: it keeps slots, orders and unacknowledged results.
 pub struct SimulatedWorker {
     /// Index of the worker in the cluster; a replacement worker takes the index of its predecessor.
     pub place: u64,
-    /// Number of slots.
+    /// Number of jobs that the simulated worker runs simultaneously.
     pub slots: usize,
     /// Factor by which the worker's computing times exceed those of a worker of normal speed \[1\].
     pub slowness: f64,
@@ -63,7 +63,7 @@ pub struct SimulatedWorker {
     /// Results not yet acknowledged by the coordinator as stored.
     pub outbox: BTreeMap<Attempt, Done>,
     settled: BTreeSet<Attempt>,
-    /// Whether the worker is frozen.
+    /// Whether the simulated worker is suspended (its connection stays open).
     pub frozen: bool,
     /// Events deferred while the worker is frozen.
     pub(super) deferred_events: Vec<ClusterEvent>,
@@ -85,7 +85,7 @@ impl SimulatedWorker {
         }
     }
 
-    /// Queues an order, unless the attempt is already known.
+    /// Queues an order to run an attempt at the simulated worker, unless the attempt is already known.
     pub fn enqueue(&mut self, order: Assignment) {
         let attempt = order.attempt;
         let known = self.settled.contains(&attempt)
@@ -132,7 +132,7 @@ impl SimulatedWorker {
         Some(done)
     }
 
-    /// Drops results that are acknowledged as stored.
+    /// Drops results of the simulated worker that the coordinator acknowledged as stored.
     pub fn settle(&mut self, attempts: Vec<Attempt>) {
         for attempt in attempts {
             self.outbox.remove(&attempt);
@@ -140,7 +140,7 @@ impl SimulatedWorker {
         }
     }
 
-    /// Builds the worker's heartbeat, with its case and its proof.
+    /// Builds the simulated worker's heartbeat, with its case and its result of the reference individual.
     pub fn beat(&self, case: Option<ContentHash>, proof: ReferenceResult) -> Heartbeat {
         Heartbeat {
             number: 0,

@@ -6,23 +6,24 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Layer {
-    /// Case file: readable.
+    /// Case file, which must be readable.
     Case,
-    /// Worker program: present.
+    /// Worker program, which must be present on this machine.
     Program,
-    /// Certificates: present, consistent with each other, and accepted by both ends.
+    /// Certificates, which must be present, consistent with each other, and accepted by both ends of the
+    /// connection.
     Certificate,
-    /// Clock: consistent with the validity dates of the certificates.
+    /// System clock, which must be consistent with the validity dates of the certificates.
     Clock,
-    /// Host name: resolves to an address.
+    /// Host name of the coordinator, which must resolve to an address.
     Name,
-    /// Route: the machine is reachable.
+    /// Network route, over which the coordinator's machine must be reachable.
     Route,
-    /// Port: a process listens on it.
+    /// Network port of the coordinator, on which a process must listen.
     Port,
-    /// Firewall: packets sent to the port are answered.
+    /// Firewall, which must let packets to the port be answered.
     Firewall,
-    /// Version: both ends use the same protocol version.
+    /// Wire protocol version, which must be equal at both ends of the connection.
     Version,
 }
 
@@ -46,9 +47,9 @@ impl Layer {
 /// Result of checking one layer of the setup or the connection.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Check {
-    /// Checked layer.
+    /// Layer of the setup or the connection that was checked.
     pub layer: Layer,
-    /// Whether the layer is healthy.
+    /// Whether the checked layer of the setup or connection works.
     pub healthy: bool,
     /// Observation made by the check, as text for the user.
     pub found: String,
@@ -57,7 +58,7 @@ pub struct Check {
 }
 
 impl Check {
-    /// Creates the result of a healthy layer.
+    /// Creates the check result of a healthy layer of the setup, with the observation made.
     pub fn good(layer: Layer, found: impl Into<String>) -> Self {
         Self {
             layer,
@@ -67,7 +68,7 @@ impl Check {
         }
     }
 
-    /// Creates the result of a failed layer, with a remedy.
+    /// Creates the check result of a failed layer of the setup, with the observation made and a remedy.
     pub fn bad(layer: Layer, found: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self {
             layer,

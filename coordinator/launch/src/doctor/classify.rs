@@ -1,4 +1,4 @@
-//! Assignment of link errors to layers, with a remedy for each.
+//! Assignment of connection errors to the layer of the setup that failed, with a remedy for each.
 use super::check::{Check, Layer};
 use link::{ConnectFailure, LinkError};
 

@@ -77,8 +77,8 @@ fn passed(error: &LinkError) -> impl Iterator<Item = Layer> {
         .take(count)
 }
 
-/// Sends a heartbeat as an unknown worker; a coordinator replies with a request for identification and keeps
-/// no state.
+/// Checks that the coordinator uses the same protocol version: sends a heartbeat as an unknown worker, which
+/// a coordinator answers with a request for identification and keeps no state of.
 async fn version(link: &mut ZenohWorker, to: &Locator) -> Check {
     let run = RunId::default();
     let Ok(question) = wire::encode_frame(

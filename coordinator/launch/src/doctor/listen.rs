@@ -14,7 +14,7 @@ use std::{
     path::Path,
 };
 
-/// Checks the layers of an address to listen on, up to the first that fails.
+/// Checks the layers needed for a coordinator to listen at an address, in order, up to the first that fails.
 pub fn listen(at: &Locator, tls: Option<&Path>) -> Vec<Check> {
     let mut checks = Vec::new();
     match (at.protocol, tls) {

@@ -10,10 +10,11 @@ use crate::words::abscissa_quantity;
 use discrepancy::localisation::window_test::{AbscissaWindow, AlongMap, Bins, WIDTHS};
 use protocol::case::Abscissa;
 
-/// Smallest upper end of the colour scale (residual in standard deviations), so that noise stays pale.
+/// Smallest value at the upper end of the map's colour scale (residual in standard deviations), so that noise
+/// stays pale.
 const LEAST: f64 = 5.0;
 
-/// Draws the map of the residual, with one row per entry of `channels`, over the abscissa and axis of the
+/// Draws the map of the residual over the abscissa, one row per name in `channels`, with the axis of the
 /// first channel. Returns `None` for an empty map or if the channels have different abscissas.
 pub(crate) fn angle_map(
     map: &AlongMap,
@@ -65,8 +66,8 @@ pub(crate) fn angle_map(
     })
 }
 
-/// Draws the row of one channel: one coloured cell per bin, placed at the centre of the averaging window that
-/// begins at the bin.
+/// Draws one channel's row of the residual map: one coloured cell per abscissa bin, placed at the centre of
+/// the averaging window that begins at the bin.
 fn cells(
     canvas: &mut Canvas,
     panel: &Panel,
@@ -88,15 +89,15 @@ fn cells(
     }
 }
 
-/// Returns the colour of a signed deviation, given relative to the end of the colour scale (-1 to 1); neutral
+/// Returns the colour of a signed residual, given relative to the end of the colour scale (-1 to 1); neutral
 /// if not finite.
 fn deviation(share: f64) -> Color {
     let share = if share.is_finite() { share } else { 0.0 };
     SIGNED.at(0.5 + 0.5 * share)
 }
 
-/// Outlines a window in which the residual is significant; in two parts if the window extends into the next
-/// period.
+/// Outlines a window of the abscissa in which the residual is significant; in two parts if the window extends
+/// into the next period.
 fn outline(canvas: &mut Canvas, panel: &Panel, bins: &Bins, window: &AbscissaWindow) {
     const INSET: f64 = 2.5;
     let pen = Pen::new(INK, 1.3);

@@ -12,7 +12,7 @@ const FINENESS: f64 = 10.0;
 /// Typeface of every figure; the report's style sheet may replace it.
 const FONT: &str = "Helvetica, Arial, sans-serif";
 
-/// Stroke colour and width.
+/// Stroke of a line in a figure: colour and width.
 #[derive(Clone, Copy)]
 pub struct Pen {
     color: Color,
@@ -26,7 +26,7 @@ impl Pen {
     }
 }
 
-/// Style of a text, and the position of its anchor point.
+/// Style of a text in a figure, and the position of the text relative to its anchor point.
 #[derive(Clone, Copy)]
 pub struct TextStyle {
     /// Font size [px].
@@ -41,7 +41,7 @@ pub struct TextStyle {
 }
 
 impl TextStyle {
-    /// Creates horizontal text that starts at its anchor, centred vertically.
+    /// Creates the style of horizontal text that starts at its anchor point and is centred on it vertically.
     pub const fn new(size: f64, color: Color) -> Self {
         Self {
             size,
@@ -101,7 +101,7 @@ pub struct Canvas {
     body: String,
 }
 
-/// Converts pixels to the nearest SVG unit, clamped to a representable range.
+/// Converts pixels to the nearest SVG unit (tenth of a pixel), clamped to a representable range.
 fn unit(pixels: f64) -> i32 {
     #[expect(
         clippy::cast_possible_truncation,

@@ -1,5 +1,5 @@
-//! Channels of one simulation in stacked strips, in absolute values, with the measured mean and spread where
-//! recorded.
+//! Figures of one simulation's channels in stacked strips, in absolute values, with the measured mean and
+//! spread where recorded.
 use super::axis::ChartAxis;
 use super::strip::{Strip, curve, stack, strip};
 use crate::color::{INK, VERMILLION};
@@ -9,7 +9,8 @@ use crate::number::unit;
 use crate::words::condition_name;
 use protocol::case::Channel;
 
-/// Draws all channels, one figure per abscissa name; `zero` is passed to [`ChartAxis::of`].
+/// Draws all channels of a simulation, one figure per abscissa name; `zero`, the description of the
+/// abscissa's origin, is passed to [`ChartAxis::of`].
 pub fn channels(of: &SimulationView<'_>, zero: &str) -> Vec<Figure> {
     let all = of.case.channels_of(of.condition);
     let mut kinds: Vec<&Channel> = all.map(|(_, channel)| channel).collect();
@@ -30,7 +31,7 @@ pub fn channels(of: &SimulationView<'_>, zero: &str) -> Vec<Figure> {
     kinds.into_iter().map(figure).collect()
 }
 
-/// Builds a strip for every selected channel.
+/// Builds a strip of curves for every channel of a simulation that `wanted` selects.
 pub fn strips(of: &SimulationView<'_>, wanted: impl Fn(&Channel) -> bool) -> Vec<Strip> {
     let all = of.case.channels_of(of.condition);
     all.filter(|(_, channel)| wanted(channel))

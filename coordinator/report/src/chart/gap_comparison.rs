@@ -1,5 +1,5 @@
-//! Comparison of one channel before and after an effect is added: the measured mean, both simulated curves,
-//! and on one scale the residuals before, after and with the best rejected rival.
+//! Figure that compares one channel before and after an effect is added to the model: the measured mean, both
+//! simulated curves, and on one scale the residuals before, after and with the best rejected rival effect.
 use super::axis::ChartAxis;
 use super::scale::AxisScale;
 use super::strip::{Strip, StripCurve, curve, stack, strip};
@@ -17,13 +17,14 @@ pub(crate) struct GapComparison<'a> {
     pub channel: &'a str,
     /// Unit of the channel's values.
     pub unit: &'a str,
-    /// Abscissa values of the points.
+    /// Abscissa values at which the measured and simulated curves are given.
     pub at: &'a [f64],
     /// Horizontal axis of the abscissa.
     pub axis: &'a ChartAxis,
-    /// Mean of the measured cycles.
+    /// Mean of the channel's measured cycles at each abscissa value.
     pub measured: &'a [f64],
-    /// Standard deviation of a single cycle about the mean; empty if there is only one cycle.
+    /// Standard deviation of a single measured cycle about the mean, at each abscissa value; empty if there
+    /// is only one cycle.
     pub spread: &'a [f64],
     /// Number of cycles in the mean.
     pub cycles: usize,
@@ -66,7 +67,7 @@ impl GapComparison<'_> {
     }
 }
 
-/// Draws one channel; `None` if there are no curves.
+/// Draws the comparison of one channel before and after an effect is added; `None` if there are no curves.
 pub(crate) fn closing(of: &GapComparison<'_>) -> Option<Figure> {
     if of.measured.len() < 2 || of.before.len() != of.measured.len() {
         return None;
@@ -101,7 +102,8 @@ pub(crate) fn closing(of: &GapComparison<'_>) -> Option<Figure> {
     ))
 }
 
-/// Builds the strips of the residuals, on one scale, with a band of the standard error of the measured mean.
+/// Builds the strips of the residuals before and after adding effects, on one scale, with a band of the
+/// standard error of the measured mean.
 fn residuals(of: &GapComparison<'_>) -> Vec<Strip> {
     let mut all = vec![("without it", BLUE, of.before)];
     all.extend(of.after.map(|after| ("with it", VERMILLION, after)));

@@ -11,8 +11,8 @@ const TOP: f64 = 30.0;
 const LEFT: f64 = 130.0;
 const BAR: f64 = 380.0;
 
-/// Draws a ranking of joints, best first; the first `equivalent` are indistinguishable. Returns `None` for an
-/// empty ranking.
+/// Draws the Bayes factors of a ranking of joints, best first; the first `equivalent` joints are
+/// indistinguishable. Returns `None` for an empty ranking.
 pub(crate) fn joints(ranked: &[JointEvidence], equivalent: usize) -> Option<Figure> {
     let best = ranked.first()?;
     let end = best.log_bayes.max(1.0);

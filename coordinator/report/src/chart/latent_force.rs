@@ -6,13 +6,14 @@ use crate::document::Figure;
 use discrepancy::localisation::joint::JointEvidence;
 use protocol::case::Abscissa;
 
-/// Largest number of joints drawn.
+/// Maximum number of joints whose force is drawn.
 const DRAWN: usize = 3;
 /// Spacing of the points of a force curve, in 360ths of the period.
 const STEP: usize = 2;
 
-/// Draws the forces over one period of the abscissa at the first `equivalent`, indistinguishable joints of a
-/// ranking, where a force improves the fit. Returns `None` if no force does.
+/// Draws the unknown force over one period of the abscissa at each of the first `equivalent`,
+/// indistinguishable joints of a ranking where a force improves the fit. Returns `None` if it does at no
+/// joint.
 pub(crate) fn latent_forces(
     ranked: &[JointEvidence],
     equivalent: usize,

@@ -1,4 +1,5 @@
-//! Main effects of an orthogonal test: the mean response at every level of every factor, side by side on one scale.
+//! Figure of the main effects of an orthogonal-array test of search settings: the mean response at every
+//! level of every factor, side by side on one scale.
 use super::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
 use super::panel::Panel;
 use super::scale::AxisScale;
@@ -13,7 +14,7 @@ const HEIGHT: f64 = 200.0;
 const FOOT: f64 = 52.0;
 const GAP: f64 = 18.0;
 
-/// Draws the main effects of a test.
+/// Draws the main effects of an orthogonal-array test: the mean response at every level of each factor.
 pub(crate) fn main_effects(tested: &TestResult, analysis: &Analysis) -> Figure {
     let means = analysis
         .ranges

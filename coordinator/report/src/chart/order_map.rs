@@ -1,4 +1,5 @@
-//! Map of channel against order of the period that shows which coefficients of the residual are significant.
+//! Figure of the residual by channel and order (multiple of the period's frequency), which marks the
+//! significant coefficients.
 use super::canvas::{WIDTH, render};
 use super::rows::{self, Key};
 use super::scale::AxisScale;
@@ -7,12 +8,12 @@ use crate::document::Figure;
 use crate::number::{range, significant};
 use discrepancy::localisation::order::OrderMap;
 
-/// Smallest upper end of the colour scale (power of the residual over its mean under noise), so that noise
-/// stays pale.
+/// Smallest value at the upper end of the map's colour scale (power of the residual over its mean under
+/// noise), so that noise stays pale.
 const LEAST: f64 = 10.0;
 
-/// Draws the map, with one row per entry of `channels`, in the map's order. Orders are multiples of the
-/// frequency of the `period`, which is `hertz`. Returns `None` for an empty map.
+/// Draws the map of the residual's power by order, one row per name in `channels`, in the map's order. Orders
+/// are multiples of the frequency of the `period`, which is `hertz`. Returns `None` for an empty map.
 pub(crate) fn order_map(
     map: &OrderMap,
     channels: &[String],
@@ -77,7 +78,8 @@ fn share(ratio: f64, end: f64) -> f64 {
     }
 }
 
-/// Returns the colour of a dot that marks a significant cell, in contrast to the cell's own colour.
+/// Returns the colour of the dot that marks a significant cell of the map, in contrast to the cell's own
+/// colour; `share` is the cell's position on the colour scale.
 fn mark(share: f64) -> Color {
     if share > 0.45 {
         Color(0xff, 0xff, 0xff)

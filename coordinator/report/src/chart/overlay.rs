@@ -82,8 +82,8 @@ impl Side {
     }
 }
 
-/// Draws the overlay of the channel at index `at` of the case, under its condition; `None` if it was not
-/// measured.
+/// Draws the measured over the simulated curves of the channel with index `at` in the case, under the
+/// result's condition; `None` if the channel was not measured.
 pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figure> {
     let condition = case.conditions.get(result.condition)?;
     let channel = case.channels.get(at)?;
@@ -145,10 +145,9 @@ pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figur
     })
 }
 
-/// Measured curve with band, and the scales shared by both columns.
 struct Measured {
     mean: Vec<(f64, f64)>,
-    /// Band of the measured spread as rows of (abscissa, lower, upper end).
+    /// Band of the measured spread, as points (abscissa, lower end, upper end).
     band: Vec<(f64, f64, f64)>,
     values: AxisScale,
     residuals: AxisScale,
@@ -204,8 +203,8 @@ const MEASURED: Pen = Pen::new(INK, 1.3);
 const SIMULATED: Pen = Pen::new(VERMILLION, 1.1);
 const RESIDUAL: Pen = Pen::new(INK, 0.8);
 
-/// Draws the legend above both panels: each mark before its text, with room for the widest typeface, since
-/// text widths are unknown here.
+/// Draws the legend above the overlay's panels: each mark before its text, with room for the widest typeface,
+/// since text widths are unknown here.
 fn key(canvas: &mut Canvas, title: &str, cycles: usize) {
     const LETTER: f64 = 6.4;
     const MARK: f64 = 22.0;
@@ -227,7 +226,8 @@ fn key(canvas: &mut Canvas, title: &str, cycles: usize) {
     canvas.line(&[(x - 6.0 - MARK, y), (x - 6.0, y)], MEASURED);
 }
 
-/// Draws every overlay of a condition: the channels of the objective first, then the other measured ones.
+/// Draws every channel's measured over its simulated curves under a condition: the channels of the objective
+/// first, then the other measured ones.
 pub fn overlays(case: &Case, result: &ConditionResult) -> Vec<Figure> {
     let mut measured: Vec<_> = case.measured(result.condition).collect();
     measured.sort_by_key(|(_, channel, _)| !case.objective.names(&channel.name));

@@ -10,7 +10,7 @@ const LABEL: f64 = 10.5;
 /// Width of a digit in a tick label [px].
 const DIGIT: f64 = 5.9;
 
-/// Rectangle on the canvas with a scale along each side.
+/// Rectangular plot area on the canvas with a scale along each side.
 pub struct Panel {
     /// Left edge of the panel \[px\].
     pub left: f64,
@@ -20,9 +20,9 @@ pub struct Panel {
     pub width: f64,
     /// Height of the panel \[px\].
     pub height: f64,
-    /// Horizontal scale.
+    /// Horizontal scale, from abscissa values to positions in the panel.
     pub x: AxisScale,
-    /// Vertical scale.
+    /// Vertical scale, from values to positions in the panel.
     pub y: AxisScale,
 }
 
@@ -37,17 +37,17 @@ impl Panel {
         self.top + self.height
     }
 
-    /// Returns the horizontal position of a value \[px\].
+    /// Returns the horizontal position on the canvas of a value of the horizontal scale \[px\].
     pub fn at_x(&self, x: f64) -> f64 {
         self.left + self.width * self.x.share(x)
     }
 
-    /// Returns the vertical position of a value \[px\].
+    /// Returns the vertical position on the canvas of a value of the vertical scale \[px\].
     pub fn at_y(&self, y: f64) -> f64 {
         self.bottom() - self.height * self.y.share(y)
     }
 
-    /// Returns the position of a point \[px\].
+    /// Returns the position on the canvas of a point given in values of both scales \[px\].
     pub fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         (self.at_x(x), self.at_y(y))
     }
@@ -118,13 +118,14 @@ impl Panel {
         );
     }
 
-    /// Draws a curve.
+    /// Draws a curve through points given in values of the panel's scales.
     pub fn curve(&self, canvas: &mut Canvas, points: &[(f64, f64)], pen: Pen) {
         let path: Vec<_> = points.iter().map(|&point| self.at(point)).collect();
         canvas.line(&path, pen);
     }
 
-    /// Fills the area between two curves over the same abscissa, for every stretch of finite values.
+    /// Fills the area between two curves over the same abscissa, given as points (abscissa, lower value,
+    /// upper value), for every stretch of finite values.
     pub fn band(&self, canvas: &mut Canvas, rows: &[(f64, f64, f64)], color: Color) {
         for run in rows.split(|(x, low, high)| !(x + low + high).is_finite()) {
             let upper = run.iter().map(|&(x, _, high)| self.at((x, high)));

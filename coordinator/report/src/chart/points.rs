@@ -1,6 +1,6 @@
 //! Pairing and thinning of points before drawing.
 
-/// Thins a list evenly to at most `most` entries, keeping the first and the last.
+/// Returns at most `most` of the values, evenly selected, including the first and the last.
 pub fn thinned<T: Copy>(values: &[T], most: usize) -> Vec<T> {
     if values.len() <= most || most < 2 {
         return values.to_vec();

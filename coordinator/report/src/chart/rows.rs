@@ -1,4 +1,4 @@
-//! Layout shared by maps with a row per channel: frame, row names, colour scale.
+//! Layout shared by maps with one row per channel: frame, channel names, colour scale.
 use super::canvas::{Canvas, TextStyle, WIDTH};
 use super::panel::Panel;
 use super::scale::AxisScale;
@@ -12,12 +12,12 @@ const FOOT: f64 = 46.0;
 /// Overlap of adjacent cells [px], which avoids visible seams.
 pub(super) const OVERLAP: f64 = 0.5;
 
-/// Returns the height of a map with this many rows [px].
+/// Returns the height of a map with `rows` channels [px].
 pub(super) fn height(rows: usize) -> f64 {
     TOP + ROW * rows as f64 + FOOT
 }
 
-/// Returns the panel of a map with this many rows; row `k` lies between `k` and `k + 1` on its vertical
+/// Returns the panel of a map with `rows` channels; channel `k` lies between `k` and `k + 1` on its vertical
 /// scale.
 pub(super) fn panel(rows: usize, x: AxisScale) -> Panel {
     Panel {
@@ -30,7 +30,7 @@ pub(super) fn panel(rows: usize, x: AxisScale) -> Panel {
     }
 }
 
-/// Draws the names of the rows.
+/// Draws the names of the channels to the left of a map's rows.
 pub(super) fn names(canvas: &mut Canvas, panel: &Panel, channels: &[String]) {
     let lettering = TextStyle::new(11.0, INK).right();
     for (row, name) in channels.iter().enumerate() {

@@ -109,8 +109,8 @@ impl AxisScale {
         }
     }
 
-    /// Returns the position of a value between the ends, 0 to 1, clamped so that curves stay in their frame.
-    /// Not a number for values without a position on the scale.
+    /// Returns the position of a value on the axis, 0 at the lower and 1 at the upper end, clamped so that
+    /// curves stay in their frame. Not a number for values without a position on the scale.
     pub fn share(&self, value: f64) -> f64 {
         let share = match self.spacing {
             Spacing::Linear { .. } | Spacing::Turn => (value - self.low) / (self.high - self.low),
@@ -122,7 +122,7 @@ impl AxisScale {
         share.clamp(0.0, 1.0)
     }
 
-    /// Returns the lower and the upper end.
+    /// Returns the values at the lower and the upper end of the axis.
     pub const fn ends(&self) -> (f64, f64) {
         (self.low, self.high)
     }

@@ -1,4 +1,4 @@
-//! Strips of curves over one shared abscissa, stacked, with labels at the right ends of the curves.
+//! Stacked panels ("strips") of curves over one shared abscissa, with labels at the right ends of the curves.
 //! Independent of the quantities drawn.
 use super::axis::ChartAxis;
 use super::canvas::{Pen, TextStyle, WIDTH, render};
@@ -14,14 +14,14 @@ const TOP: f64 = 12.0;
 const GAP: f64 = 16.0;
 const FOOT: f64 = 44.0;
 
-/// Curve with a label at its right end.
+/// Curve of a strip, with a label at its right end.
 pub struct StripCurve {
     label: String,
     color: Color,
     points: Vec<(f64, f64)>,
 }
 
-/// Panel of one or several curves in a stack.
+/// Panel of one or several curves in a stack of panels with a common horizontal axis.
 pub struct Strip {
     /// Title of the vertical axis, with the unit.
     pub title: String,
@@ -29,13 +29,13 @@ pub struct Strip {
     pub height: f64,
     /// Curves of the strip, in drawing order.
     pub curves: Vec<StripCurve>,
-    /// Band behind the curves, as rows of (abscissa, lower, upper end).
+    /// Band drawn behind the curves of the strip, as points (abscissa, lower end, upper end).
     pub band: Vec<(f64, f64, f64)>,
     /// Vertical scale of the strip; `None` to derive it from the curves.
     pub scale: Option<AxisScale>,
 }
 
-/// Builds a curve with its values multiplied by a factor.
+/// Builds a labelled curve of a strip from values, each multiplied by a factor such as a unit conversion.
 pub fn curve(
     label: impl Into<String>,
     color: Color,
@@ -64,7 +64,7 @@ pub fn strip(title: impl Into<String>, height: f64, curves: Vec<StripCurve>) -> 
     }
 }
 
-/// Returns the height of the whole figure [px].
+/// Returns the height of the figure in which the strips are stacked [px].
 fn height(strips: &[Strip]) -> f64 {
     let heights: f64 = strips.iter().map(|strip| strip.height + GAP).sum();
     TOP + heights - GAP + FOOT

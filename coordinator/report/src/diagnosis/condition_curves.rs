@@ -19,16 +19,17 @@ pub(super) struct ConditionCurves<'a> {
     pub mean: Curves,
     /// Standard deviation of one cycle, by channel; empty lists where there is one cycle only.
     pub spread: Curves,
-    /// Curves of the recalibrated model.
+    /// Curves simulated with the recalibrated baseline model, by channel.
     pub before: &'a Curves,
-    /// Curves of the model with the added effects, if any were added.
+    /// Curves simulated with the model including the added effects, if any were added.
     pub after: Option<&'a Curves>,
     /// Identifier of the best rejected rival effect, and the curves of the model with that effect.
     pub rival: Option<(&'a str, &'a Curves)>,
 }
 
 impl ConditionCurves<'_> {
-    /// Returns the curves of one channel; `None` if an index or a curve is missing.
+    /// Returns the measured and simulated curves of the channel with index `c`; `None` if the index or a
+    /// curve is missing.
     pub(super) fn channel(&self, c: usize) -> Option<GapComparison<'_>> {
         let channel = &self.record.channels.get(c)?.channel;
         Some(GapComparison {
@@ -49,7 +50,7 @@ impl ConditionCurves<'_> {
         })
     }
 
-    /// Returns the indices of the channels, scored channels first.
+    /// Returns the indices of the record's channels, scored channels first.
     pub(super) fn order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.record.channels.len()).collect();
         order.sort_by_key(|&c| !self.record.channels[c].scored);
@@ -88,7 +89,8 @@ pub(super) fn condition_curves<'a>(subject: &DiagnosisInput<'a>) -> Vec<Conditio
     all
 }
 
-/// Builds the shown curves of a condition with those of the recalibrated model only.
+/// Builds the measured and simulated curves of a condition, of the simulated ones only those of the
+/// recalibrated model.
 fn before<'a>(
     subject: &DiagnosisInput<'a>,
     condition: usize,

@@ -19,7 +19,8 @@ const CURVES: [&str; 9] = [
     "rival",
 ];
 
-/// Writes the curves: one row per condition, channel and point; absolute values in the channel's unit.
+/// Writes the measured and simulated curves of a diagnosis as CSV: one row per condition, channel and point;
+/// absolute values in the channel's unit.
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.

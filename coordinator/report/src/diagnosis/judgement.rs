@@ -9,7 +9,7 @@ use protocol::announce::Sign;
 
 /// Share of an effect's signature absorbed by recalibration above which the effect counts as hidden.
 const HIDDEN: f64 = 0.999;
-/// Judgement of a candidate effect.
+/// Judgement of a candidate effect in one round: its test, its refit, and why it was kept or dropped.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Judgement {
     /// Tail probability of the effect's test statistic divided by the round's dispersion, corrected for the
@@ -48,8 +48,8 @@ pub(super) fn ranked(round: &Round) -> Vec<(&CandidateEffect, Judgement)> {
     all
 }
 
-/// Returns the tail probability of a candidate's test statistic divided by the round's dispersion, corrected
-/// for the number of tries.
+/// Returns the tail probability of a candidate effect's test statistic divided by the round's dispersion,
+/// corrected for the number of tries; `None` without a test.
 pub(super) fn dispersed_p_value(round: &Round, suspect: &CandidateEffect) -> Option<f64> {
     let score = suspect.score.as_ref()?;
     if suspect.statistic() > 0.0 {
@@ -63,7 +63,7 @@ pub(super) fn dispersed_p_value(round: &Round, suspect: &CandidateEffect) -> Opt
     }
 }
 
-/// Returns the refit of a candidate effect, if there is one.
+/// Returns the result of refitting the model with a candidate effect in a round, if it was refitted.
 fn refit<'a>(round: &'a Round, suspect: &CandidateEffect) -> Option<&'a Refitted> {
     let mut refits = round.refits.iter();
     refits.find(|refit| refit.id == suspect.effect.id)

@@ -15,29 +15,29 @@ pub struct DiagnosisInput<'a> {
     pub records: &'a [Record],
     /// Candidate effects that were considered, including generic forces without a physical cause.
     pub library: &'a [EffectDescriptor],
-    /// Result of the diagnosis, with the cost of each stage.
+    /// Result of the diagnosis, with the cost of each of its stages.
     pub diagnosed: &'a DiagnosisResult,
     /// Provenance of the diagnosis (run, program, digest).
     pub origin: Origin,
     /// Remarks about the case and its records.
     pub notes: &'a [String],
-    /// Wall time of all sessions (s).
+    /// Wall time of the diagnosis, over all sessions (s).
     pub wall_s: f64,
 }
 
 impl<'a> DiagnosisInput<'a> {
-    /// Returns the diagnosis without its cost accounts.
+    /// Returns the diagnosis itself, without the cost of its stages.
     pub(super) const fn diagnosis(&self) -> &'a Diagnosis {
         &self.diagnosed.diagnosis
     }
 
-    /// Returns the record of a condition; `None` if there is none with at least one cycle.
+    /// Returns the measured record of a condition; `None` if there is none with at least one cycle.
     pub(super) fn record(&self, condition: usize) -> Option<&'a Record> {
         let mut records = self.records.iter();
         records.find(|record| record.condition == condition && !record.cycles.is_empty())
     }
 
-    /// Returns the record of the calibrated condition.
+    /// Returns the measured record of the calibrated condition.
     pub(super) fn calibrated(&self) -> Option<&'a Record> {
         self.record(self.case.objective.condition)
     }

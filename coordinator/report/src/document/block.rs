@@ -8,9 +8,9 @@ use maud::Markup;
 pub struct Report {
     /// Title of the report.
     pub title: String,
-    /// Name of the run.
+    /// Name of the run whose results are reported.
     pub run: String,
-    /// Outcome in a word or two, printed first in plain text; empty where there is none.
+    /// Outcome of the run in a word or two, printed first in plain text; empty where there is none.
     pub outcome: &'static str,
     /// Sections with content, in reading order.
     pub sections: Vec<Section>,
@@ -25,7 +25,7 @@ pub struct Section {
     pub id: &'static str,
     /// Heading of the section.
     pub title: &'static str,
-    /// Content of the section, from top to bottom; empty where there is none.
+    /// Content of the section, from top to bottom; empty where there are no data for the section.
     pub blocks: Vec<Block>,
 }
 
@@ -36,7 +36,7 @@ pub enum Block {
     Lead(String),
     /// Heading of the blocks that follow, with a remark that may be empty.
     Heading(String, &'static str),
-    /// Paragraph.
+    /// Paragraph of running text.
     Text(String),
     /// Bullet list, one sentence per item.
     List(Vec<String>),
@@ -56,12 +56,12 @@ pub enum Block {
     Folded(&'static str, Vec<Self>),
 }
 
-/// Name of a quantity with its value as text.
+/// Fact in a report: name of a quantity with its value as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fact {
     /// Name of the quantity.
     pub name: String,
-    /// Value as text.
+    /// Value of the quantity as text.
     pub value: String,
     /// Whether the value is machine-readable (a digest, a command) and set as code.
     pub is_code: bool,
@@ -77,7 +77,7 @@ impl Fact {
         }
     }
 
-    /// Creates a fact whose value is a digest or a command.
+    /// Creates a fact whose value is machine-readable text such as a digest or a command.
     pub fn code(name: impl Into<String>, value: impl Into<String>) -> Self {
         Self {
             is_code: true,
@@ -88,7 +88,7 @@ impl Fact {
 
 impl Report {
     /// Creates a report from all possible sections: sections without blocks are left out, and their titles
-    /// are kept in `silent`.
+    /// are kept in `omitted`.
     pub fn new(title: String, run: &str, sections: impl IntoIterator<Item = Section>) -> Self {
         let sections = sections.into_iter();
         let (silent, sections): (Vec<_>, Vec<_>) = sections.partition(|one| one.blocks.is_empty());
@@ -121,12 +121,12 @@ fn gather<'a>(blocks: &'a [Block], figures: &mut Vec<&'a Figure>) {
     }
 }
 
-/// Wraps figures as blocks.
+/// Wraps each figure in a [`Block`], the content element of report sections.
 pub fn figures(all: impl IntoIterator<Item = Figure>) -> Vec<Block> {
     all.into_iter().map(Block::Figure).collect()
 }
 
-/// Wraps tables as blocks.
+/// Wraps each table in a [`Block`], the content element of report sections.
 pub fn tables(all: impl IntoIterator<Item = Table>) -> Vec<Block> {
     all.into_iter().map(Block::Table).collect()
 }

@@ -3,10 +3,10 @@
 /// Rendered figure with its name and caption.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Figure {
-    /// Stem of the file name, unique in a report.
+    /// Stem of the figure's file name, unique in a report.
     pub name: String,
     /// Caption in plain text: content of the figure and how to read it.
     pub caption: String,
-    /// The `svg` element.
+    /// The figure as an SVG element, `<svg>...</svg>`.
     pub svg: String,
 }

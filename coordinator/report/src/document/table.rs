@@ -6,7 +6,7 @@ use protocol::case::Unknown;
 pub struct Table {
     /// Title of the table.
     pub title: String,
-    /// Heads of the columns; the first is that of the row labels.
+    /// Headings of the table's columns; the first is that of the row labels.
     pub head: Vec<String>,
     /// Rows from top to bottom.
     pub rows: Vec<Row>,
@@ -19,16 +19,16 @@ pub struct Table {
 pub enum Row {
     /// Subheading of the rows that follow.
     Group(String),
-    /// A label and one cell per further column.
+    /// Row label, and one cell for each column after the first.
     Values(Label, Vec<String>),
 }
 
 /// Label of a row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Label {
-    /// Plain text.
+    /// Label in plain text.
     Text(String),
-    /// An unknown of the case.
+    /// Label that names an unknown of the case.
     Unknown {
         /// Name of the unknown.
         name: String,
@@ -75,7 +75,7 @@ impl Table {
 }
 
 impl Row {
-    /// Creates a row with a text label.
+    /// Creates a table row from a text label and its cells.
     pub fn new(label: impl Into<String>, cells: impl IntoIterator<Item = String>) -> Self {
         Self::Values(Label::Text(label.into()), cells.into_iter().collect())
     }

@@ -6,7 +6,7 @@ use protocol::case::{Case, Unknown};
 /// Finished identification with all data that its report refers to.
 #[derive(Clone, Debug)]
 pub struct IdentificationInput<'a> {
-    /// Case that was identified.
+    /// Case whose unknowns were identified.
     pub case: &'a Case,
     /// Result of the identification.
     pub identified: &'a IdentificationResult,
@@ -14,7 +14,7 @@ pub struct IdentificationInput<'a> {
     pub origin: Origin,
     /// Remarks about the case and its records.
     pub notes: &'a [String],
-    /// Wall time of all sessions (s).
+    /// Wall time of the identification, over all sessions (s).
     pub wall_s: f64,
 }
 

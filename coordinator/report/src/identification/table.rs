@@ -6,7 +6,7 @@ use crate::number::{MISSING, fixed, quantity, significant};
 use crate::words::{condition_name, interval_cell};
 use discrepancy::identify::{Direction, FurtherMeasurement};
 
-/// Builds the table of the unknowns: value, 95 % interval, sides on which the interval is open, and
+/// Builds the table of the unknowns: value, 95 % interval, sides on which the interval is unbounded, and
 /// correlated unknowns.
 pub(super) fn unknowns(subject: &IdentificationInput<'_>) -> Table {
     let rows = subject.identified.unknowns.iter().map(|own| {
@@ -35,7 +35,8 @@ pub(super) fn unknowns(subject: &IdentificationInput<'_>) -> Table {
     ])
 }
 
-/// Builds the table of the parameter directions with their standard deviations, best determined first.
+/// Builds the table of the directions in parameter space (combinations of unknowns) with their standard
+/// deviations, best determined first.
 pub(super) fn directions(subject: &IdentificationInput<'_>) -> Option<Table> {
     let row = |direction: &Direction| {
         let parts = direction.parts.iter();

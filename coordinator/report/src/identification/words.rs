@@ -44,8 +44,8 @@ pub(super) fn lead(subject: &IdentificationInput<'_>) -> String {
     words
 }
 
-/// Lists the sentences on noise and residual, including the advice to diagnose first where the residual
-/// exceeds the noise.
+/// Lists the sentences on measurement noise and residual of an identification, including the advice to
+/// diagnose first where the residual exceeds the noise.
 pub(super) fn grounds(subject: &IdentificationInput<'_>) -> Vec<String> {
     let identified = subject.identified;
     let left = format!(
@@ -74,7 +74,7 @@ pub(super) fn grounds(subject: &IdentificationInput<'_>) -> Vec<String> {
     all
 }
 
-/// Describes the open ends of an unknown's interval.
+/// Describes the sides on which the interval of an unknown is unbounded.
 pub(super) fn open_ends(own: &UnknownEstimate) -> String {
     let sides = ["below", "above"].into_iter().zip(own.ends);
     let said = sides.filter_map(|(side, end)| match end {

@@ -11,7 +11,7 @@ use study::orthogonal::{Analysis, Factor, TestResult, TrialRun, VarianceSource};
 /// Significance level: a factor with a larger p-value is not significant.
 const LIKELY: f64 = 0.05;
 
-/// Builds all sections, in page order.
+/// Builds all sections of an orthogonal-array test report, in page order.
 pub(super) fn all(subject: &SweepInput<'_>) -> Vec<Section> {
     vec![
         summary(subject.tested),
@@ -198,7 +198,7 @@ fn all_runs(subject: &SweepInput<'_>) -> Section {
     }
 }
 
-/// Lists the factors of the test with the given levels, as text.
+/// Lists each factor of the test with its level given by `levels`, as text.
 fn level_names(factors: &[Factor], levels: &[usize]) -> String {
     let one =
         |(factor, level): (&Factor, &usize)| format!("{} {}", factor.name, factor.levels[*level]);

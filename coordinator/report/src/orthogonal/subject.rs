@@ -5,9 +5,9 @@ use study::orthogonal::TestResult;
 
 /// Orthogonal-array test with all data that its report refers to.
 pub struct SweepInput<'a> {
-    /// Case that was searched.
+    /// Case on which the search settings were tested.
     pub case: &'a Case,
-    /// Result of the test.
+    /// Result of the orthogonal-array test.
     pub tested: &'a TestResult,
     /// Provenance of the test (run, program, digest).
     pub origin: Origin,

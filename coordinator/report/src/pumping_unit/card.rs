@@ -13,12 +13,12 @@ use support::interpolation::periodic;
 
 const SIZE: (f64, f64) = (620.0, 330.0);
 
-/// Interpolates the load of a periodic card at a crank angle \[N\].
+/// Interpolates the load of a periodic dynamometer card at a crank angle \[N\].
 fn load_n(card: &LoadCard, turn_deg: f64) -> Option<f64> {
     periodic(&card.turn_deg, &card.load_n, turn_deg, 360.0)
 }
 
-/// Draws the dynamometer card; `None` if the simulation has fewer than two positions.
+/// Draws the dynamometer card; `None` if the simulation has fewer than two positions of the suspension point.
 pub(super) fn card(
     (case, machine): (&Case, &Machine),
     condition: usize,

@@ -13,7 +13,7 @@ const HEIGHT: f64 = 330.0;
 /// Maximum number of snapshots drawn; more would enlarge the file without visible benefit.
 const COLUMNS: usize = 91;
 
-/// Overlap of neighbouring cells [px].
+/// Overlap of neighbouring cells of the contact map [px], which avoids visible seams.
 const OVERLAP: f64 = 0.5;
 
 /// Computes the angle of a point on the back head's arc, in the beam frame \[deg\].
@@ -38,7 +38,7 @@ struct Cell {
     force: f64,
 }
 
-/// Collects the cylinders in contact, snapshot by snapshot.
+/// Collects the rope cylinders in contact with the head, snapshot by snapshot.
 fn cells(machine: &Machine, simulation: &Simulation) -> Vec<Cell> {
     let snapshots: Vec<&MachineSnapshot> = simulation.motion.iter().collect();
     let snapshots = thinned(&snapshots, COLUMNS);

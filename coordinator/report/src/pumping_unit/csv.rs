@@ -35,7 +35,7 @@ const CURVE_COLUMNS: [&str; 22] = [
     "crank_torque_n_m",
 ];
 
-/// Returns the number of modes of the back head that a case simulates.
+/// Returns the number of modes of the back head that a case includes in its simulation.
 fn modes(case: &Case) -> usize {
     Machine::of(case).map_or(0, |machine| machine.run.modes)
 }

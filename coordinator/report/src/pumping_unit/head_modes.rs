@@ -37,7 +37,7 @@ pub struct HeadPicture<'a> {
     pub nodes_m: &'a [[f64; 3]],
     /// Indices of the mesh nodes of each pin hole at which the head is held.
     pub pins: [&'a [usize]; 2],
-    /// Strain gauges.
+    /// Strain gauges on the head.
     pub gauges: &'a [HeadGauge],
     /// Angles on the rope arc at which the mode shapes are given \[deg\].
     pub arc_deg: &'a [f64],
@@ -134,7 +134,7 @@ struct Frame {
     corner: (f64, f64),
     /// Drawn size of the largest deflection of each mode \[m\].
     deflection: f64,
-    /// Pixels per metre.
+    /// Scale of the panels, in pixels per metre.
     scale: f64,
     /// Height of a panel [px].
     height: f64,

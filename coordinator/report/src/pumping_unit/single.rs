@@ -46,7 +46,8 @@ pub fn simulation(run: &SingleRun, simulation: &Simulation) -> Table {
     table::simulation(run, rows)
 }
 
-/// Builds the table of stroke, agreement with the record, energy balance and solver work of a run.
+/// Builds the table of stroke, agreement with the measured record, energy balance and solver work of a
+/// simulation.
 pub fn balance(run: &SingleRun, simulation: &Simulation) -> Table {
     let mut rows = Vec::new();
     let stroke = range(simulation.suspension_m.iter().copied())

@@ -13,17 +13,17 @@ const fn cell(kind: ElementKind) -> (u8, &'static [usize]) {
     }
 }
 
-/// Named field; `values[k]` belongs to node or element k.
+/// Named field on a mesh for export; `values[k]` belongs to node or element k.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
     /// Name of the field, as listed in `ParaView`.
     pub name: String,
-    /// Components of the field: one row per node or element, all rows of the same length.
+    /// Values of the field: the components at each node or element, all of the same number.
     pub values: Vec<Vec<f32>>,
 }
 
 impl Field {
-    /// Creates a field from rows of fixed length.
+    /// Creates a field from its name and its components at each node or element.
     pub fn new<const N: usize>(name: impl Into<String>, rows: &[[f32; N]]) -> Self {
         Self {
             name: name.into(),

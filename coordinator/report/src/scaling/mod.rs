@@ -1,7 +1,5 @@
-//! Report on the parallel scaling of searches: measured and projected rows, the figure, and the assumptions
-//! of the projection.
-//!
-//! Takes the rows as plain data and does not measure them.
+//! Report on the parallel scaling of searches: measured and projected results, the figure, and the
+//! assumptions of the projection. Takes these data as plain values and does not measure.
 use super::chart::speed_up;
 use super::data::Origin;
 use super::document::{Block, Fact, Report, Row as Cells, Section, Table};
@@ -14,9 +12,9 @@ use study::scaling::{ScalingResult, ScalingRow, SlotMode};
 
 /// Input data of a scaling report.
 pub struct ScalingInput<'a> {
-    /// Case that was searched.
+    /// Case on which the searches ran.
     pub case: &'a Case,
-    /// Measured and projected rows, with overheads and assumptions.
+    /// Measured and projected scaling of the searches, with overheads and assumptions.
     pub scaled: &'a ScalingResult,
     /// Provenance of the measurement (run, program, digest).
     pub origin: Origin,
@@ -34,8 +32,8 @@ pub fn report(subject: &ScalingInput<'_>) -> Report {
     Report::new(title, &subject.origin.run, sections)
 }
 
-/// Writes the report into a folder: `report.html`, `tables.txt` and `figures/*.svg`. Returns the paths, the
-/// HTML first.
+/// Writes the scaling report into a folder: `report.html`, `tables.txt` and `figures/*.svg`. Returns the
+/// paths, the HTML first.
 ///
 /// # Errors
 /// [`ReportError`] when a file cannot be written.

@@ -29,7 +29,7 @@ const STRIP_TOP: f64 = TOP + MAIN + 18.0;
 const STRIP: f64 = 52.0;
 const HEIGHT: f64 = STRIP_TOP + STRIP + 46.0;
 
-/// Statistics of one generation, or of several merged neighbours.
+/// Statistics of one generation of the search, or of several merged neighbouring generations.
 struct Generation {
     from: f64,
     to: f64,
@@ -38,8 +38,8 @@ struct Generation {
     failed_share: f64,
 }
 
-/// Divides the history, in index order, into generations; neighbours are merged so that there are at most
-/// `most`.
+/// Divides the evaluation log, in index order, into generations; neighbouring generations are merged so that
+/// there are at most `most`.
 fn generations(history: &[HistoryPoint], most: usize) -> Vec<Generation> {
     let mut stretches: Vec<(usize, usize)> = Vec::new();
     let mut start = 0;
@@ -77,7 +77,8 @@ fn generations(history: &[HistoryPoint], most: usize) -> Vec<Generation> {
         .collect()
 }
 
-/// Returns the best complete objective so far as a step curve over the number of evaluations.
+/// Returns the best objective of the complete individuals so far, as a step curve over the number of
+/// evaluations.
 fn best_so_far(history: &[HistoryPoint]) -> Vec<(f64, f64)> {
     let mut best = f64::INFINITY;
     let mut steps = Vec::new();
@@ -164,7 +165,7 @@ pub(crate) fn chart(
     }
 }
 
-/// Draws median and quantile band as steps, one per generation.
+/// Draws median and quantile band of the population's objective as steps, one per generation.
 fn population(canvas: &mut Canvas, panel: &Panel, generations: &[Generation]) {
     let mut band = Vec::new();
     let mut median = Vec::new();
@@ -180,7 +181,7 @@ fn population(canvas: &mut Canvas, panel: &Panel, generations: &[Generation]) {
     panel.curve(canvas, &median, pen);
 }
 
-/// Draws the labels of the curves at the right edge.
+/// Draws the labels of the convergence curves at the right edge.
 fn labels(
     canvas: &mut Canvas,
     panel: &Panel,

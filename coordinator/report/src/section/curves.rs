@@ -4,8 +4,8 @@ use crate::document::{Block, Section, figures};
 use crate::kind;
 use maud::html;
 
-/// Builds the section of a calibration: model-specific figures with the optimised parameters; the channels
-/// are shown in the overlays.
+/// Builds the curves section of a calibration report: figures specific to the kind of model with the
+/// optimised parameters, without the channels, which another section shows.
 pub(super) fn calibration(calibration: &Calibration) -> Section {
     let mut blocks = Vec::new();
     if let Some(optimum) = calibration.optimum() {

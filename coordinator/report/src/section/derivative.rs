@@ -21,8 +21,8 @@ pub(super) fn simulation(run: &SingleRun) -> Section {
     }
 }
 
-/// Builds the table of the derivatives: root mean square and largest value by parameter and channel; `None`
-/// where no derivatives were requested.
+/// Builds the table of the derivatives of the curves: root mean square and largest value by unknown and
+/// channel; `None` where no derivatives were requested.
 pub fn derivatives(run: &SingleRun) -> Option<Table> {
     let channels = run.case.channels_of(run.condition);
     let channels: Vec<&Channel> = channels.map(|(_, channel)| channel).collect();
@@ -64,7 +64,8 @@ fn row(name: &str, channel: &Channel, per: &Per, values: &[f32]) -> Row {
     Row::new(name, cells)
 }
 
-/// Draws the derivatives, one figure per unit and abscissa of the channels; `zero` is passed to [`Axis::of`].
+/// Draws the derivatives of the curves, one figure per unit and abscissa of the channels; `zero`, the
+/// description of the abscissa's origin, is passed to [`ChartAxis::of`].
 pub(crate) fn charts(run: &SingleRun, zero: &str) -> Vec<Figure> {
     let channels = run.case.channels_of(run.condition);
     let channels: Vec<&Channel> = channels.map(|(_, channel)| channel).collect();

@@ -15,8 +15,8 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
     }
 }
 
-/// Builds the table of the gap under one condition, for the recommended and the optimised parameters; `None`
-/// without a record or a complete run.
+/// Builds the table of the gap between simulation and measurement under one condition, for the recommended
+/// and the optimised parameters; `None` without a measured record or a complete run.
 fn gap(case: &Case, result: &ConditionResult) -> Option<Table> {
     let [before, after] =
         [&result.recommended, &result.optimised].map(|run| run.gaps(case, result.condition));
@@ -74,7 +74,8 @@ fn sector(along: &Abscissa, gap: &Gap) -> String {
     format!("{begin} to {end}: {}", percent(share))
 }
 
-/// Describes the band of orders with the largest share of a periodic channel's residual.
+/// Describes the band of orders (multiples of the period's frequency) with the largest share of a periodic
+/// channel's squared residual.
 fn band(along: &Abscissa, gap: &Gap) -> String {
     if along.period.is_none() {
         return MISSING.to_owned();

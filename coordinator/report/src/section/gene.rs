@@ -1,4 +1,4 @@
-//! Report section with the objective over each gene, between the gene's bounds.
+//! Report section with figures of the objective over each gene (searched unknown), between the gene's bounds.
 use crate::chart::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
 use crate::chart::panel::Panel;
 use crate::chart::points::thinned;
@@ -32,8 +32,8 @@ const ELITE: usize = 100;
 const CLOUD: Color = Color(0x9a, 0xa3, 0xab);
 const FAILED: Color = Color(0xd8, 0xd8, 0xd4);
 
-/// Selects the individuals to draw, as indices into the history, worst first: the best ones and an even
-/// selection of the rest.
+/// Selects the individuals to draw, as indices into the evaluation log, worst first: the best ones and an
+/// even selection of the rest.
 fn selection(calibration: &Calibration) -> Vec<usize> {
     let history = &calibration.history;
     let mut order: Vec<usize> = (0..history.len()).collect();
@@ -52,7 +52,7 @@ fn selection(calibration: &Calibration) -> Vec<usize> {
     chosen
 }
 
-/// Draws one small panel per gene.
+/// Draws one small panel per gene: the objective of the individuals over the gene's value.
 pub fn genes(calibration: &Calibration) -> Figure {
     let genes = &calibration.case.unknowns;
     let chosen = selection(calibration);
@@ -102,7 +102,7 @@ pub fn genes(calibration: &Calibration) -> Figure {
     }
 }
 
-/// Draws the panel of one gene.
+/// Draws the panel of one gene: the objective of the individuals over the gene's value.
 fn small(
     canvas: &mut Canvas,
     panel: &Panel,
@@ -164,7 +164,7 @@ fn small(
     panel.lower_axis(canvas, true, &title);
 }
 
-/// Draws the legend above the panels.
+/// Draws the legend above the panels of the genes.
 fn key(canvas: &mut Canvas) {
     let y = 14.0;
     let text = TextStyle::new(10.5, INK);

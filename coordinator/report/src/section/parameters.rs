@@ -1,4 +1,5 @@
-//! Report section with parameters and errors in numbers (paper, Tables 3 and 4).
+//! Report section with the parameters and errors of a calibration in numbers (reference paper, Tables 3 and
+//! 4).
 use crate::data::{Calibration, SingleRun};
 use crate::document::{Section, Table, tables};
 use crate::{kind, table};

@@ -5,7 +5,7 @@ use crate::number::{count, duration, fixed, significant};
 use crate::words::objective_heading;
 use dispatch::account::JobCost;
 
-/// Number of simulations listed.
+/// Number of slowest simulations listed in the section.
 const LISTED: usize = 10;
 
 pub(super) fn calibration(calibration: &Calibration) -> Section {

@@ -1,4 +1,4 @@
-//! Report section with the outcome in words: change of the error by condition and channel.
+//! Report section with the outcome of a calibration in words: change of the error by condition and channel.
 use crate::data::{Calibration, SingleRun};
 use crate::document::{Block, Section};
 use crate::number::{count, duration, significant};

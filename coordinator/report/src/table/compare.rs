@@ -1,4 +1,4 @@
-//! Comparison of recommended and optimised parameters (paper, Tables 3 and 4).
+//! Tables that compare the recommended with the optimised parameters (reference paper, Tables 3 and 4).
 use crate::data::{Calibration, ConditionResult};
 use crate::document::{Row, Table};
 use crate::kind;
@@ -15,7 +15,8 @@ const DEFINITIONS: [&str; 3] = [
     "Offset: measured minus simulated mean; sensors have no absolute zero.",
 ];
 
-/// Returns the indices of the case's channels with a score, channels of the objective first.
+/// Returns the indices of the case's channels that have a score under the condition, channels of the
+/// objective first.
 fn scored(case: &Case, result: &ConditionResult) -> Vec<usize> {
     let measured = case.measured(result.condition);
     let mut scored: Vec<usize> = measured.map(|(at, ..)| at).collect();
@@ -23,14 +24,14 @@ fn scored(case: &Case, result: &ConditionResult) -> Vec<usize> {
     scored
 }
 
-/// Error measure of a channel.
+/// Error measure of a channel, such as the relative error, shown for both parameter sets.
 struct Measure {
     title: &'static str,
     unit: fn(&str) -> String,
     of: fn(&ChannelScore) -> f64,
     write: fn(f64) -> String,
-    /// Whether the ratio of optimised to recommended value is meaningful; not so for signed errors and
-    /// offsets.
+    /// Whether the ratio of the measure's optimised to its recommended value is meaningful; not so for signed
+    /// errors and offsets.
     has_ratio: bool,
 }
 
@@ -80,7 +81,7 @@ const MEASURES: [Measure; 6] = [
 ];
 
 impl Measure {
-    /// Builds the row of one channel with the measure for both parameter sets.
+    /// Builds the table row of one channel with this error measure for both parameter sets.
     fn row(&self, case: &Case, result: &ConditionResult, channel: usize) -> Row {
         let [before, after] = [&result.recommended, &result.optimised].map(|run| {
             let mut channels = run.evaluation.channels.iter();
@@ -108,7 +109,7 @@ impl Measure {
     }
 }
 
-/// Builds the rows of the objective and of all error measures under a condition.
+/// Builds the table rows of the objective and of all error measures under a condition.
 fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
     let scored = scored(case, result);
     let [before, after] = [&result.recommended, &result.optimised].map(|run| {
@@ -151,7 +152,7 @@ const HEAD: [&str; 5] = [
     "optimised / recommended",
 ];
 
-/// Builds the rows of the recommended and optimised genes.
+/// Builds the table rows of the recommended and optimised gene values.
 fn gene_rows(calibration: &Calibration) -> Vec<Row> {
     let mut rows = Vec::new();
     let (mut group, kind) = ("", kind::of(&calibration.case));
@@ -190,7 +191,8 @@ fn gene_rows(calibration: &Calibration) -> Vec<Row> {
     rows
 }
 
-/// Builds the paper's Table 3: genes, and agreement under the calibrated condition.
+/// Builds the reference paper's Table 3: genes, and agreement with the measurement under the calibrated
+/// condition.
 pub fn table_3(calibration: &Calibration) -> Table {
     let case = &calibration.case;
     let title = format!(
@@ -229,8 +231,8 @@ pub fn table_3(calibration: &Calibration) -> Table {
     table
 }
 
-/// Builds the paper's Table 4: agreement under another condition, with the parameters of the calibration
-/// unchanged.
+/// Builds the reference paper's Table 4: agreement with the measurement under another condition, with the
+/// parameters of the calibration unchanged.
 pub fn table_4(case: &Case, result: &ConditionResult) -> Table {
     let role = if !case.objective.holds(result.condition) {
         "which took no part in the fit"
@@ -246,7 +248,8 @@ pub fn table_4(case: &Case, result: &ConditionResult) -> Table {
         .with_notes(remarks(case, result))
 }
 
-/// Lists remarks on channels whose absolute error rose behind a free offset, and on failed runs.
+/// Lists remarks on a condition's channels whose absolute error rose although a free offset hides it, and on
+/// failed simulations.
 fn remarks(case: &Case, result: &ConditionResult) -> Vec<String> {
     let runs = [
         ("Recommended", &result.recommended),

@@ -6,12 +6,13 @@ use crate::words::{channel_title, condition_name, verdict};
 use protocol::case::Channel;
 use protocol::job::Counters;
 
-/// Creates a row with a unit and one value.
+/// Creates a table row with a label, a unit and one value.
 pub fn value_row(label: &str, unit: &str, value: String) -> Row {
     Row::new(label, [unit.to_owned(), value])
 }
 
-/// Creates a row with the range of a curve scaled by `factor`: smallest value, largest value, half range.
+/// Creates a table row with the range of a curve scaled by `factor`: smallest value, largest value, half
+/// range.
 pub fn range_row(label: &str, values: &[f64], factor: f64, unit: &str) -> Row {
     let ends = range(values.iter().map(|value| factor * value));
     let cells = ends.map_or([MISSING; 3].map(str::to_owned), |(low, high)| {
@@ -20,7 +21,7 @@ pub fn range_row(label: &str, values: &[f64], factor: f64, unit: &str) -> Row {
     Row::new(label, std::iter::once(unit.to_owned()).chain(cells))
 }
 
-/// Builds one row with the range of each channel.
+/// Builds one table row per channel with the range of its simulated curve.
 pub fn ranges(of: &SimulationView<'_>) -> Vec<Row> {
     let channels = of.case.channels_of(of.condition);
     let row = |(_, channel): (usize, &Channel)| {
@@ -30,7 +31,7 @@ pub fn ranges(of: &SimulationView<'_>) -> Vec<Row> {
     channels.map(row).collect()
 }
 
-/// Builds the table of ranges, titled with condition, parameter set and verdict.
+/// Builds the table of a simulation's curve ranges, titled with condition, parameter set and verdict.
 pub fn simulation(run: &SingleRun, ranges: Vec<Row>) -> Table {
     let title = format!(
         "Condition {}, {} parameters: {}",
@@ -47,8 +48,8 @@ pub fn value_table(title: &str, rows: Vec<Row>) -> Table {
     Table::new(title, ["", "unit", "value"], rows)
 }
 
-/// Builds the rows of agreement with the record: objective and errors by channel; empty if nothing was
-/// scored.
+/// Builds the table rows on agreement with the measured record: objective and errors by channel; empty if
+/// nothing was scored.
 pub fn agreement(run: &SingleRun) -> Vec<Row> {
     let scored = run.evaluation.as_ref();
     let Some(evaluation) = scored.filter(|scored| !scored.channels.is_empty()) else {
@@ -71,7 +72,7 @@ pub fn agreement(run: &SingleRun) -> Vec<Row> {
     rows
 }
 
-/// Builds the rows of the integrator's counters and the wall time.
+/// Builds the table rows of the integrator's work counters and the wall time of a simulation.
 pub fn work(counters: &Counters, wall_s: f64) -> Vec<Row> {
     let counted = counters.labelled().into_iter();
     let mut rows = vec![Row::group("Work of the integrator")];

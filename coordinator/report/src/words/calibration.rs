@@ -8,7 +8,7 @@ use crate::number::{fixed, percent, quantity, ratio, significant, squared};
 use protocol::case::{Case, Scale, Term};
 use protocol::job::{ChannelScore, Verdict};
 
-/// Returns the objective with the recommended parameters, if their runs were complete.
+/// Returns the objective with the recommended parameters, if their simulations were complete.
 pub(crate) fn complete_objective(calibration: &Calibration) -> Option<f64> {
     let (verdict, fitness) = calibration.objective(|result| &result.recommended)?;
     matches!(verdict, Verdict::Complete).then_some(fitness)
@@ -85,7 +85,8 @@ fn objective(case: &Case) -> String {
     }
 }
 
-/// Lists one sentence per channel of a condition; channels whose error rose are marked as worse.
+/// Returns one sentence on the change of error for each channel of a condition; channels whose error rose are
+/// marked as worse.
 pub(crate) fn channels(case: &Case, result: &ConditionResult) -> Vec<String> {
     let before = &result.recommended.evaluation.channels;
     let after = &result.optimised.evaluation.channels;

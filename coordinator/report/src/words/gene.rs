@@ -13,7 +13,8 @@ pub(crate) fn bound(gene: &Unknown, side: &str) -> String {
     format!("its {side} bound {}", quantity(value, &gene.unit))
 }
 
-/// Returns the bound that a value lies at, within half a per cent of the interval on the unknown's scale.
+/// Returns the description of the bound at which an unknown's value lies, within half a per cent of the
+/// interval on the unknown's scale; `None` if at neither.
 pub(crate) fn at_bound(gene: &Unknown, value: f64) -> Option<&'static str> {
     let Unknown { lower, upper, .. } = *gene;
     let share = match gene.scale {
@@ -29,7 +30,7 @@ pub(crate) fn at_bound(gene: &Unknown, value: f64) -> Option<&'static str> {
     }
 }
 
-/// Formats the interval that the record determines for an unknown, as a table cell.
+/// Formats the interval that the measured record determines for an unknown, as a table cell.
 pub(crate) fn interval_cell(own: &UnknownEstimate) -> String {
     let of = |x: f64| quantity(x, &own.unit);
     match own.interval {

@@ -2,7 +2,8 @@
 use crate::number::squared;
 use protocol::case::{Abscissa, Case};
 
-/// Returns the name of a condition; its number if the case lacks it.
+/// Returns the name of the condition with an index in the case; the index as text if the case lacks that
+/// condition.
 pub fn condition_name(case: &Case, condition: usize) -> String {
     case.conditions
         .get(condition)
@@ -21,7 +22,8 @@ pub(crate) fn calibrated(case: &Case) -> String {
     format!("{noun} {}", join_words(&names, "and"))
 }
 
-/// Returns the title of a channel; its number if the case lacks it.
+/// Returns the title of the channel with an index in the case; the index as text if the case lacks that
+/// channel.
 pub(crate) fn channel_title(case: &Case, channel: usize) -> String {
     case.channels
         .get(channel)

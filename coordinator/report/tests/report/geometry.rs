@@ -107,7 +107,7 @@ fn short([x, y]: [f64; 2]) -> [f32; 2] {
     [x as f32, y as f32]
 }
 
-/// Builds a snapshot with ropes under the given tensions \[N\].
+/// Builds a snapshot of the machine in a pose, with ropes under the given tensions \[N\].
 #[expect(
     clippy::cast_possible_truncation,
     reason = "snapshots are stored short"

@@ -103,7 +103,6 @@ fn check_figure(figure: &Figure) {
     assert!(!figure.svg.contains("NaN"), "{}", figure.name);
 }
 
-/// Renders the page of a calibration.
 fn page_of(calibration: &Calibration) -> String {
     report::page(&report::calibration(calibration))
 }

@@ -17,7 +17,7 @@ use report::{
     Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, SingleRun, WorkerUse,
 };
 
-/// Number of output points per revolution.
+/// Number of crank-angle points per revolution in the sample simulation.
 const GRID: usize = 720;
 /// Harmonics of the polished-rod load \[kN\]: cosine and sine amplitude.
 const LOAD_KN: [(f64, f64); 10] = [
@@ -79,7 +79,7 @@ fn genes() -> Vec<Unknown> {
     ]
 }
 
-/// Builds a machine whose head has no modes.
+/// Builds a sample machine whose head has no vibration modes.
 #[expect(clippy::too_many_lines, reason = "one literal, field by field")]
 fn machine() -> Machine {
     let turn_deg: Vec<f64> = (0..GRID).map(|i| 0.5 * i as f64).collect();
@@ -170,7 +170,6 @@ fn machine() -> Machine {
     }
 }
 
-/// Builds a case of the sample machine.
 pub(crate) fn case() -> Case {
     let machine = machine();
     Case {
@@ -222,7 +221,7 @@ fn term(gauge: u8) -> Term {
     }
 }
 
-/// Builds the channels of a condition, with records for the gauges.
+/// Builds the channels of a condition of the sample case, with measured records for the strain gauges.
 fn channels(machine: &Machine, condition: usize) -> Vec<Channel> {
     let mut noise = Noise(17 + condition as u64);
     let poses = geometry::revolution(machine, GRID);
@@ -247,7 +246,8 @@ fn channels(machine: &Machine, condition: usize) -> Vec<Channel> {
     channels
 }
 
-/// Builds a complete simulation whose stress differs from the record in proportion to `error` (1 is large).
+/// Builds a complete simulation whose stress differs from the sample record in proportion to `error` (1 is
+/// large).
 #[expect(clippy::too_many_lines, reason = "one literal, field by field")]
 pub(crate) fn simulation(case: &Case, error: f64, motion_step_deg: f64) -> Simulation {
     let machine = &Machine::of(case).expect("a pumping unit");
@@ -370,7 +370,7 @@ pub(crate) fn fail(simulation: &mut Simulation, points: usize) {
     simulation.motion.retain(|motion| motion.turn_deg <= last);
 }
 
-/// Scores a simulation against the record of a condition, with an unoptimised implementation.
+/// Scores a simulation against the sample record of a condition, with an unoptimised implementation.
 pub(crate) fn score(case: &Case, condition: usize, simulation: &Simulation) -> Evaluation {
     let complete = simulation.verdict == Verdict::Complete;
     let measured = case.measured(condition).filter(|_| complete);
@@ -445,8 +445,8 @@ pub(crate) fn change(case: &Case, run: &mut Run, change: impl FnOnce(&mut Simula
     run.curves = curves(case, 0, simulation);
 }
 
-/// Returns the cost of an individual: twice as high for every hundredth, and slightly increasing with the
-/// index.
+/// Returns the simulation cost of the individual with an index: twice as high for every hundredth, and
+/// slightly increasing with the index.
 fn cost(index: usize) -> JobCost {
     let slow = if index % 100 == 7 { 2.0 } else { 1.0 };
     let processor_s = 0.2 * slow + 1e-6 * index as f64;

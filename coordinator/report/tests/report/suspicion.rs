@@ -31,12 +31,12 @@ use search::space::Space;
 use std::time::Duration;
 use study::{DiagnosisResult, StageCost};
 
-/// Number of whitened entries of the synthetic residual.
+/// Number of values in the whitened synthetic residual.
 const ENTRIES: usize = 40;
 /// Number of crank-angle grid points.
 const GRID: usize = 360;
 
-/// Owned sample data from which a [`Subject`] is made, which borrows them.
+/// Owned sample data of a diagnosis, borrowed by the input of the diagnosis report that is made from them.
 pub(crate) struct SampleDiagnosis {
     pub(crate) case: Case,
     pub(crate) records: Vec<Record>,
@@ -173,7 +173,7 @@ const CHANNELS: [Sensor; 4] = [
     Sensor::Torque,
 ];
 
-/// Returns a curve of a channel that deviates from the true curve in proportion to `error`.
+/// Returns a simulated curve of channel `c` that deviates from the true curve in proportion to `error`.
 fn curve(c: usize, error: f64) -> Vec<f64> {
     let size = [20.0, 15.0, 1.8, 2e4][c];
     (0..GRID)
@@ -314,7 +314,7 @@ fn round(case: &Case, library: &[EffectDescriptor]) -> Round {
     }
 }
 
-/// Bins of one revolution for the synthetic map of the residual along the crank angle.
+/// Abscissa bins of one crank revolution for the synthetic map of the residual along the crank angle.
 const TURN: window_test::Bins = window_test::Bins {
     from: 0.0,
     width: 3.0,
@@ -447,7 +447,7 @@ fn reads_high() -> NuisanceEstimate {
     }
 }
 
-/// Returns the sample's scores of predicted held-out data; empty if no effect was added.
+/// Returns the sample diagnosis' scores of predicting held-out data; empty if no effect was added.
 fn predicted(added: bool) -> Vec<Prediction> {
     let one = Prediction {
         condition: 1,
@@ -542,7 +542,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> SampleDiagnosis {
     }
 }
 
-/// Builds the variation of the first gene: doubled in the second quarter of the revolution, unchanged
+/// Builds the sample drift of the first gene: doubled in the second quarter of the revolution, unchanged
 /// elsewhere.
 fn wander(p_value: f64) -> ParameterDrift {
     let sector = |k: usize| RecordPart::Sector {
@@ -585,7 +585,7 @@ pub(crate) fn two_rounds() -> SampleDiagnosis {
 }
 
 /// Builds a diagnosis from a record of one cycle, whose noise level is stated instead of measured: an effect
-/// is suspected, but none is named.
+/// is suspected, but none is reported as found.
 pub(crate) fn assumed() -> SampleDiagnosis {
     let mut made = diagnosis(Verdict::Unresolved);
     let suspect = estimate(&made.library[0], 0.8, 596.9);

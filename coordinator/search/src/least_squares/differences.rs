@@ -1,5 +1,5 @@
-//! Finite-difference columns of a Jacobian, except those known exactly; a column whose points all failed is
-//! retried once on the opposite side.
+//! Finite-difference columns of a Jacobian, except the columns known exactly; a column whose displaced points
+//! all failed is retried once on the opposite side.
 use super::problem::{LeastSquaresSettings, Variable};
 use nalgebra::{DMatrix, DVector};
 
@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 #[derive(Clone, Debug)]
 pub(super) struct Difference {
     variable: usize,
-    /// Signed difference step.
+    /// Signed displacement of the variable for the finite difference.
     step: f64,
     found: DifferenceState,
 }
@@ -36,7 +36,8 @@ impl DifferenceState {
 pub(super) struct Columns {
     differences: Vec<Difference>,
     retried: bool,
-    /// Exactly known columns, indexed by variable; `None` where a column is determined by finite differences.
+    /// Exactly known Jacobian columns, indexed by variable; `None` where a column is determined by finite
+    /// differences.
     known: Vec<Option<DVector<f64>>>,
 }
 
@@ -87,7 +88,7 @@ impl Columns {
             .filter(|d| matches!(d.found, DifferenceState::Awaited))
     }
 
-    /// Returns the displaced points that are still to be evaluated.
+    /// Returns the points displaced from `x` for finite differences that are still to be evaluated.
     pub(super) fn points(&self, x: &[f64]) -> Vec<Vec<f64>> {
         let point = |d: &Difference| {
             let mut point = x.to_vec();
@@ -116,8 +117,8 @@ impl Columns {
         }
     }
 
-    /// Adds, for every column none of whose points could be evaluated, one more point on the opposite side
-    /// with half the step.
+    /// Adds, for every Jacobian column none of whose displaced points could be evaluated, one more point on
+    /// the opposite side with half the step.
     fn retry(&mut self, x: &[f64], variables: &[Variable]) {
         let mut again = Vec::new();
         for (variable, v) in variables.iter().enumerate() {
@@ -178,8 +179,9 @@ impl Columns {
     }
 }
 
-/// Returns the difference step for the next Jacobian: the step for which the residual would have changed by
-/// `settings.change`, limited to a factor of `settings.step_range` from the variable's first step.
+/// Returns the difference step of a variable for the next Jacobian: the step for which the residual would
+/// have changed by `settings.change`, limited to a factor of `settings.step_range` from the variable's first
+/// step.
 pub(super) fn next_step(
     step: f64,
     variable: &Variable,

@@ -4,25 +4,25 @@ use nalgebra::{DMatrix, DVector};
 /// Unknown of the least-squares problem, with bounds, step sizes and prior.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variable {
-    /// Starting value of the search.
+    /// Value of the variable at which the search starts.
     pub start: f64,
-    /// Lower bound.
+    /// Lower bound of the variable.
     pub lower: f64,
-    /// Upper bound.
+    /// Upper bound of the variable.
     pub upper: f64,
     /// First difference step; later steps are adapted to the change of the residual that a step causes.
     pub step: f64,
     /// Longest change of the variable in one step of the search; without it a variable that hardly changes
     /// the residual would go to a bound.
     pub longest: f64,
-    /// Prior distribution, if any.
+    /// Normal prior distribution of the variable, if any.
     pub prior: Option<Prior>,
 }
 
 /// Normal prior distribution of an unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prior {
-    /// Mean of the prior.
+    /// Mean of the variable's prior distribution.
     pub mean: f64,
     /// Standard deviation of the prior, positive.
     pub deviation: f64,
@@ -40,22 +40,24 @@ pub struct LeastSquaresSettings {
     pub decrease: f64,
     /// Desired change of the residual (norm) by a difference step.
     pub change: f64,
-    /// Largest factor by which a difference step may grow or shrink from its first value.
+    /// Largest factor by which a variable's finite-difference step may grow or shrink from its first value.
     pub step_range: f64,
-    /// Additional damping of every variable, as a share of the mean curvature, besides that by its own
-    /// curvature; without it a variable that hardly changes the residual goes to its bound at any damping.
+    /// Additional damping of every variable besides that by its own curvature, as a share of the mean
+    /// curvature over the variables; without it a variable that hardly changes the residual goes to its bound
+    /// at any damping.
     pub level: f64,
     /// Whether Jacobian columns are central differences, second-order accurate at twice the number of points.
     pub central: bool,
-    /// Whether a search that has converged with one-sided differences continues with central ones until it
-    /// converges again, so that the error of the differences no longer shifts the minimum.
+    /// Whether a search that has converged with one-sided differences continues with central differences
+    /// until it converges again, so that the error of the one-sided differences no longer shifts the minimum.
     pub finish: bool,
-    /// Whether the evaluator is asked for exact columns; only the columns it does not return are differenced.
+    /// Whether the evaluator is asked for exact Jacobian columns; only the columns that it does not return
+    /// are computed by finite differences.
     pub exact: bool,
 }
 
 impl LeastSquaresSettings {
-    /// Returns the default settings with at most `iterations` Jacobians.
+    /// Returns the default settings with at most `iterations` iterations, each of which computes a Jacobian.
     pub fn short(iterations: u32) -> Self {
         Self {
             iterations,
@@ -96,22 +98,22 @@ pub enum Termination {
 /// Best point with its residual and Jacobian.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearized {
-    /// Coordinates of the point.
+    /// Coordinates of the point of linearisation, one per variable.
     pub x: Vec<f64>,
-    /// Residual vector at the point, length n.
+    /// Residual vector at the point of linearisation, length n.
     pub residual: DVector<f64>,
-    /// Derivatives of the residual by the unknowns, n x number of unknowns; a column is zero if none of its
-    /// difference points could be evaluated.
+    /// Derivatives of the residual by the variables, n x number of variables; a column is zero if none of its
+    /// finite-difference points could be evaluated.
     pub jacobian: DMatrix<f64>,
 }
 
 /// Result of evaluating a point: residual and known derivatives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EvaluatedPoint {
-    /// The residual vector.
+    /// Residual vector at the evaluated point.
     pub residual: DVector<f64>,
-    /// Derivatives of the residual by the variables, in their order, if they were requested; `None` for a
-    /// column that is not known. Empty if no column is known.
+    /// Derivatives of the residual by the variables (columns of the Jacobian), in the order of the variables,
+    /// if they were requested; `None` for a column that is not known. Empty if no column is known.
     pub columns: Vec<Option<DVector<f64>>>,
 }
 

@@ -184,7 +184,7 @@ impl LeastSquares {
         }
     }
 
-    /// Plans difference points for the columns that are not in `known`.
+    /// Plans finite-difference points for those columns of the Jacobian that are `None` in `known`.
     fn plan_columns(&mut self, known: Vec<Option<DVector<f64>>>) {
         // who knows no column at all is not asked again
         self.settings.exact &= known.iter().any(Option::is_some);

@@ -1,11 +1,11 @@
-//! Damped Gauss-Newton steps inside a box.
+//! Damped Gauss-Newton steps of the least-squares search inside the box of the variables' bounds.
 use super::problem::{Linearized, Variable};
 use nalgebra::{DMatrix, DVector};
 
-/// Damping factors tried in one fan, relative to the last accepted damping.
+/// Damping factors tried in one batch (a fan) of steps, relative to the last accepted damping.
 const FAN: [f64; 5] = [1e-3, 0.03, 0.3, 3.0, 30.0];
 
-/// Factor on the damping after no step of a fan lowered the cost.
+/// Factor by which the damping is increased after no step of a fan lowered the cost.
 pub(super) const REFUSED: f64 = 1e3;
 
 /// Returns the contribution of the priors to the cost: `sum ((x_k - mean_k) / deviation_k)^2`.
@@ -52,7 +52,7 @@ pub(super) fn gradient_ratio(at: &Linearized, variables: &[Variable], cost: f64)
     worst
 }
 
-/// Returns the residual predicted after an undamped step inside the box.
+/// Returns the residual that the linearised problem predicts after an undamped step inside the box.
 pub(super) fn settled(at: &Linearized, variables: &[Variable]) -> DVector<f64> {
     // twelve digits below the diagonal: decides nothing, keeps the factor
     let step = step(at, variables, [1e-12, 0.0], false);
@@ -70,9 +70,9 @@ pub fn undamped(at: &Linearized, variables: &[Variable]) -> Option<DVector<f64>>
 }
 
 /// Returns a damped step that stays in the box: a component that would leave the box ends at its bound, and
-/// the remaining components are solved for again. Each is damped by its own curvature, and by a share `level`
-/// of the mean one. If `limited`, no component is longer than its variable's `longest`. `None` if the
-/// curvature has no Cholesky factor or no variable is free.
+/// the remaining components are solved for again. Each component is damped by its own curvature, and by a
+/// share `level` of the mean curvature. If `limited`, no component is longer than its variable's `longest`.
+/// `None` if the curvature has no Cholesky factor or no variable is free.
 fn step(
     at: &Linearized,
     variables: &[Variable],
@@ -134,8 +134,8 @@ fn free(
         .collect()
 }
 
-/// Returns the fan of damped steps from a linearised point: dampings with the points they lead to. Variables
-/// pressed against a bound, or without any effect, stay fixed.
+/// Returns steps with several dampings (a fan) from a linearised point: each damping with the point that its
+/// step leads to. Variables pressed against a bound, or without any effect on the cost, stay fixed.
 pub(super) fn fan(
     at: &Linearized,
     variables: &[Variable],

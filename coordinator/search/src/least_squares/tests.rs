@@ -169,8 +169,8 @@ fn a_known_start_is_not_evaluated_again_and_the_last_jacobian_is_fresh() {
     );
 }
 
-/// Runs a search on the Rosenbrock function, returning exact columns for those variables for which `knows` is
-/// true.
+/// Runs a search on the Rosenbrock function; the evaluator returns exact Jacobian columns for those variables
+/// for which `knows` is true.
 fn run_knowing(search: &mut LeastSquares, knows: impl Fn(usize) -> bool) -> Termination {
     loop {
         if let Some(ended) = search.ended() {

@@ -6,13 +6,13 @@ use std::collections::BTreeMap;
 /// Evaluated individual: genes, result and, if requested, residual vector.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EvaluatedIndividual {
-    /// Id of the proposal.
+    /// Id of the proposal that was evaluated, consecutive from 0 over the run.
     pub id: u64,
-    /// Gene values in declared units.
+    /// Gene values of the individual in declared units, in the case's order.
     pub genes: Vec<f64>,
-    /// Result of the evaluation.
+    /// Fitness of the individual, and whether its simulation completed.
     pub result: EvaluationResult,
-    /// Residual vector, if the search requested it.
+    /// Residual vector of the individual, if the search requested it.
     pub residual: Option<Residual>,
 }
 
@@ -35,7 +35,7 @@ pub struct Archive {
 }
 
 impl Archive {
-    /// Returns all results in id order.
+    /// Returns all evaluated individuals of the archive, in id order.
     pub fn entries(&self) -> &[EvaluatedIndividual] {
         &self.entries
     }
@@ -45,7 +45,7 @@ impl Archive {
         self.best.and_then(|index| self.entries.get(index))
     }
 
-    /// Returns the result for exactly these genes.
+    /// Returns the archived result of the individual with exactly these genes.
     pub fn find(&self, genes: &[f64]) -> Option<&EvaluatedIndividual> {
         let index = self.by_genes.get(&key(genes))?;
         self.entries.get(*index)
@@ -76,7 +76,6 @@ impl Archive {
     }
 }
 
-/// Returns the bits of a gene vector, as a map key.
 pub(super) fn key(genes: &[f64]) -> Vec<u64> {
     genes.iter().map(|gene| gene.to_bits()).collect()
 }

@@ -24,12 +24,12 @@ pub trait Strategy {
     /// Returns why the search is over; `None` while it is running.
     fn finished(&self) -> Option<Finish>;
 
-    /// Returns the progress of the search.
+    /// Returns the progress of the search: generations, evaluations and best fitness so far.
     fn progress(&self) -> Progress;
 
     /// Returns the best individual so far: complete before failed, then by fitness, then by id.
     fn best(&self) -> Option<Best>;
 
-    /// Returns every consumed result, in id order.
+    /// Returns the archive of all results that the search has consumed, in id order.
     fn archive(&self) -> &Archive;
 }

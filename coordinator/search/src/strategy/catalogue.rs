@@ -1,4 +1,4 @@
-//! Catalogue of presets.
+//! Catalogue of the search presets that the command line offers.
 use super::{
     ask_tell::Strategy,
     cma_es,
@@ -28,7 +28,7 @@ pub const CATALOGUE: &[Preset] = &[
     random::SOBOL,
 ];
 
-/// Returns the preset of a name.
+/// Returns the search preset with this name, if the catalogue has it.
 pub fn preset(name: &str) -> Option<&'static Preset> {
     CATALOGUE.iter().find(|preset| preset.name == name)
 }

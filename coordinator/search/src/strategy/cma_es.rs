@@ -74,9 +74,9 @@ pub struct CmaEsSettings {
     pub population: usize,
     /// Initial standard deviation (share of each trust interval).
     pub spread: f64,
-    /// Factor on the population at every restart.
-    pub growth: usize,
     /// Factor by which the population grows at every restart.
+    pub growth: usize,
+    /// Total number of evaluations over all restarts, after which the search ends.
     pub evaluations: usize,
 }
 
@@ -123,7 +123,6 @@ struct CmaEs {
     settings: CmaEsSettings,
     space: Space,
     streams: Streams,
-    /// Number of points proposed so far.
     planned: usize,
     generation: u32,
     restarts: u32,
@@ -141,7 +140,7 @@ struct RestartRun {
     recent_best: VecDeque<f64>,
 }
 
-/// Convergence threshold on the largest standard deviation of the search distribution (coordinate).
+/// Convergence threshold on the largest standard deviation of the search distribution, in search coordinates.
 const REACH: f64 = 1e-12;
 /// Share of a gene's interval, at each bound, in which search coordinates are mapped quadratically into the
 /// box.
@@ -295,7 +294,7 @@ fn into_box(interval: Interval, y: f64) -> f64 {
     })
 }
 
-/// Inverse of [`bent`]: returns the search coordinate that is mapped to `x` in the box.
+/// Inverse of [`into_box`]: returns the search coordinate that is mapped to `x` in the box.
 fn from_box(interval: Interval, x: f64) -> f64 {
     let bend = BEND * interval.length();
     let (low, high) = (x - interval.from, interval.to - x);

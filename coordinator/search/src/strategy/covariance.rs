@@ -14,13 +14,11 @@ pub(super) struct Distribution {
     pub(super) mean: DVector<f64>,
     covariance: DMatrix<f64>,
     factor: DMatrix<f64>,
-    /// Step size: factor on the standard deviations of the distribution.
     pub(super) sigma: f64,
     sigma_path: DVector<f64>,
     covariance_path: DVector<f64>,
 }
 
-/// Draws `count` independent standard normal numbers.
 pub(super) fn normal(count: usize, stream: &mut Stream) -> DVector<f64> {
     DVector::from_iterator(
         count,
@@ -36,8 +34,8 @@ pub(super) fn ranked(drawn: &[DVector<f64>], results: &[EvaluatedIndividual]) ->
     order.iter().map(|i| drawn[*i].clone()).collect()
 }
 
-/// Returns the magnitudes of the negative weights of the worse half of a batch; the array holds the upper
-/// bounds on their sum by equations 50 and 52.
+/// Returns the magnitudes of the negative recombination weights for the worse half of a batch; the array
+/// holds the upper bounds on their sum by the tutorial's equations 50 and 52.
 fn negative_weights(count: usize, [one, definite]: [f64; 2]) -> Vec<f64> {
     let parents = count / 2;
     let raw = |rank: usize| libm::log(0.5 * (count as f64 + 1.0)) - libm::log(rank as f64);
@@ -52,7 +50,7 @@ fn negative_weights(count: usize, [one, definite]: [f64; 2]) -> Vec<f64> {
 }
 
 impl Distribution {
-    /// Creates a distribution with this mean, a standard deviation for each unknown and a step size of 1.
+    /// Creates a distribution with this mean, the given standard deviation of each unknown, and step size 1.
     pub(super) fn new(mean: DVector<f64>, spread: &DVector<f64>) -> Self {
         let factor = DMatrix::from_diagonal(spread);
         let n = mean.len();
@@ -76,9 +74,9 @@ impl Distribution {
         self.sigma * libm::sqrt(self.covariance.diagonal().max())
     }
 
-    /// Updates the distribution by one generation from the standard normal vectors, best first; rounds count
-    /// from 1. `active` also moves the covariance away from the worse half (equations 49 to 53), with pycma's
-    /// rate of the step size.
+    /// Updates the distribution by one generation of standard normal vectors, ordered best first; `round`
+    /// counts from 1. `active` also moves the covariance away from the worse half (equations 49 to 53), with
+    /// pycma's rate of the step size.
     pub(super) fn update(&mut self, ranked: &[DVector<f64>], round: u32, active: bool) {
         let n = self.mean.len() as f64;
         let parents = ranked.len() / 2;

@@ -14,13 +14,15 @@ pub struct Preset {
     pub summary: &'static str,
     /// Name of the strategy: [`super::settings::StrategySettings::STRATEGY`].
     pub strategy: &'static str,
-    /// Function that returns the preset's settings for the search space and number of workers of a run.
+    /// Function that returns the preset's settings for a run with the given search space and number of
+    /// workers.
     pub settings: fn(&SearchPlan<'_>) -> Settings,
-    /// Groups of settings that can be set by name.
+    /// Groups of the preset's settings that can be set by name on the command line.
     pub groups: &'static [SettingGroup],
     /// Accuracy and properties that tests may demand of the preset.
     pub expectations: Expectations,
-    /// Function that builds the search: [`super::settings::build_as`] of the strategy's settings.
+    /// Function that builds the search from the preset's settings: [`super::settings::build_as`] of its
+    /// strategy.
     pub build: Build,
 }
 
@@ -36,21 +38,22 @@ pub struct SearchPlan<'a> {
     pub workers: usize,
 }
 
-/// Part of a preset's settings that has its own table of setting names.
+/// Group of a preset's settings, such as those of its line scan, with its own table of setting names.
 #[derive(Clone, Copy, Debug)]
 pub struct SettingGroup {
-    /// Prefix of the command-line keys of this part's settings.
+    /// Prefix of the command-line keys of the settings in this group.
     pub prefix: &'static str,
-    /// Position of the part in the settings, as a JSON pointer.
+    /// JSON pointer from the preset's settings to the object that holds this group.
     pub pointer: &'static str,
-    /// Table of the settings in this part.
+    /// Table of the settings in this group, with their allowed values.
     pub table: &'static [Setting],
-    /// Names of settings in the table that are not offered because they have no effect in this preset.
+    /// Names of settings in the group's table that are not offered because they have no effect in this
+    /// preset.
     pub excluded: &'static [&'static str],
 }
 
 impl SettingGroup {
-    /// Creates the single group of a preset whose settings are not divided into parts.
+    /// Creates the only group of a preset whose settings are not divided into groups.
     pub const fn whole(table: &'static [Setting]) -> Self {
         Self {
             prefix: "",
@@ -64,11 +67,11 @@ impl SettingGroup {
 /// Setting of a preset, with its key on the command line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PresetSetting {
-    /// Name of the setting on the command line.
+    /// Key of the setting on the command line, as in `--set KEY=VALUE`.
     pub key: String,
     /// Allowed values and meaning of the setting.
     pub setting: Setting,
-    /// Location of the value within the preset's settings, as a JSON pointer.
+    /// JSON pointer to the value within the preset's settings.
     place: String,
 }
 
@@ -76,11 +79,11 @@ pub struct PresetSetting {
 /// measured on the functions of [`crate::test_function`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expectations {
-    /// Upper bound on the final fitness for functions with one basin of attraction.
+    /// Upper bound on the final fitness of the search on test functions with one basin of attraction.
     pub one_basin: f64,
-    /// Upper bound on the final fitness for a function with many basins of attraction.
+    /// Upper bound on the final fitness of the search on a test function with many basins of attraction.
     pub many_basins: f64,
-    /// Upper bound on the distance from the minimum in every gene (coordinate).
+    /// Upper bound on the distance between the best point and the true minimum in every gene (coordinate).
     pub distance: f64,
     /// Whether the first proposed individual has the recommended values.
     pub starts_at_recommended: bool,
@@ -92,7 +95,7 @@ pub struct Expectations {
 }
 
 impl Preset {
-    /// Returns all settings that can be set by name, in order.
+    /// Returns all settings of the preset that can be set by name, in the order of its tables.
     pub fn settable(&self) -> Vec<PresetSetting> {
         let of = |group: &SettingGroup, setting: &Setting| PresetSetting {
             key: format!("{}{}", group.prefix, setting.field),

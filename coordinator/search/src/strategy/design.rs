@@ -15,7 +15,6 @@ pub fn latin_hypercube(intervals: &[Interval], count: usize, seed: u64) -> Vec<V
     hypercube(intervals, count, Streams::new(seed, 0))
 }
 
-/// Returns a Latin hypercube of `count` points (coordinate), drawn from the streams of a run.
 pub(super) fn hypercube(intervals: &[Interval], count: usize, streams: Streams) -> Vec<Vec<f64>> {
     let mut points = vec![Vec::with_capacity(intervals.len()); count];
     for (axis, interval) in intervals.iter().enumerate() {
@@ -30,8 +29,8 @@ pub(super) fn hypercube(intervals: &[Interval], count: usize, streams: Streams) 
     points
 }
 
-/// Returns the starting points of the space followed by `others`, of which one is dropped for each starting
-/// point after the first, so that the total count is kept.
+/// Returns the starting points of the space followed by the points `others`; for each starting point beyond
+/// the first, one of `others` is dropped, so that the total count is kept.
 pub(super) fn prepend_starts(space: &Space, others: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let starts = match space.starts() {
         [] => vec![space.origin()],
@@ -44,11 +43,9 @@ pub(super) fn prepend_starts(space: &Space, others: Vec<Vec<f64>>) -> Vec<Vec<f6
         .collect()
 }
 
-/// Fixed set of initial points, evaluated in one batch, as a piece of a strategy.
+/// Batch-wise part (piece) of a strategy that evaluates a fixed set of initial points in one batch.
 pub(super) struct Points {
-    /// Points that have not been proposed yet.
     drafts: Vec<ProposalDraft>,
-    /// Number of initial points being evaluated.
     running: usize,
 }
 

@@ -1,18 +1,19 @@
-//! Result of an evaluation, and its ordering.
+//! Result of evaluating an individual (fitness and completeness), and the ordering of results.
 use std::cmp::Ordering;
 
-/// Result of an evaluation.
+/// Result of evaluating an individual: its fitness, and whether its simulation completed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EvaluationResult {
     /// Fitness, which is minimised; for an incomplete simulation a grade of how far it got. NaN counts as the
     /// worst failure.
     pub fitness: f64,
-    /// Whether the simulation reached its end.
+    /// Whether the individual's simulation reached its end.
     pub complete: bool,
 }
 
 impl EvaluationResult {
-    /// Compares two results: complete before failed, then by fitness, smaller is better. NaN is last.
+    /// Compares the results of two individuals: complete before failed, then by fitness, smaller first, NaN
+    /// last.
     pub fn order(self, other: Self) -> Ordering {
         let key = |told: Self| (!told.complete || told.fitness.is_nan(), told.fitness);
         let ((failed, fitness), (other_failed, other_fitness)) = (key(self), key(other));

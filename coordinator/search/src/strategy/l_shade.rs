@@ -74,20 +74,21 @@ const SETTINGS: &[Setting] = &[
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LShadeSettings {
-    /// Individuals of the first generation, at least 4.
+    /// Number of individuals in the first generation, at least 4.
     pub population: usize,
-    /// Number of memory slots for successful factors, one written per generation.
+    /// Number of memory slots for the factors `F` and `CR` of successful trials; each generation writes one
+    /// slot.
     pub memory: usize,
     /// Share of the population, best first, from which the `pbest` individual is drawn.
     pub best: f64,
     /// Maximum size of the archive of replaced individuals, as a multiple of the population size.
     pub archive: f64,
-    /// Total number of evaluations.
+    /// Total number of evaluations, after which the search ends.
     pub evaluations: usize,
 }
 
 impl LShadeSettings {
-    /// Returns the settings for `n` unknowns: the published numbers except for a smaller population, as a
+    /// Returns the settings for `n` unknowns: the published numbers, but a smaller population, because a
     /// thousand evaluations are few.
     pub const fn for_dimension(n: usize) -> Self {
         let population = if n < 5 { 20 } else { 4 * n };
@@ -122,7 +123,6 @@ impl StrategySettings for LShadeSettings {
     }
 }
 
-/// Minimum population of L-SHADE: a mutant needs three other individuals.
 const FEWEST: usize = 4;
 
 /// L-SHADE as one batch-wise part (piece) of a strategy.
@@ -137,10 +137,9 @@ struct LShade {
     /// Memory of L-SHADE: slots with the means of successful factors `F` and `CR`.
     memories: Vec<[f64; 2]>,
     oldest: usize,
-    /// Number of points proposed so far.
     planned: usize,
     generation: u32,
-    /// Coordinates of the trials in the running batch, with the factors `F` and `CR` that produced them.
+    /// Trial points of the running batch (coordinates), each with the factors `F` and `CR` that produced it.
     trials: Vec<(Vec<f64>, [f64; 2])>,
 }
 
@@ -153,7 +152,8 @@ impl LShade {
         points.map(|x| (x, [0.0; 2])).collect()
     }
 
-    /// Creates the trial point that competes with the individual at index `place` of the population.
+    /// Creates the trial point that competes with the individual at index `place` of the population, and
+    /// returns it with its factors `F` and `CR`.
     fn trial(&self, place: usize) -> (Vec<f64>, [f64; 2]) {
         let stream = &mut self.streams.at(self.generation, Phase::Mutation, place);
         let factors = self.factors(stream);
@@ -181,7 +181,8 @@ impl LShade {
         (x.collect(), factors)
     }
 
-    /// Draws `F` from a Cauchy distribution and `CR` from a normal one, both about a random memory entry.
+    /// Draws the factor `F` from a Cauchy distribution and the crossover rate `CR` from a normal one, both
+    /// centred on a random slot of the memory.
     fn factors(&self, stream: &mut Stream) -> [f64; 2] {
         let [f, crossover] = self.memories[stream.index(self.memories.len())];
         let cauchy =
@@ -194,7 +195,8 @@ impl LShade {
         [drawn.min(1.0), crossover]
     }
 
-    /// Updates the oldest memory entry with the factors of successful trials, weighted by their gains.
+    /// Overwrites the oldest memory slot with the means of the factors of successful trials, weighted by
+    /// their fitness gains.
     fn learn(&mut self, gains: &[(f64, [f64; 2])]) {
         let total: f64 = gains.iter().map(|(gain, _)| gain).sum();
         if total <= 0.0 || !total.is_finite() {
@@ -211,7 +213,7 @@ impl LShade {
         self.oldest = (self.oldest + 1) % self.memories.len();
     }
 
-    /// Returns the population size planned for the evaluations so far, which shrinks linearly.
+    /// Returns the size that the population should have after the evaluations so far; it shrinks linearly.
     fn wanted(&self) -> usize {
         let first = self.settings.population;
         let spent = self.planned as f64 / self.settings.evaluations as f64;
@@ -220,7 +222,6 @@ impl LShade {
     }
 }
 
-/// Returns the given share of `count`, rounded to an integer.
 fn share(share: f64, count: usize) -> usize {
     #[expect(
         clippy::cast_possible_truncation,

@@ -22,9 +22,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LevenbergSettings {
-    /// Number of concurrent descents, from the best points that are far enough apart.
+    /// Number of concurrent descents, which start from the best points that are far enough apart.
     pub starts: usize,
-    /// Maximum number of Jacobians per descent.
+    /// Maximum number of Jacobians computed per descent.
     pub iterations: u32,
     /// Minimum distance between two starts (coordinate), in at least one gene that counts: the gene with a
     /// narrow minimum, or an unknown that can compensate for it (half of that unknown's shift); all genes
@@ -34,7 +34,8 @@ pub struct LevenbergSettings {
     pub step: f64,
     /// Maximum change of a gene in one least-squares step (coordinate).
     pub longest: f64,
-    /// Damping added to each gene's own curvature, as a share of the mean curvature over all genes.
+    /// Damping added to each gene's own curvature in the normal equations, as a share of the mean curvature
+    /// over all genes.
     pub level: f64,
     /// Number of rounds between eliminations, each of which abandons the worse half of the descents.
     pub heat: u32,
@@ -47,7 +48,7 @@ pub struct LevenbergSettings {
     pub finish: DescentTolerance,
 }
 
-/// Convergence tolerance of a descent.
+/// Number of rounds of steps between eliminations, each of which abandons the worse half of the descents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DescentTolerance {
@@ -69,7 +70,6 @@ pub enum Derivatives {
     Differences,
 }
 
-/// Table of the least-squares settings that can be set by name on the command line.
 pub(super) const SETTINGS: &[Setting] = &[
     Setting::new(
         "starts",
@@ -124,14 +124,15 @@ pub(super) const SETTINGS: &[Setting] = &[
 const GRADIENT: f64 = 2e-3;
 const DECREASE: f64 = 3e-4;
 
-/// Number of rounds after which most descents have converged; caps the estimate of remaining rounds.
+/// Typical number of rounds after which descents have converged; caps the estimate of the remaining rounds.
 const USUAL: u32 = 10;
 
 /// Least-squares descents as one batch-wise part (piece) of a strategy.
 pub struct Levenberg {
     settings: LevenbergSettings,
     space: Space,
-    /// Descents, each with the number of points it awaits; `None` before the first batch.
+    /// Running descents, each with the number of points whose results it awaits; `None` before the first
+    /// batch.
     searches: Option<Vec<(LeastSquares, usize)>>,
     round: u32,
 }
@@ -140,7 +141,7 @@ pub struct Levenberg {
 /// unknowns that can compensate for it, or along all axes if there is none.
 #[derive(Clone, Debug)]
 pub struct SpacingRule {
-    /// Axis indices, each with the minimum distance along the axis (coordinate).
+    /// Indices of the axes along which the distance counts, each with the minimum distance (coordinate).
     axes: Vec<(usize, f64)>,
 }
 
@@ -167,8 +168,8 @@ impl SpacingRule {
         Self { axes }
     }
 
-    /// Returns the first `count` points that are far enough from all points kept before them; `x` returns a
-    /// point's coordinates.
+    /// Returns the first `count` of the given points, of which each is far enough from all those kept before
+    /// it; `x` returns the coordinates of a point.
     pub fn first<P>(
         &self,
         count: usize,
@@ -209,7 +210,6 @@ impl Levenberg {
         })
     }
 
-    /// Creates descents from the best archived points that are far enough apart.
     fn begin(&self, archive: &Archive) -> Vec<(LeastSquares, usize)> {
         let ranked = archive.ranked().into_iter();
         let ranked = ranked.map(|one| (self.space.point(&one.genes), one.result.fitness));
@@ -241,7 +241,8 @@ impl Levenberg {
         starts.into_iter().map(search).collect()
     }
 
-    /// Returns how many of `descents` descents survive one elimination: half of them, but at least `keep`.
+    /// Returns how many of `descents` descents remain after one elimination: half of them, but at least
+    /// `keep`.
     fn survivors(&self, descents: usize) -> usize {
         descents.div_ceil(2).max(self.settings.keep.min(descents))
     }

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 /// Open proposals, results that arrived early, and the archive of consumed results of a search.
 #[derive(Default)]
 pub(super) struct Intake {
-    /// Genes of the proposals whose results have not been consumed, by id.
+    /// Genes of the proposals whose results have not been consumed, by proposal id.
     open: BTreeMap<u64, Vec<f64>>,
     early: BTreeMap<u64, EvaluationResult>,
     archive: Archive,
@@ -21,12 +21,11 @@ impl Intake {
         self.open.insert(id, genes);
     }
 
-    /// Returns whether the result of a proposal is still to be consumed.
+    /// Returns whether the result of proposal `id` has not been consumed yet.
     pub(super) fn awaits(&self, id: u64) -> bool {
         self.open.contains_key(&id)
     }
 
-    /// Returns the number of proposals whose results are still to be consumed.
     pub(super) fn awaited(&self) -> u64 {
         self.open.len() as u64
     }
@@ -53,7 +52,6 @@ impl Intake {
         Some((id, told))
     }
 
-    /// Returns the archive of consumed results.
     pub(super) const fn archive(&self) -> &Archive {
         &self.archive
     }

@@ -1,4 +1,4 @@
-//! Progress, result and end of a search.
+//! Progress of a search, its best individual, and the reason for its end.
 use super::archive::EvaluatedIndividual;
 use serde::{Deserialize, Serialize};
 
@@ -6,18 +6,18 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Finish {
-    /// All planned evaluations are done.
+    /// End after all planned evaluations.
     Planned,
-    /// The fitness threshold was reached.
+    /// End because an individual reached the fitness threshold.
     Threshold,
 }
 
-/// Progress of a search.
+/// Progress of a search in generations and evaluations, with the best fitness so far.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
     /// Current generation of the search; 0 is the initial one.
     pub generation: u32,
-    /// Planned number of generations.
+    /// Planned number of generations of the search.
     pub generations: u32,
     /// Number of results consumed so far, in id order.
     pub evaluations: u64,
@@ -30,11 +30,11 @@ pub struct Progress {
 /// Best individual found by a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Best {
-    /// Id of the individual's proposal.
+    /// Id of the proposal by which the individual was evaluated.
     pub id: u64,
-    /// Gene values in declared units.
+    /// Gene values of the best individual in declared units.
     pub genes: Vec<f64>,
-    /// Fitness of the individual.
+    /// Fitness of the best individual; smaller is better.
     pub fitness: f64,
     /// Whether the individual's simulation completed; false only if every individual failed.
     pub complete: bool,

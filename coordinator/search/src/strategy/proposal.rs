@@ -8,9 +8,9 @@ pub struct Proposal {
     pub id: u64,
     /// Gene values of the individual in declared units, in the case's order.
     pub genes: Vec<f64>,
-    /// Generation of the individual; 0 is the initial one.
+    /// Generation of the search to which the individual belongs; 0 is the initial one.
     pub generation: u32,
-    /// Purpose of the evaluation.
+    /// Purpose for which the individual is evaluated, such as member of the initial population.
     pub purpose: Purpose,
 }
 
@@ -20,17 +20,17 @@ pub struct Proposal {
 pub enum Purpose {
     /// Member of the initial population.
     Initial,
-    /// Child of two parents.
+    /// Child of two parents in a memetic search.
     Offspring,
-    /// Trial of the crossover-based hill climb.
+    /// Trial of the hill climb in which the elite is crossed with partners.
     CrossoverTrial,
-    /// Trial of the mutation-based hill climb.
+    /// Trial of the hill climb in which random bits of the elite are flipped.
     MutationTrial,
     /// Grid point (station) of a line scan.
     Scan,
     /// Point of a local refinement by an evolution strategy.
     Refinement,
-    /// Jacobian column or step of a least-squares descent.
+    /// Point of a least-squares descent: a difference point for a Jacobian column, or a trial step.
     LeastSquares,
     /// Point of a least-squares descent, evaluated with its derivatives.
     Derivatives,
@@ -51,7 +51,7 @@ impl Purpose {
         }
     }
 
-    /// Returns whether the residual vector is required in addition to the fitness.
+    /// Returns whether proposals with this purpose need the residual vector in addition to the fitness.
     pub const fn wants_residual(self) -> bool {
         matches!(self, Self::LeastSquares | Self::Derivatives)
     }

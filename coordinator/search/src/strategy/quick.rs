@@ -1,15 +1,15 @@
 //! Searches small enough for a laptop, as sequences of parts: initial points, line scans of the unknown with
 //! a narrow minimum, concurrent descents of which the worse are eliminated (races), a short memetic search,
-//! refinement.
+//! local refinement.
 //!
-//! A fitness with resonances has a valley in a stiffness, a minimum a hundred times narrower than the box, so
-//! a population finds the plateau around it but not the valley; and on the plateau more damping always looks
-//! better, because it removes the oscillation whose phase does not fit. `quick` therefore races descents of
-//! the residual vector from scattered points, which finds approximate values of the other unknowns, scans the
-//! narrow unknown around the best of them, on lines along which the valley is visible, and races descents
-//! again from the best grid points (stations) of the scan. `memetic` needs the fitness alone: population,
-//! scan, refinement, fine scan, refinement. The case states which unknown has a narrow valley and what hides
-//! it; if it states none, there is no scan.
+//! A fitness with resonances has a valley in a stiffness: a narrow minimum, a hundred times narrower than the
+//! box. A population finds the plateau around it but not the valley; and on the plateau more damping always
+//! looks better, because it removes the oscillation whose phase does not fit. `quick` therefore races
+//! descents of the residual vector from scattered points, which finds approximate values of the other
+//! unknowns, scans the unknown with the narrow minimum around the best of them, on lines along which the
+//! valley is visible, and races descents again from the best grid points (stations) of the scan. `memetic`
+//! needs the fitness alone: population, scan, refinement, fine scan, refinement. The case states which
+//! unknown has a narrow valley and which other unknowns hide it; if it states none, there is no scan.
 use super::{
     ask_tell::Strategy,
     definition::{Expectations, Preset, SettingGroup},
@@ -115,7 +115,7 @@ pub const DESCENT: Preset = Preset {
     ..QUICK
 };
 
-/// Preset with a global search first, then descents of the residual vector.
+/// Preset with a memetic search first, then a line scan and least-squares descents on the residual vector.
 pub const HYBRID: Preset = Preset {
     name: "hybrid",
     summary: "a short memetic search and line scans, then several descents of the residual",
@@ -131,17 +131,15 @@ pub const HYBRID: Preset = Preset {
     ..LEAST_SQUARES
 };
 
-/// Table of the settings of the initial points that can be set by name on the command line.
 const POINTS: &[Setting] = &[Setting::new(
     "points",
     AllowedValues::Whole(1, 1_000_000),
     "first points: the start and a Latin hypercube",
 )];
 
-/// Group of the settings of the memetic part, the first part of the search.
 const MEMETIC: SettingGroup = part("", "/parts/0/memetic", memetic_settings::SETTINGS);
 
-/// Creates the group of settings of one part of the search.
+/// Creates the setting group of one part of the search.
 const fn part(named: &'static str, place: &'static str, table: &'static [Setting]) -> SettingGroup {
     SettingGroup {
         prefix: named,
@@ -151,7 +149,7 @@ const fn part(named: &'static str, place: &'static str, table: &'static [Setting
     }
 }
 
-/// Part of a search; parts are executed in order.
+/// Part of a search, such as a line scan; the parts of a search are executed in order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SearchPart {
@@ -162,24 +160,24 @@ pub enum SearchPart {
         /// Total number of initial points, including the start.
         points: usize,
     },
-    /// Line scan through the best points so far.
+    /// Line scan through the best points found so far.
     Scan(ScanSettings),
     /// Placeholder for a line scan if no unknown has a narrow minimum; does nothing.
     NoScan,
-    /// Local refinement around the best point so far.
+    /// Local refinement around the best point found so far.
     Refine(RefineSettings),
-    /// Least-squares descents from the best points so far.
+    /// Least-squares descents from the best points found so far.
     LeastSquares(LevenbergSettings),
 }
 
-/// Settings of a search in parts.
+/// Settings of a search that consists of several parts, executed in order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct QuickSettings {
-    /// Interval of each axis about the start (coordinate) in which initial points and the memetic part
-    /// search.
+    /// Trust interval of each axis about the start (coordinate), in which the initial points and the memetic
+    /// part are placed.
     pub trust: Vec<Interval>,
-    /// Parts of the search, in order.
+    /// Parts of the search with their settings, in order of execution.
     pub parts: Vec<SearchPart>,
 }
 
@@ -315,21 +313,21 @@ impl QuickSettings {
     }
 }
 
-/// Settings of concurrent descents (a race) that start at grid points of a scan and of which the worse are
-/// eliminated.
+/// Settings of a race: concurrent least-squares descents that start at grid points of a scan and of which the
+/// worse are eliminated.
 #[derive(Debug)]
 pub struct Race {
     /// Number of grid points of the scan from which descents start.
     pub starts: usize,
     /// Minimum distance between the starts along the scanned unknown (coordinate).
     pub apart: f64,
-    /// Number of rounds between eliminations, each of which abandons the worse half of the descents.
+    /// Number of rounds of steps between eliminations, each of which abandons the worse half of the descents.
     pub elimination_interval: u32,
     /// Number of descents that are never abandoned.
     pub keep: usize,
 }
 
-/// Settings of the descents that start at grid points of a [`coarse_scan`].
+/// Settings of the race of descents that start at grid points of a [`coarse_scan`].
 pub const RACE: Race = Race {
     starts: 8,
     // half of what the machine's stations lie apart
@@ -338,7 +336,8 @@ pub const RACE: Race = Race {
     keep: 2,
 };
 
-/// Returns the axis of the first unknown with a narrow minimum, and the case's description of that minimum.
+/// Returns the index of the first axis whose unknown has a narrow minimum, and the case's description of that
+/// minimum.
 fn narrow(space: &Space) -> Option<(usize, &Valley)> {
     let mut axes = space.axes().iter().enumerate();
     axes.find_map(|(axis, own)| Some((axis, own.unknown.valley.as_ref()?)))
@@ -380,8 +379,8 @@ fn scans(space: &Space, axis: usize, valley: &Valley) -> [ScanSettings; 2] {
     [coarse, fine]
 }
 
-/// Converts the case's shifts to those of a scan, with axis indices in place of names; shifts of unknowns
-/// that are not searched are dropped.
+/// Converts the shifts declared in the case to those of a scan, with axis indices in place of names; shifts
+/// of unknowns that are not searched are dropped.
 fn shifts(space: &Space, of: &[protocol::case::Shift]) -> Vec<Shift> {
     let known = of.iter().filter_map(|shift| {
         let axis = space.position(&shift.unknown)?;
@@ -390,7 +389,8 @@ fn shifts(space: &Space, of: &[protocol::case::Shift]) -> Vec<Shift> {
     known.collect()
 }
 
-/// Returns one scan line for every subset of the shifts of other unknowns that can reveal the narrow minimum.
+/// Returns one scan line for every subset of the declared shifts of other unknowns that can reveal the narrow
+/// minimum.
 fn uncovered(space: &Space, valley: &Valley) -> Vec<Line> {
     let mut lines = vec![Line::default()];
     for shift in shifts(space, &valley.uncovered_by) {
@@ -404,9 +404,9 @@ fn uncovered(space: &Space, valley: &Valley) -> Vec<Line> {
     lines
 }
 
-/// Returns scan lines through a point and at each shift of an unknown that can compensate for the scanned
-/// one; on each line, the unknown that hides the minimum is held at one of the given ratios to the scanned
-/// unknown. `None` if the case states no ratios.
+/// Returns scan lines through a base point and through points at which an unknown that can compensate for the
+/// scanned one is shifted. On each line, the unknown that hides the minimum is held at one of the declared
+/// ratios to the scanned unknown. `None` if the case states no ratios.
 fn held(space: &Space, valley: &Valley) -> Option<Vec<Line>> {
     let shares = valley.shares.as_ref()?;
     let axis = space.position(&shares.unknown)?;

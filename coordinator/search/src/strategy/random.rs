@@ -17,7 +17,7 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Preset of independent random points.
+/// Preset that samples independent random points.
 pub const RANDOM: Preset = Preset {
     name: "random",
     summary: "individuals drawn at random from the box of genes: a baseline for other searches",
@@ -35,7 +35,7 @@ pub const RANDOM: Preset = Preset {
     build: build_as::<RandomSettings>,
 };
 
-/// Preset of a Latin hypercube.
+/// Preset that samples a Latin hypercube.
 pub const LATIN_HYPERCUBE: Preset = Preset {
     name: "latin-hypercube",
     summary: "Latin hypercube: one individual in every part of every gene's interval",
@@ -43,7 +43,7 @@ pub const LATIN_HYPERCUBE: Preset = Preset {
     ..RANDOM
 };
 
-/// Preset of a Sobol sequence.
+/// Preset that samples a Sobol sequence.
 pub const SOBOL: Preset = Preset {
     name: "sobol",
     summary: "Sobol sequence: individuals spread evenly over all genes together",
@@ -51,7 +51,6 @@ pub const SOBOL: Preset = Preset {
     ..RANDOM
 };
 
-/// Table of the sampling settings that can be set by name on the command line.
 const SETTINGS: &[Setting] = &[
     Setting::new("points", AllowedValues::Whole(1, 1_000_000), "individuals"),
     Setting::new(
@@ -66,21 +65,20 @@ const SETTINGS: &[Setting] = &[
     ),
 ];
 
-/// Settings of the uniform sampling.
+/// Settings of the uniform sampling: number of individuals, sampled region, and design.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RandomSettings {
     /// Number of individuals to sample.
     pub points: usize,
-    /// Part of the box that is sampled.
+    /// Region of the box of genes that is sampled.
     pub within: Within,
-    /// Sampling design.
+    /// Sampling design: independent points, Latin hypercube or Sobol sequence.
     #[serde(default)]
     pub design: Design,
 }
 
 impl RandomSettings {
-    /// Returns settings for a thousand individuals in the trust intervals.
     const fn thousand(design: Design) -> Self {
         Self {
             points: 1000,
@@ -96,18 +94,18 @@ impl RandomSettings {
 pub enum Design {
     /// Independent uniform random points.
     Chance,
-    /// Latin hypercube: exactly one point in every part of every interval.
+    /// Latin hypercube of `n` points: exactly one point in each of `n` equal parts of every gene's interval.
     #[default]
     Hypercube,
     /// Sobol sequence with a random digital shift.
     Sobol,
 }
 
-/// Part of the box of genes that is sampled.
+/// Region of the box of genes that is sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Within {
-    /// Trust intervals, in which simulations usually succeed.
+    /// Trust intervals of all genes, in which simulations usually succeed.
     Trust,
     /// The whole box, between the bounds of all genes.
     Bounds,

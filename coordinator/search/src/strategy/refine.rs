@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RefineSettings {
-    /// Number of points per round, at least 4.
+    /// Number of points that the refinement evaluates per round, at least 4.
     pub batch: usize,
     /// Number of rounds of the refinement.
     pub rounds: u32,
@@ -29,10 +29,6 @@ pub struct RefineSettings {
 }
 
 impl RefineSettings {
-    /// Checks the settings against their ranges and the dimension of the space.
-    ///
-    /// # Errors
-    /// If a setting lies outside its range.
     pub(super) fn check(&self, space: &Space) -> Result<(), SettingsError> {
         check(self, SETTINGS)?;
         let spreads = self.spread.len();
@@ -43,7 +39,6 @@ impl RefineSettings {
     }
 }
 
-/// Table of the refinement settings that can be set by name on the command line.
 pub(super) const SETTINGS: &[Setting] = &[
     Setting::new(
         "batch",
@@ -62,15 +57,14 @@ pub struct Refine {
     settings: RefineSettings,
     space: Space,
     streams: Streams,
-    /// Positions of the genes that the refinement varies.
+    /// Indices of the genes that the refinement varies.
     moving: Vec<usize>,
     round: u32,
     state: Option<State>,
 }
 
-/// State of the refinement: the distribution, over the varied genes only.
 struct State {
-    /// Starting point of the refinement, all genes (coordinate).
+    /// Point at which the refinement started, with all genes (coordinate).
     base: Vec<f64>,
     distribution: Distribution,
     /// Standard normal vectors from which the points of the running batch were drawn.

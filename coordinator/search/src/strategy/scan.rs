@@ -11,31 +11,31 @@ use super::{
 use crate::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// Centre of the grid along the scanned axis.
+/// Centre of a scan's grid along the scanned axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Center {
-    /// Start value of the scanned unknown.
+    /// Centre at the start value of the scanned unknown.
     Start,
-    /// Value of the scanned unknown at the point through which the line passes.
+    /// Centre at the value that the scanned unknown has at the point through which the line passes.
     Point,
 }
 
-/// Offset of an unknown from its value at the base point of a scan, constant along a whole line.
+/// Offset of an unknown from its value at the base point of a scan, the same along a whole scan line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Shift {
-    /// Axis of the shifted unknown.
+    /// Index of the axis of the shifted unknown.
     pub axis: usize,
     /// Offset of the unknown from its value at the base point (coordinate).
     pub by: f64,
 }
 
-/// Unknown held at a constant ratio to the scanned unknown along a whole line.
+/// Unknown held at a constant ratio to the scanned unknown along a whole scan line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Share {
-    /// Axis of the unknown that follows the scanned one.
+    /// Index of the axis of the unknown that follows the scanned one.
     pub axis: usize,
     /// Ratio of the unknown's value to that of the scanned unknown.
     pub of_scanned: f64,
@@ -57,24 +57,24 @@ pub struct Line {
 pub struct ScanSettings {
     /// Index of the scanned axis.
     pub axis: usize,
-    /// Centre of the grid.
+    /// Centre of the scan's grid along the scanned axis.
     pub center: Center,
     /// Distance from the centre of the grid down to its lowest station (coordinate).
     pub below: f64,
     /// Distance from the centre of the grid up to its highest station (coordinate).
     pub above: f64,
-    /// Spacing of the stations (coordinate); a valley narrower than twice the spacing may be missed.
+    /// Spacing of the stations (coordinate); a minimum narrower than twice the spacing may be missed.
     pub step: f64,
-    /// Number of best points about which lines are scanned.
+    /// Number of best points of the search so far about which lines are scanned.
     pub points: usize,
-    /// Minimum distance between the scanned points along some axis other than the scanned one (coordinate).
+    /// Minimum distance between the base points of the scan, along at least one axis other than the scanned
+    /// one (coordinate).
     pub apart: f64,
-    /// Lines to scan through, or offset from, each of the best points; at least one.
+    /// Scan lines through each base point, or offset from it; at least one.
     pub lines: Vec<Line>,
 }
 
 impl ScanSettings {
-    /// Returns the number of grid points (stations) per line.
     fn stations(&self) -> usize {
         #[expect(
             clippy::cast_possible_truncation,
@@ -109,10 +109,6 @@ impl ScanSettings {
         self.lines.iter().flat_map(along).collect()
     }
 
-    /// Checks the settings against their ranges and the axes of the space.
-    ///
-    /// # Errors
-    /// If a setting lies outside its range.
     pub(super) fn check(&self, space: &Space) -> Result<(), SettingsError> {
         check(self, SETTINGS)?;
         let least = "at least one";
@@ -134,7 +130,6 @@ impl ScanSettings {
     }
 }
 
-/// Table of the line-scan settings that can be set by name on the command line.
 pub(super) const SETTINGS: &[Setting] = &[
     Setting::new(
         "below",
@@ -163,7 +158,6 @@ pub struct Scan {
     settings: ScanSettings,
     space: Space,
     done: bool,
-    /// Number of grid points (stations) being evaluated.
     running: usize,
 }
 
@@ -182,7 +176,8 @@ impl Scan {
         })
     }
 
-    /// Returns the best points that are far enough apart to scan lines through each (coordinate).
+    /// Returns the base points of the scan: the best points found so far that are far enough apart
+    /// (coordinate).
     fn bases(&self, archive: &Archive) -> Vec<Vec<f64>> {
         let mut bases: Vec<Vec<f64>> = Vec::new();
         for entry in archive.ranked() {

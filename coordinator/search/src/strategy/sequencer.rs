@@ -23,7 +23,6 @@ pub struct Conductor {
     /// Proposal id of each draft in the running batch; identical individuals share an id.
     slots: Vec<u64>,
     outbox: Vec<Proposal>,
-    /// Residual vectors by proposal id, for proposals that required one.
     residuals: BTreeMap<u64, Residual>,
     next_id: u64,
     generation: u32,
@@ -71,7 +70,7 @@ impl Conductor {
         }
     }
 
-    /// Passes the results of the finished batch, if any, to the current piece.
+    /// Passes the results of the finished batch, if any, to the piece that planned it.
     fn close_batch(&mut self) {
         if self.slots.is_empty() {
             return;

@@ -1,4 +1,4 @@
-//! Tables of settings: keys with allowed values and meanings.
+//! Tables of a strategy's settings: keys with allowed values and meanings.
 //!
 //! A strategy's settings are a plain struct with serde's derives; a table says which of its fields can be set
 //! by name, their allowed values and their meaning. The same table parses, prints, checks and lists the
@@ -10,7 +10,7 @@ use serde_json::Value;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingsError {
-    /// A setting lies outside its range.
+    /// Value of a setting outside its allowed range.
     #[error("{setting} is {value}, but must be {allowed}")]
     Range {
         /// Key of the setting that lies outside its range.
@@ -20,27 +20,27 @@ pub enum SettingsError {
         /// Allowed values of the setting, in words.
         allowed: String,
     },
-    /// No setting has this key.
+    /// Key that no setting of the preset has.
     #[error("there is no setting `{key}`")]
     Unknown {
         /// Key given by the user, which no setting has.
         key: String,
-        /// Keys of the settings that exist.
+        /// Keys of all settings of the preset.
         known: Vec<String>,
     },
-    /// The setting belongs to a part that the search omits for this case.
+    /// Setting of a part that the search omits for this case.
     #[error(
         "`{key}` has no effect: no unknown of the case has a `valley`, so this search has no scan; remove the setting, or add `valley` to an unknown in case.toml"
     )]
     Absent {
-        /// Key of the setting, as given by the user.
+        /// Key of the setting that belongs to the omitted part.
         key: String,
     },
-    /// The settings name an unknown or different strategy, or do not have the form of the strategy's
+    /// Settings that name an unknown or different strategy, or do not have the form of the strategy's
     /// settings.
     #[error("the settings of the strategy `{strategy}` cannot be used: {problem}")]
     Form {
-        /// Strategy that the settings name.
+        /// Name of the strategy in the rejected settings.
         strategy: String,
         /// Reason why the settings are rejected.
         problem: String,
@@ -50,7 +50,7 @@ pub enum SettingsError {
 /// Allowed values of a setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AllowedValues {
-    /// One of a list of words.
+    /// List of allowed words, of which the value must be one.
     Words(&'static [&'static str]),
     /// Integer within an inclusive range.
     Whole(u64, u64),
@@ -63,15 +63,15 @@ pub enum AllowedValues {
 /// Setting of a strategy, with its allowed values and meaning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
-    /// Field name in the strategy's settings.
+    /// Name of the setting's field in the struct of the strategy's settings.
     pub field: &'static str,
-    /// Allowed values of the setting.
+    /// Values that the setting may have.
     pub values: AllowedValues,
-    /// Word that stands for no value, if the setting is optional.
+    /// Word that stands for no value, if the setting is optional; else `None`.
     pub none: Option<&'static str>,
     /// Meaning of the setting, one line.
     pub meaning: &'static str,
-    /// Whether the default depends on the planned number of workers.
+    /// Whether the default of the setting depends on the planned number of workers.
     pub follows_workers: bool,
 }
 
@@ -87,7 +87,7 @@ impl Setting {
         }
     }
 
-    /// Makes the setting optional, with a word for no value.
+    /// Makes the setting optional; `none` is the word that stands for no value.
     #[must_use]
     pub const fn optional(self, none: &'static str) -> Self {
         Self {
@@ -105,7 +105,7 @@ impl Setting {
         }
     }
 
-    /// Returns the allowed values, in words.
+    /// Returns a description of the allowed values of the setting, for messages and help texts.
     pub fn allowed(&self) -> String {
         let values = match self.values {
             AllowedValues::Words(words) => words.join(", "),
@@ -136,7 +136,7 @@ impl Setting {
         self.allows(&value).then_some(value)
     }
 
-    /// Formats a value as text that [`Setting::parse`] accepts.
+    /// Formats a value of the setting as text that [`Setting::parse`] accepts.
     pub fn show(&self, value: &Value) -> String {
         match value {
             Value::Null => self.none.unwrap_or("none").to_owned(),
@@ -151,7 +151,6 @@ impl Setting {
         }
     }
 
-    /// Returns whether a value is allowed.
     fn allows(&self, value: &Value) -> bool {
         match (self.values, value) {
             (_, Value::Null) => self.none.is_some(),
@@ -167,7 +166,6 @@ impl Setting {
         }
     }
 
-    /// Creates the error for a value that is not allowed.
     pub(super) fn refusal(&self, setting: &str, value: &str) -> SettingsError {
         SettingsError::Range {
             setting: setting.to_owned(),
@@ -192,7 +190,7 @@ pub fn check(settings: &impl Serialize, table: &[Setting]) -> Result<(), Setting
     Ok(())
 }
 
-/// Checks a condition on a setting that its table cannot express.
+/// Checks a condition on a setting that its table cannot express; the error names the setting and its value.
 ///
 /// # Errors
 /// If the condition does not hold.

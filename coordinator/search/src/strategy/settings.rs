@@ -1,10 +1,9 @@
-//! Settings of a search as JSON data, independent of the strategy.
+//! Settings of a search as JSON data, of a form common to all strategies.
 use super::{ask_tell::Strategy, setting::SettingsError};
 use crate::space::Space;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
 
-/// JSON key under which the settings store the strategy's name.
 const STRATEGY: &str = "strategy";
 
 /// Settings of one strategy, from which its search can be built.
@@ -12,7 +11,7 @@ pub trait StrategySettings: Serialize + DeserializeOwned {
     /// Name of the strategy, as stored in run folders.
     const STRATEGY: &'static str;
 
-    /// Builds the search over a space, from a seed.
+    /// Builds the search of this strategy over a space, from a seed.
     ///
     /// # Errors
     /// If a setting lies outside its range.
@@ -26,7 +25,7 @@ pub trait StrategySettings: Serialize + DeserializeOwned {
 pub struct Settings(Value);
 
 impl Settings {
-    /// Creates general settings from those of one strategy.
+    /// Wraps the settings of one strategy as general settings, together with the strategy's name.
     pub fn of<R: StrategySettings>(recipe: &R) -> Self {
         // plain data: numbers, words, lists
         let mut values = serde_json::to_value(recipe).unwrap_or_default();
@@ -34,7 +33,7 @@ impl Settings {
         Self(values)
     }
 
-    /// Returns the name of the strategy.
+    /// Returns the name of the strategy that the settings belong to.
     pub fn strategy(&self) -> &str {
         self.0[STRATEGY].as_str().unwrap_or_default()
     }
@@ -61,18 +60,16 @@ impl Settings {
         serde_json::from_value(values).map_err(|error| problem(error.to_string()))
     }
 
-    /// Returns the settings' value at a JSON pointer.
     pub(super) fn at(&self, place: &str) -> Option<&Value> {
         self.0.pointer(place)
     }
 
-    /// Returns a mutable reference to the value at a JSON pointer.
     pub(super) fn at_mut(&mut self, place: &str) -> Option<&mut Value> {
         self.0.pointer_mut(place)
     }
 }
 
-/// Builds the search from the settings of a strategy.
+/// Builds the search of strategy `S` from general settings.
 ///
 /// # Errors
 /// If the settings belong to another strategy, or a setting lies outside its range.

@@ -28,13 +28,12 @@ const POLYNOMIALS: [(usize, u32, &[u32]); 20] = [
     (7, 4, &[1, 3, 7, 13, 13, 15, 69]),
 ];
 
-/// Maximum number of dimensions of the sequence, limited by the table of direction numbers.
 pub(super) const MOST: usize = POLYNOMIALS.len() + 1;
 
 /// Number of bits with which each coordinate of a Sobol point is computed.
 const BITS: usize = 32;
 
-/// Returns the direction numbers of a dimension, highest bit first.
+/// Returns the direction numbers of one dimension of the sequence, highest bit first.
 fn directions(dimension: usize) -> [u32; BITS] {
     let mut v = [0; BITS];
     let polynomial = dimension.checked_sub(1).and_then(|k| POLYNOMIALS.get(k));
@@ -82,7 +81,6 @@ pub(super) fn sobol(count: usize, shifts: &[u32]) -> Vec<Vec<f64>> {
 mod tests {
     use super::*;
 
-    /// Compares points 0 to 7 of the first three dimensions with published values.
     #[test]
     fn the_first_points_are_the_published_ones() {
         let expected = [
@@ -102,8 +100,8 @@ mod tests {
         }
     }
 
-    /// Checks that of 2^k points exactly one lies in each of 2^k equal parts of every axis, also when
-    /// shifted.
+    /// Checks that of 2^k Sobol points exactly one lies in each of 2^k equal parts of every axis, also after
+    /// a digital shift.
     #[test]
     fn every_part_of_every_axis_is_met_once() {
         let shifts: Vec<u32> = (0_u32..)

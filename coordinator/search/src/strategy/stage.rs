@@ -4,20 +4,20 @@ use super::{
     proposal::Purpose,
 };
 
-/// Batch-wise part of a strategy. A piece receives results only as whole batches, in the order of its own
-/// plan.
+/// Batch-wise part of a strategy. It receives results only as whole batches, in the order in which it planned
+/// them.
 pub trait Piece {
-    /// Returns the next batch, never an empty one, or `None` when the piece has finished. The archive holds
-    /// every result of the run so far.
+    /// Returns the next batch to evaluate, never an empty one, or `None` when the piece has finished. The
+    /// archive holds every result of the run so far.
     fn plan(&mut self, archive: &Archive) -> Option<Batch>;
 
-    /// Takes the results of the last batch: one per draft, in the order of the drafts.
+    /// Takes the results of the batch planned last: one per draft, in the order of the drafts.
     fn absorb(&mut self, results: &[EvaluatedIndividual]);
 
     /// Returns the number of generations that the piece adds to the search.
     fn generations(&self) -> u32;
 
-    /// Returns the number of evaluations still expected, including the running batch.
+    /// Returns the number of evaluations that the piece still expects, including the running batch.
     fn remaining(&self) -> u64;
 
     /// Returns whether a result reached the fitness threshold, which ends the whole search.
@@ -35,11 +35,11 @@ pub struct Batch {
     pub drafts: Vec<ProposalDraft>,
 }
 
-/// Point to evaluate, before it is assigned an id.
+/// Point that a piece wants to be evaluated, before it is assigned a proposal id.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProposalDraft {
-    /// Gene values in declared units.
+    /// Gene values of the point in declared units, in the case's order.
     pub genes: Vec<f64>,
-    /// Purpose of the evaluation.
+    /// Purpose for which the point is evaluated.
     pub purpose: Purpose,
 }

@@ -18,8 +18,8 @@ use super::{
 use crate::space::Space;
 use std::collections::BTreeMap;
 
-/// Relative difference below which two values are considered equal: a value converted to its coordinate and
-/// back differs in the last bits.
+/// Relative difference below which two gene values are considered equal: a value converted to its coordinate
+/// and back differs in the last bits.
 const SAME: f64 = 1e-12;
 
 /// Builds a search over a space, from a seed, that first evaluates the given individuals: values of all
@@ -73,7 +73,6 @@ pub fn build_after(
 
 /// Strategy that evaluates a table of individuals, then runs a search.
 struct TableFirst {
-    /// Number of individuals in the table.
     table: usize,
     /// Search that runs after the table; before that, a placeholder that only reports the planned
     /// evaluations.
@@ -89,7 +88,6 @@ struct TableFirst {
 }
 
 impl TableFirst {
-    /// Returns the next proposal id.
     fn next_id(&self) -> u64 {
         self.intake.archive().entries().len() as u64 + self.intake.awaited()
     }
@@ -210,7 +208,6 @@ mod tests {
         test_function::SPHERE,
     };
 
-    /// Returns one individual per given coordinate, with that coordinate on every axis.
     fn at(space: &Space, coordinates: &[f64]) -> Vec<Vec<f64>> {
         let one = |x: &f64| space.values(&vec![*x; space.dimension()]);
         coordinates.iter().map(one).collect()

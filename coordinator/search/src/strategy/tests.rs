@@ -8,7 +8,7 @@ use crate::{
 use protocol::case::{Scale, Unknown};
 use std::collections::BTreeMap;
 
-/// Objective function on which strategies are tested.
+/// Test objective: returns the result of an individual with the given gene values.
 pub(super) type Tell<'a> = dyn Fn(&[f64]) -> EvaluationResult + 'a;
 
 /// Record of a search under test: proposals and results in id order, best individual, and reason for its end.
@@ -20,12 +20,13 @@ pub(super) struct Record {
     pub(super) finish: Finish,
 }
 
-/// Runs a strategy to its end; `reorder` selects the open proposal to answer next at random.
+/// Runs a strategy to its end on the objective `tell`; with `reorder`, open proposals are answered in random
+/// order.
 pub(super) fn run(strategy: &mut dyn Strategy, tell: &Tell<'_>, reorder: Option<Stream>) -> Record {
     run_with(strategy, tell, &|_| Vec::new(), reorder)
 }
 
-/// Runs a strategy to its end on a test function, including residual vectors.
+/// Runs a strategy to its end on a test function that also provides residual vectors.
 pub(super) fn run_on(
     strategy: &mut dyn Strategy,
     function: &TestFunction,
@@ -96,7 +97,7 @@ fn run_preset(preset: &Preset, function: &TestFunction, seed: u64, order: Option
 }
 
 impl Record {
-    /// Returns the FNV-1a hash of all proposals and of the best fitness.
+    /// Returns the FNV-1a hash of all proposals of the recorded search and of its best fitness.
     pub(super) fn bits(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
         let mut add = |bytes: &[u8]| {
@@ -117,7 +118,7 @@ impl Record {
     }
 }
 
-/// Checks that a search over ten genes is bit-identical from one version to the next.
+/// Checks, by a hash, that a search over ten genes is bit-identical from one program version to the next.
 #[test]
 fn the_bits_of_every_preset_stay() {
     let frozen = [
@@ -431,7 +432,7 @@ const BESIDE: &[(&str, &str, &str)] = &[
     ("speculation", "acceptance", "first"),
 ];
 
-/// Returns allowed values of a setting other than its present one.
+/// Returns allowed values of a setting other than its present value `now`.
 fn others(setting: &setting::Setting, now: &str) -> Vec<String> {
     let some = match setting.values {
         setting::AllowedValues::Words(words) => words.iter().map(ToString::to_string).collect(),

@@ -19,13 +19,12 @@ fn sphere(z: &DVector<f64>) -> f64 {
     z.norm_squared()
 }
 
-/// Computes an ellipsoid function with axis ratios up to a thousand.
+/// Computes the value of an ellipsoid function with axis ratios up to a thousand.
 fn ellipsoid(z: &DVector<f64>) -> f64 {
     let weight = |k: usize| libm::pow(10.0, 6.0 * k as f64 / (DIMENSION as f64 - 1.0));
     z.iter().enumerate().map(|(k, z)| weight(k) * z * z).sum()
 }
 
-/// Computes the Rosenbrock function, a curved valley.
 fn rosenbrock(z: &DVector<f64>) -> f64 {
     let pair = |k: usize| {
         let (x, y) = (z[k] + 1.0, z[k + 1] + 1.0);

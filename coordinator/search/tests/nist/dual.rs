@@ -4,10 +4,9 @@
 //! `f(a + a' e) = f(a) + f'(a) a' e` with `e^2 = 0` (forward differentiation).
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Maximum number of parameters of a data set.
 pub(crate) const MOST: usize = 9;
 
-/// Dual number: a value and its derivatives by the parameters.
+/// Value with its derivatives by the parameters of a regression model.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Dual {
     pub(crate) value: f64,
@@ -22,13 +21,15 @@ impl Dual {
         Self { value, by }
     }
 
-    /// Applies the chain rule for a function of one argument, given its value and slope.
+    /// Applies a function of one argument to this number by the chain rule, given the function's value and
+    /// slope.
     fn through(self, value: f64, slope: f64) -> Self {
         let by = self.by.map(|own| slope * own);
         Self { value, by }
     }
 
-    /// Applies the chain rule for a function of two arguments, given its value and partial derivatives.
+    /// Applies a function of two arguments to this number and `other` by the chain rule, given the function's
+    /// value and partial derivatives.
     fn with(self, other: Self, value: f64, [own, others]: [f64; 2]) -> Self {
         let by = std::array::from_fn(|k| own * self.by[k] + others * other.by[k]);
         Self { value, by }
@@ -60,7 +61,7 @@ impl Dual {
         self * self
     }
 
-    /// Computes a power of a positive base with any exponent.
+    /// Raises this number, which must be positive, to any power.
     pub(crate) fn pow(self, exponent: Self) -> Self {
         (exponent * self.ln()).exp()
     }

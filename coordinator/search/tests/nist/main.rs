@@ -19,15 +19,15 @@ const MOST: f64 = 10.0;
 /// in a parameter, or to another minimum.
 const FAR: [&str; 4] = ["MGH17", "BoxBOD", "MGH10", "Eckerle4"];
 
-/// Result of a fit: the fewest correct digits of any parameter and of any standard error, and the number of
-/// points evaluated.
+/// Accuracy of a fit: fewest correct digits of any parameter and of any standard error, and number of points
+/// evaluated.
 struct Fit {
     parameters: f64,
     errors: f64,
     points: u64,
 }
 
-/// Fits a data set from a start, with exact columns or by central differences.
+/// Fits a data set from a start, with exact Jacobian columns or by central differences.
 fn fit(set: &Set, start: &[f64], exact: bool) -> Fit {
     let variable = |start: &f64| Variable {
         start: *start,
@@ -69,8 +69,8 @@ fn fit(set: &Set, start: &[f64], exact: bool) -> Fit {
     }
 }
 
-/// Returns the standard errors: roots of the diagonal of `s^2 (J^T J)^-1` with `s^2 = |r|^2 / (n - p)`, by QR
-/// factorisation of `J` with columns scaled to norm 1.
+/// Returns the standard errors of the fitted parameters: roots of the diagonal of `s^2 (J^T J)^-1` with `s^2
+/// = |r|^2 / (n - p)`, by QR factorisation of `J` with columns scaled to norm 1.
 fn standard_errors(jacobian: &DMatrix<f64>, square: f64) -> Vec<f64> {
     let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
     let mut scaled = jacobian.clone();

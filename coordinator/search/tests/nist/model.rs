@@ -1,11 +1,11 @@
-//! Models of the data sets, as their files state them. Independent of data.
+//! Regression models of NIST's data sets, as the files of the sets state them.
 use crate::dual::Dual;
 use std::f64::consts::PI;
 
 /// Regression model: function of parameters and predictors.
 pub(crate) type Model = fn(&[Dual], &[f64]) -> Dual;
 
-/// Data sets with their models, from lower to higher level of difficulty.
+/// NIST data sets with their regression models, from lower to higher level of difficulty.
 pub(crate) const MODELS: [(&str, Model); 27] = [
     ("Misra1a", saturation),
     ("Chwirut2", chwirut),

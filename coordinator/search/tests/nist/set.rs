@@ -1,4 +1,4 @@
-//! Data set as its file states it: starts, certified values, data. Independent of any search.
+//! NIST data set as its file states it: starting values, certified values and observations.
 use crate::{dual::Dual, model::Model};
 use search::least_squares::EvaluatedPoint;
 use std::{fs, path::Path};
@@ -11,7 +11,7 @@ pub(crate) struct Set {
     model: Model,
     /// Two sets of starting values of the parameters: far from and near the solution.
     pub(crate) starts: [Vec<f64>; 2],
-    /// Certified values of the parameters; `errors` holds their standard errors.
+    /// Certified values of the parameters; the field `errors` holds their standard errors.
     pub(crate) parameters: Vec<f64>,
     pub(crate) errors: Vec<f64>,
     /// Response and predictors of each observation.
@@ -19,7 +19,6 @@ pub(crate) struct Set {
 }
 
 impl Set {
-    /// Reads the file of a data set.
     pub(crate) fn read(name: &'static str, model: Model) -> Self {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/nist/data");
         let text =

@@ -35,11 +35,9 @@ pub(crate) struct CaseChoice {
 /// Loaded case, with the folder from which its measured records were read.
 pub(crate) struct LoadedCase {
     pub(crate) case: Case,
-    /// Folder of the measured records.
     pub(crate) measured: String,
     /// Whether the case declares its records as computed (synthetic).
     pub(crate) synthetic: bool,
-    /// Notes about the measured records.
     pub(crate) notes: Vec<String>,
 }
 

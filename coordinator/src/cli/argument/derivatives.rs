@@ -3,7 +3,6 @@
 use crate::cli::output::problem::Problem;
 use protocol::{case::Case, job::Column};
 
-/// Word for all unknowns and effect parameters of the case.
 const ALL: &str = "all";
 
 /// Parses the names of unknowns and effect parameters to differentiate by, separated by commas; `all` stands

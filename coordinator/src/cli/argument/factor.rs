@@ -4,10 +4,9 @@ use crate::cli::output::problem::Problem;
 use search::strategy::{Preset, Settings};
 use study::orthogonal::Factor;
 
-/// Separator between the names of settings that are varied jointly as one factor.
 const JOINT: char = '+';
 
-/// Parses a factor from the command line: `KEY=A,B,C`.
+/// Parses a factor (setting with its levels) from the command line: `KEY=A,B,C`.
 pub(crate) fn parse(text: &str) -> Result<Factor, String> {
     let (name, levels) = text
         .split_once('=')
@@ -20,12 +19,11 @@ pub(crate) fn words(factor: &Factor) -> String {
     format!("{}={}", factor.name, factor.levels.join(","))
 }
 
-/// Returns the keys of the settings that a factor sets.
 pub(crate) fn keys(factor: &Factor) -> impl Iterator<Item = &str> {
     factor.name.split(JOINT)
 }
 
-/// Sets a factor to one of its levels.
+/// Sets the settings that a factor varies to one of its levels.
 ///
 /// # Errors
 /// If the preset lacks one of the settings, or a value is not allowed.
@@ -42,7 +40,7 @@ pub(crate) fn set(
     Ok(())
 }
 
-/// Checks factors against a preset: every key must exist, every level must be allowed, and no key or level
+/// Checks factors against a preset: the preset must have every key and allow every level, and no key or level
 /// may occur twice.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Arguments that select the simulated individual and the working condition.
+//! Arguments that select the parameter values to simulate and the working condition.
 use crate::cli::output::problem::Problem;
 use case::read_genes;
 use clap::Args;
@@ -22,7 +22,7 @@ pub(crate) struct IndividualChoice {
 }
 
 impl IndividualChoice {
-    /// Returns the chosen gene values in the case's order.
+    /// Returns the chosen values of the case's unknowns, in the case's order.
     pub(crate) fn genes(&self, case: &Case) -> anyhow::Result<Vec<f64>> {
         Ok(match self.genes.as_str() {
             "recommended" => case.start(),
@@ -30,14 +30,14 @@ impl IndividualChoice {
         })
     }
 
-    /// Returns the position of the chosen condition in the case.
+    /// Returns the index of the chosen working condition in the case.
     pub(crate) fn condition(&self, case: &Case) -> Result<usize, Problem> {
         condition(case, self.condition.as_deref())
     }
 }
 
-/// Returns the position of the named condition in the case; without a name, that of the objective's
-/// condition.
+/// Returns the index of the named working condition in the case; without a name, that of the condition that
+/// the objective uses.
 pub(crate) fn condition(case: &Case, name: Option<&str>) -> Result<usize, Problem> {
     let Some(name) = name else {
         return Ok(case.objective.condition);

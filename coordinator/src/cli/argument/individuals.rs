@@ -11,17 +11,17 @@ use store::gene_column;
 /// may have further columns, which hold results.
 const EXPORTED: [&[&str]; 2] = [&["job", "verdict"], &["objective", "verdict"]];
 
-/// Individuals read from a user's table.
+/// Individuals read from a user's CSV table.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Individuals {
-    /// Searched unknowns, in the case's order.
+    /// Names of the searched unknowns, in the case's order.
     pub(crate) names: Vec<String>,
     /// Values of the searched unknowns, one row per individual \[declared units\].
     pub(crate) rows: Vec<Vec<f64>>,
 }
 
 impl Individuals {
-    /// Reads a table; all rows are checked before any is used.
+    /// Reads the individuals of a CSV table; all rows are checked before any is used.
     ///
     /// # Errors
     /// If an unknown is missing or not in the case, a row has another length, a cell is not a finite number

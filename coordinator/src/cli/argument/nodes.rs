@@ -26,12 +26,11 @@ pub(crate) struct HostsChoice {
 }
 
 impl HostsChoice {
-    /// Returns whether no host was given.
     pub(crate) const fn is_empty(&self) -> bool {
         self.ssh.is_empty() && self.hosts.is_none()
     }
 
-    /// Reads the hosts from the arguments or the file.
+    /// Reads the list of ssh hosts from the arguments or from the hosts file.
     pub(crate) fn read(&self) -> Result<Vec<Host>, Problem> {
         match &self.hosts {
             Some(file) => read_hosts(file),

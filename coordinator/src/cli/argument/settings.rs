@@ -35,7 +35,6 @@ fn pair(text: &str) -> Result<(String, String), String> {
 pub(crate) struct ResolvedSettings {
     /// Complete settings of the search: those of the preset, with the values given by `--set` in their place.
     pub(crate) settings: Settings,
-    /// Settings that differ from the preset's, as `key=value`, in the order of the settings table.
     pub(crate) set: Vec<String>,
 }
 
@@ -65,7 +64,7 @@ impl SettingsChoice {
         Ok(ResolvedSettings { settings, set })
     }
 
-    /// Returns whether a setting was given by `--set`.
+    /// Returns whether the user gave the setting `key` by `--set`.
     pub(crate) fn names(&self, key: &str) -> bool {
         self.set.iter().any(|(typed, _)| typed == key)
     }
@@ -139,7 +138,7 @@ pub(crate) fn table() -> String {
     text
 }
 
-/// Formats the default values of a setting by preset, for example `quick 32; paper, window 80`.
+/// Formats the default values of a setting, grouped by preset, for example `quick 32; paper, window 80`.
 fn usual(key: &str, plan: &SearchPlan<'_>) -> String {
     let mut by_value: BTreeMap<String, Vec<&str>> = BTreeMap::new();
     for preset in CATALOGUE {

@@ -28,7 +28,7 @@ pub(crate) struct WorkersChoice {
 }
 
 impl WorkersChoice {
-    /// Returns the number of worker processes to start on this machine.
+    /// Returns the number of worker processes to start on this machine, by default one per core.
     pub(crate) fn local(&self) -> usize {
         self.workers.unwrap_or_else(cores)
     }
@@ -39,7 +39,7 @@ impl WorkersChoice {
         self.pause_limit.map_or(PAUSE_LIMIT, minutes)
     }
 
-    /// Returns whether workers on other machines can take part.
+    /// Returns whether the arguments let workers on other machines take part.
     pub(crate) const fn has_others(&self) -> bool {
         self.door.listen.is_some() || !self.hosts.is_empty()
     }
@@ -51,7 +51,6 @@ pub(crate) fn worker_count() -> impl TypedValueParser<Value = usize> {
     RangedU64ValueParser::<usize>::new().range(0..=1024)
 }
 
-/// Returns the default number of local worker processes: one per core.
 pub(crate) fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }

@@ -47,16 +47,14 @@ pub(super) struct Arguments {
 /// JSON object printed by `allow --output json`.
 #[derive(Debug, Serialize)]
 struct AllowOutput<'a> {
-    /// Path of the allow list file.
     list: String,
-    /// Name of the entry in the allow list.
     entry: &'a str,
     /// Content of the entry: program, arguments, files, version and limits.
     #[serde(flatten)]
     allowed: &'a allow::AllowEntry,
-    /// Files that the program finds in its working folder.
+    /// Paths of the case files that the external program finds in its working folder.
     case_files: &'a [String],
-    /// Whether the entry was written; false with `--dry-run`.
+    /// Whether the entry was written to the allow list; false with `--dry-run`.
     written: bool,
 }
 

@@ -112,14 +112,12 @@ Example:
 /// JSON object printed by `horsehead bench dispatch --output json`.
 #[derive(Debug, Serialize)]
 struct BenchOutput {
-    /// Kind of workers: `processes` over TCP on loopback, `connections` of one other process over TCP or QUIC
-    /// on loopback, or `sessions` of this process over the memory link.
+    /// Kind of workers measured: `processes` over TCP on loopback, `connections` of one other process over
+    /// TCP or QUIC on loopback, or `sessions` of this process over the memory link.
     crew: &'static str,
-    /// Number of workers.
     workers: usize,
     /// Time until all workers had joined (s).
     joined_s: f64,
-    /// Number of completed jobs.
     jobs: u64,
     /// Round-trip time of jobs dispatched one at a time (ms).
     rtt_ms: RoundTrip,
@@ -142,7 +140,7 @@ struct RoundTrip {
     p99: f64,
 }
 
-/// Runs the selected benchmark and prints its result.
+/// Runs the selected benchmark of job dispatch and prints its result.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match &arguments.what {
         Benchmark::Dispatch {

@@ -117,7 +117,7 @@ fn planned_workers(workers: &WorkersChoice) -> usize {
     }
 }
 
-/// Builds the search space, centred on the recommended values or on those of a gene file.
+/// Builds the search space of the case, centred on the recommended values or on those of a gene file.
 ///
 /// # Errors
 /// If a starting value lies outside its bounds.
@@ -143,7 +143,7 @@ fn first_table(file: Option<&Path>, space: &Space) -> anyhow::Result<Option<Firs
     file.map(read).transpose()
 }
 
-/// Checks that the search can start from the table of individuals.
+/// Checks that the chosen search can start from the table of individuals given by `--start`.
 fn check_table(
     table: Option<&FirstTable>,
     settings: &Settings,
@@ -162,7 +162,7 @@ fn check_table(
     })
 }
 
-/// Creates the requested run, or opens it to resume.
+/// Creates the run of the requested calibration, or opens it to resume.
 fn begin(arguments: &Arguments) -> anyhow::Result<Calibration> {
     let LoadedCase {
         case,

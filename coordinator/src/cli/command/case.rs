@@ -108,8 +108,8 @@ fn check(choice: &CaseChoice, output: OutputChoice) -> anyhow::Result<()> {
     terminal::print(output.output, text, &object)
 }
 
-/// Lets a local worker check a case: whether it knows the case's effects, and whether the measured records
-/// fit the channels. Returns notes.
+/// Asks a local worker whether it knows the case's effects and whether the measured records fit the channels;
+/// returns its notes.
 fn ask_worker(folder: &Path, overrides: &Overrides) -> anyhow::Result<Vec<String>> {
     let loaded = load_with_notes(folder, overrides)?;
     let case = &loaded.case;
@@ -151,7 +151,6 @@ fn ask_worker(folder: &Path, overrides: &Overrides) -> anyhow::Result<Vec<String
 /// JSON object printed by `case import --output json`.
 #[derive(Debug, Serialize)]
 struct ImportOutput {
-    /// Path of the case folder that was written.
     case: String,
     /// Number of estimated parameters.
     parameters: usize,

@@ -1,4 +1,4 @@
-//! `horsehead completions`: prints scripts that let a shell complete commands and options.
+//! `horsehead completions`: prints shell scripts that complete the commands and options of `horsehead`.
 use crate::cli::output::{problem::EXIT_CODES, terminal};
 use clap::{Args, Command};
 
@@ -15,7 +15,6 @@ pub(super) struct Arguments {
     shell: clap_complete::Shell,
 }
 
-/// Prints the completion script for the given commands.
 pub(super) fn run(arguments: &Arguments, commands: &mut Command) -> anyhow::Result<()> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, commands, "horsehead", &mut script);

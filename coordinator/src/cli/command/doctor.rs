@@ -53,7 +53,6 @@ pub(super) struct Arguments {
 struct DoctorOutput {
     /// Side that was checked: `worker`, `coordinator`, or `machine` if no address was given.
     side: &'static str,
-    /// Address that was checked.
     locator: String,
     /// Whether all checked layers of the connection work.
     healthy: bool,

@@ -6,7 +6,6 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Files and folders in which quoted command lines are searched, relative to the workspace root.
 const PLACES: &[&str] = &[
     "README.md",
     "cases",
@@ -18,10 +17,8 @@ const PLACES: &[&str] = &[
     "worker",
 ];
 
-/// Texts that begin like a `horsehead` command line but are none.
 const NAMES: &[&str] = &["horsehead authority", "horsehead blind suite"];
 
-/// Collects the paths of all text files below a folder.
 fn texts(place: &Path, found: &mut Vec<PathBuf>) {
     let hidden = place.ends_with("target") || place.ends_with("fuzz");
     if place.is_dir() && !hidden {
@@ -112,8 +109,8 @@ fn commands_of(text: &str) -> Vec<String> {
     found
 }
 
-/// Replaces a placeholder such as `{x}`, `CASE` or `KEY=VALUE` by a valid argument; returns other words
-/// unchanged.
+/// Replaces a placeholder in a command line, such as `{x}`, `CASE` or `KEY=VALUE`, by a valid argument;
+/// returns other words unchanged.
 fn typed(word: &str, before: &str) -> String {
     let placeholder = |word: &str| {
         let capital = word

@@ -12,7 +12,7 @@ use report::table::{self, Table};
 use serde::Serialize;
 use std::{collections::BTreeMap, path::PathBuf};
 
-/// Maximum number of given-up jobs that are listed individually.
+/// Maximum number of given-up jobs that the output lists individually.
 const MOST_NAMED: usize = 10;
 
 /// Say how the workers of a run spent their time, and why they were idle.
@@ -34,25 +34,24 @@ pub(super) struct Arguments {
 /// JSON object printed by `explain --output json`.
 #[derive(Debug, Serialize)]
 struct ExplainOutput {
-    /// Path of the run folder.
     run: String,
-    /// Number of coordinator processes that worked on the run, one after the other.
+    /// Number of coordinator processes that have worked on the run, one after another.
     processes: u32,
-    /// Wall time during which coordinator processes ran, as far as accounted (s).
+    /// Total wall time of the run's coordinator processes, as far as the journal accounts for it (s).
     wall_s: f64,
-    /// Number of recorded results.
+    /// Number of simulation results recorded in the journal.
     results: u64,
     /// Number of failed attempts at jobs.
     failed_attempts: u64,
-    /// Time of all worker slots by activity (s).
+    /// Total time of all worker slots, divided by activity (s).
     slot_seconds: BTreeMap<&'static str, f64>,
     /// Work done by each machine, by host name.
     hosts: BTreeMap<String, HostOutput>,
-    /// Durations of jobs, by kind of job.
+    /// Durations of the run's jobs, by kind of job.
     jobs: BTreeMap<&'static str, JobOutput>,
-    /// Reasons why slots did no useful work.
+    /// Reasons why worker slots did no useful work.
     why: Vec<String>,
-    /// Reasons why workers left, each with its number of occurrences.
+    /// Reasons why workers left the run, each with its number of occurrences.
     left: Vec<(String, u64)>,
     /// Numbers of the jobs that were given up, each with the reason.
     given_up: Vec<(u64, String)>,

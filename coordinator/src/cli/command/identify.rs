@@ -1,5 +1,5 @@
-//! `horsehead identify`: which unknowns the measured records determine, individually and jointly, and which
-//! remain undetermined.
+//! `horsehead identify`: finds which unknowns the measured records determine, individually and jointly, and
+//! which remain undetermined.
 use crate::cli::{
     argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
     output::{identification::show, problem::EXIT_CODES, progress::StageDisplay, terminal},

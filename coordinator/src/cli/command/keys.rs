@@ -79,7 +79,7 @@ of the form worker-01, worker-02; others may join when it is started again.
     },
 }
 
-/// Runs the selected action: new, add or check.
+/// Runs the selected action of `horsehead keys`: new, add or check.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match &arguments.action {
         Action::New {

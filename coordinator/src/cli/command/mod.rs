@@ -1,4 +1,4 @@
-//! Commands, one per file.
+//! Commands of `horsehead`, one per file.
 //!
 //! A command is a file with its `Arguments` and the function `run`; it is registered in this file by name in
 //! the list of modules and in `commands!`. Its help shows examples and the exit codes, its options can also
@@ -90,7 +90,7 @@ commands! {
     Completions: completions [&mut Cli::command()],
 }
 
-/// Runs the program and returns its exit code.
+/// Runs the `horsehead` command given by the process arguments and returns its exit code.
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,

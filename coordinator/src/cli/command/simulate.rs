@@ -45,7 +45,7 @@ pub(super) struct Arguments {
     output: OutputChoice,
 }
 
-/// Simulates, prints the results and writes the report if a folder was given.
+/// Simulates the chosen individual, prints the results, and writes the report if a folder was given.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let loaded = arguments.choice.load()?;
     let case = &loaded.case;
@@ -125,7 +125,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     ended(&verdict)
 }
 
-/// Returns an error for a simulation that did not complete; its results have already been printed.
+/// Returns an error if the simulation did not complete; its results have already been printed.
 fn ended(verdict: &Verdict) -> anyhow::Result<()> {
     if *verdict == Verdict::Complete {
         return Ok(());

@@ -54,7 +54,7 @@ fn manifest(case: &Case, seed: u64) -> Manifest {
     }
 }
 
-/// Returns a start at genes other than the recommended ones.
+/// Returns the start of a run at values of the unknowns other than the recommended ones.
 fn started(case: &Case) -> Start {
     Start {
         file: "found.toml".into(),
@@ -92,7 +92,6 @@ fn a_run_keeps_the_genes_that_it_started_at() {
     );
 }
 
-/// Collects every command and subcommand with its full path.
 fn commands(command: &clap::Command, path: &str, all: &mut Vec<(String, clap::Command)>) {
     for sub in command
         .get_subcommands()
@@ -335,7 +334,7 @@ fn the_way_to_go_on_names_the_folder_in_hand() {
     assert!(with("1025").is_err() && with("-1").is_err());
 }
 
-/// Applies `--set` arguments to a preset's settings, planned for the given number of workers.
+/// Applies `--set` arguments to the settings of a preset, with defaults for the given number of workers.
 fn chosen(name: &str, set: &[(&str, &str)], workers: usize) -> Result<ResolvedSettings, Problem> {
     let case = load(&shipped(), &Overrides::default()).unwrap();
     let space = Space::new(&case.unknowns).unwrap();
@@ -415,7 +414,8 @@ fn unknown_settings_are_answered_with_the_nearest_and_bad_values_with_what_is_al
     assert!(typed("population=40,encoding=gray").is_ok() && typed("population").is_err());
 }
 
-/// Checks that a resumed run keeps its own window length, whatever the number of workers is then.
+/// Checks that a resumed run keeps the window length with which it began, even if the number of workers has
+/// changed.
 #[test]
 fn what_follows_the_workers_stays_with_the_run() {
     let window = preset("window").unwrap();

@@ -1,4 +1,4 @@
-//! `horsehead verify`: scores the parameters of a run under a condition that took no part in the fit.
+//! `horsehead verify`: scores the parameters found by a run under a condition that took no part in the fit.
 use crate::cli::{
     argument::{
         case::load_case,

@@ -17,13 +17,11 @@ use std::path::Path;
 
 /// Finished diagnosis with the data that its output files need.
 pub(crate) struct DiagnosisOutput<'a> {
-    /// Run that was diagnosed: its manifest and its folder.
     pub(crate) run: &'a Diagnosis,
     /// Case with the measured cycles of its records.
     pub(crate) loaded: &'a Loaded,
-    /// Results of the diagnosis.
     pub(crate) found: &'a Found,
-    /// Wall time of all sessions (s).
+    /// Wall time of the run over all its sessions (s).
     pub(crate) wall_s: f64,
 }
 
@@ -53,7 +51,8 @@ impl DiagnosisOutput<'_> {
             .write_genes(&self.loaded.case, &genes, &about)
     }
 
-    /// Writes the result files into the run folder and returns the object for `--output json`.
+    /// Writes the result files of the diagnosis into the run folder and returns the object for `--output
+    /// json`.
     pub(crate) fn write(&self) -> anyhow::Result<DiagnoseOutput> {
         let subject = self.subject()?;
         if let Some(text) = report::effects_toml(&subject) {

@@ -1,8 +1,8 @@
-//! Checks of output folders named by the user.
+//! Checks of output folders that the user names on the command line.
 use super::problem::Problem;
 use std::path::Path;
 
-/// Checks that a folder can be written, before any simulation is run for it.
+/// Checks that the output folder given by the user can be written, before any simulation is run for it.
 pub(crate) fn check_out(folder: &Path) -> Result<(), Problem> {
     let tried = std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
     match tried {

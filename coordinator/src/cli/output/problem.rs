@@ -1,4 +1,4 @@
-//! Error output: message, causes, remedies and the exit code.
+//! Error output of commands: message, causes, remedies and the exit code.
 use super::terminal;
 use case::CaseError;
 use std::process::ExitCode;
@@ -8,7 +8,6 @@ use study::{EvaluatorError, StudyError};
 pub(crate) const EXIT_CODES: &str =
     "Exit codes: 0 done, 1 failed, 2 usage or bad input, 130 interrupted.";
 
-/// Exit code of a command that failed.
 const FAILED: u8 = 1;
 /// Exit code of a wrong command line or wrong input.
 pub(crate) const BAD_INPUT: u8 = 2;
@@ -24,7 +23,7 @@ pub(crate) fn explain(error: &anyhow::Error) -> ExitCode {
     ExitCode::from(code(error))
 }
 
-/// Number parsing messages of the standard library, each with its replacement in plain words.
+/// Error messages of the standard library about unparsable numbers, each with its replacement in plain words.
 const NUMBERS: [(&str, &str); 6] = [
     ("invalid digit found in string", "not a whole number"),
     ("invalid float literal", "not a number"),
@@ -38,7 +37,7 @@ const NUMBERS: [(&str, &str); 6] = [
 ];
 
 /// Replaces the standard library's number parsing messages in a command line error by plain words; `None` if
-/// nothing was replaced.
+/// it contains none of them.
 pub(crate) fn in_plain_words(message: &str) -> Option<String> {
     let replace = |text: String, (from, to): &(&str, &str)| text.replace(from, to);
     let plain = NUMBERS.iter().fold(message.to_owned(), replace);

@@ -15,26 +15,28 @@ const LINE_INTERVAL: Duration = Duration::from_secs(10);
 /// Minimum time between two queries of the workers' state, since a query costs more than processing a result.
 const WORKER_POLL_INTERVAL: Duration = Duration::from_millis(200);
 
-/// Progress display of a calibration.
+/// Progress display of a calibration or another run of searches.
 pub(crate) struct Display {
-    /// Unit of the objective, appended to the best value with a leading space; empty if it has no unit.
+    /// Unit of the displayed objective, with a leading space; empty if it has no unit.
     unit: String,
     /// Name of the quantity that the display counts besides simulations, such as generations.
     counted: &'static str,
     bar: Option<ProgressBar>,
     last: Instant,
     generation: Option<u32>,
-    /// Number of results that earlier sessions recorded; they are read from the journal at once.
+    /// Number of results in the journal from earlier sessions, which are read at once and not simulated
+    /// again.
     recorded: u64,
 }
 
 impl Display {
-    /// Creates the display of a calibration; the objective is in the square of `unit`.
+    /// Creates the progress display of a calibration; the objective is in the square of `unit`.
     pub(crate) fn new(unit: Option<&str>) -> Self {
         Self::counting("generation or stage", unit)
     }
 
-    /// Creates a display that counts `counted` instead of the generations of a single search.
+    /// Creates a progress display that counts `counted`, such as searches, instead of the generations of one
+    /// search.
     pub(crate) fn counting(counted: &'static str, unit: Option<&str>) -> Self {
         let bar = io::stderr().is_terminal().then(|| {
             let template = "{bar:32} {pos}/{len}  {msg}";
@@ -53,7 +55,6 @@ impl Display {
         }
     }
 
-    /// Removes the progress bar.
     pub(crate) fn clear(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
@@ -84,7 +85,6 @@ impl StageDisplay {
         }
     }
 
-    /// Removes the progress line.
     pub(crate) fn clear(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
@@ -135,7 +135,7 @@ impl Watch<StageView> for StageDisplay {
     }
 }
 
-/// Throughput over a sliding time window; results read at once from the journal soon leave the window.
+/// Rate of work over a sliding time window; results read at once from the journal soon leave the window.
 #[derive(Default)]
 struct Pace {
     seen: VecDeque<(Instant, f64)>,
@@ -248,8 +248,8 @@ fn at_work(crew: &WorkersSnapshot) -> String {
     workers
 }
 
-/// Formats how worker slots spend their time, for example `slots 91 % useful, 8 % barrier`; `None` below 5 s
-/// of connected slot time.
+/// Formats the shares of time that worker slots spend on each activity, for example `slots 91 % useful, 8 %
+/// barrier`; `None` below 5 s of connected slot time.
 fn slot_use(spent: &Spent) -> Option<String> {
     if spent.connected_us < 5_000_000 {
         return None;

@@ -21,7 +21,6 @@ pub(crate) fn diagnostics() {
         .init();
 }
 
-/// Prints a line on standard error; write errors are ignored.
 pub(crate) fn tell(text: &str) {
     let _gone = writeln!(io::stderr().lock(), "{text}");
 }
@@ -56,7 +55,7 @@ pub(crate) fn print(
     write(&text)
 }
 
-/// Writes to standard output; a closed pipe, for example to `head`, is not an error.
+/// Writes text to standard output; a pipe that its reader has closed, for example `head`, is not an error.
 pub(crate) fn write(text: &str) -> anyhow::Result<()> {
     let mut stdout = io::stdout().lock();
     match stdout

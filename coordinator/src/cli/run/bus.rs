@@ -14,12 +14,12 @@ use serde::Serialize;
 use std::{path::PathBuf, time::Duration};
 use study::{Completed, Evaluator, EvaluatorError, JobNumbers, WorkerStatus, WorkersSnapshot};
 
-/// Name and version of this program.
+/// Name and version of this program, as recorded in runs and exports.
 pub(crate) const PROGRAM: &str = concat!("horsehead ", env!("CARGO_PKG_VERSION"));
 
 /// Options for opening the dispatcher.
 pub(crate) struct Options {
-    /// Folder of the journal.
+    /// Run folder, in which the dispatcher keeps the journal.
     pub(crate) run_dir: PathBuf,
     /// Network access for workers of other machines: listening address and key material.
     pub(crate) network: RemoteAccess,
@@ -27,14 +27,12 @@ pub(crate) struct Options {
     pub(crate) local_workers: usize,
     /// Longest time for which the run waits while its disk is full.
     pub(crate) pause_limit: Duration,
-    /// Name of the command to which the run belongs.
     pub(crate) kind: String,
-    /// Canonical JSON of all settings that determine the result.
+    /// Canonical JSON of all settings of the run that determine its result.
     pub(crate) settings: String,
 }
 
 impl Options {
-    /// Converts the options to those of the dispatcher.
     pub(crate) fn for_dispatch(self, case: &Case) -> anyhow::Result<DispatchOptions> {
         Ok(DispatchOptions {
             run_dir: self.run_dir,
@@ -60,7 +58,7 @@ pub(crate) struct Bus {
 }
 
 impl Bus {
-    /// Opens or resumes the journal and starts the local workers.
+    /// Opens or resumes the journal of a run and starts the local workers.
     ///
     /// # Errors
     /// If the local workers cannot run the case, or the dispatcher cannot be opened.
@@ -87,7 +85,7 @@ impl Bus {
         self.dispatch.recorded()
     }
 
-    /// Shuts down the workers and waits for the local ones to exit.
+    /// Shuts down all workers of the run and waits for the local ones to exit.
     pub(crate) async fn close(self) -> anyhow::Result<()> {
         self.dispatch
             .close()
@@ -194,7 +192,7 @@ fn without_source_places(text: &str) -> String {
     kept + rest
 }
 
-/// Converts a dispatcher error during the work to an evaluator error, without a remedy.
+/// Converts an error of the dispatcher during a run to an evaluator error, which has no remedy.
 pub(crate) fn explain(error: &DispatchError) -> EvaluatorError {
     EvaluatorError {
         message: without_source_places(&error.to_string()),
@@ -202,7 +200,7 @@ pub(crate) fn explain(error: &DispatchError) -> EvaluatorError {
     }
 }
 
-/// Computes the hash of a value's encoded content.
+/// Computes the hash of a value's serialised content.
 pub(crate) fn content_hash(content: &impl Serialize) -> anyhow::Result<ContentHash> {
     Ok(ContentHash::of(&wire::encode(content)?))
 }

@@ -9,12 +9,12 @@ use study::{
     StudyError, Watch,
 };
 
-/// Run of `horsehead calibrate`.
+/// Calibration: run of `horsehead calibrate`.
 pub(crate) type Calibration = Run<Settings>;
 
 /// Results of a calibration.
 pub(crate) struct Found {
-    /// Best individual and evaluation log of the search.
+    /// Best individual and evaluation log of the calibration's search.
     pub(crate) calibrated: Calibrated,
     /// Comparisons of the recommended and the best individual, the calibrated condition first.
     pub(crate) compared: Vec<Compared>,
@@ -98,7 +98,7 @@ pub(crate) async fn identifiability<E: Evaluator>(
     Ok(study::estimate_at_start_on(evaluator, &inputs, watch, stop).await?)
 }
 
-/// Returns the parameter sets compared in the paper's tables, recommended and optimised, with their names.
+/// Returns the parameter sets compared in the result tables, recommended and optimised, with their names.
 pub(crate) fn pair(case: &Case, best: &[f64]) -> Vec<(String, Vec<f64>)> {
     vec![
         ("recommended".to_owned(), case.start()),

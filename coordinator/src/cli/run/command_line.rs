@@ -8,13 +8,11 @@ pub(crate) fn command_line() -> String {
     words.map(|word| quote(&word)).collect::<Vec<_>>().join(" ")
 }
 
-/// Quotes a word for a shell.
 pub(crate) fn quote(word: &str) -> String {
     // the system gives no word with a zero byte, which alone has no form that a shell takes
     shlex::try_quote(word).map_or_else(|_| word.to_owned(), std::borrow::Cow::into_owned)
 }
 
-/// Quotes a path for a shell.
 pub(crate) fn quote_path(path: &Path) -> String {
     quote(&path.display().to_string())
 }

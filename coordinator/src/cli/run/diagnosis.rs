@@ -12,10 +12,10 @@ use search::space::Space;
 use serde::{Deserialize, Serialize};
 use study::{self, DiagnosisResult, Evaluator, StageView, Stop, Watch};
 
-/// Run of `horsehead diagnose`.
+/// Diagnosis: run of `horsehead diagnose`.
 pub(crate) type Diagnosis = Run<DiagnosisSettings>;
 
-/// Settings that determine a diagnosis, besides case, seed and start.
+/// Settings that determine the result of a diagnosis, besides case, seed and start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct DiagnosisSettings {
     /// Thresholds of the statistical tests and limits of the diagnosis.
@@ -39,11 +39,11 @@ impl manifest::RunIdentity for DiagnosisSettings {
     }
 }
 
-/// Results of a diagnosis.
+/// Results of a diagnosis, with the effects that it considered and notes.
 pub(crate) struct Found {
     /// Notes about the case and its records.
     pub(crate) notes: Vec<String>,
-    /// Diagnosis and its cost by stage.
+    /// Result of the diagnosis, with the number and the time of the simulations in each stage.
     pub(crate) diagnosed: DiagnosisResult,
     /// Candidate effects: those known to the workers but absent from the case, and unknowns of the case that
     /// are switched off.
@@ -99,15 +99,16 @@ pub(crate) async fn diagnose<E: Evaluator>(
 }
 
 /// Returns the preset of the search that finds the basin of attraction of the fit: `quick` if the case
-/// declares a narrow valley, else `least-squares`, whose local descents find the basin with a fraction of the
-/// simulations.
+/// declares a narrow minimum (valley), else `least-squares`, whose local descents find the basin with a
+/// fraction of the simulations.
 pub(super) fn basin_search_preset(case: &Case) -> &'static str {
     let narrow = case.unknowns.iter().any(|unknown| unknown.valley.is_some());
     if narrow { "quick" } else { "least-squares" }
 }
 
-/// Builds the inputs of a fit: the record of the calibrated condition first, the library without the effects
-/// that the case already has, and `entrance`, the preset of the search that finds the basin of attraction.
+/// Builds the inputs of a fit: the measured records, that of the calibrated condition first; the library
+/// without the effects that the case already has; and `entrance`, the preset of the search that finds the
+/// basin of attraction.
 ///
 /// # Errors
 /// If the case has no space to search, or the data of its kind of model cannot be decoded.

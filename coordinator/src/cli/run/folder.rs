@@ -19,21 +19,22 @@ use std::{
 };
 use support::atomic_file;
 
-/// Manifest file: how the run was begun, and the settings that determine its result.
+/// Name of the manifest file: how the run was begun, and the settings that determine its result.
 pub(crate) const MANIFEST: &str = "run.json";
-/// File with the case as it was when the run was begun.
+/// Name of the file with the case as it was when the run was begun.
 pub(crate) const CASE: &str = "case.json";
 /// Name of the file that holds the output of a finished run.
 pub(crate) const RESULT: &str = "result.json";
-/// File with the first-order identifiability of a calibration's unknowns.
+/// Name of the file with the first-order identifiability of a calibration's unknowns.
 pub(crate) const IDENTIFIABILITY: &str = "seen.json";
-/// Gene file with the parameters that a run found.
+/// Name of the gene file with the parameter values that a run found.
 pub(crate) const GENES: &str = "calibrated.toml";
 
 /// Name of the folder that holds the keys of workers that the run itself launches.
 pub(crate) const KEYS: &str = "keys";
 
-/// Maximum length of the settings in a default folder name (bytes); a longer list is replaced by its hash.
+/// Maximum length of the settings in a run folder's default name (bytes); longer settings are replaced by
+/// their hash.
 const LONGEST_SET: usize = 60;
 
 /// Manifest fields that all kinds of run have in common.
@@ -52,13 +53,13 @@ pub(crate) struct RunFolder {
 }
 
 impl RunFolder {
-    /// Wraps a path without checking its content.
+    /// Refers to a run folder by its path, without checking its content.
     pub(crate) fn new(path: &Path) -> Self {
         let path = path.to_owned();
         Self { path }
     }
 
-    /// Returns the default path `runs/CASE-WHAT[-AMBIGUITY_MARGIN...][-RECORDS-HASH]-seedN`, relative to the current
+    /// Returns the default path `runs/CASE-WHAT[-SETTING...][-RECORDS-HASH]-seedN`, relative to the current
     /// folder, so that repeating a command finds its run. `set` lists the settings that differ from the
     /// default; `measured` is the folder of records that replace the case's. Since many such folders have the
     /// same name, the start of the records' hash is appended.
@@ -163,7 +164,7 @@ impl RunFolder {
         self.file(MANIFEST).exists()
     }
 
-    /// Returns whether the run has finished.
+    /// Returns whether the run in the folder has finished.
     pub(crate) fn is_finished(&self) -> bool {
         self.file(RESULT).exists()
     }
@@ -173,7 +174,7 @@ impl RunFolder {
         fs::metadata(self.file(journal::FILE)).is_ok_and(|file| file.len() > 0)
     }
 
-    /// Opens the journal read-only; damage to it is reported on standard error.
+    /// Opens the journal of the run read-only; damage to it is reported on standard error.
     pub(crate) fn recording(&self) -> anyhow::Result<JournalSnapshot> {
         let recording = JournalSnapshot::read(&self.file(journal::FILE), |_, _| {})?;
         for damage in journal::describe_damage(&recording.report().damage) {
@@ -182,24 +183,24 @@ impl RunFolder {
         Ok(recording)
     }
 
-    /// Returns the path of the folder.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Returns the path of a file in the folder.
+    /// Returns the path of the file called `name` in the run folder.
     pub(crate) fn file(&self, name: &str) -> PathBuf {
         self.path.join(name)
     }
 
-    /// Writes a file as JSON.
+    /// Writes a value as a JSON file into the run folder.
     pub(crate) fn write_json(&self, name: &str, value: &impl Serialize) -> anyhow::Result<()> {
         let mut text = serde_json::to_string_pretty(value)?;
         text.push('\n');
         self.write(name, &text)
     }
 
-    /// Writes values of a case's unknowns as a gene file; `about` is a line that states their source.
+    /// Writes values of a case's unknowns as a gene file into the run folder; the line `about` states their
+    /// source.
     pub(crate) fn write_genes(
         &self,
         case: &Case,
@@ -213,14 +214,15 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Writes a file atomically: a concurrent reader finds either the old or the new content.
+    /// Writes a file of the run folder atomically: a concurrent reader finds either the old or the new
+    /// content.
     pub(crate) fn write(&self, name: &str, text: &str) -> anyhow::Result<()> {
         let file = self.file(name);
         let written = atomic_file::replace(&file, text.as_bytes());
         written.with_context(|| format!("cannot write {}", file.display()))
     }
 
-    /// Reads a JSON file.
+    /// Reads a JSON file of the run folder.
     pub(crate) fn read_json<T: DeserializeOwned>(&self, name: &str) -> anyhow::Result<T> {
         let file = self.file(name);
         let damaged = |why: &dyn std::fmt::Display| Problem {
@@ -231,8 +233,8 @@ impl RunFolder {
         Ok(serde_json::from_str(&text).map_err(|error| damaged(&error))?)
     }
 
-    /// Returns the remedy for a damaged manifest or case file; the command of the run is read from the
-    /// journal.
+    /// Returns the remedy for a damaged manifest or case file, with the command that created the run as read
+    /// from the journal.
     fn repair(&self) -> String {
         let mut kind = None;
         // a journal that cannot be read says nothing, which is answered below

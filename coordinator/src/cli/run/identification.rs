@@ -12,10 +12,10 @@ use discrepancy::{
 use serde::{Deserialize, Serialize};
 use study::{self, Evaluator, StageCost, StageView, Stop, Watch};
 
-/// Run of `horsehead identify`.
+/// Identifiability analysis: run of `horsehead identify`.
 pub(crate) type Identification = Run<IdentificationSettings>;
 
-/// Settings that determine an identifiability analysis, besides case, seed and start.
+/// Settings that determine the result of an identifiability analysis, besides case, seed and start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct IdentificationSettings {
     /// Highest harmonic order of the period at which simulation and record are compared [1].
@@ -40,9 +40,9 @@ impl manifest::RunIdentity for IdentificationSettings {
 pub(crate) struct Found {
     /// Notes about the case and its records.
     pub(crate) notes: Vec<String>,
-    /// Identifiability of the unknowns, and prediction bands.
+    /// Result of the analysis: identifiability of the unknowns, and prediction bands.
     pub(crate) identified: IdentificationResult,
-    /// Cost of each stage that ran simulations.
+    /// Number and time of the simulations, for each stage that ran any.
     pub(crate) accounts: Vec<(Stage, StageCost)>,
 }
 

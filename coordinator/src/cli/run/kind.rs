@@ -19,23 +19,18 @@ use case::Loaded;
 use std::path::Path;
 use study::{Evaluator, ProgressView, StageView, Stop, Watch};
 
-/// Run that was opened from its run folder, of any kind.
+/// Run of any kind (calibration, diagnosis or identification), opened from its run folder.
 pub(crate) enum AnyRun {
-    /// Run of `horsehead calibrate`.
     Calibration(Calibration),
-    /// Run of `horsehead diagnose`.
     Diagnosis(Diagnosis),
-    /// Run of `horsehead identify`.
     Identification(Identification),
 }
 
 /// Run together with its result, recomputed from its journal.
 pub(crate) enum ReplayedRun<'a> {
-    /// Calibration and its result.
     Calibration(&'a Calibration, calibration::Found),
     /// Diagnosis and its result, with the case and the measured records read again.
     Diagnosis(&'a Diagnosis, Box<Loaded>, Box<diagnosis::Found>),
-    /// Identification and its result.
     Identification(&'a Identification, Box<identification::Found>),
 }
 

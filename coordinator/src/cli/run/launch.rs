@@ -30,9 +30,9 @@ use std::{
 
 /// Default listening address of a run that launches its own workers.
 const LISTEN: &str = "quic/0.0.0.0:7447";
-/// Validity of the keys of a run (days).
+/// Validity of the certificates created for a run (days).
 const DAYS: u32 = 365;
-/// Time within which a launched worker must join the run (s).
+/// Time within which a launched worker must join the run before it is reported as missing (s).
 const WAIT_S: u64 = 30;
 /// Idle time (s) after which a launched worker exits if it is never told that its run ended, for example
 /// because this process was killed.
@@ -45,15 +45,15 @@ pub(crate) struct Launch {
     options: WorkerOptions,
     /// Listening address and keys of the run, through which the launched workers connect.
     pub(crate) endpoint: RemoteAccess,
-    /// Cancellation flag: once set, no further launch step begins.
+    /// Flag that stops the launching: once set, no further step of the plan begins.
     cancelled: Arc<AtomicBool>,
-    /// Thread that launches the workers; none before [`Launch::up`].
+    /// Thread that launches the workers; `None` before [`Launch::up`].
     launching: Option<JoinHandle<()>>,
 }
 
 impl Launch {
     /// Determines the listening address and creates the keys for workers on other hosts, before the run
-    /// listens; returns `None` if no host is named.
+    /// starts to listen; returns `None` if no host is named.
     pub(crate) fn prepare(workers: &WorkersChoice, run: &Path) -> anyhow::Result<Option<Self>> {
         let hosts = workers.hosts.read()?;
         let Some(first) = hosts.first() else {
@@ -154,12 +154,13 @@ fn owner(run: &Path) -> std::io::Result<String> {
     Ok(format!("run-{}", hash.chars().take(16).collect::<String>()))
 }
 
-/// Executes a launch plan and prints the outcome at each host.
+/// Executes a plan for launching workers and prints the outcome at each host.
 pub(crate) fn execute(plan: &LaunchPlan) -> anyhow::Result<()> {
     execute_plan_until(plan, &AtomicBool::new(false))
 }
 
-/// Executes a plan like [`carry`] until `cancelled` is set.
+/// Executes a plan for launching workers like [`execute`], but begins no further step once `cancelled` is
+/// set.
 fn execute_plan_until(plan: &LaunchPlan, cancelled: &AtomicBool) -> anyhow::Result<()> {
     let failed = AtomicUsize::new(0);
     execute_plan(plan, cancelled, &|part, ended| match ended {
@@ -176,7 +177,6 @@ fn execute_plan_until(plan: &LaunchPlan, cancelled: &AtomicBool) -> anyhow::Resu
     }
 }
 
-/// Converts a launch error into a problem with its remedy.
 fn to_problem(error: &LaunchError) -> Problem {
     Problem {
         message: error.to_string(),
@@ -184,8 +184,8 @@ fn to_problem(error: &LaunchError) -> Problem {
     }
 }
 
-/// Returns the worker programs for the machine architectures of the hosts: the worker program of this machine
-/// first, then the programs in `named`; a named program replaces the local one for the same architecture.
+/// Returns the worker programs to copy to hosts, by machine architecture: the one of this machine first, then
+/// those in `named`; a named program replaces the local one for the same architecture.
 pub(crate) fn programs(named: &[String]) -> Result<Vec<Program>, Problem> {
     let mut programs = Vec::new();
     for text in named {

@@ -18,13 +18,13 @@ pub(crate) const FORMAT: u32 = 1;
 /// Maximum number of differing settings that are listed by name when two runs differ.
 const MAX_LISTED_DIFFERENCES: usize = 3;
 
-/// Kind of a calibration; also the default for manifests without a kind.
+/// Kind of run in the manifest of a calibration; assumed for manifests without a kind.
 pub(crate) const CALIBRATE: &str = "calibrate";
-/// Kind of a diagnosis.
+/// Kind of run in the manifest of a diagnosis.
 pub(crate) const DIAGNOSE: &str = "diagnose";
-/// Kind of an identification: which unknowns a measured record determines.
+/// Kind of run in the manifest of an identifiability analysis (`horsehead identify`).
 pub(crate) const IDENTIFY: &str = "identify";
-/// Kind of a run that evaluates individuals for another program.
+/// Kind of run in the manifest of `horsehead evaluate`, which scores individuals for another program.
 pub(crate) const EVALUATE: &str = "evaluate";
 
 /// Returns `calibrate`, the kind of run assumed for a manifest that names none.
@@ -36,11 +36,11 @@ pub(crate) fn calibrate() -> String {
 pub(crate) trait RunIdentity: Serialize + DeserializeOwned + PartialEq + Clone {
     /// Command that creates runs of this kind, as in `horsehead calibrate`.
     const KIND: &'static str;
-    /// Whether the command takes a seed.
+    /// Whether the command that creates runs of this kind takes a seed.
     const SEEDED: bool = true;
 
-    /// Returns the command and its positional arguments, quoted for a shell; `case` is the folder of the
-    /// case.
+    /// Returns the command that creates runs of this kind, with its positional arguments, quoted for a shell;
+    /// `case` is the folder of the case.
     fn command(&self, case: &str) -> String {
         [Self::KIND, " ", case].concat()
     }
@@ -51,7 +51,7 @@ pub(crate) trait RunIdentity: Serialize + DeserializeOwned + PartialEq + Clone {
         String::new()
     }
 
-    /// Describes how these settings differ from those of an earlier run.
+    /// Describes how these settings differ from those of an earlier run, for messages.
     fn difference(&self, _earlier: &Self) -> String {
         "its settings differ".to_owned()
     }
@@ -78,28 +78,27 @@ impl RunIdentity for Settings {
 /// Manifest of a run; `S` holds the settings that determine its result in addition to case, seed and start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Manifest<S = Settings> {
-    /// Command that created the run.
+    /// Kind of the run, named after the command that created it.
     #[serde(default = "calibrate")]
     pub(crate) kind: String,
     /// Format version of the manifest file.
     pub(crate) format: u32,
     /// Name and version of the program that created the run.
     pub(crate) program: String,
-    /// Command line that creates or resumes the run.
+    /// Command line by which the run was created, quoted for a shell.
     pub(crate) command: String,
-    /// Name of the preset of the settings; empty if there is none.
+    /// Name of the search preset that the settings are based on; empty if there is none.
     pub(crate) preset: String,
-    /// Settings that differ from the preset's, as `key=value`.
+    /// Settings that differ from those of the preset, as `key=value`.
     #[serde(default)]
     pub(crate) set: Vec<String>,
-    /// Seed of the random number generator.
     pub(crate) seed: u64,
-    /// Settings that determine the result, besides seed and start.
+    /// Settings that determine the result of the run, besides seed and start.
     pub(crate) settings: S,
-    /// Values of the unknowns from which the search starts; none for the recommended values.
+    /// Values of the unknowns from which the search starts; `None` for the recommended values.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) start: Option<Start>,
-    /// Table of individuals that the search evaluates first, if any.
+    /// Table of individuals that the search evaluates first; `None` if there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) table: Option<FirstTable>,
     /// Folder from which the case was read.
@@ -111,7 +110,7 @@ pub(crate) struct Manifest<S = Settings> {
     pub(crate) synthetic: bool,
     /// Notes about the case and its records.
     pub(crate) notes: Vec<String>,
-    /// Wall time of the completed sessions (s).
+    /// Total wall time of the run's finished sessions (s).
     pub(crate) wall_s: f64,
 }
 
@@ -126,12 +125,13 @@ struct Identity<'a, S> {
     table: Option<&'a [Vec<f64>]>,
 }
 
-/// Individuals that a search evaluates first; stored in the run, which is resumed without the file.
+/// Individuals that a search evaluates first, stored in the manifest so that the run can be resumed without
+/// their file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct FirstTable {
     /// File from which the individuals were read.
     pub(crate) file: PathBuf,
-    /// Values of all unknowns, one row per individual [declared units].
+    /// Values of all unknowns of each individual, in the case's order [declared units].
     pub(crate) individuals: Vec<Vec<f64>>,
 }
 
@@ -145,7 +145,7 @@ pub(crate) struct Start {
 }
 
 impl Start {
-    /// Reads the start from a gene file; returns none if no file is given.
+    /// Reads the starting values of a run from a gene file; returns `None` if no file is given.
     ///
     /// # Errors
     /// As [`read_genes`].
@@ -161,12 +161,12 @@ impl Start {
 }
 
 impl<S> Manifest<S> {
-    /// Returns the values of the unknowns at which the run starts; none for the recommended values.
+    /// Returns the values of the unknowns at which the run starts; `None` for the recommended values.
     pub(crate) fn start_genes(&self) -> Option<&[f64]> {
         self.start.as_ref().map(|start| start.genes.as_slice())
     }
 
-    /// Returns the individuals that the search evaluates first.
+    /// Returns the individuals that the search evaluates first; `None` without a table of them.
     pub(crate) fn first_individuals(&self) -> Option<&[Vec<f64>]> {
         let table = self.table.as_ref();
         table.map(|table| table.individuals.as_slice())
@@ -212,8 +212,8 @@ impl<S: RunIdentity> Manifest<S> {
         })
     }
 
-    /// Returns everything that determines the result as canonical JSON; the journal refuses a run with a
-    /// different text.
+    /// Returns everything that determines the result of the run as canonical JSON; a journal with a different
+    /// text refuses the run.
     pub(crate) fn settings_json(&self) -> anyhow::Result<String> {
         let identity = Identity {
             seed: self.seed,

@@ -13,16 +13,16 @@ use std::path::{Path, PathBuf};
 /// Run of one kind; `S` is the type of the settings that, with case, seed and start, determine its result.
 #[derive(Clone, Debug)]
 pub(crate) struct Run<S> {
-    /// Run folder.
+    /// Folder in which the run keeps its manifest, case, journal and results.
     pub(crate) folder: RunFolder,
     /// Manifest: how the run was begun, with the wall time of its finished sessions.
     pub(crate) manifest: Manifest<S>,
-    /// Case as it was when the run was begun.
+    /// Case of the run, as it was when the run was begun.
     pub(crate) case: Case,
 }
 
 impl<S: RunIdentity> Run<S> {
-    /// Opens an existing run.
+    /// Opens the existing run in a folder.
     ///
     /// # Errors
     /// If the folder holds no run, or one of another version or kind.
@@ -87,8 +87,8 @@ impl<S: RunIdentity> Run<S> {
         Ok(run)
     }
 
-    /// Describes the first difference in seed, start or settings from an earlier run; `None` if there is
-    /// none.
+    /// Describes the first difference in seed, start or settings between this run and an earlier one; `None`
+    /// if there is none.
     fn difference(&self, earlier: &Self) -> Option<String> {
         let (was, is) = (&earlier.manifest, &self.manifest);
         if was.seed != is.seed {
@@ -114,7 +114,8 @@ impl<S: RunIdentity> Run<S> {
         }
     }
 
-    /// Returns the provenance of the results as shown in reports; `digest` may be empty.
+    /// Returns the provenance of the run's results as shown in reports; `digest`, the hash of the evaluation
+    /// log, may be empty.
     pub(crate) fn origin(&self, digest: String) -> anyhow::Result<Origin> {
         let manifest = &self.manifest;
         Ok(Origin {
@@ -170,12 +171,11 @@ impl<S: RunIdentity> Run<S> {
         self.folder.write_json(MANIFEST, &manifest)
     }
 
-    /// Returns the command that resumes the run in its current folder.
     pub(crate) fn resume_command(&self) -> String {
         self.manifest.resume_command(self.folder.path())
     }
 
-    /// Loads the case with the measured cycles of its records, which the run folder does not contain.
+    /// Loads the case of the run with its measured cycles, which the run folder does not contain.
     ///
     /// # Errors
     /// If the case has changed since the run was begun.
@@ -210,7 +210,7 @@ impl<S: RunIdentity> Run<S> {
         }
     }
 
-    /// Removes from a case the effects that this diagnosis has added to it.
+    /// Removes from a loaded case the effects that this diagnosis has added to it since it was begun.
     pub(crate) fn as_begun(&self, loaded: Loaded) -> anyhow::Result<Loaded> {
         Ok(loaded.without_effects_from(&bus::case_hash(&self.case)?))
     }

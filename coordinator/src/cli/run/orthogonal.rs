@@ -1,5 +1,5 @@
-//! Orthogonal test of settings: evaluates the rows of an orthogonal array with every seed, then confirms the
-//! best levels with new seeds.
+//! Orthogonal test of a search's settings: searches with every row of an orthogonal array and every seed,
+//! then confirms the best levels with new seeds.
 use super::{manifest::RunIdentity, opened::Run, searches::Searches};
 use serde::{Deserialize, Serialize};
 use study::orthogonal::{Analysis, Array, Confirmation, TestResult};
@@ -8,7 +8,7 @@ use study::{Evaluator, ProgressView, Stop, Sweep, Watch};
 /// Settings of an orthogonal test that determine its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Orthogonal {
-    /// Orthogonal array whose rows are the tested combinations of levels.
+    /// Orthogonal array, whose rows are the combinations of factor levels to test.
     pub(crate) array: Array,
     /// Base settings, factors and seeds of the searches.
     pub(crate) searches: Searches,
@@ -26,7 +26,7 @@ impl RunIdentity for Orthogonal {
     }
 }
 
-/// Runs the test on the given evaluator.
+/// Runs the orthogonal test, with the given evaluator for all simulations.
 ///
 /// # Errors
 /// As [`Sweep::run`].

@@ -1,5 +1,5 @@
-//! Scaling measurement over numbers of slots: rows are measured one after another, and each is stored in the
-//! run folder as soon as it is complete.
+//! Scaling measurement over numbers of worker slots: rows of the scaling table are measured one after
+//! another, and each is stored in the run folder as soon as it is complete.
 use super::{
     bus::{self, Bus, Options},
     folder::RunFolder,
@@ -55,7 +55,7 @@ pub(crate) struct ScalingSettings {
     pub(crate) sleeping: Vec<u64>,
     /// Mean sleeping time per job \[s\].
     pub(crate) sleep_s: f64,
-    /// Numbers of slots to which the measured scaling is projected.
+    /// Numbers of worker slots to which the measured scaling is projected.
     pub(crate) projected: Vec<u64>,
 }
 
@@ -96,7 +96,8 @@ struct Measured {
 }
 
 impl ScalingSettings {
-    /// Returns the settings of a search (preset and population size) for the given number of slots.
+    /// Returns the settings of the search with preset `name` and size `population`, for the given number of
+    /// worker slots.
     ///
     /// # Errors
     /// If the preset has no population setting, or the population is not allowed.
@@ -113,7 +114,7 @@ impl ScalingSettings {
         Ok(chosen)
     }
 
-    /// Returns every combination of preset and population size.
+    /// Returns every combination of preset and population size to measure.
     pub(crate) fn searches(&self) -> impl Iterator<Item = (&str, u64)> {
         let each = self.presets.iter();
         each.flat_map(|name| {
@@ -124,7 +125,7 @@ impl ScalingSettings {
     }
 }
 
-/// Measures every row that is not yet stored in the run folder.
+/// Measures every row of the scaling table that is not yet stored in the run folder.
 ///
 /// # Errors
 /// If the settings are invalid, if no worker remains, or the user stops; stored rows are kept.
@@ -184,13 +185,12 @@ pub(crate) async fn scale(
     Ok(ScalingResult::new(overheads, rows))
 }
 
-/// Returns the name of the file that stores a row; without its extension it is the name of the row's journal
-/// folder.
+/// Returns the name of the file that stores a row of the scaling table; without its extension it is the name
+/// of the row's journal folder.
 fn file(how: SlotMode, (preset, population): (&str, u64), slots: u64) -> String {
     format!("{}-{preset}-{population}-{slots}.json", how.as_str())
 }
 
-/// Run folder, case and search space of a scaling measurement in progress.
 struct ScalingRun<'a> {
     run: &'a Run<ScalingSettings>,
     space: &'a Space,
@@ -219,7 +219,7 @@ impl ScalingRun<'_> {
         Ok(build(&settings, self.space, self.run.manifest.seed)?)
     }
 
-    /// Measures a search of the case on `slots` worker processes.
+    /// Measures a search of the case on `slots` simulating worker processes.
     async fn measure_computing(
         &self,
         search: (&str, u64),
@@ -288,8 +288,8 @@ impl ScalingRun<'_> {
         })
     }
 
-    /// Measures the coordinator's cost per empty job and the round-trip time, and combines them with the
-    /// simulation times of the row `alone`.
+    /// Measures the coordinator's cost per empty job and the round-trip time of a job, and combines them with
+    /// the simulation times of `alone`, the measurement with the fewest slots.
     async fn overheads(&self, alone: &Measured) -> anyhow::Result<Overheads> {
         let (workers, jobs, result_bytes) = BENCH_PLAN;
         let plan = BenchPlan {
@@ -311,7 +311,8 @@ impl ScalingRun<'_> {
         })
     }
 
-    /// Measures a search on `slots` sessions that sleep for times distributed like the simulation times.
+    /// Measures a search on `slots` sessions whose workers sleep for times distributed like the simulation
+    /// times.
     async fn measure_sleeping(
         &self,
         search: (&str, u64),
@@ -354,7 +355,7 @@ impl ScalingRun<'_> {
     }
 }
 
-/// Returns the options of a run of empty jobs in a temporary folder.
+/// Returns the dispatcher options of a run of empty jobs in a temporary folder.
 fn empty_run(folder: &std::path::Path) -> anyhow::Result<runtime::DispatchOptions> {
     let options = Options {
         run_dir: folder.to_owned(),
@@ -367,8 +368,8 @@ fn empty_run(folder: &std::path::Path) -> anyhow::Result<runtime::DispatchOption
     options.for_dispatch(&Case::default())
 }
 
-/// Builds a row of the scaling table from measured values; `(wall, processor)` are wall time and processor
-/// time of the coordinator.
+/// Builds a row of the scaling table from measured values; `(wall, processor)` are the wall time and the
+/// coordinator's processor time of the search.
 fn row(
     (how, (preset, population), slots): (SlotMode, (&str, u64), u64),
     evaluations: u64,

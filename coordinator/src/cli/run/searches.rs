@@ -1,4 +1,4 @@
-//! Searches of a sweep: a base choice of settings, varied by factors and seeds, each with the same budget of
+//! Searches of a sweep: base settings varied by factors and seeds, each search with the same budget of
 //! evaluations.
 use super::command_line::quote;
 use crate::cli::{
@@ -17,13 +17,14 @@ use serde::{Deserialize, Serialize};
 use study::orthogonal::{Factor, TrialRun};
 use study::{Search, SearchResult};
 
-/// Names of settings that limit the length of a search; every preset has at least one of them.
+/// Names of the settings (such as generations) that limit the length of a search; every preset has at least
+/// one.
 const LENGTHS: [&str; 3] = ["generations", "evaluations", "points"];
 
-/// Upper limit of the settings in [`LENGTHS`].
+/// Largest number of generations, evaluations or points to which the budget sets a search's length.
 const LONGEST: u64 = 1_000_000;
 
-/// Default number of evaluations per search, used if none is given and no factor sets the length.
+/// Default number of evaluations per search, used if none is given and no factor limits the length.
 const EVALUATIONS: u64 = 1000;
 
 /// Settings of the searches of a sweep that determine its result.
@@ -33,16 +34,17 @@ pub(crate) struct Searches {
     pub(crate) preset: String,
     /// Base settings of the searches, before factor levels are applied.
     pub(crate) settings: Settings,
-    /// Factors: varied settings with their levels.
+    /// Factors of the sweep: varied settings with their levels.
     pub(crate) factors: Vec<Factor>,
-    /// Evaluations per search; none where a factor sets the length of the search.
+    /// Number of evaluations of each search; `None` if a factor sets the length of the search.
     pub(crate) evaluations: Option<u64>,
-    /// Seeds with which every combination of levels is searched.
+    /// Seeds with which the search of every combination of levels is repeated.
     pub(crate) seeds: Vec<u64>,
 }
 
 impl Searches {
-    /// Creates and checks the searches; also returns the settings that were set by name, as `key=value`.
+    /// Creates and checks the searches of a sweep; also returns the settings that were given by `--set`, as
+    /// `key=value`.
     ///
     /// # Errors
     /// If the preset has no such setting, a value is not allowed, or a setting is named twice.
@@ -94,7 +96,7 @@ impl Searches {
         Ok((searches, chosen.set))
     }
 
-    /// Returns the searches of all rows with every seed.
+    /// Returns the searches for all rows (combinations of factor levels) with every seed.
     ///
     /// # Errors
     /// If the settings of a row are invalid.
@@ -121,7 +123,8 @@ impl Searches {
         Ok(all)
     }
 
-    /// Returns a row as text, for example `population=40 mutation_probability=0.1`.
+    /// Formats a row (combination of factor levels) as text, for example `population=40
+    /// mutation_probability=0.1`.
     pub(crate) fn words(&self, row: &[usize]) -> String {
         let one = |(factor, level): (&Factor, &usize)| {
             format!("{}={}", factor.name, factor.levels[*level])
@@ -148,7 +151,8 @@ impl Searches {
         asked.zip(found).map(one).collect()
     }
 
-    /// Returns the command line options that define these searches, each word preceded by a space.
+    /// Returns the command line options that define the searches of this sweep, each word preceded by a
+    /// space.
     pub(crate) fn arguments(&self) -> String {
         let mut text = String::new();
         for factor in &self.factors {

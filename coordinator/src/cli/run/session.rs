@@ -13,14 +13,12 @@ use study::{Stop, StudyError};
 
 /// Workers and start time of a session, one process that works on a run.
 pub(crate) struct Session {
-    /// Choice of local and remote workers.
     workers: WorkersChoice,
-    /// Time at which the command began.
+    /// Time at which the command of this session began.
     started: Instant,
 }
 
 impl Session {
-    /// Begins a session at the present time.
     pub(crate) fn begin(workers: &WorkersChoice) -> Self {
         Self {
             workers: workers.clone(),
@@ -93,8 +91,8 @@ impl Session {
     }
 }
 
-/// Returns whether repeating the command after this error may add results: true after an interruption or an
-/// evaluator error, false if the case or the workers are at fault.
+/// Returns whether repeating the command after this error may add results to the run: true after an
+/// interruption or an evaluator error, false if the case or the workers are at fault.
 fn can_go_on(error: &anyhow::Error) -> bool {
     let study = error.downcast_ref::<StudyError>();
     matches!(

@@ -3,12 +3,10 @@ use super::{command_line::quote_path, manifest::RunIdentity, searches::Searches}
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// File that is swept, with its content.
+/// File that a sweep works through, with its content.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SweptFile {
-    /// Path of the swept file.
     pub(crate) file: PathBuf,
-    /// Content of the swept file: a grid or a table of individuals.
     pub(crate) holds: FileContent,
 }
 
@@ -39,7 +37,8 @@ impl RunIdentity for SweptFile {
     }
 }
 
-/// Returns every combination of levels; the last factor varies fastest.
+/// Returns every combination of level indices, given the number of levels of each factor; the last factor
+/// varies fastest.
 pub(crate) fn combinations(levels: &[usize]) -> Vec<Vec<usize>> {
     let one = |rows: Vec<Vec<usize>>, count: &usize| {
         let longer = rows.iter().flat_map(|row| {

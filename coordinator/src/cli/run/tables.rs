@@ -20,7 +20,7 @@ use study::{
     WorkersSnapshot,
 };
 
-/// Returns the properties of the whole run, from its manifest, as names and values.
+/// Returns the properties of a run from its manifest, as names and values for the exported tables.
 pub(crate) fn run_properties<S: Serialize>(
     manifest: &Manifest<S>,
 ) -> anyhow::Result<Vec<(&'static str, String)>> {
@@ -71,7 +71,8 @@ pub(crate) fn run_properties<S: Serialize>(
     ])
 }
 
-/// Labels (purpose and generation) of simulations that were requested and have not returned, by job number.
+/// Labels (purpose and generation) of simulations that were requested and whose results are awaited, by job
+/// number.
 type Waiting = RefCell<BTreeMap<u64, ColumnLabel>>;
 
 /// Observer of a study that records the purpose and generation of each requested simulation.
@@ -110,20 +111,18 @@ fn comparison() -> ColumnLabel {
     }
 }
 
-/// Run from which tables are made.
+/// Run whose tables are exported.
 pub(crate) struct Source<'a> {
-    /// Run folder.
     pub(crate) folder: &'a RunFolder,
-    /// Case of the run.
     pub(crate) case: &'a Case,
-    /// Properties of the whole run, from [`facts`].
+    /// Properties of the whole run, from [`run_properties`].
     pub(crate) facts: Vec<(&'static str, String)>,
 }
 
 /// Writes the tables of a calibration as CSV files into its run folder and returns their paths.
 ///
 /// # Errors
-/// As [`make`].
+/// As [`export`].
 pub(crate) fn calibration(run: &Calibration) -> anyhow::Result<Vec<PathBuf>> {
     let format = Format::Csv;
     let target = Target {
@@ -143,8 +142,8 @@ pub(crate) fn calibration(run: &Calibration) -> anyhow::Result<Vec<PathBuf>> {
     Ok(exported.files)
 }
 
-/// Reads the journal of a run, repeats the study on it, and writes the tables; also returns notes on missing
-/// results.
+/// Reads the journal of a run, repeats its study with the recorded results, and writes the tables; also
+/// returns notes on missing results.
 ///
 /// # Errors
 /// If there is no journal, the target cannot be written, or the user stops.
@@ -213,7 +212,7 @@ pub(crate) fn export(
     Ok((store.finish()?, notes))
 }
 
-/// Adds a remedy to export errors that are caused by the target file or folder.
+/// Adds a remedy to an export error that is caused by the target file or folder.
 fn explained(error: StoreError) -> anyhow::Error {
     let help = match &error {
         StoreError::Foreign { .. } => "choose another place with --to, or replace it with --force",

@@ -10,15 +10,15 @@ use crate::cli::output::problem::Problem;
 use case::{Loaded, Overrides, load_with_notes, require_record};
 use std::path::{Path, PathBuf};
 
-/// Case with its measured records, and their sources.
+/// Case to fit, with its measured records and the places from which both were read.
 pub(crate) struct Target {
     /// Folder of the case.
     pub(crate) folder: PathBuf,
-    /// Folder of the measured records that replace those of the case.
+    /// Folder of the measured records that replace those of the case; `None` for the case's own.
     pub(crate) measured: Option<PathBuf>,
     /// Case as read from its folder.
     pub(crate) loaded: Loaded,
-    /// Start of the recalibration; none for the recommended values.
+    /// Values of the unknowns from which the recalibration starts; `None` for the recommended values.
     pub(crate) start: Option<Start>,
 }
 
@@ -76,8 +76,8 @@ impl Target {
         })
     }
 
-    /// Removes what an earlier session of this diagnosis added to the case, and restricts the start to the
-    /// remaining unknowns.
+    /// Removes the effects that an earlier session of this diagnosis added to the case, and restricts the
+    /// start to the remaining unknowns.
     pub(crate) fn without_additions_of(mut self, earlier: &Diagnosis) -> anyhow::Result<Self> {
         let stated = self.loaded.case.unknowns.clone();
         self.loaded = earlier.as_begun(self.loaded)?;
@@ -95,7 +95,7 @@ impl Target {
     }
 }
 
-/// Opens a calibration and checks that it is finished.
+/// Opens the calibration in a run folder and checks that it is finished.
 fn finished(folder: &RunFolder) -> anyhow::Result<Calibration> {
     let path = folder.path();
     let kind = folder.head()?.kind;

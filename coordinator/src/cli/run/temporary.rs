@@ -9,7 +9,8 @@ use dispatch::runtime::PAUSE_LIMIT;
 use protocol::case::Case;
 use study::{self, CompareRequest, Compared, Stop, StudyError};
 
-/// Executes `work` with `local_workers` local workers in a temporary run folder.
+/// Executes `work` with a dispatcher in a temporary run folder and with `local_workers` workers on this
+/// machine.
 ///
 /// # Errors
 /// If workers cannot be started, or the work fails.
@@ -39,7 +40,8 @@ pub(crate) fn with_temporary_run<T>(
     })
 }
 
-/// Evaluates and simulates sets of parameter values on local workers in a temporary run folder.
+/// Evaluates and simulates each of the given sets of parameter values on local workers in a temporary run
+/// folder.
 ///
 /// # Errors
 /// As [`with_temporary_run`] and [`study::compare()`].

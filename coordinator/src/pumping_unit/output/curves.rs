@@ -9,8 +9,9 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
-/// Returns the derivative curves with respect to the parameter unit `per`: of the gauges by gauge number (MPa
-/// per unit), and of suspension position and crank torque where the case has these channels.
+/// Returns the derivative curves of a revolution with respect to one parameter: gauge stresses by gauge
+/// number (MPa per unit `per` of the parameter), and suspension position and crank torque where the case has
+/// these channels.
 pub(in crate::pumping_unit) fn derivative(
     case: &Case,
     condition: usize,
@@ -56,12 +57,12 @@ pub(in crate::pumping_unit) fn predicted(case: &Case, band: &Band) -> Map<String
     said
 }
 
-/// Curves of a revolution, and its energy balance.
+/// Curves of a simulated crank revolution, and its energy balance, for JSON output.
 #[derive(Debug, Serialize)]
 pub(in crate::pumping_unit) struct CurvesOutput<'a> {
     /// Crank angle from bottom dead centre (deg).
     crank_deg: &'a [f64],
-    /// Stress by gauge number (MPa).
+    /// Stress curves of the strain gauges by gauge number (MPa).
     gauge_mpa: BTreeMap<String, &'a [f64]>,
     /// Tension of the back rope at the crossbeam (N).
     rope_tension_n: &'a [f64],
@@ -70,7 +71,7 @@ pub(in crate::pumping_unit) struct CurvesOutput<'a> {
     /// Tension of the twin rope at +z minus that at -z (N); absent where there is one rope.
     #[serde(skip_serializing_if = "Option::is_none")]
     twin_tension_difference_n: Option<TwinTensionOutput<'a>>,
-    /// Beam angle (deg).
+    /// Angle of the walking beam (deg).
     beam_deg: &'a [f64],
     /// Suspension height above its lowest design position (m).
     suspension_m: &'a [f64],

@@ -118,7 +118,7 @@ fn cannot_write(path: &Path) -> String {
     format!("cannot write {}", path.display())
 }
 
-/// Returns the influence lines as CSV text.
+/// Returns the influence lines of the reduced head's gauges as CSV text.
 fn influence(head: &ReducedHead) -> String {
     let mut text = "psi_deg".to_owned();
     for kind in ["normal", "tangential"] {
@@ -142,7 +142,8 @@ fn influence(head: &ReducedHead) -> String {
     text
 }
 
-/// Writes `head.vtu` into a folder, which is created if it does not exist.
+/// Writes the modes, displacement and stress of a reduced head to `head.vtu` in a folder, which is created if
+/// it does not exist.
 pub(crate) fn write_vtu(
     folder: &Path,
     mesh: &HeadMesh,

@@ -13,7 +13,6 @@ pub(crate) struct HeadOutput<'a> {
     case: &'a str,
     /// Name of the condition whose load is used for the quasi-static turn.
     condition: &'a str,
-    /// BLAKE3 hash of the mesh file.
     mesh_blake3: &'a str,
     /// Computing time of the reduction on the worker (s).
     wall_s: f64,
@@ -22,7 +21,7 @@ pub(crate) struct HeadOutput<'a> {
     lanczos_steps: usize,
     mass_kg: f64,
     modes: Vec<HeadModeOutput>,
-    /// Frequencies of the out-of-plane modes (Hz); absent where there is one rope.
+    /// Frequencies of the head's out-of-plane modes (Hz); absent in cases with one rope.
     #[serde(skip_serializing_if = "Option::is_none")]
     twin_modes_hz: Option<&'a [f64]>,
     /// Computed modes that were discarded because they couple less to the loads of a revolution; empty unless
@@ -30,12 +29,12 @@ pub(crate) struct HeadOutput<'a> {
     left_out: &'a [OmittedMode],
     /// Frequencies of modes in the case's table that do not move the rope surface (Hz).
     inert_table_modes_hz: &'a [f64],
-    /// Stress results of the quasi-static turn, by gauge number.
+    /// Stress results of the strain gauges over the quasi-static turn, by gauge number.
     gauges: BTreeMap<String, HeadGaugeOutput>,
 }
 
-/// Mode of the reduced head, compared with the case's modes table; the `table` fields and `mac` are null
-/// where the table has no matching mode.
+/// Mode of the reduced head, compared with the mode of the case's table that matches it; the `table` fields
+/// and `mac` (modal assurance criterion) are null where none matches.
 #[derive(Debug, Serialize)]
 pub(crate) struct HeadModeOutput {
     family: ModeFamily,
@@ -58,7 +57,6 @@ pub(crate) struct HeadGaugeOutput {
     influence_difference: f64,
 }
 
-/// Builds the output object of `horsehead head`.
 pub(crate) fn head<'a>(
     (case, condition): (&'a Case, &'a str),
     mesh_blake3: &'a str,

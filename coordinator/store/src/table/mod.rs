@@ -20,7 +20,7 @@ use protocol::{
     event::WorkerAccount,
 };
 
-/// Handles of all tables of an export.
+/// Handles of all tables of an export, by which rows are added to them.
 pub(super) struct Tables {
     pub(super) run: TableHandle<Fact>,
     pub(super) genes: TableHandle<Unknown>,
@@ -35,7 +35,7 @@ pub(super) struct Tables {
 }
 
 impl Tables {
-    /// Begins all tables.
+    /// Defines all tables in the export's output, in a fixed order, and returns their handles.
     pub(super) fn begin(book: &mut TableWriter, case: &Case) -> Result<Self, StoreError> {
         Ok(Self {
             run: book.begin("run", about::run())?,
@@ -52,7 +52,7 @@ impl Tables {
     }
 }
 
-/// Names of all tables.
+/// Names of all exported tables.
 pub(super) const NAMES: [&str; 10] = [
     "run",
     "genes",

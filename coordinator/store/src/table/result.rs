@@ -1,4 +1,4 @@
-//! Tables of results: requested individuals, outcome, cost, and scores.
+//! Definition of the exported tables of results: requested simulations, outcome, cost, and scores.
 use super::about::{column, gene_column};
 use crate::{
     column::{Columns, JOB},

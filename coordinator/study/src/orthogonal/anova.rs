@@ -3,16 +3,16 @@
 use super::range::{Response, mean, means};
 use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
-/// Share of the total sum of squares below which the residual sum is taken for rounding errors, with no F
-/// test.
+/// Share of the total sum of squares below which the error's sum of squares is taken for rounding, so that no
+/// F test is made.
 const ROUNDING: f64 = 1e-12;
 
-/// Source of variation.
+/// Source of variation in an analysis of variance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VarianceSource {
-    /// Factor with this index, from 0.
+    /// Factor of the design with this index, from 0.
     Factor(usize),
-    /// Blocks, whose variation is separated from the error.
+    /// Blocks of runs under like conditions, whose variation is separated from the error.
     Block,
     /// Residual error, explained by neither factors nor blocks.
     Error,
@@ -21,11 +21,11 @@ pub enum VarianceSource {
 /// Row of an analysis of variance table: one source of variation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AnovaTerm {
-    /// Source of variation.
+    /// Source of the variation that the row describes: a factor, the blocks or the error.
     pub source: VarianceSource,
     /// Sum of squares \[square of the unit of the response\].
     pub squares: f64,
-    /// Degrees of freedom.
+    /// Degrees of freedom of the source of variation.
     pub freedom: usize,
     /// F statistic of a factor (mean square over that of the error); none where the error is nothing but
     /// rounding.
@@ -44,7 +44,7 @@ impl AnovaTerm {
 /// Analysis of variance table: factors in their order, blocks if there are several, the error last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Anova {
-    /// Lines of the table.
+    /// Rows of the table: factors in their order, blocks if there are several, the error last.
     pub terms: Vec<AnovaTerm>,
 }
 
@@ -119,7 +119,8 @@ mod tests {
         assert_eq!(term.freedom, freedom);
     }
 
-    /// Checks the table of Montgomery's vascular grafts: one factor of four levels in six blocks.
+    /// Checks the analysis of variance of a textbook example (Montgomery's vascular grafts): one factor of
+    /// four levels in six blocks.
     #[test]
     fn a_randomised_block_design_of_the_textbook() {
         const YIELD: [[f64; 6]; 4] = [
@@ -149,7 +150,8 @@ mod tests {
         near(terms[0].p.unwrap(), 0.0019, 4);
     }
 
-    /// Checks the table of Montgomery's rocket propellant, a Latin square, as three columns of L25.
+    /// Checks the analysis of variance of a textbook Latin square (Montgomery's rocket propellant), computed
+    /// as three columns of the array L25.
     #[test]
     fn a_latin_square_of_the_textbook_is_part_of_an_array() {
         const RATE: [[f64; 5]; 5] = [

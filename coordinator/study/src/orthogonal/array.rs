@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 /// (Bose's construction, R. C. Bose 1938).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Array {
-    /// 9 rows, up to 4 factors of 3 levels.
+    /// Array of 9 runs, up to 4 factors of 3 levels.
     L9,
-    /// 16 rows, up to 5 factors of 4 levels.
+    /// Array of 16 runs, up to 5 factors of 4 levels.
     L16,
-    /// 25 rows, up to 6 factors of 5 levels.
+    /// Array of 25 runs, up to 6 factors of 5 levels.
     L25,
 }
 
@@ -20,7 +20,7 @@ impl Array {
     /// All arrays, the smallest first.
     pub const ALL: [Self; 3] = [Self::L9, Self::L16, Self::L25];
 
-    /// Returns the name of the array in the literature.
+    /// Returns the name of the array in the literature, for example `L9`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::L9 => "L9",
@@ -29,7 +29,7 @@ impl Array {
         }
     }
 
-    /// Returns the number of levels of every column.
+    /// Returns the number of levels of every factor of the array.
     pub const fn levels(self) -> usize {
         match self {
             Self::L9 => 3,
@@ -38,12 +38,12 @@ impl Array {
         }
     }
 
-    /// Returns the maximum number of factors.
+    /// Returns the maximum number of factors of the array, one per column.
     pub const fn columns(self) -> usize {
         self.levels() + 1
     }
 
-    /// Returns the levels of the first `factors` columns, row by row.
+    /// Returns the levels of the first `factors` factors in each run, run by run.
     pub fn rows(self, factors: usize) -> Vec<Vec<usize>> {
         let levels = self.levels();
         let pairs = (0..levels).flat_map(|a| (0..levels).map(move |b| (a, b)));

@@ -7,12 +7,12 @@ use super::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Factor of a design, with the levels that are compared.
+/// Factor of an orthogonal test, i.e. a search setting, with the levels that are compared.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Factor {
     /// Name of the factor.
     pub name: String,
-    /// Values of the levels as text.
+    /// Values of the factor at its levels, as text.
     pub levels: Vec<String>,
 }
 
@@ -29,13 +29,14 @@ impl Factor {
 /// Run of a design: the result of one search with given factor levels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrialRun {
-    /// Level of every factor, from 0.
+    /// Index of each factor's level in the run, from 0.
     pub levels: Vec<usize>,
-    /// Seed of the run; runs with the same seed form a block.
+    /// Seed of the run's search; runs with the same seed form a block.
     pub seed: u64,
-    /// Best objective of the run, in the objective's unit; none where no simulation was complete.
+    /// Best objective found by the run's search, in the objective's unit; none where no simulation was
+    /// complete.
     pub objective: Option<f64>,
-    /// Number of evaluations of the run.
+    /// Number of simulations that the run's search evaluated.
     pub evaluations: u64,
 }
 
@@ -48,14 +49,14 @@ impl TrialRun {
     }
 }
 
-/// Analysis of the runs of a design.
+/// Statistical analysis of the runs of an orthogonal test.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
-    /// Range analysis of every factor.
+    /// Range analysis of every factor: mean response per level and their spread.
     pub ranges: Vec<Range>,
-    /// Analysis of variance; none where the design is saturated.
+    /// Analysis of variance table; none where the design is saturated.
     pub anova: Option<Anova>,
-    /// Predicted response at the best levels.
+    /// Predicted response at the best level of every factor (log10 of the objective).
     pub predicted: f64,
 }
 
@@ -78,7 +79,7 @@ impl Analysis {
         })
     }
 
-    /// Returns the best level of every factor.
+    /// Returns the index of the best level of every factor.
     pub fn best(&self) -> Vec<usize> {
         self.ranges.iter().map(|range| range.best).collect()
     }
@@ -87,16 +88,17 @@ impl Analysis {
 /// Confirmation of an orthogonal test: runs at the best levels with new seeds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Confirmation {
-    /// Best level of every factor.
+    /// Index of the best level of every factor.
     pub levels: Vec<usize>,
     /// Response predicted at the best levels (log10 of the objective).
     pub predicted: f64,
-    /// Runs at the best levels, one per new seed.
+    /// Confirmation runs at the best levels, one per new seed.
     pub runs: Vec<TrialRun>,
 }
 
 impl Confirmation {
-    /// Returns the mean response; none if a run has no response.
+    /// Returns the mean response of the confirmation runs (log10 of the objective); none if a run found no
+    /// complete simulation.
     pub fn obtained(&self) -> Option<f64> {
         let responses: Option<Vec<f64>> = self.runs.iter().map(TrialRun::response).collect();
         let responses = responses.filter(|all| !all.is_empty())?;
@@ -107,11 +109,11 @@ impl Confirmation {
 /// Orthogonal test with its design, runs, analysis and confirmation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestResult {
-    /// Orthogonal array of the test.
+    /// Orthogonal array that defines the runs of the test.
     pub array: Array,
-    /// Factors of the test.
+    /// Factors (search settings) that the test compares, with their levels.
     pub factors: Vec<Factor>,
-    /// Runs of the test, row by row, each with every seed.
+    /// Runs of the test, in the order of the array's rows, each row with every seed.
     pub runs: Vec<TrialRun>,
     /// Analysis of the runs; none if a run has no complete simulation.
     pub analysis: Option<Analysis>,

@@ -1,24 +1,24 @@
 //! Range analysis: mean response at every level of a factor, and the range of these means.
 
-/// Observation of a design: one run with its response.
+/// Observation of a designed experiment: factor levels and response of one run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
-    /// Level of every factor, from 0.
+    /// Index of each factor's level in the observation, from 0.
     pub levels: Vec<usize>,
     /// Index of the block, from 0; runs of one block share conditions other than the factors.
     pub block: usize,
-    /// Response in any unit; smaller is better.
+    /// Observed response in any unit; smaller is better.
     pub response: f64,
 }
 
-/// Range analysis of one factor.
+/// Range analysis of one factor: mean response at each of its levels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Range {
-    /// Mean response at each level \[unit of the response\].
+    /// Mean response at each level of the factor \[unit of the response\].
     pub means: Vec<f64>,
-    /// Largest minus smallest mean \[unit of the response\].
+    /// Largest minus smallest mean response of the factor's levels \[unit of the response\].
     pub range: f64,
-    /// Level with the smallest mean; the first of equal ones.
+    /// Index of the factor's level with the smallest mean response; the first of equal ones.
     pub best: usize,
 }
 
@@ -69,7 +69,8 @@ mod tests {
     use super::*;
     use crate::orthogonal::Array;
 
-    /// Checks that additive effects are recovered and predict the best combination exactly.
+    /// Checks that the range analysis recovers additive effects of factors and predicts the best combination
+    /// exactly.
     #[test]
     fn additive_effects_come_back() {
         const EFFECTS: [[f64; 3]; 4] = [

@@ -17,7 +17,7 @@ const LIMIT: Duration = Duration::from_hours(24 * 365);
 pub struct SyntheticObjective<'a>(pub &'a Space);
 
 impl SyntheticObjective<'_> {
-    /// Computes the synthetic objective of an individual.
+    /// Computes the synthetic objective of an individual, given by the values of its unknowns.
     pub fn evaluate(&self, genes: &[f64]) -> EvaluationResult {
         let point = self.0.point(genes);
         let squares = point.iter().map(|x| (x - 0.3) * (x - 0.3));
@@ -28,8 +28,8 @@ impl SyntheticObjective<'_> {
     }
 }
 
-/// Runs a search to its end on `slots` simulated slots and returns its scaling result; `name` and
-/// `population` are copied into this.
+/// Runs a search on a simulated cluster of `slots` slots (parallel jobs) and returns its scaling result;
+/// `name` and `population` of the search are only copied into the result.
 pub fn project(
     (name, population): (&str, u64),
     strategy: Box<dyn Strategy>,

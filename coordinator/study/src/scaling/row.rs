@@ -12,12 +12,12 @@ pub enum SlotMode {
     /// Measured over TCP on loopback, with simulated workers in another process that sleep instead of
     /// computing; everything else is real.
     Slept,
-    /// Projected: the coordinator's scheduler on a simulated clock.
+    /// Projected: the coordinator's real scheduler ran on a simulated clock.
     Projected,
 }
 
 impl SlotMode {
-    /// Returns the name of the method, as in files.
+    /// Returns the name of the method, as written in result files.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Computed => "computed",
@@ -65,21 +65,21 @@ impl Shares {
 /// Scaling result of one search on one number of slots.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScalingRow {
-    /// Method by which the result was obtained.
+    /// Method by which the scaling result was obtained: measured or projected.
     pub how: SlotMode,
-    /// Name of the preset of the search.
+    /// Name of the settings preset with which the search was run.
     pub preset: String,
     /// Number of individuals per generation.
     pub population: u64,
-    /// Number of slots (jobs in parallel).
+    /// Number of slots (parallel jobs) of the search.
     pub slots: u64,
     /// Number of evaluations of the search.
     pub evaluations: u64,
-    /// Wall time from the first request to the last result \[s\].
+    /// Wall time of the search from its first request to its last result \[s\].
     pub wall_s: f64,
-    /// Computing time of the accepted results \[s\].
+    /// Computing time of the search's accepted results \[s\].
     pub useful_s: f64,
-    /// Use of slot time.
+    /// Shares of slot time by use during the search.
     pub shares: Shares,
     /// Processor time of the coordinator per result, including that of the search \[us\]; for a projection
     /// the assumed value.
@@ -131,7 +131,7 @@ impl Overheads {
 /// Scaling results of several searches, measured and projected.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScalingResult {
-    /// Measured inputs of the projection.
+    /// Measured times that are the inputs of the projection.
     pub overheads: Overheads,
     /// Assumptions of the projection, one sentence each.
     pub assumptions: Vec<String>,

@@ -30,9 +30,9 @@ const BUSY: usize = 256;
 /// Settings of one of the concurrent searches of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Search {
-    /// Settings of the search.
+    /// Settings of the search strategy.
     pub settings: Settings,
-    /// Seed of the search.
+    /// Seed of the random numbers of the search.
     pub seed: u64,
     /// Budget of evaluations; none for a search that ends as planned by its settings.
     pub evaluations: Option<u64>,
@@ -41,20 +41,19 @@ pub struct Search {
 /// Result of one of the concurrent searches of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchResult {
-    /// Best individual.
+    /// Best individual found by the search; none if there is none.
     pub best: Option<Best>,
     /// Number of evaluations, including those that other searches had already requested.
     pub evaluations: u64,
 }
 
-/// Search in progress.
 struct Running {
     strategy: Box<dyn Strategy>,
     /// Number of proposals that are evaluated; those with this id or a higher one are not.
     limit: u64,
 }
 
-/// Concurrent searches over one space, with a common store of results.
+/// Concurrent searches over one space that share their evaluation results.
 pub struct Sweep<'a> {
     case: &'a Case,
     space: &'a Space,
@@ -65,7 +64,7 @@ pub struct Sweep<'a> {
     /// Unfinished jobs, each with the searches (by number) and their proposals that wait for its result.
     open: BTreeMap<JobId, Vec<(usize, Proposal)>>,
     known: BTreeMap<JobId, Outcome>,
-    /// Job numbers of the run; none before the first call of [`Sweep::run`].
+    /// Numbers of the run's jobs by their content; none before the first call of [`Sweep::run`].
     numbers: Option<JobNumbers>,
     view: ProgressView,
     /// Log of failed evaluations, kept only until the first evaluation is complete.
@@ -73,7 +72,7 @@ pub struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// Creates a sweep without searches.
+    /// Creates a sweep over a search space, without searches yet.
     pub fn new(case: &'a Case, space: &'a Space) -> Self {
         Self {
             case,

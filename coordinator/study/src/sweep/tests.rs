@@ -64,7 +64,8 @@ async fn searches_do_not_disturb_each_other() {
     }
 }
 
-/// Checks that jobs of several searches whose hashes begin alike are not confused.
+/// Checks that different jobs of several searches get different numbers even if their content hashes begin
+/// alike.
 #[tokio::test]
 async fn searches_find_the_same_where_numbers_of_jobs_are_few() {
     let case = case();

@@ -2,7 +2,7 @@
 use serde_json::json;
 use std::fmt::Write as _;
 
-/// Format of the parameters file.
+/// Format of a Dakota parameters file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// Dakota's standard format: `value label`.

@@ -4,9 +4,9 @@ use crate::{Problem, number, problem::clip};
 /// Result of an evaluation as reported by a driver.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Results {
-    /// A value per function and, if the file contains them, gradients.
+    /// Value of each response function and, if the file contains them, gradients.
     Values {
-        /// Values in the order of the functions.
+        /// Values of the response functions, in the order of the functions.
         values: Vec<f64>,
         /// Derivatives of each function with respect to the variables; empty if the file contains none.
         gradients: Vec<Vec<f64>>,

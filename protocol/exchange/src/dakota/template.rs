@@ -17,7 +17,7 @@ enum Part {
 }
 
 impl Template {
-    /// Parses a template.
+    /// Parses a text template with `{name}` fields.
     ///
     /// # Errors
     /// A brace without its counterpart, or anything other than a name between braces.

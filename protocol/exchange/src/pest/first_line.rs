@@ -3,7 +3,7 @@ use crate::{Problem, problem::clip};
 
 /// Requirements on the first line of a template or instruction file.
 pub(super) struct FirstLine {
-    /// Keyword for the file type, e.g. `ptf`.
+    /// Keyword for the file type in the first line, e.g. `ptf`.
     pub(super) word: &'static str,
     /// Characters that may not be the delimiter, in addition to letters and digits.
     pub(super) forbidden_delimiters: &'static str,
@@ -14,7 +14,7 @@ pub(super) struct FirstLine {
 }
 
 impl FirstLine {
-    /// Returns the delimiter and the text after the first line.
+    /// Reads the first line of a file and returns the delimiter and the text after this line.
     ///
     /// # Errors
     /// An invalid first line.

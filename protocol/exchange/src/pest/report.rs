@@ -1,7 +1,7 @@
 //! Writers of PEST's result files: parameter values (`.par`) and residuals (`.rei`).
 use std::fmt::Write as _;
 
-/// Row of a `.par` file.
+/// Row of a `.par` file: the value of one parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParRow {
     /// Name of the parameter.
@@ -14,22 +14,22 @@ pub struct ParRow {
     pub offset: f64,
 }
 
-/// Row of a `.rei` file.
+/// Row of a `.rei` file: the residual of one observation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReiRow {
     /// Name of the observation.
     pub name: String,
-    /// Observation group.
+    /// Name of the observation group that contains the observation.
     pub group: String,
-    /// Measured value.
+    /// Measured value of the observation.
     pub measured: f64,
-    /// Value computed by the model.
+    /// Value of the observation computed by the model.
     pub modelled: f64,
-    /// Factor on the residual.
+    /// Factor on the residual of the observation.
     pub weight: f64,
 }
 
-/// Formats a `.par` file.
+/// Formats a PEST parameter value file (`.par`).
 pub fn par(rows: &[ParRow]) -> String {
     let mut text = "single point\n".to_owned();
     for row in rows {
@@ -48,7 +48,7 @@ pub fn par(rows: &[ParRow]) -> String {
     text
 }
 
-/// Formats a `.rei` file.
+/// Formats a PEST residual file (`.rei`).
 pub fn rei(rows: &[ReiRow]) -> String {
     let mut text = "MODEL OUTPUTS AT THE BEST PARAMETERS:\n\n".to_owned();
     let heads = [

@@ -14,7 +14,7 @@ const FIRST: FirstLine = FirstLine {
     remedy: "write it as the first line of the template",
 };
 
-/// Parsed template.
+/// Parsed PEST template: text with fixed-width fields for parameter values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Template {
     file: String,
@@ -25,11 +25,11 @@ pub struct Template {
 enum Part {
     Text(String),
     Field {
-        /// Name of the parameter in lower case.
+        /// Name in lower case of the parameter whose value fills the field.
         name: String,
-        /// Width of the field including both delimiters (characters).
+        /// Width of the template field including both delimiters (characters).
         width: usize,
-        /// Line number in the template.
+        /// Line number of the field in the template.
         line: usize,
     },
 }

@@ -23,13 +23,13 @@ const FRESH: Duration = Duration::from_millis(1200);
 pub(super) struct AllowList(BTreeMap<String, Arc<Semaphore>>);
 
 impl AllowList {
-    /// Creates a list in which no name has a connection yet.
+    /// Creates the list from the names of workers, none of which has a connection yet.
     pub(super) fn new(names: &BTreeSet<String>) -> Self {
         let places = |name: &String| (name.clone(), Arc::new(Semaphore::new(CONNECTIONS)));
         Self(names.iter().map(places).collect())
     }
 
-    /// Returns the connection semaphore of a name, if the name is on the list.
+    /// Returns the semaphore that limits a worker's connections, if its name is on the list.
     pub(super) fn places(&self, name: &str) -> Option<Arc<Semaphore>> {
         self.0.get(name).cloned()
     }
@@ -90,8 +90,8 @@ pub(super) async fn read_again(
     }
 }
 
-/// Returns the connection semaphore of a name; waits briefly for the next reading of the list if the name is
-/// not on it.
+/// Returns the semaphore that limits a worker's connections; if its name is not on the list, waits briefly
+/// for the next reading.
 pub(super) async fn places(
     mut listed: watch::Receiver<AllowList>,
     name: &str,

@@ -2,7 +2,7 @@
 use super::terms::CLOSE_OK;
 use quinn::{Connection, ConnectionError, RecvStream, SendStream, VarInt};
 
-/// Maximum number of bytes forwarded at a time.
+/// Maximum number of bytes of a stream that are forwarded at a time.
 const PIECE: usize = 64 << 10;
 
 /// Forwards all streams between two connections until one of them ends, then closes both.
@@ -26,7 +26,7 @@ pub(super) async fn forward_streams(outer: &Connection, inner: &Connection) {
     }
 }
 
-/// Forwards the single bidirectional stream, which the worker opens.
+/// Forwards in both directions the single bidirectional stream, which the worker opens.
 async fn both_ways(outer: &Connection, inner: &Connection) -> Result<(), ConnectionError> {
     let (outer_send, outer_receive) = outer.accept_bi().await?;
     let (inner_send, inner_receive) = inner.open_bi().await?;
@@ -37,7 +37,7 @@ async fn both_ways(outer: &Connection, inner: &Connection) -> Result<(), Connect
     Ok(())
 }
 
-/// Forwards all unidirectional streams in one direction.
+/// Forwards all unidirectional streams from one connection to the other.
 async fn one_way(from: &Connection, to: &Connection) -> Result<(), ConnectionError> {
     let mut passing = tokio::task::JoinSet::new();
     for priority in 0.. {

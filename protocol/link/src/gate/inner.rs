@@ -47,7 +47,8 @@ impl fmt::Debug for RouterConnector {
 }
 
 impl RouterConnector {
-    /// Creates the certificates of a router at a loopback port and of each worker's name.
+    /// Creates the in-memory certificates: one for the router at a loopback port, and one in each worker's
+    /// name.
     pub(crate) fn make(router: SocketAddr, owners: &BTreeSet<String>) -> Result<Self, LinkError> {
         let authority = for_memory()?;
         let valid = Validity::days(DAYS);

@@ -7,7 +7,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Minimum interval between log messages with the same reason.
+/// Minimum interval between two log messages with the same reason for a refusal.
 const PAUSE: Duration = Duration::from_mins(1);
 /// Maximum number of characters of a peer's name in a message.
 const SHOWN: usize = 64;

@@ -12,7 +12,7 @@ pub(crate) const CLOSE_OK: u32 = 0;
 pub(crate) const UNLISTED: u32 = 1;
 /// Close code for a peer whose certificate has reached its maximum number of connections.
 pub(crate) const CLOSE_TOO_MANY_CONNECTIONS: u32 = 2;
-/// Maximum duration of a handshake.
+/// Maximum duration of a TLS handshake at the gate.
 pub(crate) const HANDSHAKE: Duration = Duration::from_secs(3);
 /// Maximum number of connections, and of workers, per certificate, because all certificates share the
 /// router's sessions.

@@ -25,12 +25,12 @@ const BACKDATED: Duration = Duration::from_hours(24);
 /// Validity of an authority's certificate.
 const AUTHORITY_VALID: Duration = Duration::from_hours(24 * 3650);
 
-/// Validity period of a certificate.
+/// Validity period of a certificate to be created.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Validity {
-    /// Start of validity.
+    /// Start of the certificate's validity.
     pub from: SystemTime,
-    /// End of validity.
+    /// End of the certificate's validity.
     pub until: SystemTime,
 }
 
@@ -55,7 +55,7 @@ pub struct Authority {
 }
 
 impl Authority {
-    /// Creates an authority in a new or empty folder.
+    /// Creates a certificate authority in a new or empty folder.
     ///
     /// # Errors
     /// [`KeyError::Make`] if the folder is not empty or cannot be written.
@@ -225,7 +225,7 @@ impl Authority {
     }
 }
 
-/// Creates an authority that is kept in memory only.
+/// Creates a certificate authority that is kept in memory only.
 pub(crate) fn for_memory() -> Result<Authority, KeyError> {
     Authority::generate(Path::new("the inner certificates"))
 }

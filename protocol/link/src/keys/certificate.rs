@@ -18,7 +18,6 @@ use x509_parser::{
     certificate::X509Certificate, extensions::GeneralName, prelude::FromDer, time::ASN1Time,
 };
 
-/// Returns the cryptography provider, the one that the transport also uses.
 pub(crate) fn provider() -> Arc<CryptoProvider> {
     Arc::new(ring::default_provider())
 }
@@ -27,7 +26,7 @@ pub(crate) fn provider() -> Arc<CryptoProvider> {
 #[derive(Debug)]
 pub(super) struct Certificate {
     path: PathBuf,
-    /// Common name; empty if the certificate has none.
+    /// Common name of the certificate; empty if it has none.
     pub(super) name: String,
     /// First host name or address in the certificate; empty if it has none.
     host: String,
@@ -36,7 +35,7 @@ pub(super) struct Certificate {
 }
 
 impl Certificate {
-    /// Parses the first certificate of a chain.
+    /// Parses the first certificate of a chain; `path` is its file, for error messages.
     pub(super) fn parse(path: &Path, chain: &[CertificateDer<'_>]) -> Result<Self, KeyError> {
         let not = || KeyError::NotPem {
             path: path.to_owned(),

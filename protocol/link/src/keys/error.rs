@@ -1,4 +1,4 @@
-//! Errors of key material, by file, with remedies.
+//! Errors of key material (certificates, private keys, list of workers), each with its file and remedy.
 use protocol::name::NameError;
 use std::path::PathBuf;
 
@@ -6,21 +6,21 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KeyError {
-    /// The folder does not exist.
+    /// The folder for key material does not exist.
     #[error("there is no folder {} with key material: `horsehead keys new DIR` makes one", folder.display())]
     NoFolder {
-        /// Folder as given by the caller.
+        /// Path of the missing folder as given by the caller.
         folder: PathBuf,
     },
-    /// A file does not exist.
+    /// A file of the key material does not exist.
     #[error("{} is missing: {remedy}", path.display())]
     Missing {
-        /// Missing file.
+        /// Path of the missing file.
         path: PathBuf,
         /// Action that provides the missing file.
         remedy: String,
     },
-    /// A file cannot be read.
+    /// A file of the key material cannot be read.
     #[error("{} cannot be read: {reason}", path.display())]
     Unreadable {
         /// File that cannot be read.
@@ -31,29 +31,30 @@ pub enum KeyError {
     /// A file does not contain the expected PEM item.
     #[error("{} holds no {what} in PEM", path.display())]
     NotPem {
-        /// File without the item.
+        /// File that lacks the expected PEM item.
         path: PathBuf,
-        /// Item that the file should contain.
+        /// PEM item that the file should contain, such as a private key.
         what: &'static str,
     },
     /// Certificate and key do not match.
     #[error("the key beside {} is not the one of that certificate", path.display())]
     Mismatch {
-        /// File of the certificate.
+        /// File of the certificate that does not match its key.
         path: PathBuf,
     },
     /// The certificate has expired or is not valid yet.
     #[error("{} {when}: `horsehead keys` makes a new one (and check this machine's clock)", path.display())]
     Date {
-        /// File of the certificate.
+        /// File of the certificate that is outside its validity period.
         path: PathBuf,
-        /// Part of the message that states since when or from when the date is invalid.
+        /// Part of the error message that states since when the certificate has been expired, or from when it
+        /// is valid.
         when: String,
     },
     /// The certificate was signed by another authority.
     #[error("{} was not signed by the authority of {}: both must come from the same `horsehead keys new`", path.display(), ca.display())]
     OtherAuthority {
-        /// File of the certificate.
+        /// File of the certificate that another authority signed.
         path: PathBuf,
         /// File of the authority's certificate.
         ca: PathBuf,
@@ -61,12 +62,12 @@ pub enum KeyError {
     /// The certificate is not suitable for this end of the link.
     #[error("{} cannot be used here: {reason}", path.display())]
     Unfit {
-        /// File of the certificate.
+        /// File of the certificate that is not suitable.
         path: PathBuf,
         /// Error message of the verifier.
         reason: String,
     },
-    /// A name is not allowed on the bus.
+    /// A worker's name is not allowed on the bus.
     #[error("{}: {source}", path.display())]
     Name {
         /// File that contains the name.

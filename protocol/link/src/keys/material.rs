@@ -1,4 +1,4 @@
-//! Names and contents of the files of key material.
+//! File names of key material, and the reading of its contents.
 use super::error::KeyError;
 use protocol::name::check_owner;
 use rustls::{
@@ -68,7 +68,7 @@ pub(super) fn certificates(
     }
 }
 
-/// Reads a file; the error for a missing file carries the remedy.
+/// Reads a file of the key material; the error for a missing file states the remedy.
 pub(super) fn readable(path: &Path, role: KeyRole) -> Result<Vec<u8>, KeyError> {
     fs::read(path).map_err(|error| {
         let path = path.to_owned();
@@ -107,7 +107,7 @@ fn remedy(folder: &Path, role: KeyRole) -> String {
     }
 }
 
-/// Reads the names of a list of workers.
+/// Reads the worker names from the file that lists the workers that may join.
 pub(super) fn read_workers(path: &Path) -> Result<BTreeSet<String>, KeyError> {
     let bytes = readable(path, KeyRole::Coordinator)?;
     let text = String::from_utf8_lossy(&bytes);

@@ -20,18 +20,18 @@ use std::{
 use tokio::sync::mpsc;
 use zenoh::{Session, bytes::Encoding, sample::SampleKind};
 
-/// Settings for opening a coordinator's end.
+/// Settings for opening a coordinator's end of the link.
 #[derive(Clone, Debug)]
 pub struct CoordinatorOptions {
     /// Addresses to listen on; a port of 0 is replaced by a free one.
     pub listen: Vec<Locator>,
-    /// Whether unencrypted addresses may be open to the network.
+    /// Whether the coordinator may listen unencrypted on addresses that other machines can reach.
     pub insecure: bool,
     /// Key material for QUIC, including the names of the workers that may join.
     pub keys: Option<Keys>,
-    /// Run that the coordinator serves.
+    /// Id of the run that the coordinator serves.
     pub run: RunId,
-    /// Content that workers may fetch.
+    /// Content (the encoded case) that workers may fetch.
     pub blob: Blob,
 }
 
@@ -51,7 +51,7 @@ pub struct ZenohCoordinator {
 }
 
 impl ZenohCoordinator {
-    /// Opens the router and starts to listen.
+    /// Opens the coordinator's embedded router and starts to listen.
     ///
     /// # Errors
     /// [`LinkError::Exposed`] or [`LinkError::NoKeys`] for addresses that may not be listened on as given;

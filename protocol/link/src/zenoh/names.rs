@@ -57,12 +57,12 @@ impl Names {
         Some(id)
     }
 
-    /// Returns the name of a worker id.
+    /// Returns the name on the bus of the worker with this id.
     pub(super) fn of(&self, id: WorkerId) -> Option<&WorkerName> {
         self.known.get(&id).map(|known| &known.name)
     }
 
-    /// Removes a worker that is gone.
+    /// Removes the name of a worker that has left.
     pub(super) fn forget(&mut self, id: WorkerId) {
         if let Some(known) = self.known.remove(&id)
             && let Some(owner) = self.owners.get_mut(known.name.owner())

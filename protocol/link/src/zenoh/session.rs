@@ -26,7 +26,7 @@ const SESSIONS: usize = 1000;
 /// not keep others out, and each costs little more than its socket.
 const PENDING: usize = 8192;
 
-/// Returns the session configuration common to both ends.
+/// Returns the zenoh configuration common to coordinator and worker.
 pub(super) fn common(locators: &[&Locator], tls: &Value) -> Value {
     // no other protocol than those asked for: a peer cannot choose a weaker one
     let protocols: BTreeSet<&str> = locators.iter().map(|at| at.protocol.name()).collect();

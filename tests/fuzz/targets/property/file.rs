@@ -25,7 +25,7 @@ fn names_the_file(error: &dyn Display, name: &str) {
     assert!(words.contains(name), "{words}");
 }
 
-/// Encodes a journal entry: mark, length, checksum and the given body.
+/// Encodes a journal entry: start mark, length, checksum and the given body.
 pub fn record(body: &[u8]) -> Vec<u8> {
     let length = u32::try_from(body.len()).expect("inputs are short");
     let checked = [&length.to_le_bytes(), body].concat();
@@ -52,7 +52,7 @@ pub fn is_read_or_reported(folder: &Path, bytes: &[u8]) -> ReadReport {
     report
 }
 
-/// Checks that the bytes are either a valid case or rejected with an error message.
+/// Checks that the bytes of a case file are either a valid case or rejected with an error message.
 pub fn is_a_case_or_refused(folder: &Path, bytes: &[u8]) {
     file(folder, "case.toml", bytes);
     if let Err(error) = case::check(folder, &Overrides::default()) {

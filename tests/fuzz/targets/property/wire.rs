@@ -5,8 +5,8 @@ use protocol::{
 };
 use serde::{Serialize, de::DeserializeOwned};
 
-/// Checks that a frame is either accepted completely or rejected, and that the header alone determines the
-/// body length.
+/// Checks that the bytes are either accepted completely as a frame or rejected, and that the header alone
+/// determines the body length.
 pub fn is_a_frame_or_refused(bytes: &[u8]) {
     for kind in FrameKind::ALL {
         let opened = wire::parse_frame(kind, bytes);

@@ -19,7 +19,7 @@ use search::strategy::CATALOGUE;
 use serde_json::Value;
 use std::{fs, time::Duration};
 
-/// Settings with which each preset ends within a second, for presets that need them.
+/// Settings with which a search preset ends within a second, for each preset that needs them.
 const SHORT: &[(&str, &[&str])] = &[
     ("paper", &["population=24", "generations=12"]),
     ("paper-batch", &["population=24", "generations=12"]),
@@ -31,8 +31,8 @@ const SHORT: &[(&str, &[&str])] = &[
     ("l-shade", &["evaluations=200"]),
 ];
 
-/// Checks that each preset improves the objective of a case with a model unknown to the program (random
-/// sampling need only give a finite value).
+/// Checks that each search preset improves the objective of a case with a model unknown to the program
+/// (random sampling need only give a finite value).
 #[test]
 fn every_preset_calibrates() {
     let rig = Rig::new();

@@ -62,7 +62,7 @@ fn diagnosed(rig: &Rig, cycles: usize) -> Diagnosis {
     }
 }
 
-/// Returns the effect that record number `which` hides: its name, the values of the unknowns and the effects.
+/// Returns the effect hidden in record number `which`: its name, the values of the unknowns and the effects.
 fn hiding(which: u64) -> (&'static str, Values, Effects) {
     let none = Effects::default();
     let size = 1.0 + (which / 5) as f64 * 0.4;
@@ -110,7 +110,7 @@ fn hiding(which: u64) -> (&'static str, Values, Effects) {
     }
 }
 
-/// Returns whether the verdict of a diagnosis claims an effect, listed or unlisted.
+/// Returns whether a diagnosis concludes that an effect is present, whether in the library of effects or not.
 fn claims(answer: &Diagnosis) -> bool {
     matches!(
         answer.verdict,

@@ -59,7 +59,7 @@ impl Rig {
         Self::hiding(&values, &Effects::default(), 0)
     }
 
-    /// Creates the case with records without a hidden effect.
+    /// Creates the case with records that contain no hidden effect.
     pub(crate) fn healthy() -> Self {
         Self::hiding(&HIDDEN, &Effects::default(), 0)
     }

@@ -24,7 +24,7 @@ pub(super) fn kloss(
 
 #[derive(Clone, Copy, Debug)]
 struct Motor {
-    /// Slip of the motor at rated torque.
+    /// Slip of the motor at rated torque, as a fraction of synchronous speed \[1\].
     slip: f64,
     /// Rated torque of the motor, referred to the crank [N m].
     rated: f64,
@@ -34,9 +34,9 @@ struct Motor {
     inertia: f64,
 }
 
-/// Integration steps per turn.
+/// Number of time integration steps per crank turn.
 const STEPS: usize = 11_520;
-/// Number of integrated turns, after which the speed is periodic.
+/// Number of crank turns that are integrated until the speed is periodic.
 const TURNS: usize = 3;
 /// Number of samples per turn of the net torque and of the crank's lead.
 const NODES: usize = 720;

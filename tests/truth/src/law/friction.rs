@@ -42,7 +42,8 @@ struct Bearing {
     speed: f64,
 }
 
-/// Speed below which the sign function is replaced by a line [rad/s].
+/// Angular velocity of the bearing below which the sign function of its friction is replaced by a line
+/// [rad/s].
 const HARD: f64 = 3e-4;
 
 impl Effect for Bearing {
@@ -70,7 +71,7 @@ impl HiddenEffect for Bearing {}
 #[derive(Clone, Debug)]
 struct BearingFriction {
     law: Bearing,
-    /// Bearing load divided by its mean, as a function of the crank turn.
+    /// Load on the bearing divided by its mean, as a function of the crank turn \[1\].
     share: Splines,
 }
 

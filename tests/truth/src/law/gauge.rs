@@ -15,7 +15,7 @@ fn gauge_weights(draw: &mut RandomStream, shape: &mut Shape) -> [f64; 4] {
     shares
 }
 
-/// Creates a pure delay of all gauge channels in the amplifiers.
+/// Creates a pure time delay of all gauge signals in the amplifiers.
 pub(super) fn delay(size: f64, _: &mut RandomStream, _: &mut Shape) -> Arc<dyn HiddenEffect> {
     Arc::new(Delay { time: size })
 }
@@ -36,7 +36,7 @@ impl HiddenEffect for Delay {
     }
 }
 
-/// Creates a gain error for each gauge, with a slight nonlinearity in the stress.
+/// Creates a gain error of each strain gauge, with a slight nonlinearity in the stress.
 pub(super) fn gain(size: f64, draw: &mut RandomStream, shape: &mut Shape) -> Arc<dyn HiddenEffect> {
     let bend = record_shape(shape, "per_megapascal_1", draw.between(-2e-4, 2e-4));
     Arc::new(Gain {

@@ -5,13 +5,13 @@ use simulation::effect::Effect;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Hidden effect with its size. The supertrait [`Effect`] acts on the machine itself, including its load; the
-/// methods here change the load card and the readings on their way to the record.
+/// Hidden effect of a given size. The supertrait [`Effect`] acts on the machine itself, including its load;
+/// the methods here change the load card and the readings on their way to the record.
 pub trait HiddenEffect: Effect {
     /// Converts the true load card to the delivered one \[N\]; the crank turns with `speed` [rad/s].
     fn distort_card(&self, _card: &mut Vec<f64>, _speed: f64) {}
 
-    /// Changes the sensor readings of one turn.
+    /// Changes the sensor readings of one simulated crank turn.
     fn distort_readings(&self, _turn: &mut Turn) {}
 
     /// Returns the zero drift of the gauges \[MPa\] at a number of turns after the start of the record.
@@ -36,11 +36,11 @@ pub struct EffectKind {
     pub signed: bool,
     /// Largest size of the effect in multiples of `scale`.
     pub largest_multiple: f64,
-    /// Constructor of the effect, which draws its shape parameters and records them.
+    /// Constructor of the effect, which draws its shape parameters and stores them in the given map.
     build: fn(f64, &mut RandomStream, &mut Shape) -> Arc<dyn HiddenEffect>,
 }
 
-/// Shape parameters of an effect, by name including the unit.
+/// Drawn shape parameters of a hidden effect, by names that end in the units.
 pub type Shape = BTreeMap<String, f64>;
 
 /// Effect hidden in a record.
@@ -57,7 +57,7 @@ pub struct PlantedEffect {
 }
 
 impl EffectKind {
-    /// Creates a hidden effect of this kind whose size is `times` the typical size.
+    /// Creates a hidden effect of this kind whose size is `times` the kind's typical size.
     pub fn instantiate(self, times: f64, draw: &mut RandomStream) -> PlantedEffect {
         let size = times.clamp(-self.largest_multiple, self.largest_multiple) * self.scale;
         let mut shape = Shape::new();
@@ -71,7 +71,7 @@ impl EffectKind {
     }
 }
 
-/// Records a drawn shape parameter for the answer and returns its value.
+/// Stores a drawn shape parameter of a hidden effect for the sealed answer and returns its value.
 pub(super) fn record_shape(shape: &mut Shape, name: &str, value: f64) -> f64 {
     shape.insert(name.to_owned(), value);
     value

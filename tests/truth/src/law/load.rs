@@ -10,7 +10,7 @@ use simulation::model::description::Description;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Creates a late card: the true load precedes the delivered card.
+/// Creates a late load card: the true load precedes the delivered card by a crank angle.
 pub(super) fn late_card(size: f64, _: &mut RandomStream, _: &mut Shape) -> Arc<dyn HiddenEffect> {
     Arc::new(LateCard { time: size })
 }
@@ -88,7 +88,7 @@ impl HiddenEffect for SlowLogger {
     }
 }
 
-/// Creates a card smoothed by a moving average.
+/// Creates a load card smoothed by a moving average over the crank angle.
 pub(super) fn moving_average(
     size: f64,
     _: &mut RandomStream,
@@ -117,7 +117,7 @@ impl HiddenEffect for MovingAverage {
     }
 }
 
-/// Creates a card truncated to its mean and `size` harmonics.
+/// Creates a load card truncated to its mean and its first `size` harmonics.
 pub(super) fn truncated_card(
     size: f64,
     _: &mut RandomStream,
@@ -167,7 +167,7 @@ struct Pound {
     blow: f64,
 }
 
-/// Natural frequency of the rods \[Hz\] and decay time of their oscillation \[s\].
+/// Natural frequency of the pump rods \[Hz\] and decay time of their oscillation \[s\].
 const RODS: (f64, f64) = (0.739, 2.0);
 
 impl Effect for Pound {
@@ -243,7 +243,8 @@ struct RodResponse {
     cycle: Cycle,
 }
 
-/// Speed deviation at which the rods' impedance is a quarter larger [m/s].
+/// Deviation of the suspension's speed from the regular one at which the rods' impedance is a quarter larger
+/// [m/s].
 const FAST: f64 = 0.4;
 
 impl LineForce for RodResponse {

@@ -65,14 +65,14 @@ impl Tolerance {
     }
 }
 
-/// Values of the nuisance parameters in one test.
+/// Values of the nuisance parameters (instrument, bearing and balance errors) drawn for one test.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Nuisances {
     /// Relative gain error of each gauge.
     pub gauge_factor: [f64; 4],
     /// Delay of the recorded crank angle \[deg\].
     pub index_deg: f64,
-    /// Relative excess of the delivered card's load.
+    /// Relative excess of the load in the delivered card over the true load.
     pub load_cell: f64,
     /// Delay of the gauge signals in the amplifiers \[s\].
     pub amplifier_lag_s: f64,

@@ -91,8 +91,9 @@ struct FrontPull {
 }
 
 impl FrontPull {
-    /// Returns `P / sqrt(m)`, `y sin(theta)`, `y cos(theta)`, `sin(theta)` and `cos(theta)`, with load `P`,
-    /// modal coordinate `y` and beam angle `theta`.
+    /// Returns the terms from which force, tangent and potential are built: `P / sqrt(m)`, `y sin(theta)`, `y
+    /// cos(theta)`, `sin(theta)` and `cos(theta)`, with load `P`, modal coordinate `y` and beam angle
+    /// `theta`.
     fn parts(&self, at: &Instant<'_>) -> [f64; 5] {
         let (s, c) = (sin(at.q[self.beam]), cos(at.q[self.beam]));
         let y = at.q[self.mode];

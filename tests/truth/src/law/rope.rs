@@ -125,7 +125,7 @@ impl Effect for Bedding {
 impl HiddenEffect for Bedding {}
 
 impl Bedding {
-    /// Returns the tension \[N\] at a strain, and its derivative by the strain.
+    /// Returns the tension of the rope \[N\] at a strain, and its derivative by the strain.
     fn tension_at(&self, strain: f64, stiffness: f64) -> [f64; 2] {
         let toe = self.strain / self.tension;
         let straight = 1.0 / stiffness;
@@ -141,7 +141,8 @@ impl Bedding {
         [2.0 * strain / (linear + root), 1.0 / root]
     }
 
-    /// Returns the complementary energy per length: the integral of the strain over the tension [J/m].
+    /// Returns the complementary energy of the rope per length: the integral of the strain over the tension
+    /// [J/m].
     fn complementary(&self, tension: f64, stiffness: f64) -> f64 {
         let straight = 0.5 * tension * tension / stiffness;
         let u = tension / self.tension;
@@ -178,7 +179,7 @@ pub(super) fn stretch(size: f64, _: &mut RandomStream, _: &mut Shape) -> Arc<dyn
 
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
-    /// Total stretch of the back rope \[m\].
+    /// Total construction stretch of the back rope \[m\].
     length: f64,
 }
 

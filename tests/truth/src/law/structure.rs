@@ -35,8 +35,8 @@ struct Worn {
 const HALF_ROW: i32 = 6;
 
 impl Worn {
-    /// Returns the depth \[m\] and the position \[deg\] of each hollow, and the width shared by all hollows
-    /// \[deg\].
+    /// Returns depth \[m\] and angle on the head \[deg\] of each hollow of the worn area, and the width
+    /// shared by all hollows \[deg\].
     fn row(&self) -> (Vec<(f64, f64)>, f64) {
         let half = 0.5 * self.base;
         let spacing = half / f64::from(HALF_ROW);

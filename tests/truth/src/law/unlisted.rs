@@ -212,7 +212,7 @@ pub(super) fn rub(size: f64, draw: &mut RandomStream, shape: &mut Shape) -> Arc<
 #[derive(Clone, Copy, Debug)]
 struct Rub {
     force: f64,
-    /// Centre of the rubbing section, as a share of the stroke.
+    /// Centre of the guide's rubbing section, as a share of the stroke.
     at: f64,
     width: f64,
 }

@@ -16,20 +16,20 @@ use simulation::math::spline::Splines;
 use std::sync::Arc;
 use time::CycleTimes;
 
-/// Measured values of one instant in a test record.
+/// Sensor values recorded at one instant of a test record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Time \[s\].
+    /// Time at which the sample was taken, counted from the first index pulse \[s\].
     pub time: f64,
     /// Crank angle from bottom dead centre, interpolated between index pulses \[deg\].
     pub crank: f64,
-    /// Stress at gauges 1 to 4 \[MPa\].
+    /// Measured stress at gauges 1 to 4 \[MPa\].
     pub stress: [f64; 4],
     /// Load of the delivered card at this crank angle \[N\].
     pub load: f64,
-    /// Height of the suspension point \[m\].
+    /// Measured height of the suspension point \[m\].
     pub position: f64,
-    /// Net torque at the crank [N m].
+    /// Measured net torque at the crank [N m].
     pub torque: f64,
 }
 
@@ -37,11 +37,11 @@ pub struct Sample {
 /// speed, from which sensitivities are computed.
 #[derive(Clone, Debug)]
 pub struct Turns {
-    /// Turn at nominal load and speed.
+    /// Crank turn simulated at nominal load and speed.
     pub plain: Turn,
-    /// Turn with the load swing increased by [`MORE_LOAD`].
+    /// Crank turn simulated with the load swing increased by [`MORE_LOAD`].
     pub loaded: Turn,
-    /// Turn with the speed increased by [`MORE_SPEED`].
+    /// Crank turn simulated with the speed increased by [`MORE_SPEED`].
     pub fast: Turn,
 }
 
@@ -53,7 +53,7 @@ pub const MORE_SPEED: f64 = 0.005;
 /// Number of interpolated channels of a turn: four gauges, position, torque.
 const CHANNELS: usize = 6;
 
-/// Generates the samples of a record; also returns the number of lost samples.
+/// Generates the samples of a test record; also returns the number of samples that the wireless link lost.
 pub fn record(
     turns: &Turns,
     card: &[f64],
@@ -98,7 +98,7 @@ pub fn record(
     (samples, link.lost)
 }
 
-/// Sensor curves of a simulated turn, and their sensitivities to load swing and speed.
+/// Sensor curves of a simulated crank turn, and their sensitivities to load swing and speed.
 struct Curves {
     plain: Splines,
     by_load: Splines,

@@ -4,7 +4,7 @@ use crate::draw::RandomStream;
 /// Sensor properties, as in the case's own records.
 #[derive(Clone, Copy, Debug)]
 pub struct Sensors {
-    /// Sampling rate \[Hz\].
+    /// Sampling rate of all sensors \[Hz\].
     pub rate: f64,
     /// Standard deviation of the noise of a gauge \[MPa\].
     pub gauge_noise: f64,
@@ -27,7 +27,7 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// Returns the default sensors with all noise multiplied by a factor.
+    /// Returns the default sensors with the noise of all of them multiplied by a factor.
     pub fn with_noise(factor: f64) -> Self {
         Self {
             rate: 100.0,
@@ -91,7 +91,7 @@ impl Link {
         }
     }
 
-    /// Returns whether a sample arrives; the first always does.
+    /// Returns whether the wireless link delivers the next sample; it always delivers the first.
     pub(super) fn delivers(&mut self, number: f64, draw: &mut RandomStream) -> bool {
         let in_burst = (self.burst[0]..self.burst[1]).contains(&number);
         let single = draw.unit() < self.share;

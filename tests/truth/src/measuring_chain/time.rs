@@ -4,7 +4,7 @@ use crate::draw::RandomStream;
 
 /// True and indicated start times of the cycles, and the load and speed variation of each cycle.
 pub(super) struct CycleTimes {
-    /// True start time of each cycle, with some cycles more than recorded \[s\].
+    /// True start time of each cycle, with some cycles more than are recorded \[s\].
     begin: Vec<f64>,
     /// Start time of each cycle as marked by the index pulse \[s\].
     pulse: Vec<f64>,
@@ -47,19 +47,19 @@ impl CycleTimes {
         }
     }
 
-    /// Returns the true number of crank turns since the start of the first cycle.
+    /// Returns the true number of crank turns from the start of the first cycle to a time \[s\].
     pub(super) fn turns_at(&self, at: f64) -> f64 {
         Self::share(&self.begin, at)
     }
 
-    /// Returns the crank angle as interpolated between index pulses \[deg\].
+    /// Returns the crank angle at a time as interpolated between index pulses \[deg\].
     pub(super) fn indicated(&self, at: f64) -> f64 {
         let turned = Self::share(&self.pulse, at);
         360.0 * (turned - turned.floor())
     }
 
-    /// Returns the index of the interval between two marks that contains a time, plus the elapsed fraction of
-    /// that interval.
+    /// Returns the index of the interval between two cycle start marks that contains a time, plus the elapsed
+    /// fraction of that interval.
     fn share(marks: &[f64], at: f64) -> f64 {
         let left = marks
             .partition_point(|mark| *mark <= at)

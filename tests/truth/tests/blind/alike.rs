@@ -21,7 +21,8 @@ fn unit() -> PumpingUnit {
     PumpingUnit::of(case).expect("the case")
 }
 
-/// Returns the parameters of the library's effect that correspond to a hidden effect.
+/// Returns the parameter values at which the library's effect of the same identifier corresponds to a hidden
+/// effect.
 fn setting(hidden: &PlantedEffect) -> EffectSetting {
     let id = hidden.kind.id;
     let own = &hidden.shape;
@@ -69,7 +70,7 @@ fn setting(hidden: &PlantedEffect) -> EffectSetting {
     EffectSetting::new(id, &parameters)
 }
 
-/// Returns the gauge curves without their means, concatenated.
+/// Returns the stress curves of all gauges, each with its mean subtracted, concatenated into one vector.
 fn signal(turn: &Turn) -> Vec<f64> {
     let channel = |curve: &Vec<f64>| {
         let mean = curve.iter().sum::<f64>() / curve.len() as f64;
@@ -134,7 +135,7 @@ fn what_is_hidden_under_a_name_looks_like_the_effect_of_that_name() {
     }
 }
 
-/// Simulates the machine with an effect of the library.
+/// Simulates one crank revolution of the pumping unit with an effect of the library.
 fn run_library(unit: &PumpingUnit, effect: &EffectSetting, values: &[f64]) -> Turn {
     use simulation::integrator::tableau::TR_BDF2;
     use simulation::run::{RunSettings, simulate};

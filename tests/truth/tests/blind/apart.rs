@@ -1,7 +1,8 @@
 //! Checks that the programs under test contain no string of this crate.
 use std::{fs, path::Path};
 
-/// Strings that only this crate contains and that remain in its compiled program.
+/// Strings that occur only in this crate and in its compiled program, so that finding one elsewhere reveals a
+/// leak.
 const WORDS: [&str; 5] = [
     "horsehead blind suite draws",
     "breakdown_over_rated_1",

@@ -9,7 +9,6 @@ fn truth(arguments: &[&str]) -> String {
     run(Command::new(env!("CARGO_BIN_EXE_truth")).args(arguments))
 }
 
-/// Runs a program, asserts that it succeeds and returns its standard output.
 pub(crate) fn run(command: &mut Command) -> String {
     let out = command
         .stderr(Stdio::inherit())
@@ -80,7 +79,7 @@ const CONSIDERED: [&str; 6] = [
     "gauge_drift",
 ];
 
-/// Returns the library's named effects outside [`CONSIDERED`], as an argument of `--without`.
+/// Returns the `--without` argument that excludes every named effect of the library except [`CONSIDERED`].
 fn without() -> String {
     let library = worker::SIMULATORS[0].effects().into_iter();
     let named = library
@@ -104,12 +103,13 @@ pub(crate) const FRICTION: [&str; 10] = [
     "4",
 ];
 
-/// Set of records in a scratch folder, with its case and its sealed answer.
+/// Set of records in a scratch folder, with a copy of the case and its answer file, which is sealed by a hash
+/// commitment.
 pub(crate) struct Trial {
     scratch: tempfile::TempDir,
-    /// Folder of the records.
     pub(crate) set: PathBuf,
-    /// Commitment printed by `truth make`.
+    /// Commitment to the hidden effects, as printed by `truth make`: hash of the answer file, which `truth
+    /// open` checks.
     commitment: String,
 }
 
@@ -142,7 +142,7 @@ impl Trial {
         }
     }
 
-    /// Returns a path in the scratch folder.
+    /// Returns the path of a file `name` in the scratch folder.
     pub(crate) fn at(&self, name: &str) -> PathBuf {
         self.scratch.path().join(name)
     }
@@ -163,8 +163,8 @@ impl Trial {
             .arg(&self.set);
         command
     }
-    /// Scores a verdict with `truth open`, which reveals the hidden effects, and returns the score table.
-    /// Also asserts that changed answers are refused.
+    /// Runs `truth open`, which reveals the hidden effects and scores a verdict; returns the score table.
+    /// Also asserts that a modified answer file is refused.
     pub(crate) fn open(&self, verdict: &str) -> String {
         let verdicts = self.at("verdicts");
         fs::create_dir(&verdicts).expect("a folder");

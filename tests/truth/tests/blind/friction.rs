@@ -6,10 +6,12 @@ use protocol::{curve::rounded, pumping_unit::Sensor};
 use serde_json::Value;
 use std::{collections::BTreeMap, fs, path::Path, process::Stdio, thread::sleep, time::Duration};
 
-/// Size of the journal at which the diagnosis is killed (bytes), far less than a complete journal.
+/// Size of the diagnosis journal (progress file) at which the diagnosis is killed \[bytes\]; far less than a
+/// complete journal.
 const KILLED_AT: u64 = 500_000;
 
-/// Parses the JSON output of a diagnosis and removes the wall times.
+/// Parses the JSON output of a diagnosis and removes its wall times, so that outputs of repeated runs are
+/// comparable.
 fn said(text: &str) -> Value {
     let mut all: Value = serde_json::from_str(text).expect("an object");
     let fields = all.as_object_mut().expect("an object");
@@ -20,7 +22,7 @@ fn said(text: &str) -> Value {
     all
 }
 
-/// Formats the nuisance parameters of a diagnosis as `[[effects]]` tables of a case.
+/// Converts the estimated nuisance parameters of a diagnosis to `[[effects]]` tables of a case file.
 fn instruments(whole: &Value) -> String {
     let mut tables: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for own in whole["nuisances"].as_array().expect("a list") {
@@ -40,8 +42,8 @@ fn instruments(whole: &Value) -> String {
     tables.into_iter().map(table).collect()
 }
 
-/// Reads each gauge's stress of the simulation with the diagnosed effects from `curves.csv`, every half
-/// degree.
+/// Reads from `curves.csv` the stress of each gauge that the diagnosis simulated with the added effects,
+/// every half degree of crank angle.
 fn after(curves: &Path, condition: &str) -> [Vec<f64>; 4] {
     let text = fs::read_to_string(curves).expect("curves");
     let mut gauges: [Vec<f64>; 4] = Default::default();

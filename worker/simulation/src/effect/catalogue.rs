@@ -1,4 +1,4 @@
-//! Catalogue of all effects.
+//! Catalogue of all effects that can be added to the model.
 use super::descriptor::Descriptor;
 use super::{generic, named};
 use std::sync::LazyLock;

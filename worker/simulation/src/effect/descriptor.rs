@@ -1,7 +1,8 @@
 //! Descriptor of an effect: identifier, location, parameters with units, bounds and typical sizes, and the
-//! constructor from parameter values.
+//! constructor of the effect from its parameter values.
 //!
-//! All numbers are in the declared unit; [`Unit::to_si`] converts them to the unit of the equations.
+//! Parameter values and bounds are in the declared unit; [`Unit::to_si`] converts them to the unit of the
+//! equations.
 use super::unit::Unit;
 use super::value::{Edit, ParameterValues, Read};
 use crate::model::description::Description;
@@ -10,7 +11,8 @@ use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
 
-/// One effect of the catalogue.
+/// Description of one effect of the catalogue: where it acts, which parameters it has and how to construct
+/// it.
 #[derive(Clone, Debug)]
 pub struct Descriptor {
     /// Permanent identifier of the effect.
@@ -21,18 +23,18 @@ pub struct Descriptor {
     pub joint: &'static str,
     /// Part of the model that the effect changes.
     pub place: Place,
-    /// Whether the effect is a generic force without a physical cause, used for localisation only.
+    /// Whether the effect is a generic force: one without a physical cause, used only to locate where the
+    /// model is wrong.
     pub generic: bool,
     /// Free parameters of the effect.
     pub parameters: Vec<Parameter>,
     build: Build,
 }
 
-/// Constructor of an effect from its parameter values.
 #[derive(Clone)]
 struct Build(Arc<Builder>);
 
-/// Function from parameter values to the effect that has them.
+/// Function that constructs an effect from its parameter values.
 type Builder = dyn Fn(&ParameterValues) -> Arc<dyn Effect> + Send + Sync;
 
 impl fmt::Debug for Build {
@@ -44,9 +46,9 @@ impl fmt::Debug for Build {
 /// Part of the model that an effect changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// Geometry, inertia or forces of the machine.
+    /// The machine itself: geometry, inertia or forces.
     Dynamics,
-    /// Motion of the crank, or the zero of its angle.
+    /// The crank: its motion, or the zero of its angle.
     Drive,
     /// The load at the suspension point.
     Load,
@@ -61,12 +63,12 @@ pub struct Parameter {
     pub name: &'static str,
     /// Unit of the parameter's values and bounds.
     pub unit: Unit,
-    /// Whether the parameter sets a size or a shape.
+    /// Role of the parameter: size (amplitude) or shape of the effect.
     pub role: Role,
-    /// Value at which the effect vanishes; for a shape, its typical value.
+    /// Value of a size parameter at which the effect vanishes; for a shape parameter, the typical value.
     pub absent: f64,
-    /// Typical value: the size at which the effect's signature (change of the gauge curves) is computed, or
-    /// the default of a shape.
+    /// Typical value: for a size, the value at which the effect's signature (change of the gauge curves) is
+    /// computed; for a shape, the default.
     pub typical: f64,
     /// Characteristic magnitude of the parameter, used for scaling.
     pub scale: f64,
@@ -74,14 +76,15 @@ pub struct Parameter {
     pub lower: f64,
     /// Upper bound of the parameter.
     pub upper: f64,
-    /// Whether the effect rounds the parameter to a whole number, so that no derivative by it exists.
+    /// Whether the effect rounds the parameter to a whole number, so that derivatives with respect to it do
+    /// not exist.
     pub whole: bool,
 }
 
-/// Role of a parameter in its effect.
+/// Role of a parameter in its effect: size or shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Parameter that scales a contribution of the effect, which vanishes at the parameter's absent value.
+    /// Amplitude of a contribution of the effect; the contribution vanishes at the parameter's absent value.
     Size,
     /// Parameter that changes the form of a size's contribution, such as a time constant.
     ///
@@ -94,7 +97,8 @@ pub enum Role {
 }
 
 impl Parameter {
-    /// Returns whether the parameter is a size that cannot fall below its absent value.
+    /// Returns whether the parameter is a size whose lower bound is its absent value, so that the effect has
+    /// one sign only.
     pub fn is_one_sided(&self) -> bool {
         self.role == Role::Size && self.lower >= self.absent
     }
@@ -102,7 +106,7 @@ impl Parameter {
 
 impl Descriptor {
     /// Creates a descriptor with an identifier and a title but without location, parameters and constructor.
-    /// Callers add [`Self::at`], the parameters, and last [`Self::builds`].
+    /// Callers add [`Self::with_location`], the parameters, and last [`Self::with_constructor`].
     pub(super) fn new(
         id: impl Into<Cow<'static, str>>,
         title: impl Into<Cow<'static, str>>,
@@ -168,7 +172,7 @@ impl Descriptor {
         self
     }
 
-    /// Adds a shape parameter with its typical value; see [`Role::Shape`] for what it costs.
+    /// Adds a shape parameter with its typical value; [`Role::Shape`] states the signatures that it costs.
     pub(super) fn shape(
         mut self,
         name: &'static str,
@@ -198,7 +202,7 @@ impl Descriptor {
         self
     }
 
-    /// Sets the constructor from parameter values.
+    /// Sets the function that constructs the effect from its parameter values.
     pub(super) fn with_constructor<E: Effect + 'static>(
         mut self,
         build: impl Fn(&ParameterValues) -> E + Send + Sync + 'static,
@@ -207,7 +211,7 @@ impl Descriptor {
         self
     }
 
-    /// Makes the effect one that only edits the machine description, by the given function.
+    /// Sets a constructor for an effect that only edits the machine description, by the given function.
     pub(super) fn with_edit(self, edit: fn(&ParameterValues, &mut Description)) -> Self {
         self.with_constructor(move |v| Edit {
             values: v.clone(),
@@ -215,7 +219,8 @@ impl Descriptor {
         })
     }
 
-    /// Makes the effect one that only changes gauge readings, sample by sample, by the given function.
+    /// Sets a constructor for an effect that only changes gauge readings, sample by sample, by the given
+    /// function.
     pub(super) fn with_reading(
         self,
         read: fn(&ParameterValues, &SampleState, &mut [f64; 4]),
@@ -231,15 +236,16 @@ impl Descriptor {
         self.parameters.iter().position(|p| p.name == name)
     }
 
-    /// Builds the effect from a value for each parameter, in declared units and in the order of
-    /// [`Self::parameters`], even if all values are absent.
+    /// Constructs the effect from one value per parameter, in declared units and in the order of
+    /// [`Self::parameters`], even if the values make it vanish.
     pub fn build(&self, values: &[f64]) -> Arc<dyn Effect> {
         let of = self.parameters.iter().zip(values);
         let si = of.map(|(p, value)| (p.name, p.unit.to_si(*value)));
         (self.build.0)(&ParameterValues(si.collect()))
     }
 
-    /// Returns whether the given values leave every size parameter exactly at its absent value.
+    /// Returns whether the given values leave every size parameter exactly at its absent value, so that the
+    /// effect vanishes.
     pub fn is_absent(&self, values: &[f64]) -> bool {
         let mut of = self.parameters.iter().zip(values);
         #[expect(clippy::float_cmp, reason = "absent is exactly absent")]

@@ -1,9 +1,10 @@
 //! Generic forces for localisation: combinations of a joint and a force law, without a physical cause.
 //!
-//! The catalogue is the product of two tables. A force of unit amplitude is a function of displacement `u`
-//! and rate `w`, both relative to their largest values in the ideal motion, and of the turn angle: constant,
-//! `sgn w` (as a steep `tanh`), `w`, `w |w|`, `u^2`, `u^3`, and cosine or sine of the first six harmonics of
-//! the crank. Forces that depend on the motion resist it; the amplitude may have either sign.
+//! The effects are the product of a table of joints and a table of force laws. A force of unit amplitude is a
+//! function of displacement `u` and rate `w`, both relative to their largest values in the ideal motion, and
+//! of the turn angle: constant, `sgn w` (as a steep `tanh`), `w`, `w |w|`, `u^2`, `u^3`, and cosine or sine
+//! of the first six harmonics of the crank. Forces that depend on the motion resist it; the amplitude may
+//! have either sign.
 use super::descriptor::{Descriptor, Place};
 use super::unit::Unit;
 use crate::drive::DriveState;
@@ -24,7 +25,7 @@ struct Joint {
     typical: f64,
 }
 
-/// Coordinate on which a generic force acts.
+/// Kind of coordinate on which a generic force acts, such as the beam angle or the extension of a rope.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum CoordinateKind {
     Beam,
@@ -79,7 +80,7 @@ const JOINTS: [Joint; 6] = [
     },
 ];
 
-/// Dependence of a generic force on motion and time.
+/// Law of a generic force: its dependence on displacement, rate and turn angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Form {
     Constant,
@@ -134,8 +135,8 @@ impl Form {
         }
     }
 
-    /// Computes the resistance of unit amplitude at relative displacement `u`, relative rate `w` and a turn
-    /// angle; its energy is the integral over `u`, which is dimensionless.
+    /// Computes the force of this law at unit amplitude, from relative displacement `u`, relative rate `w`
+    /// and the turn angle; its energy is the integral over the dimensionless `u`.
     fn resistance(self, u: f64, w: f64, turn: f64) -> LineForceValue {
         let mut along = LineForceValue::default();
         match self {
@@ -191,7 +192,7 @@ struct Probe {
     amplitude: f64,
 }
 
-/// Middle, half range and largest rate of a coordinate in the ideal motion.
+/// Middle, half range and largest rate of a coordinate in the ideal motion; scales of a generic force.
 #[derive(Clone, Copy, Debug)]
 struct Range {
     middle: f64,
@@ -199,7 +200,8 @@ struct Range {
     rate: f64,
 }
 
-/// Share of the largest rate at which the regularised dry friction reaches three quarters of its full value.
+/// Rate, as a share of the coordinate's largest rate, at which the regularised dry friction reaches three
+/// quarters of its full value.
 const REGULARISATION_RATE: f64 = 0.02;
 
 impl Range {
@@ -221,7 +223,8 @@ impl Range {
         }
     }
 
-    /// Computes the resistance of a generic force with its amplitude, at a displacement and its rate.
+    /// Computes a generic force, scaled by its amplitude, at a displacement and rate of its coordinate and a
+    /// turn angle.
     fn resistance(&self, probe: &Probe, place: f64, rate: f64, turn: f64) -> LineForceValue {
         let u = (place - self.middle) / self.reach;
         let unit = probe.form.resistance(u, rate / self.rate, turn);
@@ -330,7 +333,8 @@ impl LineForce for AlongLine {
     }
 }
 
-/// Generic force along a rope; displacement and rate are those of the tension that corresponds to the strain.
+/// Generic force along a rope, as a law of its cylinders' strain. Displacement and rate are taken from the
+/// tension that corresponds to the strain.
 ///
 /// Forms that are nonlinear in the rate use the rate of the ideal tension instead: cylinders vibrate against
 /// each other faster than the load stretches them, and would stick or be torn apart.

@@ -24,7 +24,7 @@ pub struct Selection {
 /// Reason why a requested effect is refused; `effect` is its index in the request.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SelectionError {
-    /// Unknown effect identifier.
+    /// Identifier that no effect of the catalogue has.
     #[error("there is no effect `{id}`")]
     UnknownEffect {
         /// Index of the effect in the request.
@@ -32,32 +32,32 @@ pub enum SelectionError {
         /// Requested identifier.
         id: String,
     },
-    /// Unknown parameter name of an effect.
+    /// Parameter name that the requested effect does not have.
     #[error("the effect `{id}` has no parameter `{name}`")]
     UnknownParameter {
-        /// Index of the effect in the request.
+        /// Index, in the request, of the effect with the unknown parameter.
         effect: usize,
-        /// Identifier of the effect.
+        /// Identifier of the effect with the unknown parameter.
         id: String,
-        /// Requested parameter name.
+        /// Parameter name that is unknown.
         name: String,
     },
     /// Effect or parameter that is given twice.
     #[error("`{name}` is given twice")]
     Duplicate {
-        /// Index of the effect in the request.
+        /// Index of the repeated effect in the request.
         effect: usize,
-        /// Identifier of the effect, or `effect.parameter`.
+        /// Name of the repeated item: an effect identifier, or `effect.parameter`.
         name: String,
     },
     /// Value that is not a number or outside the parameter's bounds.
     #[error("is {value}; it must lie between {lower} and {upper} {unit}")]
     OutOfBounds {
-        /// Index of the effect in the request.
+        /// Index, in the request, of the effect with the refused value.
         effect: usize,
-        /// Name of the parameter.
+        /// Name of the parameter with the refused value.
         name: &'static str,
-        /// Refused value.
+        /// Refused parameter value, in the declared unit.
         value: f64,
         /// Lower bound of the parameter.
         lower: f64,
@@ -69,7 +69,7 @@ pub enum SelectionError {
 }
 
 impl SelectionError {
-    /// Returns the index of the refused effect in the request.
+    /// Returns the index, in the request, of the effect that was refused.
     pub const fn effect(&self) -> usize {
         match self {
             Self::UnknownEffect { effect, .. }
@@ -79,7 +79,7 @@ impl SelectionError {
         }
     }
 
-    /// Returns the name of the refused parameter, if a single parameter is the reason.
+    /// Returns the name of the refused parameter, or `None` if the effect as a whole was refused.
     pub fn parameter(&self) -> Option<&str> {
         match self {
             Self::UnknownParameter { name, .. } => Some(name),
@@ -107,7 +107,7 @@ impl Selection {
         &self.effects
     }
 
-    /// Returns whether the selection has no effects.
+    /// Returns whether no effect is selected.
     pub fn is_empty(&self) -> bool {
         self.effects.is_empty()
     }
@@ -116,14 +116,12 @@ impl Selection {
 /// An effect of the catalogue with a value for each of its parameters, in declared units.
 #[derive(Clone, Debug)]
 pub(crate) struct ResolvedEffect {
-    /// Index of the effect in the catalogue.
     at: usize,
-    /// Values of all parameters, absent or not.
+    /// Values of all parameters of the effect, including absent ones, in declared units.
     pub(crate) values: Vec<f64>,
 }
 
 impl ResolvedEffect {
-    /// Returns the catalogue's descriptor of the effect.
     pub(crate) fn descriptor(&self) -> &'static Descriptor {
         &catalogue()[self.at]
     }
@@ -133,12 +131,12 @@ impl ResolvedEffect {
         self.at
     }
 
-    /// Returns whether every size parameter of the effect has its absent value.
+    /// Returns whether all size parameters have their absent values, so that the effect vanishes.
     pub(crate) fn is_absent(&self) -> bool {
         self.descriptor().is_absent(&self.values)
     }
 
-    /// Builds the effect, even if all its sizes are absent.
+    /// Builds the effect from its values, even if all its sizes are absent.
     pub(crate) fn build(&self) -> Arc<dyn Effect> {
         self.descriptor().build(&self.values)
     }
@@ -148,7 +146,7 @@ impl ResolvedEffect {
 /// absent are kept.
 ///
 /// # Errors
-/// The first error found; see [`Refused`].
+/// The first error found; see [`SelectionError`].
 pub(crate) fn chosen(asked: &[EffectRequest<'_>]) -> Result<Vec<ResolvedEffect>, SelectionError> {
     let mut chosen: Vec<ResolvedEffect> = Vec::new();
     for (effect, one) in asked.iter().enumerate() {

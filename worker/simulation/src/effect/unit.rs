@@ -1,50 +1,50 @@
 //! Units of effect parameters, with their symbols and their conversion to SI.
 
-/// Unit of a parameter.
+/// Unit of a parameter of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// Dimensionless number: share, ratio, number of harmonics.
     One,
-    /// Length.
+    /// Metre, for lengths.
     Metre,
-    /// Time.
+    /// Second, for times.
     Second,
-    /// Angle.
+    /// Degree, for angles.
     Degree,
-    /// Force.
+    /// Newton, for forces.
     Newton,
-    /// Moment.
+    /// Newton metre, for moments.
     NewtonMetre,
-    /// Damping coefficient of a translation.
+    /// N s/m, for damping coefficients of translations.
     NewtonSecondPerMetre,
-    /// Damping coefficient of a rotation.
+    /// N m s/rad, for damping coefficients of rotations.
     NewtonMetreSecondPerRadian,
-    /// Compliance.
+    /// m/N, for compliances.
     MetrePerNewton,
-    /// Speed.
+    /// m/s, for speeds.
     MetrePerSecond,
-    /// Angular speed.
+    /// rad/s, for angular speeds.
     RadianPerSecond,
-    /// Frequency.
+    /// Hertz, for frequencies.
     Hertz,
-    /// Decay rate.
+    /// 1/s, for decay rates.
     PerSecond,
-    /// Mass.
+    /// Kilogram, for masses.
     Kilogram,
-    /// Moment of inertia.
+    /// kg m2, for moments of inertia.
     KilogramSquareMetre,
-    /// Stress.
+    /// Megapascal, for stresses.
     Megapascal,
-    /// Stress per revolution of the crank.
+    /// `MPa` per revolution of the crank, for drifts of a stress reading.
     MegapascalPerRevolution,
-    /// Stress per length.
+    /// MPa/m, for stress per length.
     MegapascalPerMetre,
-    /// Force on a mass-normalised modal coordinate.
+    /// N/kg^0.5, for forces on mass-normalised modal coordinates.
     ModalNewton,
 }
 
 impl Unit {
-    /// Returns the symbol used in tables and files.
+    /// Returns the unit's symbol, as used in tables and files.
     pub const fn symbol(self) -> &'static str {
         match self {
             Self::One => "1",

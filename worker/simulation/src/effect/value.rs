@@ -1,4 +1,4 @@
-//! Parameter values of an effect, and effects that consist of a single function of them.
+//! Parameter values of an effect, and simple effects given by one function of the parameter values.
 use crate::model::description::Description;
 use crate::model::extension::{Effect, Extensions, Reading, SampleState, Site};
 
@@ -24,7 +24,7 @@ impl ParameterValues {
         *value
     }
 
-    /// Returns the values of several parameters by their names.
+    /// Returns the values of several parameters, in the order of the given names.
     pub fn each<const N: usize>(&self, names: [&str; N]) -> [f64; N] {
         names.map(|name| self.get(name))
     }
@@ -35,7 +35,7 @@ impl ParameterValues {
     }
 }
 
-/// Effect that only edits the machine description.
+/// Effect that only edits the machine description, by a function of the parameter values.
 #[derive(Clone, Debug)]
 pub(super) struct Edit {
     pub(super) values: ParameterValues,
@@ -48,7 +48,7 @@ impl Effect for Edit {
     }
 }
 
-/// Effect that only changes gauge readings, sample by sample.
+/// Effect that only changes gauge readings, sample by sample, by a function of the parameter values.
 #[derive(Clone, Debug)]
 pub(super) struct Read {
     pub(super) values: ParameterValues,

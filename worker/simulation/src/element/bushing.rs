@@ -37,15 +37,15 @@ pub struct Bushing {
 /// Marker: a frame fixed on a body, with the motion of that body.
 #[derive(Clone, Copy, Debug)]
 pub struct Marker {
-    /// Position of the body's reference point in W \[m\].
+    /// Position of the body's reference point in the world frame W \[m\].
     pub p: V3,
-    /// Vector from the reference point to the marker, in W \[m\].
+    /// Vector from the body's reference point to the marker, in the world frame W \[m\].
     pub rho: V3,
-    /// Velocity of the reference point [m/s].
+    /// Velocity of the body's reference point [m/s].
     pub v: V3,
-    /// Angular velocity of the body, in W [rad/s].
+    /// Angular velocity of the body, in the world frame W [rad/s].
     pub w: V3,
-    /// Orientation of the marker: rotation matrix whose columns are its axes in W.
+    /// Orientation of the marker: rotation matrix whose columns are the marker's axes in the world frame W.
     pub R: M3,
 }
 
@@ -59,23 +59,24 @@ impl Marker {
     }
 }
 
-/// Force and torques of a link on its two bodies in W; torques about the bodies' reference points.
+/// Force and torques that a joint exerts on its two bodies I and J, in the world frame W; torques are about
+/// the bodies' reference points.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkLoad {
     /// Force on body I \[N\]; the opposite force acts on body J.
     pub force: V3,
-    /// Torque on body I [N m].
+    /// Torque on body I about its reference point [N m].
     pub torque_i: V3,
-    /// Torque on body J [N m].
+    /// Torque on body J about its reference point [N m].
     pub torque_j: V3,
-    /// Component of the force along J's axis; negative where the link pulls \[N\].
+    /// Component of the joint force along the axis of marker J; negative where the joint pulls \[N\].
     pub axial: f64,
-    /// Power dissipated by the damping \[W\].
+    /// Power dissipated by the joint's damping \[W\].
     pub dissipated: f64,
 }
 
 impl LinkLoad {
-    /// Returns zero load.
+    /// Returns a joint load with zero force and torques.
     pub fn none() -> Self {
         Self {
             force: V3::zeros(),
@@ -87,37 +88,38 @@ impl LinkLoad {
     }
 }
 
-/// Additional tension along the axis of J, besides that of a bushing.
+/// Additional tension in a joint along the axis of marker J, on top of the bushing's force.
 #[derive(Clone, Copy, Debug)]
 pub struct AxialTension {
-    /// Force, positive where it draws the markers together \[N\].
+    /// Additional tension, positive where it draws the markers together \[N\].
     pub force: f64,
-    /// Dissipated power \[W\].
+    /// Power dissipated by the additional tension \[W\].
     pub dissipated: f64,
-    /// Derivative of the force by the extension [N/m].
+    /// Derivative of the additional tension with respect to the joint's extension [N/m].
     pub by_extension: f64,
-    /// Derivative of the force by the rate of the extension [N s/m].
+    /// Derivative of the additional tension with respect to the rate of extension [N s/m].
     pub by_rate: f64,
 }
 
-/// Derivatives of a [`LinkLoad`] by the motion of one body.
+/// Derivatives of a joint's force and torques ([`LinkLoad`]) with respect to the motion of one of its bodies.
 ///
-/// Each field holds three matrices: force, torque on I, torque on J. The fields differentiate by displacement
-/// `p`, velocity `v`, rotation `a` and angular velocity `w` of the body, all in W.
+/// Each field holds three matrices: for the force, the torque on I and the torque on J. The fields
+/// differentiate with respect to displacement `p`, velocity `v`, rotation `a` and angular velocity `w` of the
+/// body, all in the world frame W.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkTangent {
-    /// Derivatives by the displacement of the reference point.
+    /// Derivatives with respect to the displacement of the body's reference point.
     pub p: [M3; 3],
-    /// Derivatives by the velocity of the reference point.
+    /// Derivatives with respect to the velocity of the body's reference point.
     pub v: [M3; 3],
-    /// Derivatives by a rotation of the body.
+    /// Derivatives with respect to a rotation of the body.
     pub a: [M3; 3],
-    /// Derivatives by the angular velocity of the body.
+    /// Derivatives with respect to the angular velocity of the body.
     pub w: [M3; 3],
 }
 
-/// Relative position, velocity, rotation and angular velocity of the two markers, used by both load and
-/// tangent.
+/// Motion of marker I relative to marker J (position, velocity, rotation, angular velocity), used by both
+/// load and tangent.
 struct Deformation {
     e: V3,
     d: V3,
@@ -139,12 +141,12 @@ impl Bushing {
         }
     }
 
-    /// Returns the static tension at an extension along the axis \[N\].
+    /// Returns the bushing's static tension at an extension along its axis \[N\].
     pub fn tension_at(&self, extension: f64) -> f64 {
         extension * self.stiffness[0] + self.preload
     }
 
-    /// Returns the static extension under a tension along the axis \[m\].
+    /// Returns the bushing's static extension under a tension along its axis \[m\].
     pub fn extension_under(&self, tension: f64) -> f64 {
         (tension - self.preload) / self.stiffness[0]
     }
@@ -198,7 +200,7 @@ impl Bushing {
         }
     }
 
-    /// Computes force and torques for the motion of both markers.
+    /// Computes the joint's force and torques from the motion of its markers I and J.
     #[inline]
     pub fn load(&self, i: &Marker, j: &Marker) -> LinkLoad {
         let [k1, k2] = self.stiffness;
@@ -219,13 +221,13 @@ impl Bushing {
         }
     }
 
-    /// Computes the extension along the axis \[m\] and its rate [m/s].
+    /// Computes the extension of the joint along its axis \[m\] and its rate [m/s].
     pub fn extension(&self, i: &Marker, j: &Marker) -> [f64; 2] {
         let Deformation { e, d, V, .. } = self.deformation(i, j);
         [e.dot(&d), e.dot(&V)]
     }
 
-    /// Adds an additional axial tension to a load.
+    /// Adds the force and torques of an additional axial tension to a joint's load.
     pub fn add_pull(&self, (i, j): (&Marker, &Marker), pull: &AxialTension, load: &mut LinkLoad) {
         let Deformation { e, d, .. } = self.deformation(i, j);
         let force = e * -pull.force;
@@ -236,7 +238,8 @@ impl Bushing {
         load.dissipated += pull.dissipated;
     }
 
-    /// Computes the stored energy \[J\], exact while torsion and bending do not mix (planar motion).
+    /// Computes the elastic energy stored in the joint \[J\]; exact if torsion and bending do not mix (planar
+    /// motion).
     pub fn energy(&self, i: &Marker, j: &Marker) -> f64 {
         let [k1, k2] = self.stiffness;
         let [k4, k5] = self.rotational_stiffness;
@@ -247,13 +250,13 @@ impl Bushing {
             + 0.5 * (k5 * theta.norm_squared() + (k4 - k5) * twist * twist)
     }
 
-    /// Computes the derivatives of [`Self::load`] by the motion of I and of J.
+    /// Computes the derivatives of [`Self::load`] with respect to the motion of bodies I and J.
     pub fn tangent(&self, i: &Marker, j: &Marker, load: &LinkLoad) -> [LinkTangent; 2] {
         self.tangent_with(i, j, load, None)
     }
 
-    /// Computes the derivatives of a load by the motion of I and of J, including an additional tension that
-    /// `load` already contains.
+    /// Computes the derivatives of a joint's load with respect to the motion of bodies I and J, including an
+    /// additional tension that `load` already contains.
     pub fn tangent_with(
         &self,
         i: &Marker,

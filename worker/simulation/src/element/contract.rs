@@ -1,5 +1,5 @@
-//! Contract tests of the joints of a rope: tangent, action and reaction, power balance, independence of the
-//! frame.
+//! Contract tests of the joints between and at the ends of rope cylinders: tangent, action and reaction,
+//! power balance, independence of the frame.
 use super::bushing::{AxialTension, Bushing, LinkLoad, Marker};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -10,7 +10,7 @@ fn rotation(theta: &V3) -> M3 {
     Rotation3::new(*theta).into_inner()
 }
 
-/// Returns pairs of markers in motion without any symmetry.
+/// Returns pairs of markers (I, J) in general relative motion, without any symmetry.
 fn motions() -> Vec<[Marker; 2]> {
     let marker = |s: f64, depth: f64| Marker {
         p: V3::new(0.3 + s - depth, -0.2 * s, 0.5),
@@ -23,8 +23,8 @@ fn motions() -> Vec<[Marker; 2]> {
     pairs.to_vec()
 }
 
-/// Changes one component of the motion of a marker's body by `h`; a rotation also turns the marker's arm and
-/// frame.
+/// Changes one component of the motion of a marker's body by `h`: position, velocity, rotation or angular
+/// velocity. A rotation also turns the marker's offset and axes.
 fn moved(m: &Marker, kind: usize, k: usize, h: f64) -> Marker {
     let mut d = V3::zeros();
     d[k] = h;
@@ -50,8 +50,8 @@ const BUSHING: Bushing = Bushing {
     preload: 0.35,
 };
 
-/// Returns the joints of a rope: between two cylinders, at a rope's ends, and one with equal torsional and
-/// bending stiffness, for which the static forces derive exactly from the energy.
+/// Returns the joint laws under test: between two cylinders, at a rope's ends, and one with equal torsional
+/// and bending stiffness, for which the static forces derive exactly from the energy.
 fn joints() -> [(&'static str, Bushing); 4] {
     let round = Bushing {
         rotational_stiffness: [2.3; 2],
@@ -65,7 +65,7 @@ fn joints() -> [(&'static str, Bushing); 4] {
     ]
 }
 
-/// Calls `check` in every motion for every joint that `of` selects.
+/// Calls `check` with every joint law that `of` selects, in every motion of [`motions`].
 fn each(of: impl Fn(&Bushing) -> bool, check: impl Fn(&str, &Bushing, &[Marker; 2])) {
     let mut checked = 0;
     for (name, joint) in joints() {
@@ -83,7 +83,7 @@ fn each(of: impl Fn(&Bushing) -> bool, check: impl Fn(&str, &Bushing, &[Marker; 
     assert!(checked > 1);
 }
 
-/// Checks the tangent against central differences in all 24 inputs.
+/// Checks the joint's tangent against central differences with respect to all 24 components of motion.
 #[test]
 fn tangent_is_the_derivative_of_the_load() {
     let rows = |l: LinkLoad| [l.force, l.torque_i, l.torque_j];
@@ -117,8 +117,8 @@ fn tangent_is_the_derivative_of_the_load() {
     );
 }
 
-/// Checks that the total moment about the origin vanishes, `T_J = -T_I - d x F_I`; `F_J = -F_I` holds by the
-/// definition of the load.
+/// Checks that a joint's forces on I and J have no total moment about the origin, `T_J = -T_I - d x F_I`;
+/// `F_J = -F_I` holds by the definition of the load.
 #[test]
 fn moments_of_action_and_reaction_vanish() {
     each(
@@ -131,7 +131,8 @@ fn moments_of_action_and_reaction_vanish() {
     );
 }
 
-/// Checks the power balance `dE/dt = -(power of the forces) - dissipation`, and that damping dissipates.
+/// Checks the power balance of a joint, `dE/dt = -(power of the forces) - dissipation`, and that damping
+/// dissipates.
 #[test]
 fn power_goes_into_energy_or_is_lost() {
     each(
@@ -158,7 +159,7 @@ fn power_goes_into_energy_or_is_lost() {
     );
 }
 
-/// Checks that loads rotate with the frame and are independent of its origin, and that axial force,
+/// Checks that joint loads rotate with the frame and are independent of its origin, and that axial force,
 /// dissipation and energy are invariant.
 #[test]
 fn nothing_depends_on_the_frame() {
@@ -190,7 +191,8 @@ fn nothing_depends_on_the_frame() {
     );
 }
 
-/// Checks the tangent with an additional tension `7 x^2 + 2 x' x` along the axis against differences.
+/// Checks the joint's tangent including an additional axial tension `7 x^2 + 2 x' x` of extension `x` against
+/// finite differences.
 #[test]
 fn a_further_pull_has_its_tangent() {
     let element = BUSHING;

@@ -7,29 +7,29 @@
 //! energy lost by it.
 use crate::math::elementary::power_law;
 
-/// Coefficients of a contact, in SI units.
+/// Coefficients of the contact force law, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
     /// Spring coefficient K [N/m^n].
     pub stiffness: f64,
     /// Exponent n of the penetration.
     pub exponent: f64,
-    /// Largest damping C [N s/m].
+    /// Largest damping coefficient C of the contact, reached at full penetration [N s/m].
     pub damping: f64,
-    /// Penetration from which the full damping acts, `d_max` \[m\].
+    /// Penetration `d_max` from which the full damping coefficient acts \[m\].
     pub full_damping_penetration: f64,
 }
 
-/// Contact force and its derivatives.
+/// Contact force with its derivatives and the dissipated power.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImpactForce {
-    /// Repulsive force, never negative \[N\].
+    /// Repulsive contact force, never negative \[N\].
     pub force: f64,
-    /// Derivative of the force by the penetration [N/m].
+    /// Derivative of the contact force with respect to the penetration [N/m].
     pub by_penetration: f64,
-    /// Derivative of the force by the penetration rate [N s/m].
+    /// Derivative of the contact force with respect to the penetration rate [N s/m].
     pub by_rate: f64,
-    /// Power dissipated by the damping \[W\]; on a rebound fast enough to cut the force off, the power that
+    /// Power dissipated by the contact damping \[W\]; if a fast rebound cuts the force off, the power that
     /// the spring loses.
     pub dissipated: f64,
 }
@@ -37,18 +37,19 @@ pub struct ImpactForce {
 /// Intermediate results of the contact law at one penetration and rate.
 #[derive(Clone, Copy)]
 struct ContactState {
-    /// Repulsive force, never negative \[N\]; `lost` is the dissipated power \[W\].
+    /// Repulsive contact force, never negative \[N\]; the field `lost` holds the dissipated power \[W\].
     force: f64,
     lost: f64,
     /// Part of the contact force from the spring \[N\].
     spring: f64,
-    /// Share of the damping coefficient that acts; `slope` is its derivative by the penetration.
+    /// Share of the full damping coefficient that acts at this penetration; the field `slope` holds its
+    /// derivative with respect to the penetration.
     step: f64,
     slope: f64,
 }
 
 impl ImpactForce {
-    /// Returns the force, its derivatives and the dissipation multiplied by `share`.
+    /// Returns contact force, derivatives and dissipated power, all multiplied by `share`.
     #[must_use]
     pub fn share(self, share: f64) -> Self {
         Self {
@@ -60,7 +61,7 @@ impl ImpactForce {
     }
 }
 
-/// Quantity by which the contact force has a closed-form derivative.
+/// Coefficient or state of the contact law with respect to which the force has a closed-form derivative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum DerivativeVariable {
     Stiffness,
@@ -69,8 +70,8 @@ pub(crate) enum DerivativeVariable {
 }
 
 impl Impact {
-    /// Evaluates the law at one penetration and rate without branches; without contact the penetration is
-    /// taken as zero. `power` raises the penetration to the law's exponent.
+    /// Evaluates the contact law at one penetration and rate without branches; negative penetration counts as
+    /// zero. `power` raises the penetration to the law's exponent.
     #[expect(
         clippy::inline_always,
         reason = "loops over many places become vectors; what they do not ask for is never computed"
@@ -95,7 +96,8 @@ impl Impact {
         }
     }
 
-    /// Computes the derivative of the force by one quantity; zero without a force.
+    /// Computes the derivative of the contact force with respect to one variable; zero where the force is
+    /// zero.
     pub(crate) fn derivative(&self, depth: f64, rate: f64, by: DerivativeVariable) -> f64 {
         match by {
             DerivativeVariable::Stiffness => self.force_by(depth, rate)[0],
@@ -104,7 +106,8 @@ impl Impact {
         }
     }
 
-    /// Computes the derivatives of the force by stiffness and by damping; zero without a force.
+    /// Computes the derivatives of the contact force with respect to stiffness and damping coefficient; zero
+    /// where the force is zero.
     pub fn force_by(&self, depth: f64, rate: f64) -> [f64; 2] {
         #[expect(clippy::float_cmp, reason = "selects the exact special case")]
         let root = self.exponent == 1.5;
@@ -121,8 +124,8 @@ impl Impact {
         }
     }
 
-    /// Computes force \[N\] and dissipated power \[W\] at many penetrations \[m\] and rates [m/s], with the
-    /// same bits as [`Self::force`].
+    /// Computes contact force \[N\] and dissipated power \[W\] for arrays of penetrations \[m\] and rates
+    /// [m/s], bit-identical to [`Self::force`].
     pub fn forces_batch(&self, [depth, rate]: [&[f64]; 2], [force, lost]: [&mut [f64]; 2]) {
         let n = depth.len();
         let (rate, force, lost) = (&rate[..n], &mut force[..n], &mut lost[..n]);
@@ -148,7 +151,7 @@ impl Impact {
         }
     }
 
-    /// Computes the force at penetration `depth` \[m\] and rate `rate` [m/s] with its derivatives.
+    /// Computes the contact force, with its derivatives, at penetration `depth` \[m\] and rate `rate` [m/s].
     #[inline]
     pub fn force(&self, depth: f64, rate: f64) -> ImpactForce {
         let at = self.pressed(depth, rate, |x| power_law(x, self.exponent));
@@ -166,7 +169,7 @@ impl Impact {
         }
     }
 
-    /// Computes the energy stored at penetration `depth` \[J\].
+    /// Computes the elastic energy stored in the contact at penetration `depth` \[J\].
     pub fn energy(&self, depth: f64) -> f64 {
         if depth <= 0.0 {
             return 0.0;

@@ -15,9 +15,9 @@ type V2 = Vector2<f64>;
 pub struct PlaneMarker {
     /// Position of the body's reference point \[m\].
     pub p: V2,
-    /// Vector from the reference point to the marker \[m\].
+    /// Vector from the body's reference point to the marker \[m\].
     pub rho: V2,
-    /// Velocity of the reference point [m/s].
+    /// Velocity of the body's reference point [m/s].
     pub v: V2,
     /// Angular velocity of the body [rad/s].
     pub w: f64,
@@ -27,34 +27,35 @@ pub struct PlaneMarker {
     pub angle: f64,
 }
 
-/// Planar force and torques of a link on its two bodies; torques about the bodies' reference points.
+/// Force and torques that a planar joint exerts on its two bodies I and J; torques are about the bodies'
+/// reference points.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlaneLoad {
     /// Force on body I \[N\]; the opposite force acts on body J.
     pub force: V2,
-    /// Torque on body I [N m].
+    /// Torque on body I about its reference point [N m].
     pub torque_i: f64,
-    /// Torque on body J [N m].
+    /// Torque on body J about its reference point [N m].
     pub torque_j: f64,
-    /// Component of the force along J's axis; negative where the link pulls \[N\].
+    /// Component of the joint force along the axis of marker J; negative where the joint pulls \[N\].
     pub axial: f64,
-    /// Power dissipated by the damping \[W\].
+    /// Power dissipated by the joint's damping \[W\].
     pub dissipated: f64,
 }
 
-/// Number of coefficients of a planar joint: stiffnesses, dampings and the preload.
+/// Number of coefficients of a planar joint: three stiffnesses, three damping coefficients and the preload.
 pub const PLANE_COEFFICIENTS: usize = 7;
 /// Index of the preload (tension along the axis) among the coefficients of a planar joint.
 pub const PRELOAD_INDEX: usize = 6;
 
-/// Derivatives of force, torque on I and torque on J by one coordinate.
+/// Derivatives of a planar joint's force and torques with respect to one coordinate of a body.
 #[derive(Clone, Copy, Debug)]
 pub struct PlaneColumn {
-    /// Derivative of the force on I.
+    /// Derivative of the force on body I with respect to the coordinate.
     pub force: V2,
-    /// Derivative of the torque on I.
+    /// Derivative of the torque on body I with respect to the coordinate.
     pub torque_i: f64,
-    /// Derivative of the torque on J.
+    /// Derivative of the torque on body J with respect to the coordinate.
     pub torque_j: f64,
 }
 
@@ -70,7 +71,7 @@ fn cross_z(a: &V2, b: &V2) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// Computes the difference of two angles, reduced to half a turn \[rad\].
+/// Computes the difference of two angles, reduced to the range of -pi to pi \[rad\].
 #[inline]
 fn turned(i: f64, j: f64) -> f64 {
     let turn = i - j;
@@ -81,7 +82,8 @@ fn turned(i: f64, j: f64) -> f64 {
     }
 }
 
-/// Relative position, its rate in J's frame, relative angle and its rate, used by both load and tangent.
+/// Motion of marker I relative to marker J: position and its rate in the frame of J, angle and its rate; used
+/// by both load and tangent.
 struct Deformation {
     d: V2,
     V: V2,
@@ -112,7 +114,7 @@ impl PlaneColumn {
 }
 
 impl PlaneLoad {
-    /// Adds an additional axial tension between two markers.
+    /// Adds the force and torques of an additional axial tension between the markers to the load.
     #[inline]
     pub fn add_pull(&mut self, (i, j): (&PlaneMarker, &PlaneMarker), pull: &AxialTension) {
         let Deformation { d, .. } = deformation(i, j);
@@ -130,7 +132,7 @@ impl PlaneLoad {
     reason = "the law in the plane is a file of its own"
 )]
 impl Bushing {
-    /// Computes [`Self::load`] for planar motion.
+    /// Computes the joint's force and torques ([`Self::load`]) for planar motion.
     #[inline]
     pub fn plane_load(&self, i: &PlaneMarker, j: &PlaneMarker) -> PlaneLoad {
         let [k1, k2] = self.stiffness;
@@ -151,14 +153,14 @@ impl Bushing {
         }
     }
 
-    /// Computes [`Self::extension`] for planar motion: extension along the axis \[m\] and its rate [m/s].
+    /// Computes, for planar motion, the extension of the joint along its axis \[m\] and its rate [m/s].
     #[inline]
     pub fn plane_extension(&self, i: &PlaneMarker, j: &PlaneMarker) -> [f64; 2] {
         let Deformation { d, V, .. } = deformation(i, j);
         [j.axis.dot(&d), j.axis.dot(&V)]
     }
 
-    /// Computes [`Self::energy`] for planar motion \[J\].
+    /// Computes the elastic energy stored in the joint for planar motion \[J\].
     pub fn plane_energy(&self, i: &PlaneMarker, j: &PlaneMarker) -> f64 {
         let [k1, k2] = self.stiffness;
         let Deformation { d, theta, .. } = deformation(i, j);
@@ -282,8 +284,8 @@ impl Bushing {
         [columns(by_place, k5), columns(whole, k5 + gamma * c5)]
     }
 
-    /// Returns the joint's coefficients in the order of [`Self::plane_units`]; with these as factors the
-    /// units add up to the joint's forces.
+    /// Returns the joint's coefficients in the order of [`Self::plane_units`]; the unit forces of that
+    /// function, multiplied by these coefficients, sum to the joint's forces.
     pub const fn plane_coefficients(&self) -> [f64; PLANE_COEFFICIENTS] {
         let ([k1, k2], [c1, c2]) = (self.stiffness, self.damping);
         let [[_, k5], [_, c5]] = [self.rotational_stiffness, self.rotational_damping];
@@ -291,8 +293,8 @@ impl Bushing {
     }
 
     /// Computes the generalised forces of a joint per unit of `K_11`, `K_22`, `K_55`, `C_11`, `C_22`, `C_55`
-    /// and preload, first on the three coordinates of J, then on those of I: forces are linear in the
-    /// coefficients.
+    /// and preload, in which the forces are linear; first on the three coordinates of body J, then on those
+    /// of I.
     #[inline]
     pub fn plane_units((i, j): (&PlaneMarker, &PlaneMarker)) -> [[f64; PLANE_COEFFICIENTS]; 6] {
         let Deformation { d, V, theta, w } = deformation(i, j);

@@ -1,8 +1,9 @@
-//! Rope arc: the displacement of the rim below a rope at an angle, averaged over the width.
+//! Rim displacement of a flexible head under its rope: the displacement at one angle of the rope arc,
+//! averaged over the head's width.
 //!
-//! At an angle psi about the arc's centre the rope crosses the rim along a line of constant psi. Every face
-//! crossed by the line is cut from edge to edge, with the face's own shape functions. The same weights
-//! distribute a force over the rim. Independent of ropes and modes.
+//! At an angle psi about the arc's centre the rope crosses the rim along a line of constant psi. Every
+//! element face crossed by the line is cut from edge to edge, with the face's own shape functions. The same
+//! weights distribute a force over the rim. Independent of ropes and modes.
 use super::{
     element::{Crossing, Cut},
     error::ReductionError,
@@ -11,16 +12,17 @@ use super::{
 use crate::math::elementary::{atan2, sin_cos};
 use std::collections::BTreeMap;
 
-/// Station on the rim: an angle, its directions, and nodal weights that sum to 1.
+/// Station on the rim: an angle, its radial and tangential directions, and nodal weights (sum 1) that average
+/// over the rim's width there.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Station {
-    /// Angle about the arc's centre \[rad\].
+    /// Angle of the station about the arc's centre \[rad\].
     pub(super) psi: f64,
     /// Unit vector of the outward radial direction.
     pub(super) radial: [f64; 2],
     /// Unit vector of the direction of increasing psi.
     pub(super) tangential: [f64; 2],
-    /// Node indices with their weights.
+    /// Indices of mesh nodes with their weights in the average over the rim's width.
     pub(super) weights: Vec<(usize, f64)>,
 }
 
@@ -68,7 +70,7 @@ impl Station {
     }
 }
 
-/// Rim of a mesh in polar angles about the arc's centre.
+/// Rim of a head's mesh (the surface under the rope), in polar angles about the arc's centre.
 #[derive(Clone, Debug)]
 pub(super) struct Rim<'a> {
     mesh: &'a Mesh,
@@ -115,10 +117,10 @@ impl<'a> Rim<'a> {
         ))
     }
 
-    /// Computes the single point at an angle \[rad\] and a height z \[m\], as a station.
+    /// Computes a station that is the single rim point at an angle \[rad\] and a lateral position z \[m\].
     ///
     /// # Errors
-    /// As [`Self::station`]; [`ReductionError::Beside`] if the rim is narrower than z.
+    /// As [`Self::station`]; [`ReductionError::OutsideRim`] if the rim is narrower than z.
     pub(super) fn station_beside(&self, psi: f64, z: f64) -> Result<Station, ReductionError> {
         let at = self.within(psi)?;
         let spans = |cut: &Cut| {
@@ -159,7 +161,7 @@ impl<'a> Rim<'a> {
         }
     }
 
-    /// Cuts the faces of the rim along the line at an angle.
+    /// Returns the cuts of the line at an angle with all faces of the rim.
     fn cuts(&self, psi: f64) -> impl Iterator<Item = Cut> + '_ {
         let kind = self.mesh.law().face();
         let seen = |node: usize| [self.angles[&node], self.mesh.nodes[node][2]];

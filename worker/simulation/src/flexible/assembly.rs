@@ -5,7 +5,7 @@
 use super::{element::Steel, error::ReductionError, mesh::Mesh};
 use std::collections::BTreeSet;
 
-/// Numbering of the unknown nodal displacements (degrees of freedom).
+/// Numbering of the unknown nodal displacements (degrees of freedom) of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Unknowns {
     /// Index among the unknowns of each node's displacements in x, y and z; `None` for a fixed displacement.
@@ -30,7 +30,6 @@ impl Unknowns {
         Self { numbers, count }
     }
 
-    /// Returns the number of unknowns.
     pub(super) const fn len(&self) -> usize {
         self.count
     }
@@ -68,7 +67,7 @@ pub(super) struct Symmetric {
 }
 
 impl Symmetric {
-    /// Returns the order of the matrix.
+    /// Returns the number of rows (and columns) of the matrix.
     pub(super) const fn len(&self) -> usize {
         self.starts.len() - 1
     }
@@ -90,12 +89,13 @@ impl Symmetric {
         product
     }
 
-    /// Returns the start index of each column, followed by the total, and the row of every entry.
+    /// Returns the sparsity pattern: the start index of each column followed by the number of stored entries,
+    /// and the row index of every stored entry.
     pub(super) fn pattern(&self) -> (&[usize], &[usize]) {
         (&self.starts, &self.rows)
     }
 
-    /// Returns row, column and value of every stored entry.
+    /// Iterates over the stored matrix entries as row, column and value.
     pub(super) fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> {
         (0..self.len()).flat_map(move |column| {
             let range = self.starts[column]..self.starts[column + 1];
@@ -111,20 +111,19 @@ impl Symmetric {
     }
 }
 
-/// Assembled stiffness [N/m] and mass \[kg\] matrices over the unknowns.
+/// Assembled stiffness [N/m] and mass \[kg\] matrices over the unknown displacements of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Assembly {
-    /// Stiffness matrix.
     pub(super) stiffness: Symmetric,
     /// Consistent mass matrix.
     pub(super) mass: Symmetric,
 }
 
 impl Assembly {
-    /// Assembles the elements of a mesh in their order.
+    /// Assembles stiffness and mass matrices from the elements of a mesh, in their order.
     ///
     /// # Errors
-    /// [`ReductionError::InsideOut`] with the index of an inverted element.
+    /// [`ReductionError::InvertedElement`] with the index of an inverted element.
     pub(super) fn new(
         mesh: &Mesh,
         steel: &Steel,
@@ -149,7 +148,8 @@ impl Assembly {
     }
 }
 
-/// Returns an element's free displacements as pairs: index within the element, index among the unknowns.
+/// Iterates over an element's free displacements as pairs of local index (within the element) and global
+/// index (among the unknowns).
 fn each(nodes: &[usize], unknowns: &Unknowns) -> impl Iterator<Item = (usize, usize)> {
     (0..3 * nodes.len()).filter_map(|i| Some((i, unknowns.number(nodes[i / 3], i % 3)?)))
 }

@@ -21,32 +21,34 @@ use faer::{
 };
 use std::cmp::Ordering;
 
-/// Number of rows and columns of a register tile.
+/// Number of rows and of columns of a register tile, the unit in which matrix products are computed.
 const TILE: usize = 4;
 /// Number of columns of a supernode's panel that are eliminated before the rest of the panel is updated.
 const BLOCK: usize = 32;
-/// Ratio of a pivot to its diagonal entry below which the pivot counts as zero up to rounding.
+/// Smallest acceptable ratio of a pivot to its original diagonal entry; below it the matrix counts as
+/// singular.
 const LEAST_PIVOT: f64 = 1e-12;
 
 /// Cholesky factor of a positive definite matrix.
 #[derive(Debug)]
 pub(super) struct Factor {
-    /// Index of the unknown eliminated at each step; length n.
+    /// Elimination order: index of the unknown eliminated at each step; length n.
     order: Vec<usize>,
     shape: Shape,
-    /// Values of the factor, supernode by supernode and column by column; entries above the diagonal are
-    /// zero.
+    /// Values of the Cholesky factor, supernode by supernode and column by column; values above the diagonal
+    /// are zero.
     values: Vec<f64>,
 }
 
-/// Sparsity structure of a factor with s supernodes.
+/// Sparsity structure of a Cholesky factor with s supernodes.
 #[derive(Debug)]
 struct Shape {
     /// First column of each supernode, followed by the number of columns; length s + 1.
     columns: Vec<usize>,
-    /// Index in `rows` where each supernode's rows start, followed by the total number of rows; length s + 1.
+    /// Index in `rows` where each supernode's row indices start, followed by the total number of them; length
+    /// s + 1.
     row_starts: Vec<usize>,
-    /// Row indices below each supernode's own columns, ascending.
+    /// Row indices of each supernode below its own columns, ascending, supernode after supernode.
     rows: Vec<usize>,
     /// Index in the factor's values where each supernode's values start, followed by their total number;
     /// length s + 1.
@@ -74,7 +76,7 @@ impl Shape {
         &values[self.value_starts[node]..self.value_starts[node + 1]]
     }
 
-    /// Returns the index of the supernode of every column; length n.
+    /// Returns for every column of the factor the index of its supernode; length n.
     fn owners(&self) -> Vec<usize> {
         let owned = (0..self.len()).map(|node| std::iter::repeat_n(node, self.width(node)));
         owned.flatten().collect()
@@ -113,7 +115,7 @@ impl Factor {
         Ok(factor)
     }
 
-    /// Copies the matrix entries into the panels, the dense column blocks of the supernodes.
+    /// Copies the values of the matrix into the panels (dense column blocks of the supernodes).
     fn scatter(&mut self, matrix: &Symmetric) {
         let Self {
             order,
@@ -139,7 +141,7 @@ impl Factor {
         }
     }
 
-    /// Computes the Cholesky factor in place from the matrix in the panels.
+    /// Computes the Cholesky factor in place in the panels, which hold the values of the matrix.
     fn eliminate(&mut self) -> Result<(), ReductionError> {
         let Self { shape, values, .. } = self;
         let owners = shape.owners();
@@ -241,8 +243,8 @@ fn plan(matrix: &Symmetric) -> Option<SymbolicCholesky<usize>> {
     factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, always).ok()
 }
 
-/// Copies a panel's rows from index `from` on into strips of [`TILE`] rows, each stored column by column, so
-/// that a product reads them sequentially; the last strip is padded with zeros.
+/// Copies a panel's rows from row `from` on into strips of [`TILE`] rows, each stored column by column, so
+/// that matrix products read them sequentially; the last strip is padded with zeros.
 fn pack(panel: &[f64], height: usize, from: usize, strips: &mut Vec<f64>) {
     let depth = panel.len() / height;
     let count = (height - from).div_ceil(TILE);
@@ -256,8 +258,8 @@ fn pack(panel: &[f64], height: usize, from: usize, strips: &mut Vec<f64>) {
     }
 }
 
-/// Passes every entry on and below the diagonal of `R S'` to `take`, with its row and column: R are the
-/// packed rows, S the first of them. `size` is the number of rows and of columns.
+/// Computes the product `R S'` of the packed rows R with the first of them, S, and passes each value on and
+/// below the diagonal to `take`, with its row and column; `size` holds the numbers of rows in R and in S.
 fn products(
     strips: &[f64],
     depth: usize,
@@ -281,8 +283,8 @@ fn products(
     }
 }
 
-/// Computes the tile of products of two strips, summed in order: one column for each row of `right`, with the
-/// rows of `left`.
+/// Computes the products of every row of strip `left` with every row of strip `right`, summed in order: one
+/// tile column per row of `right`.
 fn tile(left: &[f64], right: &[f64]) -> [[f64; TILE]; TILE] {
     let mut sums = [[0.0; TILE]; TILE];
     let (left, _) = left.as_chunks::<TILE>();

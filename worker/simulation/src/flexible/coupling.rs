@@ -15,10 +15,11 @@ use super::{
     result::{LeftOut, Mode},
 };
 
-/// Number of candidate modes of a family computed per requested mode.
+/// Number of candidate modes computed per requested mode of a symmetry family; the best coupled are kept.
 pub(super) const CANDIDATES: usize = 4;
 
-/// Load pattern on the symmetric half, and its work `f . K^-1 f` on the displacement under it.
+/// Load pattern on the symmetric half of a head, with the work `f . K^-1 f` of the load on its static
+/// displacement.
 #[derive(Debug)]
 struct Pattern {
     force: Vec<[f64; 3]>,
@@ -54,8 +55,8 @@ impl Patterns {
             .map(Self)
     }
 
-    /// Computes the share of each pattern's energy held by a symmetric mode that has unit mass on the whole
-    /// head.
+    /// Computes, for each load pattern, the share of its static energy that is held by a given symmetric mode
+    /// with unit mass on the whole head.
     pub(super) fn shares(&self, frequency: f64, field: &[[f64; 3]]) -> impl Iterator<Item = f64> {
         self.0.iter().map(move |pattern| {
             // work and energy of both halves: (2 w)^2 over 2 c
@@ -65,7 +66,8 @@ impl Patterns {
     }
 }
 
-/// Returns the `count` modes with the largest coupling and the remaining modes, both sorted by frequency.
+/// Splits modes into the `count` with the largest coupling to the load patterns and the remaining ones, both
+/// sorted by frequency.
 pub(super) fn pick(mut modes: Vec<Mode>, count: usize) -> (Vec<Mode>, Vec<LeftOut>) {
     modes.sort_by(|a, b| {
         let lower = a.frequency.total_cmp(&b.frequency);

@@ -18,11 +18,11 @@ pub(super) struct Modes {
     pub(super) eigenvalues: Vec<f64>,
     /// Mode shapes with unit modal mass, one vector over the unknowns per mode.
     pub(super) shapes: Vec<Vec<f64>>,
-    /// Number of Lanczos steps (one linear solve each).
+    /// Number of Lanczos steps made; each takes one linear solve.
     pub(super) steps: usize,
 }
 
-/// Computes the `count` lowest modes.
+/// Computes the `count` modes of lowest frequency.
 ///
 /// # Errors
 /// [`ReductionError::Modes`] if the body has fewer modes or they do not converge.
@@ -82,7 +82,7 @@ fn start(order: usize) -> Vec<f64> {
 #[derive(Debug, Default)]
 struct Space {
     basis: Vec<Vec<f64>>,
-    /// Basis vectors multiplied by the mass matrix.
+    /// Basis vectors of the Krylov space multiplied by the mass matrix.
     weighed: Vec<Vec<f64>>,
     diagonal: Vec<f64>,
     off_diagonal: Vec<f64>,
@@ -90,7 +90,7 @@ struct Space {
 }
 
 impl Space {
-    /// Orthogonalises a vector against the basis in the inner product of the mass matrix.
+    /// Orthogonalises a vector against the Krylov basis in the inner product of the mass matrix.
     fn orthogonalize(&self, vector: &mut [f64]) {
         for (direction, weighed) in self.basis.iter().zip(&self.weighed) {
             let part = dot(vector, weighed);
@@ -100,7 +100,8 @@ impl Space {
         }
     }
 
-    /// Normalises the direction `next` by its length, appends it to the basis and returns `K^-1 M` times it.
+    /// Extends the Krylov basis by the direction `next` divided by its norm `length`; returns `K^-1 M` times
+    /// the new basis vector.
     fn extend(&mut self, next: &[f64], weighed: &[f64], length: f64, factor: &Factor) -> Vec<f64> {
         let scaled = |vector: &[f64]| vector.iter().map(|x| x / length).collect::<Vec<f64>>();
         if !self.basis.is_empty() {
@@ -158,7 +159,6 @@ impl Space {
     }
 }
 
-/// Returns the inner product, summed in index order.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -29,7 +29,7 @@ pub enum ReductionError {
         "element {element} (counted from 0 in the half z > 0 of the mesh) is inverted or has no volume: its Jacobian is not positive"
     )]
     InvertedElement {
-        /// Index of the element.
+        /// Index of the inverted element in the mesh.
         element: usize,
     },
     /// The stiffness matrix is not positive definite: the held nodes leave a rigid motion free.
@@ -42,7 +42,7 @@ pub enum ReductionError {
         "the stiffness factor for {unknowns} unknowns does not fit into memory: use a coarser mesh"
     )]
     TooLarge {
-        /// Number of unknown displacements.
+        /// Number of unknown displacements of the half model, which is the order of the matrix.
         unknowns: usize,
     },
     /// Fewer modes converged than were requested.
@@ -50,17 +50,17 @@ pub enum ReductionError {
         "the {wanted} requested modes did not converge within {steps} Lanczos steps: request fewer modes"
     )]
     Modes {
-        /// Number of requested modes.
+        /// Number of modes requested.
         wanted: usize,
-        /// Number of Lanczos steps made.
+        /// Number of Lanczos steps made before giving up.
         steps: usize,
     },
-    /// A station lies outside the angular range of the rope surface.
+    /// A station, at which mode shapes are evaluated, lies outside the angular range of the rope surface.
     #[error(
         "the rope surface does not reach the station at {psi_deg} deg: it spans {from_deg} to {to_deg} deg"
     )]
     Station {
-        /// Angle of the station \[deg\].
+        /// Angle of the station outside the range \[deg\].
         psi_deg: f64,
         /// Angle where the rope surface begins \[deg\].
         from_deg: f64,
@@ -82,7 +82,7 @@ pub enum ReductionError {
         "an end of gauge {gauge} lies {distance_mm:.2} mm outside the mesh: check the gauge's position and length"
     )]
     Gauge {
-        /// Number of the gauge, from 1.
+        /// Number of the gauge with an end outside the mesh, from 1.
         gauge: usize,
         /// Approximate distance of the gauge's end from the nearest element \[mm\].
         distance_mm: f64,

@@ -22,8 +22,8 @@ pub struct Gauge {
 const SLACK: f64 = 1e-3;
 
 impl Gauge {
-    /// Returns pairs of a node and a factor [Pa/m]; the reading \[Pa\] is the sum of factor times `u_y` of
-    /// the node.
+    /// Computes the gauge's reading as a linear function of nodal displacements: pairs of a node and a factor
+    /// [Pa/m]; the reading \[Pa\] is the sum of factor times `u_y` of the node.
     ///
     /// # Errors
     /// [`ReductionError::Gauge`], with `number`, if an end of the gauge lies in no element.

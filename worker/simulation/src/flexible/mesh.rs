@@ -10,7 +10,7 @@ use super::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Distance below which two positions are treated as equal \[m\].
+/// Distance below which two node positions count as equal when mirror images are matched \[m\].
 const TOLERANCE: f64 = 1e-6;
 
 /// Finite element mesh of a head, in the beam frame.
@@ -18,11 +18,11 @@ const TOLERANCE: f64 = 1e-6;
 pub struct Mesh {
     /// Positions of the nodes \[m\].
     pub nodes: Vec<[f64; 3]>,
-    /// Element kind, common to all elements.
+    /// Kind of element that the mesh consists of.
     pub kind: ElementKind,
-    /// Node indices of all elements, element after element, each in Gmsh's order.
+    /// Node indices of all elements, one element after the other, each in Gmsh's order of nodes.
     pub elements: Vec<usize>,
-    /// Indices of the nodes held in all directions: the pin holes.
+    /// Indices of the nodes held fixed in all directions, which are those on the pin holes.
     pub held: Vec<usize>,
     /// Node indices of all faces of the surface under the rope, face after face.
     pub rope_faces: Vec<usize>,
@@ -66,7 +66,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// Returns the implementation of the mesh's element kind.
+    /// Returns the implementation of shape functions, stiffness and mass for the mesh's element kind.
     pub(super) fn law(&self) -> &'static dyn Element {
         self.kind.law()
     }
@@ -87,15 +87,15 @@ impl Mesh {
     }
 }
 
-/// Half of a mesh with z >= 0, and its relation to the whole mesh.
+/// Half z >= 0 of a head's mesh, with the correspondence of its nodes to those of the whole mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Half {
-    /// Mesh of the half.
+    /// Mesh of the half z >= 0.
     pub(super) mesh: Mesh,
-    /// Per node of the half: whether it lies on the plane z = 0.
+    /// Whether each node of the half lies on the plane z = 0.
     pub(super) on_plane: Vec<bool>,
-    /// Per node of the whole mesh: the corresponding node of the half, and whether the node is its mirror
-    /// image (z < 0).
+    /// Correspondence of each node of the whole mesh: index of the node in the half, and whether the node is
+    /// its mirror image (z < 0).
     pub(super) source: Vec<(usize, bool)>,
 }
 
@@ -206,7 +206,7 @@ fn not_mirrored(&[x, y, z]: &[f64; 3]) -> ReductionError {
     ReductionError::NotMirrored { x, y, z }
 }
 
-/// Returns the integer cell, in a grid of spacing `TOLERANCE`, that contains a position.
+/// Returns the grid cell, of edge length `TOLERANCE`, that contains a node position.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "positions of a machine part in millionths of a metre"
@@ -215,7 +215,7 @@ fn cell(node: &[f64; 3]) -> [i64; 3] {
     node.map(|x| (x / TOLERANCE).round() as i64)
 }
 
-/// Finds the node at a position, searching its cell and the 26 neighbouring cells.
+/// Finds the index of the node at a position, by searching its grid cell and the 26 neighbouring cells.
 fn find(places: &BTreeMap<[i64; 3], usize>, place: &[f64; 3]) -> Option<usize> {
     let [x, y, z] = cell(place);
     (0..27).find_map(|k| {

@@ -1,6 +1,8 @@
-//! Equations of one symmetry family over the half mesh, factored once, for modes and static solutions.
+//! Equations of motion of one symmetry family (symmetric or antisymmetric fields) on the half mesh;
+//! factorised once, then used for modes and static solutions.
 //!
-//! Statics takes one solve per gauge, `K w_g = row_g`; the reading under any load `f` is then `w_g . f`.
+//! The static solution takes one linear solve per gauge, `K w_g = row_g`; the reading under any load `f` is
+//! then `w_g . f`.
 use super::{
     arc::{Rim, Station},
     assembly::{Assembly, Unknowns},
@@ -14,7 +16,8 @@ use super::{
 };
 use nalgebra::DVector;
 
-/// Returns the rigid displacement fields for a unit base acceleration along x, along y, and about the origin.
+/// Returns the displacement fields of three rigid motions of the head: unit translations along x and y, and
+/// unit rotation about the origin.
 fn rigid(mesh: &Mesh) -> [Vec<[f64; 3]>; 3] {
     [
         mesh.nodes.iter().map(|_| [1.0, 0.0, 0.0]).collect(),
@@ -26,13 +29,13 @@ fn rigid(mesh: &Mesh) -> [Vec<[f64; 3]>; 3] {
 /// Displacement of every node \[m\] and stress at every element's centre \[Pa\].
 type Fields = (Vec<[f64; 3]>, Vec<[f64; 6]>);
 
-/// Quantities evaluated for each mode: displacement at rope stations, gauge readings and optionally the whole
-/// field.
+/// Outputs evaluated for each mode: displacement at rope stations, gauge readings and optionally the
+/// displacement field of all nodes.
 pub(super) struct ModeOutputs<'a> {
     pub(super) stations: &'a [Station],
-    /// Weights of nodal displacements that give each gauge's reading.
+    /// Weights of nodal displacements that give the reading of each gauge.
     pub(super) rows: &'a [Row],
-    /// Whether the displacement field of every mode is returned too.
+    /// Whether to return the displacement field of every mode too.
     pub(super) fields: bool,
 }
 
@@ -43,7 +46,8 @@ pub(super) struct Problem<'a> {
     unknowns: Unknowns,
     pub(super) assembly: Assembly,
     pub(super) factor: Factor,
-    /// Consistent mass times each of the three rigid motions, over all nodes of the half.
+    /// Consistent mass matrix times each of the three rigid motions (x, y, rotation), on all nodes of the
+    /// half.
     pub(super) inertia: [Vec<[f64; 3]>; 3],
 }
 
@@ -76,8 +80,9 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// Computes the `count` lowest modes of this family and the number of solves; `coupling` maps the angular
-    /// frequency and the field of a mode on the half to its coupling with the load patterns.
+    /// Computes the `count` lowest modes of this symmetry family, and the number of linear solves made;
+    /// `coupling` computes a mode's coupling with the load patterns from its angular frequency and its
+    /// displacement field on the half.
     pub(super) fn modes(
         &self,
         count: usize,
@@ -95,7 +100,7 @@ impl<'a> Problem<'a> {
         Ok((modes.collect(), found.steps))
     }
 
-    /// Returns the field of a mode on the half, scaled so that the modal mass of the whole body is one.
+    /// Expands a mode shape to all nodes of the half and scales it to unit modal mass of the whole body.
     pub(super) fn unit_mass(&self, shape: &[f64]) -> Vec<[f64; 3]> {
         let scale = std::f64::consts::FRAC_1_SQRT_2;
         let mut field = self.unknowns.spread(shape);
@@ -103,8 +108,8 @@ impl<'a> Problem<'a> {
         field
     }
 
-    /// Returns a mode's field and gauge readings, with the sign chosen such that the gauge with the largest
-    /// reading is in tension.
+    /// Chooses the sign of a mode such that the gauge with the largest reading is in tension; returns its
+    /// displacement field and gauge readings.
     pub(super) fn signed(
         &self,
         rows: &[Row],
@@ -165,14 +170,14 @@ impl<'a> Problem<'a> {
         self.sign(row) * sum
     }
 
-    /// Returns the sign of a gauge's reading: that of the family's mirror image if the gauge lies at z < 0,
-    /// else 1.
+    /// Returns the factor that converts a reading at the gauge's mirror image on the half to that of the
+    /// gauge: the family's mirror sign if the gauge lies at z < 0, else 1.
     pub(super) const fn sign(&self, (_, image): &Row) -> f64 {
         if *image { self.family.image()[1] } else { 1.0 }
     }
 
-    /// Solves once per gauge for its influence field on the half; the gauge's reading under a load is the
-    /// inner product of load and field.
+    /// Computes the influence field of each gauge on the half, with one linear solve per gauge; a gauge's
+    /// reading under a load is the inner product of load and influence field.
     pub(super) fn lines(&self, rows: &[Row]) -> Vec<Vec<[f64; 3]>> {
         let line = |(row, _): &Row| {
             let mut load = vec![[0.0; 3]; self.half.mesh.nodes.len()];
@@ -233,7 +238,7 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// Returns the displacement of the half under a load on the half.
+    /// Computes the static displacement of the half under nodal forces on the half.
     pub(super) fn solve(&self, load: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut vector = self.unknowns.gather(load);
         self.factor.solve(&mut vector);
@@ -255,7 +260,7 @@ impl<'a> Problem<'a> {
         Ok(probes.iter().map(row).collect())
     }
 
-    /// Returns the nodal forces of a wrapped rope on the half \[N\].
+    /// Computes the nodal forces on the half from a rope wrapped around the head \[N\].
     pub(super) fn wrap_force(
         &self,
         rim: &Rim<'_>,

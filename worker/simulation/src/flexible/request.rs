@@ -12,7 +12,7 @@ pub enum Family {
 }
 
 impl Family {
-    /// Returns the signs of the displacement components x, y, z in the mirror image.
+    /// Returns the sign of each displacement component x, y, z in the mirror image of a field.
     pub const fn image(self) -> [f64; 3] {
         match self {
             Self::Symmetric => [1.0, 1.0, -1.0],
@@ -28,26 +28,28 @@ pub struct ReductionRequest<'a> {
     pub mesh: &'a Mesh,
     /// Material of the head.
     pub steel: Steel,
-    /// Gauges at which stress is computed; g of them.
+    /// Gauges at which stress is computed; their number is called g.
     pub gauges: &'a [Gauge],
     /// Centre of the rope arc \[m\].
     pub center: [f64; 2],
-    /// Angles at which mode shapes and influence lines are computed \[rad\]; s of them.
+    /// Angles of the stations at which mode shapes and influence lines are computed \[rad\]; their number is
+    /// called s.
     pub stations: &'a [f64],
-    /// Angles at which the static compliance is computed \[rad\]; p of them.
+    /// Angles of the probes, the rim points between which the static compliance is computed \[rad\]; their
+    /// number is called p.
     pub probes: &'a [f64],
-    /// Wrapped rope as a static load, for which displacement and stress of the whole mesh are computed.
+    /// Wrapped rope for which the static displacement and stress of the whole mesh are computed, if any.
     pub wrap: Option<Wrap>,
     /// Pair of ropes beside the plane of symmetry; `None` for a single rope.
     pub pair: Option<Pair>,
-    /// Number of modes to return, n.
+    /// Number n of modes to keep in the reduced model.
     pub modes: usize,
-    /// Symmetry families from which modes are taken.
+    /// Symmetry families from which modes are computed and kept.
     pub families: &'a [Family],
-    /// Rope configurations of a revolution: the modes that couple most to these loads and to the beam's
-    /// motion are kept. If empty, the lowest modes are kept.
+    /// Wrapped ropes, as they occur over a revolution, used as load patterns: the modes that couple most to
+    /// them and to the beam's motion are kept. If empty, the lowest modes are kept.
     pub patterns: &'a [Wrap],
-    /// Whether the displacement fields of the modes are returned.
+    /// Whether to return the displacement fields of the modes on all nodes.
     pub fields: bool,
 }
 
@@ -57,7 +59,7 @@ pub struct ReductionRequest<'a> {
 pub struct Wrap {
     /// Rope tension \[N\].
     pub tension: f64,
-    /// Angle of the fixed end \[rad\].
+    /// Angle of the rope's fixed end on the arc \[rad\].
     pub anchor: f64,
     /// Angle where the rope leaves the arc \[rad\], greater than `anchor`.
     pub leaves: f64,
@@ -78,6 +80,6 @@ impl Wrap {
 pub struct Pair {
     /// Distance of each rope from the plane z = 0 \[m\].
     pub offset: f64,
-    /// Number of antisymmetric modes to compute, a.
+    /// Number of antisymmetric modes to compute, called a.
     pub modes: usize,
 }

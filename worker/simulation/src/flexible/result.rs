@@ -7,90 +7,93 @@ use super::request::Family;
 pub struct Mode {
     /// Symmetry family of the mode.
     pub family: Family,
-    /// Angular frequency [rad/s].
+    /// Angular frequency of the mode [rad/s].
     pub frequency: f64,
-    /// Outward radial displacement at the stations [kg^-1/2]; length s.
+    /// Outward radial displacement of the mode at the stations [kg^-1/2]; length s.
     pub radial: Vec<f64>,
-    /// Tangential displacement at the stations towards increasing psi [kg^-1/2]; length s.
+    /// Tangential displacement of the mode at the stations, towards increasing angle psi [kg^-1/2]; length s.
     pub tangential: Vec<f64>,
-    /// Stress at the gauges [Pa per unit modal coordinate]; length g.
+    /// Stress of the mode at the gauges [Pa per unit modal coordinate]; length g.
     pub gauge_stress: Vec<f64>,
-    /// Participation factors: integrals of density times `(phi_x, phi_y, x phi_y - y phi_x)`.
+    /// Participation factors of the mode: integrals of density times `(phi_x, phi_y, x phi_y - y phi_x)`, its
+    /// coupling to base acceleration in x, in y and about the origin.
     pub participation: [f64; 3],
     /// Largest share of any load pattern's static energy that the mode holds \[1\]; 0 without patterns.
     pub coupling: f64,
-    /// Displacement of every node of the whole mesh; empty unless requested.
+    /// Displacement of every node of the whole mesh in this mode; empty unless requested.
     pub field: Vec<[f64; 3]>,
 }
 
 /// Reduced model of a head, with s stations, g gauges, p probes and n modes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reduction {
-    /// Modes, lowest frequency first; length n.
+    /// Modes kept, lowest frequency first; length n.
     pub modes: Vec<Mode>,
-    /// Candidate modes with less coupling to the load patterns, lowest frequency first; empty without
-    /// patterns.
+    /// Candidate modes not kept because they couple less to the load patterns, lowest frequency first; empty
+    /// without patterns.
     pub left_out: Vec<LeftOut>,
     /// Gauge stress per newton of inward normal force at each station [Pa/N]; s x g.
     pub normal_influence: Vec<Vec<f64>>,
     /// Gauge stress per newton of tangential force towards increasing psi at each station [Pa/N]; s x g.
     pub tangential_influence: Vec<Vec<f64>>,
-    /// Gauge stress per unit base acceleration in x, in y and about the pivot; 3 x g.
+    /// Static gauge stress per unit acceleration of the base in x, in y and about the pivot; 3 x g.
     pub inertia_stress: [Vec<f64>; 3],
     /// Outward radial displacement at probe j per newton inwards at probe i [m/N]; p x p.
     pub compliance: Vec<Vec<f64>>,
-    /// Displacement of every node under the wrapped rope \[m\]; empty without a wrapped rope.
+    /// Displacement of every mesh node under the wrapped rope \[m\]; empty without a wrapped rope.
     pub wrap_field: Vec<[f64; 3]>,
     /// Stress at the centre of every element under the wrapped rope \[Pa\]: xx, yy, zz, xy, yz, zx.
     pub wrap_stress: Vec<[f64; 6]>,
-    /// Antisymmetric tables for two ropes, if there are two.
+    /// Antisymmetric modes and influence lines for a pair of ropes; `None` for a single rope.
     pub sway: Option<SwayTables>,
     /// Mass of the head \[kg\].
     pub mass: f64,
-    /// Centre of mass in the plane \[m\].
+    /// Centre of mass of the head in the plane z = 0 \[m\].
     pub center_of_mass: [f64; 2],
-    /// Moment of inertia about the origin [kg m2].
+    /// Moment of inertia of the head about the origin [kg m2].
     pub inertia: f64,
-    /// Number of unknown displacements of the half model.
+    /// Number of unknown displacements of the finite element model of the half.
     pub unknowns: usize,
     /// Number of linear solves (Lanczos steps) for all modes.
     pub lanczos_steps: usize,
 }
 
-/// Candidate mode of the reduction that was not kept.
+/// Candidate mode that was computed but not kept in the reduced model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeftOut {
     /// Symmetry family of the mode.
     pub family: Family,
-    /// Angular frequency [rad/s].
+    /// Angular frequency of the mode [rad/s].
     pub frequency: f64,
     /// Largest share of any load pattern's static energy that the mode holds \[1\].
     pub coupling: f64,
 }
 
-/// Antisymmetric tables of a reduced head: a modes of unit modal mass, lowest frequency first, evaluated at
-/// the stations at `z = +offset`.
+/// Antisymmetric modes and influence lines of a reduced head: `a` modes of unit modal mass, lowest frequency
+/// first, evaluated at the stations at `z = +offset`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SwayTables {
-    /// Angular frequencies [rad/s]; length a.
+    /// Angular frequencies of the antisymmetric modes [rad/s]; length a.
     pub frequencies: Vec<f64>,
-    /// Outward radial displacement at the stations [kg^-1/2]; a x s.
+    /// Outward radial displacement of each mode at the stations [kg^-1/2]; a x s.
     pub radial: Vec<Vec<f64>>,
-    /// Tangential displacement at the stations towards increasing psi [kg^-1/2]; a x s.
+    /// Tangential displacement of each mode at the stations, towards increasing angle psi [kg^-1/2]; a x s.
     pub tangential: Vec<Vec<f64>>,
-    /// Displacement at the stations along z [kg^-1/2]; a x s.
+    /// Displacement of each mode along z at the stations [kg^-1/2]; a x s.
     pub lateral: Vec<Vec<f64>>,
-    /// Stress at the gauges [Pa per unit modal coordinate]; a x g.
+    /// Stress of each mode at the gauges [Pa per unit modal coordinate]; a x g.
     pub gauge_stress: Vec<Vec<f64>>,
-    /// Gauge stress per newton inwards at +offset together with a newton outwards at -offset [Pa/N]; s x g.
+    /// Gauge stress per pair of unit forces at each station, inwards at z = +offset and outwards at z =
+    /// -offset [Pa/N]; s x g.
     pub normal_influence: Vec<Vec<f64>>,
-    /// Gauge stress per newton towards increasing psi at +offset together with an opposite newton at -offset
-    /// [Pa/N]; s x g.
+    /// Gauge stress per pair of unit forces at each station, towards increasing psi at z = +offset and
+    /// opposite at z = -offset [Pa/N]; s x g.
     pub tangential_influence: Vec<Vec<f64>>,
-    /// Gauge stress per newton along +z at both +offset and -offset [Pa/N]; s x g.
+    /// Gauge stress per pair of unit forces along +z at each station, at z = +offset and z = -offset [Pa/N];
+    /// s x g.
     pub lateral_influence: Vec<Vec<f64>>,
 }
 
-/// Weights of the nodal `u_y` that give a gauge's reading on the half model, and whether the gauge is on the
-/// mirror image.
+/// Weights of nodal displacements `u_y` whose sum gives a gauge's reading on the half model, and whether the
+/// gauge lies on the mirrored half (z < 0).
 pub(super) type Row = (Vec<(usize, f64)>, bool);

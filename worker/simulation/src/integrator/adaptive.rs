@@ -12,20 +12,20 @@ pub struct Adaptive<E> {
     control: StepControl,
     /// Size of the next step \[s\].
     step: f64,
-    /// Largest step allowed after a failure of Newton's method \[s\].
+    /// Upper limit of the step size that remains after a failure of Newton's method \[s\].
     step_limit: f64,
     /// Number of steps accepted since the last failure of Newton's method, up to [`FAILURE_MEMORY_STEPS`].
     steps_since_failure: u32,
 }
 
-/// Error: the step size fell below the shortest allowed step.
+/// Error: the step size control would need a step shorter than the shortest allowed one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepUnderflow;
 
 /// Number of accepted steps after which a failure of Newton's method counts as unrelated to the previous one.
-/// After repeated failures within so many steps, steps stay below `FAILURE_STEP_FACTOR` times the failed one, and the limit
-/// grows by `RECOVERY_FACTOR` with every accepted step: the error estimate alone does not see a chattering contact and
-/// would lead straight back into the failure.
+/// After two failures closer together, the step size is limited to `FAILURE_STEP_FACTOR` times that of the
+/// failed step, and this limit grows by `RECOVERY_FACTOR` with every accepted step: the error estimate alone
+/// does not see a chattering contact and would lead straight back into the failure.
 const FAILURE_MEMORY_STEPS: u32 = 4;
 const FAILURE_STEP_FACTOR: f64 = 0.6;
 const RECOVERY_FACTOR: f64 = 1.1;
@@ -33,7 +33,8 @@ const RECOVERY_FACTOR: f64 = 1.1;
 const SHORTEST_STEP: f64 = 1e-9;
 
 impl<E: Equations> Adaptive<E> {
-    /// Creates an integrator for a system with local error `tolerance` and steps of at most `longest` \[s\].
+    /// Creates an integrator for a system, with the local error `tolerance` allowed per step and steps of at
+    /// most `longest` \[s\].
     pub fn new(method: Method, system: &System<E>, tolerance: f64, longest: f64) -> Self {
         let method = method.stepper(system, tolerance);
         Self {
@@ -50,8 +51,8 @@ impl<E: Equations> Adaptive<E> {
         }
     }
 
-    /// Makes one step from `from` to the given time `end` without error control. Finite differences of whole
-    /// runs use it, so that decisions of the step size controller are not differenced.
+    /// Makes one step from the state `from` to the given time `end` without error control. Finite differences
+    /// of whole runs use it, so that they do not include changed decisions of the step size control.
     ///
     /// # Errors
     /// [`StepUnderflow`] if the step fails.
@@ -70,7 +71,7 @@ impl<E: Equations> Adaptive<E> {
         Ok(step)
     }
 
-    /// Returns the intermediate stages of the last step, if the method has stages.
+    /// Returns the intermediate stages of the last step, or `None` if the method has no Runge-Kutta stages.
     pub fn stages(&self) -> Option<Stages<'_>> {
         self.method.stages()
     }

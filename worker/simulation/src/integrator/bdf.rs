@@ -17,20 +17,20 @@ use crate::system::{Equations, Powers, State, System};
 /// Highest order offered. It is stable at all steps for a real decaying mode; order 6 is stable only barely
 /// and not in use.
 const HIGHEST: usize = 5;
-/// Number of past states that a predictor of the highest order interpolates.
+/// Number of past states kept, which a predictor of the highest order interpolates.
 const KEPT: usize = HIGHEST + 1;
 
-/// Accepted state with its accumulated work.
+/// Accepted state of the history, with the work done until then.
 #[derive(Clone, Debug)]
 struct Point {
     t: f64,
     q: Vec<f64>,
     v: Vec<f64>,
-    /// Work done since the start \[J\]: input, output, dissipated.
+    /// Work done since the start of the run \[J\]: input, output, dissipated.
     work: [f64; 3],
 }
 
-/// Candidate order of the next step's formula, with its local error.
+/// Order considered for the next step, with the local error expected at it.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     order: usize,
@@ -46,18 +46,18 @@ pub struct Bdf {
     /// Accepted states, the latest first; the first `points` of them are valid.
     past: Vec<Point>,
     points: usize,
-    /// Number of steps made at the present order; `failures` counts rejections since the last accepted step.
+    /// Number of steps made at the present order; the field `failures` counts rejected steps since the last
+    /// accepted one.
     at_order: usize,
     failures: u32,
     /// Work since the start of the run at the end of the present step \[J\]: input, output, dissipated.
     work: [f64; 3],
-    /// Lower and higher neighbouring orders with the local errors that the last step would have had with
-    /// them.
+    /// Next lower and next higher order, with the local errors that the last step would have had at them.
     neighbouring_orders: [Option<Candidate>; 2],
     base_q: Vec<f64>,
     base_v: Vec<f64>,
-    /// Predicted coordinates; later the scaled difference between corrected and predicted coordinates (local
-    /// error).
+    /// Predicted coordinates during a step; afterwards its local error, the scaled difference between
+    /// corrected and predicted coordinates.
     error: Vec<f64>,
 }
 
@@ -91,8 +91,8 @@ impl Bdf {
         }
     }
 
-    /// Creates the method with a given history `past`, latest state first, of at least `order` + 1 states;
-    /// its steps have `order` (clamped to 1..5).
+    /// Creates the method with a given history `past` (latest state first, at least `order` + 1 states); its
+    /// steps have the fixed order `order` (clamped to 1..5).
     pub fn continuing(order: usize, past: &[State], tolerance: f64) -> Self {
         let n = past.first().map_or(0, |state| state.q.len());
         let mut method = Self::new(order, n, tolerance);
@@ -106,7 +106,7 @@ impl Bdf {
         method
     }
 
-    /// Returns the order of the next step.
+    /// Returns the order of the formula for the next step.
     pub const fn order(&self) -> usize {
         self.order
     }
@@ -127,7 +127,7 @@ impl Bdf {
         }
     }
 
-    /// Returns the weights of the past states in the predictor's value and rate at time `t`.
+    /// Returns the weights of the past states in the predicted value and in its rate, both at time `t`.
     fn predictor(&self, t: f64) -> [[f64; KEPT]; 2] {
         let mut weights = [[0.0; KEPT]; 2];
         let points = &self.past[..=self.order];
@@ -145,8 +145,8 @@ impl Bdf {
         weights
     }
 
-    /// Computes the stage's bases (the known parts of coordinates and rates), the predicted coordinates (into
-    /// `error`) and the predicted rates (into `v`); returns the corresponding bases of the accumulated work.
+    /// Computes the predicted coordinates (into `error`) and rates (into `v`) at time `t`, and the bases
+    /// (known parts) of the implicit stage; returns the corresponding bases of the work.
     fn predict(&mut self, t: f64, c: f64, v: &mut [f64]) -> [f64; 3] {
         let [value, rate] = self.predictor(t);
         let used = self.order + 1;
@@ -173,8 +173,8 @@ impl Bdf {
         })
     }
 
-    /// Returns the error constant for a step to `t`: ratio of the local error to the difference between
-    /// corrector and predictor.
+    /// Returns the error constant of a step to time `t`: ratio of the local error to the difference between
+    /// corrected and predicted coordinates.
     fn constant(&self, t: f64, h: f64) -> f64 {
         let last = h / (t - self.past[self.order].t);
         let mut own = 0.0;
@@ -186,7 +186,8 @@ impl Bdf {
         last.max((last + own - fixed).abs())
     }
 
-    /// Estimates the local error of the formula of `order` at the new state from divided differences.
+    /// Estimates the local error that the formula of order `order` would have had in this step, from divided
+    /// differences of the states.
     fn error_at<E: Equations>(&mut self, order: usize, equations: &E, to: &State) -> Candidate {
         let h = to.t - self.past[0].t;
         let earlier = &self.past[..=order];

@@ -1,14 +1,14 @@
 //! Dense output: cubic Hermite interpolation between two accepted states.
 use crate::system::State;
 
-/// Weights of the two ends of a step in the interpolated state between them.
+/// Weights with which the states at the two ends of a step enter the interpolated state between them.
 #[derive(Clone, Copy, Debug)]
 pub struct Weights {
-    /// Weights of the interpolated quantity at both ends.
+    /// Weights of the quantity's values at the two ends in cubic interpolation.
     pub value: [f64; 2],
-    /// Weights of the quantity's time derivative at both ends \[s\].
+    /// Weights of the quantity's time derivatives at the two ends in cubic interpolation \[s\].
     pub slope: [f64; 2],
-    /// Weights of linearly interpolated quantities at both ends.
+    /// Weights of the values at the two ends in linear interpolation.
     pub linear: [f64; 2],
 }
 
@@ -26,10 +26,10 @@ impl Weights {
     }
 }
 
-/// Interpolates the state at time `t` between `from` and `to` into `out`.
+/// Interpolates the state at time `t` between the states `from` and `to` into `out`.
 ///
-/// Coordinates are interpolated from coordinates and rates of both ends, rates from rates and accelerations;
-/// accelerations are linear.
+/// Coordinates are interpolated cubically from coordinates and rates at both ends, rates cubically from rates
+/// and accelerations; accelerations are interpolated linearly.
 pub fn interpolate(from: &State, to: &State, t: f64, out: &mut State) {
     let Weights {
         value: [f0, f1],

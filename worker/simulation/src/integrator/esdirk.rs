@@ -22,7 +22,8 @@ pub struct Esdirk {
 }
 
 impl Esdirk {
-    /// Creates the method for a tableau, `n` coordinates and the local error allowed per step.
+    /// Creates the method from its tableau (coefficients), the number `n` of coordinates and the local error
+    /// allowed per step.
     pub fn new(tableau: &'static Tableau, n: usize, tolerance: f64) -> Self {
         Self {
             tableau,
@@ -35,8 +36,8 @@ impl Esdirk {
         }
     }
 
-    /// Computes the bases of stage `i`: its coordinates and rates without the contributions of its own rate
-    /// and acceleration.
+    /// Computes the bases of stage `i`: the parts of its coordinates and rates known before the stage's own
+    /// rate and acceleration are solved for.
     fn bases(&mut self, i: usize, h: f64, from: &State) {
         self.base_q.copy_from_slice(&from.q);
         self.base_v.copy_from_slice(&from.v);

@@ -19,9 +19,9 @@ pub struct GeneralizedAlpha {
     beta: f64,
     gamma: f64,
     newton: Newton,
-    /// Size of the last accepted step, the algorithmic accelerations at its end, and their rate of change.
+    /// Last accepted step: its size, the algorithmic accelerations at its end, and their rate of change.
     last_accepted: Option<(f64, Vec<f64>, Vec<f64>)>,
-    /// Algorithmic accelerations at both ends of the present step.
+    /// Algorithmic accelerations at the start and at the end of the present step.
     ends: [Vec<f64>; 2],
     step: f64,
     /// Input, output and dissipated power at the time where the equations of motion hold, in the last
@@ -68,8 +68,8 @@ impl GeneralizedAlpha {
         }
     }
 
-    /// Computes the known parts (bases) of the stage `x_f = base + coefficient x'` of coordinates and rates;
-    /// returns the coefficients of rates and accelerations.
+    /// Computes the bases (known parts) of coordinates and rates in the implicit stage; returns the
+    /// coefficients with which rate and acceleration enter it.
     fn bases(&mut self, from: &State, h: f64) -> (f64, f64) {
         let (f, m) = (1.0 - self.alpha_f, 1.0 - self.alpha_m);
         let old = self.alpha_m / m;

@@ -10,7 +10,7 @@ use crate::system::{Equations, System};
 /// Selectable integration method.
 #[derive(Clone, Copy, Debug)]
 pub enum Method {
-    /// Singly diagonally implicit Runge-Kutta method with an explicit first stage.
+    /// Singly diagonally implicit Runge-Kutta method with an explicit first stage, given by its coefficients.
     RungeKutta(&'static Tableau),
     /// RODAS: a Rosenbrock method of order 4, which solves linear systems instead of iterating with Newton's
     /// method.
@@ -23,16 +23,16 @@ pub enum Method {
     },
     /// Backward differentiation formulas of variable step and order.
     Bdf {
-        /// Highest order, 1 to 5.
+        /// Highest order of the formulas used, 1 to 5.
         highest: usize,
     },
 }
 
-/// Default spectral radius at infinite frequency: damps unresolved modes within a few steps and hardly
-/// affects resolved ones.
+/// Default spectral radius at infinite frequency of the generalised-alpha method: damps unresolved modes
+/// within a few steps and hardly affects resolved ones.
 pub const SPECTRAL_RADIUS: f64 = 0.5;
 
-/// All methods with their default settings.
+/// All integration methods that can be selected, with their default settings.
 pub static CATALOGUE: [Method; 5] = [
     Method::RungeKutta(&TR_BDF2),
     Method::RungeKutta(&ESDIRK4),
@@ -44,7 +44,7 @@ pub static CATALOGUE: [Method; 5] = [
 ];
 
 impl Method {
-    /// Returns the method's name for tables.
+    /// Returns the method's name, as printed in tables.
     pub const fn name(self) -> &'static str {
         match self {
             Self::RungeKutta(tableau) => tableau.name,

@@ -2,21 +2,23 @@
 //! fast enough.
 use crate::system::{Equations, Loads, Powers, StateRef, StateShift, System};
 
-/// Policy for renewing the factorisation of the iteration matrix: a small state machine without numerics.
+/// Policy that decides when the iteration matrix is factorised anew: a small state machine without numerics.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RefactorPolicy {
-    /// Coefficient (gamma) for which the present factorisation was made.
+    /// Coefficient gamma of the stage for which the present factorisation was made; `None` without a usable
+    /// factorisation.
     made_for: Option<f64>,
     slow: bool,
 }
 
 impl RefactorPolicy {
-    /// Convergence rate above which the next stage starts with a new factorisation.
+    /// Convergence rate (ratio of successive corrections) above which the next stage starts with a new
+    /// factorisation.
     pub const SLOW: f64 = 0.15;
     /// Largest relative change of the coefficient for which a factorisation is reused.
     pub const DRIFT: f64 = 0.25;
 
-    /// Returns whether a stage with coefficient `gamma` needs a new factorisation.
+    /// Returns whether a stage with coefficient `gamma` needs a new factorisation of the iteration matrix.
     pub fn needs_factorization(&self, gamma: f64) -> bool {
         self.slow
             || self
@@ -24,7 +26,7 @@ impl RefactorPolicy {
                 .is_none_or(|made| (gamma / made - 1.0).abs() > Self::DRIFT)
     }
 
-    /// Records that a factorisation was made for the coefficient `gamma`.
+    /// Records that the iteration matrix was factorised for the coefficient `gamma`.
     pub const fn record_factorization(&mut self, gamma: f64) {
         self.made_for = Some(gamma);
         self.slow = false;
@@ -58,9 +60,9 @@ pub struct ImplicitStage<'a> {
     /// Coefficient d \[s\] of the acceleration in the stage's rates, equal to c for most methods; the ratio
     /// d/c must be the same for all stages.
     pub d: f64,
-    /// Coordinates without the contribution of this stage's rate.
+    /// Base of the coordinates: their part without the contribution of this stage's rate.
     pub base_q: &'a [f64],
-    /// Rates without the contribution of this stage's acceleration.
+    /// Base of the rates: their part without the contribution of this stage's acceleration.
     pub base_v: &'a [f64],
 }
 
@@ -76,19 +78,19 @@ pub struct Newton {
     change: Vec<f64>,
 }
 
-/// Error of Newton's method allowed in a stage, in units of the error norm, at a step tolerance of 1.
+/// Error that Newton's method may leave in a stage, in units of the error norm, at a step tolerance of 1.
 const ACCURACY: f64 = 0.3;
 const ITERATIONS: u32 = 10;
 /// Largest number of Newton iterations of a stage that is solved to rounding accuracy. `QUADRATIC` is the
-/// correction below which the next one is rounding, by quadratic convergence; `ROUNDING` is the largest
+/// correction below which quadratic convergence leaves only rounding to correct; `ROUNDING` is the largest
 /// correction that rounding may leave.
 const MAX_ITERATIONS_TO_ROUNDING: u32 = 40;
 const QUADRATIC: f64 = 1e-7;
 const ROUNDING: f64 = 1e-4;
 
 impl Newton {
-    /// Creates the solver for `n` coordinates and a step tolerance, from which the accuracy of stages
-    /// follows: the remaining error of Newton's method must stay below the local error of a step. At a
+    /// Creates the solver for `n` coordinates and the local error tolerated per step, from which the accuracy
+    /// of stages follows: the remaining error of Newton's method must stay below the local error. At a
     /// tolerance of 0, stages are solved to rounding.
     pub fn new(n: usize, tolerance: f64) -> Self {
         Self {
@@ -98,10 +100,10 @@ impl Newton {
         }
     }
 
-    /// Solves a stage, starting from the rates predicted in `v`; coordinates and accelerations are computed
-    /// from them.
+    /// Solves an implicit stage, starting from the rates predicted in `v`; coordinates and accelerations
+    /// follow from the rates.
     ///
-    /// Returns the powers of the solution under the loads of the last evaluation: the last correction is
+    /// Returns the powers at the solution, under the loads of the last evaluation: the last correction is
     /// smaller than Newton's accuracy, and the loads are not evaluated again after it.
     ///
     /// # Errors
@@ -222,7 +224,7 @@ impl Newton {
 }
 
 impl ImplicitStage<'_> {
-    /// Returns the shift that forms the stage's iteration matrix: rates change `damping` times and
+    /// Returns the coefficients of the stage's iteration matrix: rates change `damping` times and
     /// accelerations `mass` times as much as coordinates.
     fn shift(&self) -> StateShift {
         let damping = 1.0 / self.c;
@@ -233,7 +235,7 @@ impl ImplicitStage<'_> {
     }
 }
 
-/// Computes the coordinates and accelerations that correspond to the predicted rates.
+/// Computes the coordinates and accelerations that correspond to the predicted rates in a stage.
 fn predict(stage: &ImplicitStage<'_>, q: &mut [f64], v: &[f64], a: &mut [f64]) {
     for i in 0..q.len() {
         q[i] = stage.base_q[i] + stage.c * v[i];
@@ -268,8 +270,9 @@ mod tests {
         assert!(policy.needs_factorization(100.0));
     }
 
-    /// Checks the relaxation factor: if inertia (gamma squared) and stiffness have equal weight at the
-    /// coefficient `made`, the relative errors of a correction are equal for both and of opposite sign.
+    /// Checks the factor that scales a Newton correction for another coefficient: if inertia (gamma squared)
+    /// and stiffness have equal weight at the coefficient `made`, the relative errors of a correction are
+    /// equal for both and of opposite sign.
     #[test]
     fn a_correction_is_scaled_for_another_coefficient() {
         let mut policy = RefactorPolicy::default();

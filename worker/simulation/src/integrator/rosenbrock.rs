@@ -14,12 +14,13 @@ use crate::system::{Equations, Powers, State, StateRef, StateShift, System};
 
 const STAGES: usize = 6;
 const GAMMA: f64 = 0.25;
-/// Nodes of the stages, as shares of the step.
+/// Times of the stages within the step, as shares of the step.
 const NODES: [f64; STAGES] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
-/// Coefficients of the forces' time derivative, per stage.
+/// Coefficients with which the forces' time derivative enters the stages.
 const BY_TIME: [f64; STAGES] = [0.25, -0.1043, 0.1035, -0.036_200_000_000_000_23, 0.0, 0.0];
-/// Weights of earlier stages' increments in the state at which a stage is evaluated (its argument). The sixth
-/// argument is the fifth plus the fifth increment; the result is the sixth argument plus the sixth increment.
+/// Weights of earlier stages' increments in the argument of each stage (the state at which it is evaluated).
+/// The sixth argument is the fifth plus the fifth increment; the result is the sixth argument plus the sixth
+/// increment.
 const ARGUMENT: [&[f64]; STAGES] = [
     &[],
     &[1.544],
@@ -43,7 +44,8 @@ const ARGUMENT: [&[f64]; STAGES] = [
         1.0,
     ],
 ];
-/// Weights (to be divided by `h`) of earlier stages' increments in a stage's right-hand side.
+/// Weights of earlier stages' increments in the right-hand side of each stage; still to be divided by the
+/// step `h`.
 const RIGHT: [&[f64]; STAGES] = [
     &[],
     &[-5.6688],
@@ -89,11 +91,11 @@ pub struct Rosenbrock {
     powers: [Powers; 2],
     /// Time derivative of the forces.
     by_time: Vec<f64>,
-    /// Rates of the stage's argument plus the coordinate increments of earlier stages, weighted by [`RIGHT`]
-    /// and divided by the step.
+    /// Velocity part of a stage's right-hand side: rates of the stage's argument plus the coordinate
+    /// increments of earlier stages, weighted by [`RIGHT`] and divided by the step.
     rates: Vec<f64>,
-    /// Accelerations of the stage's argument plus the rate increments of earlier stages, weighted by
-    /// [`RIGHT`] and divided by the step.
+    /// Acceleration part of a stage's right-hand side: accelerations of the stage's argument plus the rate
+    /// increments of earlier stages, weighted by [`RIGHT`] and divided by the step.
     inertial: Vec<f64>,
     right: Vec<f64>,
     product: Vec<f64>,
@@ -101,7 +103,7 @@ pub struct Rosenbrock {
 }
 
 impl Rosenbrock {
-    /// Creates the method; `matrix` is an empty matrix with the system's structure.
+    /// Creates the method; `matrix` is an empty matrix with the structure of the system's iteration matrix.
     pub fn new(matrix: Bordered) -> Self {
         let n = matrix.len();
         let zeros = || vec![0.0; n];
@@ -123,7 +125,8 @@ impl Rosenbrock {
         }
     }
 
-    /// Computes the time derivative of the forces and `-K`, and factorises the iteration matrix `S`.
+    /// Computes the time derivative of the forces and the matrix `-K` at the start of a step, and factorises
+    /// the iteration matrix `S`.
     fn linearize<E: Equations>(
         &mut self,
         system: &mut System<E>,
@@ -160,7 +163,7 @@ impl Rosenbrock {
         }
     }
 
-    /// Solves for the increments of stage `i`, which is evaluated at the state `to`.
+    /// Solves for the increments of stage `i`, whose argument is the state `to`.
     fn solve<E: Equations>(
         &mut self,
         i: usize,
@@ -202,7 +205,6 @@ impl Rosenbrock {
     }
 }
 
-/// Adds `weight` times `x` to `to`.
 fn add(to: &mut [f64], weight: f64, x: &[f64]) {
     for (to, x) in to.iter_mut().zip(x) {
         *to += weight * x;

@@ -1,10 +1,10 @@
-//! Step size control by the local error; knows only the order of the method.
+//! Step size control by the local error of each step; knows nothing of the method but its order.
 use crate::math::elementary::powf;
 
-/// Step size controller of a method whose error estimate is of order `order` in the step.
+/// Step size controller; derives the size of each step from the local error of the step before.
 #[derive(Clone, Copy, Debug)]
 pub struct StepControl {
-    /// Order of the error estimate.
+    /// Order of the method's error estimate with respect to the step size.
     pub order: f64,
     /// Target local error of a step, in units of the error norm.
     pub tolerance: f64,
@@ -15,14 +15,14 @@ pub struct StepControl {
 }
 
 impl StepControl {
-    /// Returns the factor for the size of the next step after one with local error `error`.
+    /// Returns the factor by which to change the step size after a step with local error `error`.
     pub fn factor(&self, error: f64) -> f64 {
         let ratio = self.tolerance / error.max(1e-10 * self.tolerance);
         (0.9 * powf(ratio, 1.0 / self.order)).clamp(0.2, 3.0)
     }
 
-    /// Returns the size of the next step; small changes are suppressed, so that a factorisation can be
-    /// reused.
+    /// Returns the size of the next step \[s\]; small changes are suppressed, so that the factorised
+    /// iteration matrix can be reused.
     pub fn next(&self, step: f64, error: f64) -> f64 {
         let factor = self.factor(error);
         let factor = if (0.85..=1.25).contains(&factor) {

@@ -3,7 +3,7 @@ use super::{newton::NotConverged, step_control::StepControl, tableau::Tableau};
 use crate::system::{Equations, Powers, State, System};
 use std::fmt::Debug;
 
-/// Result of one step.
+/// Result of one integration step: its local error and the work done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeStep {
     /// Local error in units of the error norm.
@@ -12,7 +12,8 @@ pub struct TimeStep {
     pub work: Powers,
 }
 
-/// Stages of a step of a method with an explicit first stage, for differentiating the discrete trajectory.
+/// Stages of the last step of a Runge-Kutta method with an explicit first stage; needed for differentiating
+/// the discrete trajectory.
 #[derive(Clone, Copy, Debug)]
 pub struct Stages<'a> {
     /// Coefficients of the method.
@@ -21,7 +22,7 @@ pub struct Stages<'a> {
     pub rates: &'a [(Vec<f64>, Vec<f64>)],
 }
 
-/// Result of a step, or the failure of Newton's method.
+/// Result of an integration step, or the failure of Newton's method in it.
 pub type StepResult = Result<TimeStep, NotConverged>;
 
 /// Integration method with its buffers and its history of earlier steps.
@@ -29,10 +30,11 @@ pub type StepResult = Result<TimeStep, NotConverged>;
 /// It knows neither what is recorded nor which size a step should have, except where it overrides
 /// [`Stepper::next`].
 pub trait Stepper<E: Equations>: Debug {
-    /// Makes one step of size `h` from `from`, the end of the last accepted step, into `to`.
+    /// Makes one step of size `h` from the state `from`, the end of the last accepted step; its end is
+    /// written into `to`.
     ///
-    /// The loads that the equations keep afterwards are those of the method's last evaluation, which equal
-    /// the loads of `to` up to Newton's accuracy. [`System::forces`] evaluates the loads of `to` itself.
+    /// Afterwards the equations keep the loads of the method's last evaluation, which equal the loads at `to`
+    /// up to Newton's accuracy. [`System::forces`] evaluates the loads at `to` itself.
     ///
     /// # Errors
     /// [`NotConverged`] if the step could not be made; `to` is then meaningless.
@@ -45,7 +47,7 @@ pub trait Stepper<E: Equations>: Debug {
     /// follows.
     fn reject(&mut self) {}
 
-    /// Returns the stages of the last step, if the method has stages.
+    /// Returns the stages of the last step, or `None` if the method has no Runge-Kutta stages.
     fn stages(&self) -> Option<Stages<'_>> {
         None
     }
@@ -53,7 +55,8 @@ pub trait Stepper<E: Equations>: Debug {
     /// Returns the order of the last step's error estimate with respect to the step size.
     fn error_order(&self) -> f64;
 
-    /// Returns the size of the step after the accepted one \[s\].
+    /// Returns the size of the step \[s\] that follows an accepted step of size `step` and local error
+    /// `error`.
     fn next(&mut self, control: &StepControl, step: f64, error: f64) -> f64 {
         control.next(step, error)
     }

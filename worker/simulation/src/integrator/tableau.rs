@@ -5,16 +5,16 @@
 pub struct Tableau {
     /// Name of the method in case files.
     pub name: &'static str,
-    /// Order of accuracy.
+    /// Order of accuracy of the method.
     pub order: u32,
-    /// Nodes of the stages; the first is 0, the last 1.
+    /// Times of the stages as shares of the step; the first is 0, the last 1.
     pub nodes: &'static [f64],
-    /// Rows of the stage matrix below the diagonal; the first row is empty, the last one holds the weights of
-    /// the result except the last weight.
+    /// Stage matrix below the diagonal, one list per stage; that of the first stage is empty, that of the
+    /// last one holds the weights of the result except the last weight.
     pub rows: &'static [&'static [f64]],
     /// Diagonal entry of the stage matrix, equal for all implicit stages.
     pub diagonal: f64,
-    /// Weights of the embedded formula that estimates the error.
+    /// Weights of the stages in the embedded formula that estimates the error.
     pub embedded: &'static [f64],
     /// Order of the error estimate with respect to the step size.
     pub error_order: f64,
@@ -80,7 +80,7 @@ pub static ESDIRK4: Tableau = Tableau {
 pub static CATALOGUE: [&Tableau; 2] = [&TR_BDF2, &ESDIRK4];
 
 impl Tableau {
-    /// Returns the weight of stage `i` in the result.
+    /// Returns the weight with which stage `i` enters the result of the step.
     pub fn weight(&self, i: usize) -> f64 {
         let last = self.nodes.len() - 1;
         if i == last {

@@ -1,8 +1,9 @@
-//! Dense blocks of three or six rows: inversion by elimination with partial pivoting, and products.
+//! Dense blocks of three or six rows, one per rigid body: inversion by elimination with partial pivoting, and
+//! products.
 //!
-//! An explicit inverse costs more to compute than triangular factors, but a factorisation serves some twenty
-//! solutions, and a product with the inverse is six independent columns where a triangular solution is a
-//! chain of dependent operations.
+//! An explicit inverse costs more to compute than triangular factors, but one factorisation serves some
+//! twenty solutions, and a product with the inverse is six independent columns where a triangular solution is
+//! a chain of dependent operations.
 use nalgebra::{SMatrix, SVector};
 
 /// Number of coordinates of a rigid body in space, and width of its block.
@@ -11,7 +12,7 @@ pub const BLOCK: usize = 6;
 /// Dense block of a matrix, column-major.
 pub type MatrixBlock<const N: usize = BLOCK> = SMatrix<f64, N, N>;
 
-/// Entries of one body in a vector of unknowns.
+/// Section of a vector of unknowns that belongs to one body.
 pub(super) type Column<const N: usize> = SVector<f64, N>;
 
 /// Replaces a block by its inverse (Gauss-Jordan with row exchanges).
@@ -57,7 +58,7 @@ pub(super) fn invert<const N: usize>(a: &mut MatrixBlock<N>) -> Result<(), usize
     Ok(())
 }
 
-/// Returns `A x`.
+/// Returns the product of a matrix block and a vector.
 #[inline]
 pub(super) fn product<const N: usize>(a: &MatrixBlock<N>, x: &Column<N>) -> Column<N> {
     let mut y = Column::<N>::zeros();
@@ -70,7 +71,7 @@ pub(super) fn product<const N: usize>(a: &MatrixBlock<N>, x: &Column<N>) -> Colu
     y
 }
 
-/// Subtracts `A x` from `y`.
+/// Subtracts the product of a matrix block `A` and a vector `x` from `y`.
 #[inline]
 pub(super) fn subtract_product<const N: usize>(
     a: &MatrixBlock<N>,

@@ -1,27 +1,27 @@
-//! Block-tridiagonal chains with a common border: storage, factorisation, solution.
+//! Block-tridiagonal matrix of chains of bodies with a common border: storage, factorisation, solution.
+//!
+//! The border comprises the unknowns that couple to bodies of several chains. It has two parts: first the
+//! unknowns of bodies to which more than one chain is attached (the lead), then the unknowns of the structure
+//! that carries the chains' other ends (the counted part, whose indices start after the lead).
 //!
 //! Every chain is eliminated from its free end towards its anchored end, so a border column fills in only
 //! from the first block that couples to it, or to a border column behind it. Cost O(blocks).
-//!
-//! The border has two parts: first the unknowns of bodies to which more than one chain is attached (the
-//! lead), then the unknowns of the structure that carries the chains' other ends (the counted part, whose
-//! indices start after the lead).
 use super::block::{Column, MatrixBlock, invert, product, subtract_product};
 use super::entry::MatrixEntry;
 
 /// Error: a pivot is zero or not finite, so the matrix is singular or holds a value that is not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SingularPivot {
-    /// Global index of the unknown with the singular pivot.
+    /// Index of the unknown with the singular pivot, among all unknowns of the matrix.
     pub unknown: usize,
 }
 
-/// Square matrix of `blocks * N + border` unknowns: chains one after the other, border last.
+/// Square matrix of `blocks * N + border` unknowns: first the blocks of all chains, one chain after the
+/// other, then the border (unknowns that couple to several chains).
 #[derive(Clone, Debug)]
 pub struct Blocks<const N: usize> {
     pub(super) chains: Vec<usize>,
-    /// Number of border unknowns; `lead` is the number of the first of them, which belong to bodies shared by
-    /// several chains.
+    /// Number of border unknowns; the first `lead` of them belong to bodies shared by several chains.
     pub(super) border: usize,
     lead: usize,
     pub(super) diagonal: Vec<MatrixBlock<N>>,
@@ -29,17 +29,18 @@ pub struct Blocks<const N: usize> {
     pub(super) upper: Vec<MatrixBlock<N>>,
     /// Coupling of block i + 1 (row) with block i (column).
     pub(super) lower: Vec<MatrixBlock<N>>,
-    /// Couplings of block rows with border columns: `blocks * border` columns of N.
+    /// Matrix values in the rows of the blocks and the columns of the border: `blocks * border` columns of
+    /// length N.
     pub(super) right: Vec<Column<N>>,
-    /// Couplings of border rows with block columns: `blocks * border` rows of N.
+    /// Matrix values in the rows of the border and the columns of the blocks: `blocks * border` rows of
+    /// length N.
     pub(super) bottom: Vec<Column<N>>,
-    /// Couplings within the border, `border * border`, column-major.
+    /// Matrix values in rows and columns of the border, `border * border`, column-major.
     pub(super) corner: Vec<f64>,
-    /// Per block: number of leading border unknowns that may couple to the block (one more than the highest
-    /// index).
+    /// For each block, one more than the highest index of a border unknown that may couple to it.
     pub(super) touches: Vec<usize>,
-    /// Per block: number of leading border unknowns filled by the factorisation, the maximum of `touches`
-    /// over the block and the blocks before it in its chain.
+    /// For each block, number of leading border unknowns whose coupling the factorisation fills in: the
+    /// maximum of `touches` over the block and the blocks before it in its chain.
     pub(super) filled: Vec<usize>,
     corner_pivots: Vec<usize>,
 }
@@ -66,22 +67,23 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    /// Returns the number of unknowns.
+    /// Returns the number of unknowns of the matrix.
     pub fn len(&self) -> usize {
         self.diagonal.len() * N + self.border
     }
 
-    /// Returns whether there are no unknowns.
+    /// Returns whether the matrix has no unknowns.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Returns the number of border unknowns without the leading ones of bodies shared by several chains.
+    /// Returns the number of border unknowns after the leading ones, which belong to bodies shared by several
+    /// chains.
     pub const fn border(&self) -> usize {
         self.border - self.lead
     }
 
-    /// Sets every entry to zero.
+    /// Sets all values of the matrix to zero.
     pub fn clear(&mut self) {
         self.diagonal.fill(MatrixBlock::zeros());
         self.upper.fill(MatrixBlock::zeros());
@@ -96,27 +98,27 @@ impl<const N: usize> Blocks<N> {
         self.filled.fill(0);
     }
 
-    /// Returns the range of border entries of block `b` that may be nonzero: those added, and those filled by
-    /// a factorisation.
+    /// Returns the index range, in `right` and `bottom`, of the couplings of block `b` with the border that
+    /// may be nonzero, whether assembled or filled in by the factorisation.
     fn used(&self, b: usize) -> std::ops::Range<usize> {
         let used = self.touches[b].max(self.filled[b]);
         b * self.border..b * self.border + used
     }
 
-    /// Returns a block on the matrix diagonal, by its index.
+    /// Returns the diagonal block of the matrix with the given index, for writing.
     #[inline]
     pub fn diagonal_mut(&mut self, block: usize) -> &mut MatrixBlock<N> {
         &mut self.diagonal[block]
     }
 
-    /// Returns the couplings of `block` (rows) with the next block (columns), and of the next block (rows)
-    /// with `block` (columns).
+    /// Returns the two couplings of `block` with the next block of its chain: rows of `block` with columns of
+    /// the next one, and rows of the next one with columns of `block`.
     #[inline]
     pub fn coupling_mut(&mut self, block: usize) -> (&mut MatrixBlock<N>, &mut MatrixBlock<N>) {
         (&mut self.upper[block], &mut self.lower[block])
     }
 
-    /// Adds `value` to the coupling of row `row` of `block` with border column `k`, counted from the end of
+    /// Adds `value` to the matrix at row `row` of `block` and border column `k`; `k` counts from the end of
     /// the lead (the border's first part).
     #[inline]
     pub fn add_right(&mut self, block: usize, row: usize, k: usize, value: f64) {
@@ -125,8 +127,8 @@ impl<const N: usize> Blocks<N> {
         self.right[block * self.border + k][row] += value;
     }
 
-    /// Adds `value` to the coupling of border row `k`, counted from the end of the lead (the border's first
-    /// part), with column `column` of `block`.
+    /// Adds `value` to the matrix at border row `k` and column `column` of `block`; `k` counts from the end
+    /// of the lead (the border's first part).
     #[inline]
     pub fn add_bottom(&mut self, block: usize, k: usize, column: usize, value: f64) {
         let k = self.lead + k;
@@ -134,8 +136,9 @@ impl<const N: usize> Blocks<N> {
         self.bottom[block * self.border + k][column] += value;
     }
 
-    /// Adds the matrix `own` to the given rows and columns of `block`, `right` to these rows in the first
-    /// `reach` border columns after the lead, and `bottom` to these columns in the corresponding border rows.
+    /// Adds small matrices of one body: `own` to the given rows and columns of its `block`, `right` to these
+    /// rows in the first `reach` border columns after the lead, and `bottom` to these columns in the
+    /// corresponding border rows.
     pub(crate) fn add_touching<const R: usize, const B: usize>(
         &mut self,
         block: usize,
@@ -161,14 +164,15 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    /// Adds `value` to an entry within the border; row and column are counted from the end of the lead (the
-    /// border's first part).
+    /// Adds `value` to the matrix at a row and a column of the border, both counted from the end of the lead
+    /// (the border's first part).
     #[inline]
     pub fn add_corner(&mut self, row: usize, column: usize, value: f64) {
         self.corner[(self.lead + column) * self.border + self.lead + row] += value;
     }
 
-    /// Adds `value` at global indices: within a block, between neighbouring blocks, or in the border.
+    /// Adds `value` to the matrix at indices among all unknowns: within a block, between neighbouring blocks,
+    /// or in the border.
     ///
     /// # Panics
     /// In debug builds, for blocks that are not neighbours of one chain.
@@ -202,7 +206,7 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    /// Computes `y = A x` with the assembled (not factorised) matrix.
+    /// Computes the product `y = A x` with the assembled (not factorised) matrix `A`.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         y.fill(0.0);
         let base = self.diagonal.len() * N;
@@ -232,7 +236,7 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    /// Factorises in place; the assembled entries are overwritten.
+    /// Factorises the matrix in place; its assembled values are overwritten.
     ///
     /// # Errors
     /// [`SingularPivot`] with the unknown whose pivot vanished.
@@ -240,8 +244,8 @@ impl<const N: usize> Blocks<N> {
         self.factorize_by(invert)
     }
 
-    /// Factorises with closed-form inverses of the blocks, for blocks in the plane: takes half of the time
-    /// and differs from [`Self::factorize`] in rounding.
+    /// Factorises a matrix of planar blocks in place, with closed-form inverses of the blocks: takes half of
+    /// the time of [`Self::factorize`] and differs from it in rounding.
     pub(super) fn factorize_closed(&mut self) -> Result<(), SingularPivot> {
         self.factorize_by(|block| {
             *block = block.try_inverse().ok_or(0_usize)?;
@@ -249,8 +253,8 @@ impl<const N: usize> Blocks<N> {
         })
     }
 
-    /// Factorises with the given function for inverting a block; the function returns the column index if a
-    /// block cannot be inverted.
+    /// Factorises the matrix in place with the given function for inverting a block; on failure that function
+    /// returns the index of the singular column.
     #[inline]
     fn factorize_by(
         &mut self,
@@ -287,8 +291,8 @@ impl<const N: usize> Blocks<N> {
         self.factorize_corner()
     }
 
-    /// Eliminates from the border one block, whose inverse is already stored and whose couplings reach the
-    /// first `reach` border unknowns; `right` becomes `D^-1 right`.
+    /// Eliminates one block, whose inverse is already stored, from the first `reach` unknowns of the border;
+    /// its couplings `right` become `D^-1 right`, with D the block.
     fn eliminate(&mut self, b: usize, has_next: bool, reach: usize) {
         let m = self.border;
         for k in 0..reach {
@@ -351,7 +355,8 @@ impl<const N: usize> Blocks<N> {
         Ok(())
     }
 
-    /// Solves the linear system in place with the factorised matrix.
+    /// Solves the linear system with the factorised matrix, overwriting the right-hand side with the
+    /// solution.
     pub fn solve(&self, x: &mut [f64]) {
         let m = self.border;
         let base = self.diagonal.len() * N;
@@ -446,7 +451,7 @@ fn interleave_chains(chains: &[usize], mut step: impl FnMut(usize, [usize; 2], u
     }
 }
 
-/// Returns the entries of block `b` in a vector of unknowns.
+/// Returns the section of a vector of unknowns that belongs to block `b`.
 #[inline]
 fn column<const N: usize>(blocks: &[f64], b: usize) -> Column<N> {
     Column::from_column_slice(&blocks[b * N..(b + 1) * N])

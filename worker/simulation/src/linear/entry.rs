@@ -1,17 +1,18 @@
-//! Entry types for vectors of unknowns: a scalar for one column, or several lanes for several columns.
+//! Number types of one unknown: a scalar for one right-hand side, or several SIMD lanes for several
+//! right-hand sides at once.
 use pulp::Simd;
 use std::ops::{Add, AddAssign, Div, Mul, Sub, SubAssign};
 
-/// Number of columns that are solved simultaneously.
+/// Number of right-hand sides that are solved simultaneously, one per SIMD lane.
 pub const LANES: usize = 4;
 
-/// Values of one unknown in [`LANES`] columns.
+/// Values of one unknown for [`LANES`] right-hand sides.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(32))]
 pub struct Lanes(pub [f64; LANES]);
 
-/// Arithmetic required of an entry by terms that are linear in a vector of unknowns; implemented by a scalar
-/// (one column) and by lanes (several columns).
+/// Arithmetic of the value of one unknown; implemented by a scalar (one right-hand side) and by lanes
+/// (several), so that code linear in a vector of unknowns serves both.
 pub trait MatrixEntry:
     Copy
     + Add<Output = Self>
@@ -27,8 +28,8 @@ impl MatrixEntry for f64 {}
 impl MatrixEntry for Lanes {}
 
 impl Lanes {
-    /// Adds `factor x` with SIMD instructions; product and sum are rounded separately (no fused
-    /// multiply-add).
+    /// Adds `factor` times `x` to the lanes with SIMD instructions; product and sum are rounded separately
+    /// (no fused multiply-add).
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
@@ -43,8 +44,8 @@ impl Lanes {
         }
     }
 
-    /// Subtracts `factor x` with SIMD instructions; product and difference are rounded separately (no fused
-    /// multiply-add).
+    /// Subtracts `factor` times `x` from the lanes with SIMD instructions; product and difference are rounded
+    /// separately (no fused multiply-add).
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"

@@ -1,7 +1,8 @@
-//! Solution and product for several right-hand sides simultaneously, one per SIMD lane.
+//! Linear solution and matrix product for several right-hand sides (columns) simultaneously, one per SIMD
+//! lane.
 //!
-//! A factor is read once for several columns, and the dependent operations along a chain in one column
-//! overlap with those of the other columns. Lanes are independent: a column has the same bits whatever
+//! The matrix factor is read once for several columns, and the dependent operations along a chain in one
+//! column overlap with those of the other columns. Lanes are independent: a column has the same bits whatever
 //! columns are solved with it.
 use super::block::{Column, MatrixBlock};
 use super::blocks::Blocks;
@@ -9,10 +10,9 @@ use super::bordered::Bordered;
 use super::entry::Lanes;
 use pulp::Simd;
 
-/// Entries of one block of unknowns, in all lanes.
+/// Unknowns of one block, in all lanes.
 type Part<const N: usize> = [Lanes; N];
 
-/// Subtracts `A x` from `y`.
 #[expect(
     clippy::inline_always,
     reason = "compiled for each set of instructions"
@@ -31,7 +31,6 @@ fn subtract_product<const N: usize, S: Simd>(
     }
 }
 
-/// Returns `A x`.
 #[expect(
     clippy::inline_always,
     reason = "compiled for each set of instructions"
@@ -47,7 +46,7 @@ fn product<const N: usize, S: Simd>(simd: S, a: &MatrixBlock<N>, x: &Part<N>) ->
     y
 }
 
-/// Iterates over the first `reach` border columns (or transposed border rows) of block `b`.
+/// Iterates over the first `reach` border columns (or, transposed, border rows) of the matrix at block `b`.
 #[expect(
     clippy::inline_always,
     reason = "compiled for each set of instructions"
@@ -112,7 +111,8 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    /// Subtracts `A x` from `y` with the assembled (not factorised) matrix, for `LANES` columns.
+    /// Subtracts the product `A x` from `y` with the assembled (not factorised) matrix `A`, for `LANES`
+    /// vectors.
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
@@ -158,7 +158,7 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    /// Iterates over the chains, as pairs of first block and length.
+    /// Iterates over the chains of the matrix, each as the index of its first block and its number of blocks.
     fn spans(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
         self.chains.iter().scan(0, |first, &count| {
             let span = [*first, count];
@@ -186,7 +186,8 @@ impl Bordered {
         }
     }
 
-    /// Subtracts `A x` from `y` with the assembled (not factorised) matrix, for `LANES` columns.
+    /// Subtracts the product `A x` from `y` with the assembled (not factorised) matrix `A`, for `LANES`
+    /// vectors.
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
@@ -206,7 +207,8 @@ mod tests {
     use crate::linear::LANES;
     use pulp::{Arch, Scalar, WithSimd};
 
-    /// Test computation that runs for each SIMD width: product with a matrix, and solution with its factor.
+    /// Test computation that is run for each SIMD width: product with an assembled matrix, and solution with
+    /// its factorisation.
     struct Work<'a>([&'a Bordered; 2], &'a [Lanes]);
 
     impl WithSimd for Work<'_> {
@@ -221,7 +223,8 @@ mod tests {
         }
     }
 
-    /// Checks that lanes give the results of single columns, and the same bits for every SIMD width.
+    /// Checks that solution and product in lanes equal those of single right-hand sides, and have the same
+    /// bits for every SIMD width.
     #[test]
     fn columns_are_solved_and_multiplied_as_one_by_one() {
         let mut a = Bordered::plane(&[3, 5], [1, 2]);

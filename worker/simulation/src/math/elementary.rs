@@ -53,7 +53,7 @@ pub fn sin_cos_all(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
 const FAR: f64 = 1e4;
 const ROUND: f64 = 6_755_399_441_055_744.0;
 const QUARTERS: f64 = std::f64::consts::FRAC_2_PI;
-/// Leading 33 bits of a quarter turn (fdlibm); `QUARTER_REST` is the remainder.
+/// Leading 33 bits of a quarter turn [pi/2 rad], as in fdlibm; `QUARTER_REST` is the remainder.
 const QUARTER: f64 = 1.570_796_326_734_125_6;
 const QUARTER_REST: f64 = 6.077_100_506_506_192e-11;
 /// Coefficients of fdlibm's kernels for sine (S) and cosine (C) up to an eighth of a turn.
@@ -94,8 +94,8 @@ pub fn powf(base: f64, exponent: f64) -> f64 {
     libm::pow(base, exponent)
 }
 
-/// Returns `x^exponent` for a contact penetration law; the usual exponent 3/2 takes one square root instead
-/// of a power.
+/// Returns `x^exponent` for the contact law's penetration `x`; the usual exponent 3/2 takes one square root
+/// instead of a power.
 #[inline]
 pub fn power_law(x: f64, exponent: f64) -> f64 {
     #[expect(clippy::float_cmp, reason = "selects the exact special case")]
@@ -108,8 +108,8 @@ pub fn power_law(x: f64, exponent: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    /// Checks agreement with single evaluations in all quadrants, at their borders, and for angles too large
-    /// for the loop.
+    /// Checks that the vectorised sines and cosines agree with single evaluations in all quadrants, at their
+    /// borders, and for angles too large for the loop.
     #[test]
     fn many_sines_and_cosines_agree_with_single_ones() {
         let mut angles: Vec<f64> = (-40_000..40_000).map(|k| f64::from(k) * 7.3e-4).collect();
@@ -139,7 +139,7 @@ mod tests {
         assert_eq!([s[1], c[1]].map(f64::to_bits), [0.0, 1.0].map(f64::to_bits));
     }
 
-    /// Checks that the joint evaluation equals libm's separate sine and cosine bitwise.
+    /// Checks that [`sin_cos`] equals libm's separate sine and cosine bitwise.
     #[test]
     fn sine_and_cosine_are_those_of_libm() {
         for k in -40_000..40_000 {

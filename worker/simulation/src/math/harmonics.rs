@@ -7,8 +7,8 @@ pub fn low_pass(values: &[f64], kept: u32) -> Vec<f64> {
     filter(values, kept, |_| [1.0, 0.0])
 }
 
-/// Returns the table with harmonic `h`, as an amplitude of `exp(i h phi)`, multiplied by the complex
-/// `gain(h)` (real and imaginary part); the mean is kept, harmonics above `highest` are dropped.
+/// Returns a periodic table whose harmonic `h`, as an amplitude of `exp(i h phi)`, is multiplied by the
+/// complex `gain(h)` (real and imaginary part); the mean is kept, harmonics above `highest` are dropped.
 pub fn filter(values: &[f64], highest: u32, gain: impl Fn(u32) -> [f64; 2]) -> Vec<f64> {
     let n = values.len();
     let count = n.max(1) as f64;

@@ -8,12 +8,13 @@ pub fn skew(a: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -a.z, a.y, a.z, 0.0, -a.x, -a.y, a.x, 0.0)
 }
 
-/// Returns the rotation about z whose x axis is `(cosine, sine)`.
+/// Returns the rotation matrix about z that turns the x axis into `(cosine, sine)`.
 pub fn about_z(sine: f64, cosine: f64) -> Matrix3<f64> {
     Matrix3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0)
 }
 
-/// Returns the rotation vector (axis times angle, |.| <= pi) of the rotation `R_WI R_WJ^T`, in W \[rad\].
+/// Returns the rotation vector (axis times angle, |.| <= pi) of the rotation `R_WI R_WJ^T` of frame I
+/// relative to frame J, in the world frame W \[rad\].
 ///
 /// Computed from the skew-symmetric part of the matrix, so that small angles keep full precision.
 pub fn rotation_vector(R_WI: &Matrix3<f64>, R_WJ: &Matrix3<f64>) -> Vector3<f64> {
@@ -52,7 +53,7 @@ pub fn rotation_vector(R_WI: &Matrix3<f64>, R_WJ: &Matrix3<f64>) -> Vector3<f64>
 }
 
 /// Returns the inverse of the left Jacobian of the rotation vector `theta`: `d theta = J^-1 d alpha` for a
-/// further rotation `d alpha` in W. Its transpose is the inverse of the right Jacobian.
+/// further rotation `d alpha` in the world frame. Its transpose is the inverse of the right Jacobian.
 pub fn inverse_left_jacobian(theta: &Vector3<f64>) -> Matrix3<f64> {
     let a2 = theta.norm_squared();
     let factor = if a2 < 1e-2 {

@@ -13,22 +13,23 @@ pub struct Splines {
     per_step: f64,
     periodic: bool,
     curves: usize,
-    /// Value and second derivative times step^2 / 6, point by point, all curves of a point together.
+    /// Value and second derivative times step^2 / 6 of each curve at each grid point, ordered point by point.
     knots: Vec<[f64; 2]>,
 }
 
-/// Value and first two derivatives of one curve.
+/// Value and first two derivatives of a spline at one position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ValueAndDerivatives {
-    /// Value of the curve.
+    /// Value of the spline.
     pub value: f64,
-    /// First derivative.
+    /// First derivative of the spline.
     pub first: f64,
-    /// Second derivative.
+    /// Second derivative of the spline.
     pub second: f64,
 }
 
-/// Position on the grid of splines: enclosing knots and local coordinate, computed once for all curves.
+/// Position on the common grid of several splines: enclosing grid points and local coordinate, computed once
+/// for all curves.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SplinePosition {
     left: usize,
@@ -38,8 +39,8 @@ pub struct SplinePosition {
 }
 
 impl SplinePosition {
-    /// Returns the interpolation weights of the values, then of the scaled second derivatives, at the left
-    /// and the right knot.
+    /// Returns the interpolation weights for values, then for scaled second derivatives, each at the left and
+    /// the right grid point.
     #[inline]
     const fn weights(&self) -> [f64; 4] {
         let b = self.t;
@@ -49,13 +50,13 @@ impl SplinePosition {
 }
 
 impl Splines {
-    /// Creates natural splines through `curves[c][i]` at `start + i * step`, constant beyond the ends. Fewer
-    /// than two points give a constant.
+    /// Creates natural splines through the values `curves[c][i]` at abscissae `start + i * step`, constant
+    /// beyond the ends. Fewer than two points give a constant.
     pub fn natural(start: f64, step: f64, curves: &[Vec<f64>]) -> Self {
         Self::new(start, step, curves, false)
     }
 
-    /// Creates periodic splines; the point after the last is the first.
+    /// Creates periodic splines through equally spaced values; after the last value the first one follows.
     pub fn periodic(start: f64, step: f64, curves: &[Vec<f64>]) -> Self {
         Self::new(start, step, curves, true)
     }
@@ -83,7 +84,7 @@ impl Splines {
         }
     }
 
-    /// Returns the number of curves.
+    /// Returns the number of splines on the grid.
     pub const fn curves(&self) -> usize {
         self.curves
     }
@@ -93,7 +94,7 @@ impl Splines {
         self.knots.len() / self.curves.max(1)
     }
 
-    /// Locates `x` on the grid.
+    /// Returns the grid position of the abscissa `x`, with which all curves can be evaluated.
     #[inline]
     pub fn place(&self, x: f64) -> SplinePosition {
         let points = self.points();
@@ -121,7 +122,7 @@ impl Splines {
         }
     }
 
-    /// Returns value and derivatives of `curve` at a place on the grid.
+    /// Returns value and first two derivatives of the spline with index `curve` at a grid position.
     #[inline]
     pub fn jet(&self, place: &SplinePosition, curve: usize) -> ValueAndDerivatives {
         let [y0, m0] = self.knots[place.left * self.curves + curve];
@@ -145,7 +146,7 @@ impl Splines {
         }
     }
 
-    /// Computes the values of the first `values.len()` curves at a place on the grid.
+    /// Computes the values of the first `values.len()` splines at a grid position.
     pub fn values(&self, place: &SplinePosition, values: &mut [f64]) {
         let left = &self.knots[place.left * self.curves..];
         let right = &self.knots[place.right * self.curves..];
@@ -155,7 +156,7 @@ impl Splines {
         }
     }
 
-    /// Computes the values and first derivatives of the first `values.len()` curves at a place on the grid.
+    /// Computes the values and first derivatives of the first `values.len()` splines at a grid position.
     pub fn slopes(&self, place: &SplinePosition, values: &mut [f64], slopes: &mut [f64]) {
         let left = &self.knots[place.left * self.curves..];
         let right = &self.knots[place.right * self.curves..];
@@ -169,7 +170,7 @@ impl Splines {
         }
     }
 
-    /// Returns the value of `curve` at `x`.
+    /// Returns the value of the spline with index `curve` at the abscissa `x`.
     pub fn value(&self, x: f64, curve: usize) -> f64 {
         self.jet(&self.place(x), curve).value
     }
@@ -184,7 +185,8 @@ fn index(u: f64) -> usize {
     u as usize
 }
 
-/// Returns the second derivatives times step^2 of the natural spline (Thomas algorithm).
+/// Returns the second derivatives times step^2, at the grid points, of the natural spline through the values
+/// `y` (Thomas algorithm).
 fn natural_second_derivatives(y: &[f64]) -> Vec<f64> {
     let n = y.len();
     let mut bends = vec![0.0; n];
@@ -204,7 +206,8 @@ fn natural_second_derivatives(y: &[f64]) -> Vec<f64> {
     bends
 }
 
-/// Returns the second derivatives times step^2 of the periodic spline.
+/// Returns the second derivatives times step^2, at the grid points, of the periodic spline through the values
+/// `y`.
 ///
 /// The circulant system (1, 4, 1) is solved with its decaying Green's function, which is exact to rounding
 /// after 30 neighbours.

@@ -1,10 +1,11 @@
-//! Tangent of the joint that fixes a rope to its head: the one joint that couples a cylinder with the beam
-//! angle and the head's modes.
+//! Tangent of the anchor, the joint that fixes a rope's end to its head: the one joint that couples a
+//! cylinder with the beam angle and the head's modes.
 //!
-//! The rope's end moves by `P = B (a + sum u_k q_k)` and turns by the beam's rotation `B` and by `R_t(sum t_k
-//! q_k) R_r(sum r_k q_k)`. With `S_k = B u_k` and `W_k = t_k d_t + r_k d_r`, the axes `d` of
-//! `EndRotation::axes`, its force and torque do the work `Q_k = F . S_k + tau . W_k` on a mode and `Q = (P x
-//! F + tau) . z` on the beam.
+//! The rope's end, at `a` in the beam frame, moves to `P = B (a + sum u_k q_k)` and turns by the beam's
+//! rotation `B` and by `R_t(sum t_k q_k) R_r(sum r_k q_k)`, with mode shapes `u_k`, `t_k`, `r_k` and modal
+//! coordinates `q_k`. With `S_k = B u_k` and `W_k = t_k d_t + r_k d_r`, where the axes `d` are those of
+//! `EndRotation::axes`, the anchor's force and torque do the work `Q_k = F . S_k + tau . W_k` on a mode and
+//! `Q = (P x F + tau) . z` on the beam.
 use crate::element::bushing::{LinkLoad, LinkTangent};
 use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
@@ -21,12 +22,12 @@ type V3 = Vector3<f64>;
 /// Joint between a rope's last cylinder (J) and the head (I), with its load and derivatives.
 pub(super) struct Anchor<'a> {
     pub(super) chain: usize,
-    /// Matrix block of the last cylinder.
+    /// Index of the matrix block of the rope's last cylinder.
     pub(super) block: usize,
     pub(super) end: &'a EndTangent,
-    /// Load of the joint on the head.
+    /// Force and torque of the anchor joint on the head.
     pub(super) load: &'a LinkLoad,
-    /// Pose of the last cylinder.
+    /// Pose of the rope's last cylinder.
     pub(super) pose: &'a Pose,
 }
 
@@ -121,8 +122,8 @@ impl Machine {
         }
     }
 
-    /// Returns the mode shapes at the anchor in W, the displacement of its reference point from the pivot due
-    /// to the modes, and its velocity due to the modes.
+    /// Returns the mode shapes at the anchor in the world frame W, and the displacement and the velocity of
+    /// the anchor's reference point due to the modes.
     fn anchor_shapes(
         &self,
         face: Option<&HeadResponse>,
@@ -162,15 +163,15 @@ impl Machine {
     }
 }
 
-/// Motion of the reference point of a rope's anchor on the head.
+/// Motion of the anchor's reference point: the point of the head to which a rope's end is fixed.
 struct AnchorMotion {
-    /// Position from the pivot, in W \[m\].
+    /// Position of the point relative to the beam's pivot, in the world frame W \[m\].
     p: V3,
-    /// Velocity due to the modes, in W [m/s].
+    /// Velocity of the point due to the modes alone, in the world frame W [m/s].
     deflection_rate: V3,
     /// Angular velocity of the beam [rad/s].
     rate: f64,
-    /// Derivative of rates with respect to coordinates in the implicit stage [1/s].
+    /// Factor by which a rate changes with its coordinate in the implicit integration stage [1/s].
     gamma: f64,
 }
 
@@ -202,26 +203,28 @@ impl AnchorMotion {
     }
 }
 
-/// Rotation of a rope's fixed end by the modes.
+/// Rotation of the anchor (a rope's fixed end) relative to the beam, caused by the head's modes.
 struct AnchorRotation<'a> {
     shapes: &'a [AnchorShape],
-    /// Rotation axes `W_k` of the modes, in W.
+    /// Rotation axes `W_k` of the modes at the anchor, in the world frame W.
     axes: [V3; MAX_MODES],
-    /// Angular velocity relative to the beam [rad/s].
+    /// Angular velocity of the anchor relative to the beam [rad/s].
     velocity: V3,
-    /// Derivative of the axis of the end's second rotation with respect to the angle of the first.
+    /// Derivative of the axis of the anchor's second rotation (`r`) with respect to the angle of the first
+    /// (`t`).
     by_tilt: V3,
     second_rate: f64,
 }
 
 impl AnchorRotation<'_> {
-    /// Returns the derivative of a mode's rotation axis `W_row` with respect to another modal coordinate.
+    /// Returns the derivative of the rotation axis `W_row` of mode `row` with respect to the coordinate of
+    /// `mode`.
     fn bend(&self, row: usize, mode: usize) -> V3 {
         self.by_tilt * (self.shapes[row].turns[1] * self.shapes[mode].turns[0])
     }
 
-    /// Returns the derivative of the end's angular velocity with respect to a modal coordinate at constant
-    /// rates.
+    /// Returns the derivative of the anchor's angular velocity with respect to the coordinate of `mode` at
+    /// constant rates.
     fn drift(&self, mode: usize) -> V3 {
         self.by_tilt * (self.second_rate * self.shapes[mode].turns[0])
     }

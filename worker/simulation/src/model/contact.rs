@@ -1,10 +1,11 @@
 //! Contact of a rope cylinder with an arc on the beam: geometry of the arc, and points at which the contact
 //! law is evaluated.
 //!
-//! Penetration of the point `g` on the cylinder's axis: `d = R + sum_k q_k phi_k(s) - |g - C(theta)|`, `s =
-//! arg(g - C) - theta`; the rope's radius is part of `R`. The generalised force is `-f grad d`. A cylinder
-//! touches along its length: the law is integrated with three Gauss points, whose weights divide the
-//! cylinder's coefficients.
+//! Penetration of the point `g` on the cylinder's axis: `d = R + sum_k q_k phi_k(s) - |g - C(theta)|` at the
+//! arc angle `s = arg(g - C) - theta`, with arc centre `C`, beam angle `theta`, modal coordinates `q_k` and
+//! radial mode shapes `phi_k`; the radius `R` is that of the rope's centre line. The generalised force is `-f
+//! grad d`, with contact force `f`. A cylinder touches along its length: the law is integrated with three
+//! Gauss points, whose weights divide the cylinder's coefficients.
 use crate::math::elementary::{atan2, sin_cos};
 use crate::math::spline::sum::WeightedSplines;
 use crate::math::spline::{SplinePosition, Splines};
@@ -17,21 +18,22 @@ type V2 = Vector2<f64>;
 /// Number of contact evaluation points per cylinder.
 pub const POINTS: usize = 3;
 
-/// Gauss points along a cylinder, in half lengths, and their shares of the contact coefficients.
+/// Gauss points along a cylinder: distance from its centre in half lengths, and share of the contact
+/// coefficients.
 pub const GAUSS: [(f64, f64); POINTS] = [
     (-0.774_596_669_241_483_4, 5.0 / 18.0),
     (0.0, 8.0 / 18.0),
     (0.774_596_669_241_483_4, 5.0 / 18.0),
 ];
 
-/// Surface of an arc at one instant: position, beam angle and deflection by modes.
+/// Surface of a head's arc at one instant: centre, beam angle and deflection by modes.
 #[derive(Clone, Debug)]
 pub struct Surface<'a> {
-    /// Centre of the arc \[m\].
+    /// Centre of the arc in the world frame W \[m\].
     pub center: V2,
-    /// Derivative of the centre with respect to the beam angle \[m\].
+    /// Derivative of the arc's centre with respect to the beam angle \[m\].
     pub center_by_beam: V2,
-    /// Radius of the rope's centre line \[m\].
+    /// Radius of the centre line of a rope lying on the arc \[m\].
     pub radius: f64,
     /// Beam angle \[rad\] and rate [rad/s].
     pub beam: [f64; 2],
@@ -44,12 +46,12 @@ pub struct Surface<'a> {
     pub profile: Option<&'a Profile>,
 }
 
-/// Deflection of an arc by modes.
+/// Deflection of a head's arc by the head's modes.
 #[derive(Clone, Copy, Debug)]
 pub struct Deflection<'a> {
     /// Radial mode shapes as functions of the arc angle \[rad\].
     pub shapes: &'a Splines,
-    /// Sums of the shapes weighted by the modal coordinates, and by their rates.
+    /// Sums of the mode shapes weighted by the modal coordinates, and by the rates of these.
     pub sum: &'a WeightedSplines,
     /// Rates of the modal coordinates.
     pub modal_rate: &'a [f64],
@@ -58,8 +60,8 @@ pub struct Deflection<'a> {
 /// Largest deflection of the head beyond the rigid arc that contact detection allows for \[m\].
 const LARGEST_BULGE: f64 = 0.01;
 
-/// Direction of a cylinder's centre from the arc's centre; one arc tangent serves all of the cylinder's Gauss
-/// points.
+/// Direction of a cylinder's centre seen from the arc's centre; its angle takes one arc tangent and serves
+/// all of the cylinder's Gauss points.
 #[derive(Clone, Copy, Debug)]
 pub struct Bearing {
     toward: V2,
@@ -85,8 +87,9 @@ impl Bearing {
     }
 }
 
-/// Returns the angle from `a` to `b` \[rad\] by the arc tangent's series: Gauss points of one cylinder lie
-/// within a few hundredths of a radian, where the first omitted term is below 1e-17.
+/// Returns the small angle from vector `a` to vector `b` \[rad\] by the series of the arc tangent; Gauss
+/// points of one cylinder lie within a few hundredths of a radian, where the first omitted term is below
+/// 1e-17.
 #[inline]
 pub(crate) fn small_angle(a: [f64; 2], b: [f64; 2]) -> f64 {
     let t = (a[0] * b[1] - a[1] * b[0]) / (a[0] * b[0] + a[1] * b[1]);
@@ -96,14 +99,14 @@ pub(crate) fn small_angle(a: [f64; 2], b: [f64; 2]) -> f64 {
             - u * (0.2 - u * (1.0 / 7.0 - u * (1.0 / 9.0 - u * (1.0 / 11.0 - u / 13.0))))))
 }
 
-/// Second derivatives of a contact point's penetration.
+/// Second derivatives of the penetration of a contact point.
 #[derive(Clone, Copy, Debug)]
 pub struct Curvature {
-    /// Second derivatives with respect to the point's position.
+    /// Second derivatives of the penetration with respect to the point's position.
     pub point: Matrix2<f64>,
-    /// Mixed derivatives with respect to the point's position and the beam angle.
+    /// Mixed second derivatives of the penetration with respect to the point's position and the beam angle.
     pub mixed: V2,
-    /// Second derivative with respect to the beam angle.
+    /// Second derivative of the penetration with respect to the beam angle.
     pub beam: f64,
     /// Derivatives of the arc angle with respect to the point and the beam angle; multiplied by the slope of
     /// a mode's shape they give the mixed derivatives of the penetration with respect to that mode.
@@ -137,8 +140,9 @@ impl<'a> Surface<'a> {
         self.bend.map_or(0, |bend| bend.shapes.curves())
     }
 
-    /// Returns the bearing of a cylinder of half length `half` centred at `g`, or `None` if it cannot touch;
-    /// computed from the bearing of a neighbouring cylinder, if given and near, which saves the arc tangent.
+    /// Returns the direction, from the arc's centre, of a cylinder of half length `half` centred at `g`, or
+    /// `None` if the cylinder cannot touch; computed from that of a neighbouring cylinder, if given and near,
+    /// which saves the arc tangent.
     #[inline]
     pub fn bearing(&self, before: Option<&Bearing>, g: &V2, half: f64) -> Option<Bearing> {
         let reach = self.reach + half;
@@ -156,16 +160,16 @@ impl<'a> Surface<'a> {
         Some(Bearing { toward: w, angle })
     }
 
-    /// Returns the arc angle of a direction in the beam frame, in [0, 2 pi).
+    /// Returns the arc angle of a direction from the arc's centre, in the beam frame, in [0, 2 pi).
     fn arc_angle(&self, direction: &V2) -> f64 {
         let turn = std::f64::consts::TAU;
         let angle = atan2(direction.y, direction.x) - self.beam[0];
         angle - turn * (angle / turn).floor()
     }
 
-    /// Returns the second derivatives of the penetration of a contact point at the vector `toward` from the
-    /// arc's centre, at arc angle `angle` and at `place` on the grid of the mode shapes, where the surface
-    /// has the slope `s1` with respect to the arc angle [m/rad].
+    /// Returns the second derivatives of a contact point's penetration. The point is at the vector `toward`
+    /// from the arc's centre, at arc angle `angle`, and at `place` on the grid of the mode shapes, where the
+    /// surface's height has the derivative `s1` with respect to the arc angle [m/rad].
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
     pub fn curvature(&self, toward: &V2, angle: f64, place: &SplinePosition, s1: f64) -> Curvature {

@@ -2,25 +2,26 @@
 //! quasi-static motion, uniform crank speed.
 //!
 //! Effects use these curves where they are defined by a reference motion or by the tension that the load
-//! alone causes: `T = (F A + J theta'' + M_g cos theta) / h`, and the net crank torque is `T h dtheta/dturn +
-//! M_cw cos(phi + tau)`.
+//! alone causes: `T = (F A + J theta'' + M_g cos theta) / h`, with load `F`, front arm `A`, beam inertia `J`,
+//! beam angle `theta`, gravity moment `M_g` and back arm `h`. The net crank torque is `T h dtheta/dturn +
+//! M_cw cos(phi + tau)`, with counterweight moment `M_cw`, crank pin angle `phi` and phase `tau`.
 use crate::math::elementary::sin_cos;
 use crate::math::spline::{Splines, ValueAndDerivatives};
 use crate::model::description::{Crank, Description};
 use crate::model::kinematics::{DoesNotClose, Mechanism, Position};
 use std::f64::consts::TAU;
 
-/// Number of samples over one turn of the crank.
+/// Number of samples of each curve over one turn of the crank.
 const NODES: usize = 360;
 
-/// Curves of the ideal mechanism as functions of the turn angle.
+/// Curves of the ideal mechanism (inextensible ropes, quasi-static motion) as functions of the turn angle.
 #[derive(Clone, Debug)]
 pub struct Cycle {
     curves: Splines,
     tension: Splines,
     /// Crank pin angle at turn angle 0 \[rad\].
     bottom: f64,
-    /// Crank parameters that the torque is computed from.
+    /// Parameters of the crank, used for computing its net torque.
     crank: Crank,
 }
 
@@ -120,7 +121,7 @@ impl Cycle {
         self.curves.jet(&self.curves.place(turn), TANGENT)
     }
 
-    /// Returns the effective back arm \[m\] at a turn angle.
+    /// Returns the effective lever arm of the back rope about the pivot \[m\] at a turn angle.
     pub fn arm(&self, turn: f64) -> f64 {
         self.curves.value(turn, ARM)
     }

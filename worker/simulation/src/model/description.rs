@@ -29,11 +29,11 @@ pub struct Description {
     pub front_arc: Arc,
     /// Arc of the back head.
     pub back_arc: Arc,
-    /// Flexibility of the back head.
+    /// Reduced-order model of the flexible back head.
     pub head: Head,
-    /// Parameters of twin ropes; `None` for a single rope on each head.
+    /// Parameters of parallel twin ropes; `None` for a single rope on each head.
     pub twins: Option<Twins>,
-    /// Load at the suspension point, positive downwards, equally spaced over one turn from bottom
+    /// Load card: load at the suspension point, positive downwards, equally spaced over one turn from bottom
     /// dead centre \[N\].
     pub card: Vec<f64>,
 }
@@ -53,7 +53,7 @@ impl Description {
     }
 }
 
-/// A crank whose motion is prescribed.
+/// Geometry, speed and counterweight of the crank, whose motion is prescribed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crank {
     /// Position of the crankshaft's centre \[m\].
@@ -87,13 +87,13 @@ pub struct Rod {
 /// Geometry and density of a rope modelled as a chain of equal cylinders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rope {
-    /// Diameter of a cylinder \[m\].
+    /// Diameter of the rope's cylinders \[m\].
     pub diameter: f64,
-    /// Length of a cylinder \[m\].
+    /// Length of one cylinder of the rope \[m\].
     pub pitch: f64,
     /// Density of the rope's cylinders [kg/m3].
     pub density: f64,
-    /// Cylinder length for which the rope coefficients are stated \[m\].
+    /// Cylinder length for which the coefficients of joints and contact are stated \[m\].
     pub reference_pitch: f64,
     /// Length of rope represented by the joint at either end of a rope, in cylinder lengths: 0.5 or 1.
     pub end_pitches: f64,
@@ -125,9 +125,9 @@ pub struct Head {
     pub damping_ratio: f64,
     /// Method by which gauge stress is recovered from modal coordinates and forces.
     pub recovery: StressRecovery,
-    /// Arc angle of the first station \[rad\].
+    /// Arc angle of the first station at which mode shapes are given \[rad\].
     pub start: f64,
-    /// Angular spacing of the stations \[rad\].
+    /// Angular spacing of the stations at which mode shapes are given \[rad\].
     pub step: f64,
     /// Radial mode shapes, positive outwards [kg^-1/2]; n x s.
     pub radial: Vec<Vec<f64>>,
@@ -162,12 +162,13 @@ pub struct Twins {
     pub offset: f64,
     /// Excess length of the rope at -z over the rope at +z, on the back head and on the front head \[m\].
     pub longer: [f64; 2],
-    /// Out-of-plane (antisymmetric) flexibility of the back head.
+    /// Out-of-plane (antisymmetric) flexibility of the back head, excited by unequal tension of the twin
+    /// ropes.
     pub sway: AntisymmetricHead,
 }
 
-/// Antisymmetric part of a reduced head model: `a` modes sampled at the stations of [`Head`], at `z =
-/// +offset`. Each influence line belongs to a pair of forces, one on either rope.
+/// Antisymmetric part of a reduced head model: `a` modes, sampled at the stations of [`Head`] on the rope at
+/// `z = +offset`. Each influence line belongs to a pair of forces, one on either twin rope.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AntisymmetricHead {
     /// Angular frequencies of the `a` antisymmetric modes [rad/s].
@@ -180,31 +181,32 @@ pub struct AntisymmetricHead {
     pub lateral: Vec<Vec<f64>>,
     /// Gauge stress per unit modal coordinate \[Pa\]; a x 4.
     pub gauge_stress: Vec<[f64; 4]>,
-    /// Gauge stress per newton acting inwards at +z together with a newton acting outwards at -z [Pa/N]; 4 x
-    /// s'.
+    /// Gauge stress per newton acting inwards at `z = +offset` together with a newton acting outwards at `z =
+    /// -offset` [Pa/N]; 4 x s'.
     pub normal_influence: Vec<Vec<f64>>,
-    /// Gauge stress per newton towards increasing angle at +z together with a newton in the opposite
-    /// direction at -z [Pa/N]; 4 x s'.
+    /// Gauge stress per newton towards increasing angle at `z = +offset` together with a newton in the
+    /// opposite direction at `z = -offset` [Pa/N]; 4 x s'.
     pub tangential_influence: Vec<Vec<f64>>,
     /// Gauge stress per newton along +z on each rope [Pa/N]; 4 x s'.
     pub lateral_influence: Vec<Vec<f64>>,
 }
 
-/// Additional mode appended to those of a head.
+/// Additional mode that is appended to the modes of a head.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AddedMode {
     /// Angular frequency of the added mode [rad/s].
     pub frequency: f64,
-    /// Radial mode shape at s stations, positive outwards [kg^-1/2].
+    /// Radial shape of the added mode at the head's s stations, positive outwards [kg^-1/2].
     pub radial: Vec<f64>,
-    /// Tangential mode shape at s stations, positive towards increasing angle [kg^-1/2].
+    /// Tangential shape of the added mode at the head's s stations, positive towards increasing angle
+    /// [kg^-1/2].
     pub tangential: Vec<f64>,
-    /// Modal participation factors for base acceleration in x, in y and about the pivot.
+    /// Modal participation factors of the added mode for base acceleration in x, in y and about the pivot.
     pub participation: [f64; 3],
 }
 
 impl Head {
-    /// Truncates the modal basis to its first `modes` modes, those of lowest frequency.
+    /// Truncates the head's modal basis to its first `modes` modes, those of lowest frequency.
     pub fn keep(&mut self, modes: usize) {
         self.frequencies.truncate(modes);
         self.radial.truncate(modes);
@@ -213,7 +215,7 @@ impl Head {
         self.participation.truncate(modes);
     }
 
-    /// Appends a mode after the existing modes; its gauge stress is zero.
+    /// Appends a mode to the head's modes; its gauge stress is zero.
     pub fn add(&mut self, mode: AddedMode) {
         self.frequencies.push(mode.frequency);
         self.radial.push(mode.radial);
@@ -238,6 +240,6 @@ pub enum StressRecovery {
 pub struct RopeLaw {
     /// Coefficients of the joint between two cylinders.
     pub bushing: Bushing,
-    /// Coefficients of the contact between a cylinder and a head.
+    /// Coefficients of the contact between a cylinder of the rope and a head.
     pub contact: Impact,
 }

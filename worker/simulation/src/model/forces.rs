@@ -1,4 +1,4 @@
-//! Generalised forces, inertia, energies, and the powers that the energy balance integrates.
+//! Generalised forces, inertia forces and energies of a machine, and the powers for its energy balance.
 //!
 //! The equations of motion are `M(q) a = Q(q, v, t)`; this module computes `Q` and `M a`.
 use crate::element::impact::DerivativeVariable;
@@ -33,18 +33,19 @@ pub(crate) struct Terms {
     pub(crate) rigid: bool,
     /// Whether to include the weights of the cylinders and their velocity-dependent inertia terms.
     pub(crate) weights: bool,
-    /// Whether to include the joints at the ends of the ropes, without the joints between cylinders.
+    /// Whether to include the joints at both ends of the ropes; the joints between cylinders are not
+    /// affected.
     pub(crate) ends: bool,
     /// Whether to include all rope joints together with the axial laws that effects add to them.
     pub(crate) joints: bool,
-    /// Whether to include the axial laws that effects add to the rope joints, without the joints themselves.
+    /// Whether to include the axial laws that effects add to the rope joints; the joints' own forces are not
+    /// affected.
     pub(crate) pulls: bool,
     /// Whether to include the rope's contact with the back head (first) and with the front head (second).
     pub(crate) contact: [bool; 2],
 }
 
 impl Terms {
-    /// Selection of all terms.
     pub(crate) const ALL: Self = Self {
         rigid: true,
         weights: true,
@@ -53,7 +54,6 @@ impl Terms {
         pulls: false,
         contact: [true; 2],
     };
-    /// Selection of no term.
     pub(crate) const NONE: Self = Self {
         rigid: false,
         weights: false,
@@ -86,8 +86,8 @@ impl Machine {
         }
     }
 
-    /// Computes the generalised forces `Q(q, v, t)` into `force`; joint and contact loads remain in
-    /// `scratch`.
+    /// Computes the generalised forces `Q(q, v, t)` into `force`, and leaves the loads of joints and contacts
+    /// in `scratch`.
     pub(super) fn forces(&self, at: &Instant<'_>, scratch: &mut Scratch, force: &mut [f64]) {
         for (chain, state) in self.chains.iter().zip(&mut scratch.chains) {
             chain.pose(at.q, at.v, state);
@@ -145,8 +145,8 @@ impl Machine {
         }
     }
 
-    /// Computes into `force` the generalised forces of effect extensions that are not part of this machine, at the
-    /// poses in `scratch`. Valid for axial laws without memory.
+    /// Computes into `force` the generalised forces of extensions that belong to an effect but not to this
+    /// machine, using the cylinder poses in `scratch`. Valid for axial laws without memory.
     pub(super) fn forces_of(
         &self,
         extensions: &Extensions,
@@ -197,8 +197,8 @@ impl Machine {
         }
     }
 
-    /// Computes the loads on the back head alone, contact and anchor forces of the back ropes, into
-    /// `scratch`, where [`Self::forces`] would leave them as well.
+    /// Computes only the loads on the back head (contact and anchor forces of the back ropes) into `scratch`,
+    /// with the same result as [`Self::forces`].
     pub(crate) fn back_head_loads(
         &self,
         at: &Instant<'_>,
@@ -217,13 +217,13 @@ impl Machine {
         }
     }
 
-    /// Returns the acceleration of gravity as a vector in W [m/s2].
+    /// Returns the acceleration of gravity as a vector in the world frame W [m/s2].
     pub(crate) fn gravity(&self) -> V3 {
         V3::new(0.0, -self.description.gravity, 0.0)
     }
 
-    /// Adds the weights of and loads on the rigid bodies, and the elastic, damping and weight forces of the
-    /// head's modes, to `force`.
+    /// Adds to `force` the weights of the rigid bodies and the loads on them, and the elastic, damping and
+    /// weight forces on the head's modes.
     fn weights(&self, at: &Instant<'_>, force: &mut [f64]) {
         let &Instant { q, v, drive, .. } = at;
         let d = &self.description;
@@ -288,7 +288,7 @@ impl Machine {
         }
     }
 
-    /// Returns the contact surface of a chain at an instant, with the head deflection computed by
+    /// Returns the head surface that a chain touches at an instant, with the head deflection computed by
     /// [`Self::pose`].
     pub(crate) fn surface<'a>(
         &'a self,
@@ -349,8 +349,8 @@ impl Machine {
         self.pin_force_under(at, a, pull.fold(V3::zeros(), |sum, force| sum + force))
     }
 
-    /// Returns the force that the crank pin exerts on the rod \[N\], given the force `rope` on the first
-    /// cylinders of the back ropes.
+    /// Returns the force that the crank pin exerts on the rod \[N\], given the force `rope` that the back
+    /// ropes' base joints exert on their first cylinders.
     pub(super) fn pin_force_under(&self, at: &Instant<'_>, a: &[f64], rope: V3) -> V2 {
         let rod = &self.description.rod;
         let i = self.layout.rod();
@@ -382,7 +382,7 @@ impl Machine {
         }
     }
 
-    /// Evaluates the contact points at the poses computed by [`Self::pose`].
+    /// Evaluates the contact points between ropes and heads at the cylinder poses computed by [`Self::pose`].
     pub(crate) fn touch(&self, at: &Instant<'_>, scratch: &mut Scratch) {
         for (k, chain) in self.chains.iter().enumerate() {
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
@@ -396,7 +396,7 @@ impl Machine {
         self.potential(at, scratch) + self.kinetic(at)
     }
 
-    /// Returns the elastic and gravitational potential energy \[J\].
+    /// Returns the elastic and gravitational potential energy of the machine \[J\].
     pub(super) fn potential(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
         let &Instant { q, drive, .. } = at;
         let d = &self.description;

@@ -1,4 +1,4 @@
-//! Inextensible mechanism of a machine, and its drive over time.
+//! Mechanism of a machine with inextensible ropes, and the machine's drive over time.
 use crate::drive::{Drive, DriveState};
 use crate::math::elementary::sin_cos;
 use crate::model::description::Arc;

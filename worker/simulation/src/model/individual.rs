@@ -17,26 +17,27 @@ use nalgebra::{Vector2, Vector3};
 /// Machine, ropes and drive of one individual, with the loads of the last evaluation.
 #[derive(Debug)]
 pub struct RopeMachine<'a> {
-    /// Machine that the individual's ropes and drive are combined with, shared by all individuals.
+    /// Machine whose equations are evaluated, shared by all individuals.
     pub machine: &'a Machine,
-    /// The individual's ropes.
+    /// Rope and contact coefficients of the individual.
     pub ropes: Ropes,
-    /// Motion of the crank and load at the suspension point over time.
+    /// Crank motion and suspension load over time.
     pub drive: Drive,
-    /// Poses and loads of the last evaluation.
+    /// Poses and loads of the last force evaluation.
     pub scratch: Scratch,
     load_share: f64,
     at: (f64, DriveState),
 }
 
 impl<'a> RopeMachine<'a> {
-    /// Combines machine, ropes and drive, and allocates the buffers.
+    /// Creates the equations of motion of an individual from machine, ropes and drive, and allocates their
+    /// buffers.
     pub fn new(machine: &'a Machine, ropes: Ropes, drive: Drive) -> Self {
         Self::within(machine, ropes, drive, Scratch::new(machine))
     }
 
-    /// Combines machine, ropes and drive, reusing the buffers of an individual with the same layout; the
-    /// caller may take the buffers back from the field `scratch`.
+    /// Creates the equations of motion as [`Self::new`] does, but reuses the buffers of an individual with
+    /// the same layout; the caller may take them back from the field `scratch`.
     pub(crate) fn within(
         machine: &'a Machine,
         ropes: Ropes,
@@ -68,8 +69,6 @@ impl<'a> RopeMachine<'a> {
         }
     }
 
-    /// Returns the machine's state at the time of the last evaluation, with the coordinates and rates of
-    /// `at`.
     fn instant<'s>(&'s self, at: StateRef<'s>) -> Instant<'s> {
         instant(&self.ropes, &self.at.1, at)
     }
@@ -80,7 +79,8 @@ impl<'a> RopeMachine<'a> {
         self.at.0 = f64::NAN;
     }
 
-    /// Returns the force of the back ropes on the back head, contact and anchor together, in W \[N\].
+    /// Returns the force of the back ropes on the back head, contact and anchor together, in the world frame
+    /// W \[N\].
     ///
     /// Computed from the balance of forces along the load path: wrapped rope and head together are pulled by
     /// the joint before the first cylinder in contact.
@@ -97,8 +97,7 @@ impl<'a> RopeMachine<'a> {
         push
     }
 
-    /// Returns the force of the rope end on the back head, at given coordinates and rates, in the beam frame
-    /// \[N\].
+    /// Returns the force of the rope's fixed end on the back head, in the beam frame \[N\].
     pub(crate) fn anchor_pull(&mut self, at: StateRef<'_>) -> [f64; 2] {
         self.move_to(at.t);
         let instant = instant(&self.ropes, &self.at.1, at);
@@ -111,8 +110,8 @@ impl<'a> RopeMachine<'a> {
         })
     }
 
-    /// Returns the force of the back ropes' base joints on the first cylinders, at given coordinates and
-    /// rates \[N\].
+    /// Returns the force that the back ropes' base joints, at the crossbeam, exert on the first cylinders
+    /// \[N\].
     pub(crate) fn base_pull(&mut self, at: StateRef<'_>) -> Vector3<f64> {
         self.move_to(at.t);
         let machine = self.machine;
@@ -130,7 +129,7 @@ impl<'a> RopeMachine<'a> {
         self.machine.pin_force_under(&at, &state.a, pull)
     }
 
-    /// Returns the tensions at the bases of the ropes on the back head (0) or the front head (1) \[N\].
+    /// Returns the tensions in the base joints of the ropes of the back head (0) or the front head (1) \[N\].
     pub fn base_tensions(&self, rope: usize) -> impl Iterator<Item = f64> + '_ {
         let all = self.machine.strands.iter().zip(&self.scratch.chains);
         let on_head = all.filter(move |(strand, _)| strand.rope == rope);
@@ -214,7 +213,7 @@ impl<'a> RopeMachine<'a> {
             .contact_by(&instant, by, &mut self.scratch, force);
     }
 
-    /// Updates the memory of axial laws from an accepted state.
+    /// Updates the memory of the axial laws in all rope joints from a state that the integrator has accepted.
     pub fn update_memory(&mut self, state: &State) {
         if !self.machine.extensions.has_axial() {
             return;
@@ -228,7 +227,8 @@ impl<'a> RopeMachine<'a> {
         }
     }
 
-    /// Returns kinetic plus potential energy \[J\], without the potential of the load.
+    /// Returns kinetic plus potential energy \[J\], without the potential of the load on the suspension
+    /// point.
     pub fn energy(&mut self, state: &State) -> f64 {
         self.move_to(state.t);
         self.machine.pose(&state.q, &state.v, &mut self.scratch);
@@ -238,7 +238,7 @@ impl<'a> RopeMachine<'a> {
     }
 }
 
-/// Individual whose loads on the back head are up to date at a state, as required for stress recovery.
+/// Individual and state for which the loads on the back head have been computed, as stress recovery requires.
 #[derive(Debug)]
 pub struct BackHeadLoads<'s, 'a> {
     individual: &'s RopeMachine<'a>,
@@ -246,7 +246,7 @@ pub struct BackHeadLoads<'s, 'a> {
 }
 
 impl<'s, 'a> BackHeadLoads<'s, 'a> {
-    /// Wraps a state at which all loads have been evaluated.
+    /// Creates the argument of stress recovery from a state at which all loads have been evaluated.
     pub fn of(loads: &'s Loads<'_, 's, RopeMachine<'a>>) -> Self {
         Self {
             individual: loads.equations(),
@@ -254,12 +254,12 @@ impl<'s, 'a> BackHeadLoads<'s, 'a> {
         }
     }
 
-    /// Returns the individual.
+    /// Returns the individual whose loads on the back head are held.
     pub const fn individual(&self) -> &'s RopeMachine<'a> {
         self.individual
     }
 
-    /// Returns the state at which the loads were evaluated.
+    /// Returns the state at which the loads on the back head were evaluated.
     pub const fn state(&self) -> StateRef<'s> {
         self.at
     }

@@ -5,9 +5,9 @@ use crate::model::ropes::Ropes;
 /// State of an individual's machine at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Instant<'a> {
-    /// The individual's ropes.
+    /// Rope and contact coefficients of the individual.
     pub ropes: &'a Ropes,
-    /// State of crank and load.
+    /// State of the machine's drive: crank motion and load.
     pub drive: &'a DriveState,
     /// Generalised coordinates.
     pub q: &'a [f64],

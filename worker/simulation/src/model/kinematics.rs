@@ -11,11 +11,11 @@ use crate::model::description::{Arc, Crank, Description};
 /// Solved position of the mechanism at one crank angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
-    /// Angle of the crank pin \[rad\].
+    /// Turn angle of the crank pin \[rad\].
     pub pin: f64,
     /// Beam angle \[rad\].
     pub beam: f64,
-    /// Tangent point on the back arc, in the beam frame \[rad\].
+    /// Arc angle at which the rope touches the back arc tangentially, in the beam frame \[rad\].
     pub tangent: f64,
     /// Effective lever arm of the back rope about the pivot, `h` \[m\].
     pub arm: f64,
@@ -26,9 +26,9 @@ pub struct Position {
 /// Planar mechanism of crank, rod, rope and back arc.
 #[derive(Clone, Copy, Debug)]
 pub struct Mechanism {
-    /// Crank parameters.
+    /// Parameters of the mechanism's crank.
     pub crank: Crank,
-    /// Back arc; its radius may be reduced by a contact penetration.
+    /// Arc of the back head; its radius may be reduced by a contact penetration.
     pub arc: Arc,
     /// Length from the crank pin to the rope's anchor along rod and rope \[m\].
     pub length: f64,

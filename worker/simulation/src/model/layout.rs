@@ -1,8 +1,8 @@
 //! Layout of the state vector: the index of each coordinate.
 //!
-//! Blocks of three (motion in the plane) or six (in space): `[rod | back cylinders, crossbeam to anchor |
-//! suspension | front cylinders, suspension to anchor]`, then the border `[beam angle | modal coordinates]`.
-//! Rod and suspension use only the first entry of their block; the others are locked.
+//! Blocks of three (motion in the plane) or six coordinates (in space): `[rod | back cylinders, crossbeam to
+//! anchor | suspension | front cylinders, suspension to anchor]`, then the border `[beam angle | modal
+//! coordinates]`. Rod and suspension use only the first coordinate of their block; the others are locked.
 //!
 //! With twin ropes, rod and suspension each carry two chains and therefore cannot belong to the blocks of one
 //! chain: `[back cylinders at +b | at -b | front cylinders at +b | at -b]`, then the border `[suspension
@@ -27,7 +27,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// Returns the number of coordinates of a cylinder.
+    /// Returns the number of coordinates per cylinder.
     pub const fn width(self) -> usize {
         match self {
             Self::Plane => 3,
@@ -35,7 +35,7 @@ impl Motion {
         }
     }
 
-    /// Returns for each of the six spatial coordinates whether a cylinder has it in this set.
+    /// Returns for each of the six spatial coordinates of a cylinder whether this set includes it.
     pub const fn kept(self) -> &'static [usize] {
         match self {
             Self::Plane => &[0, 1, 5],
@@ -44,7 +44,7 @@ impl Motion {
     }
 }
 
-/// Sizes of a model, from which the indices of its coordinates follow.
+/// Counts of cylinders, modes and ropes of a model, from which the indices of its coordinates follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     /// Number of cylinders of each back rope.
@@ -53,7 +53,7 @@ pub struct Layout {
     pub front: usize,
     /// Number of modes of the back head, including out-of-plane modes.
     pub modes: usize,
-    /// Number of out-of-plane modes, which are the last of `modes`.
+    /// Number of out-of-plane modes; they are the last of the `modes` head modes.
     pub sway: usize,
     /// Number of parallel ropes on each head: one or two.
     pub ropes: usize,
@@ -77,7 +77,8 @@ impl Layout {
         }
     }
 
-    /// Returns the block index of the first cylinder of a chain; the chains of the back head come first.
+    /// Returns the index of the block that the first cylinder of a chain occupies in the state vector; the
+    /// chains of the back head come first.
     pub const fn first(&self, chain: usize) -> usize {
         if self.twins() {
             [0, self.back, 2 * self.back, 2 * self.back + self.front][chain]
@@ -91,7 +92,7 @@ impl Layout {
         if self.twins() { 2 } else { 0 }
     }
 
-    /// Allocates a zero matrix of this layout.
+    /// Allocates a zero iteration matrix for this layout.
     pub fn matrix(&self) -> Bordered {
         let border = 1 + self.modes;
         match self.motion {
@@ -109,7 +110,7 @@ impl Layout {
         }
     }
 
-    /// Returns the number of coordinates, including locked ones.
+    /// Returns the number of coordinates of the state vector, including locked ones.
     pub const fn len(&self) -> usize {
         self.beam() + 1 + self.modes
     }
@@ -128,8 +129,8 @@ impl Layout {
         }
     }
 
-    /// Returns whether a coordinate is locked: an unused entry in the block of rod or suspension, without a
-    /// degree of freedom.
+    /// Returns whether a coordinate is locked: one without a degree of freedom, which only fills up the block
+    /// of rod or suspension.
     pub fn is_locked(&self, index: usize) -> bool {
         let width = self.motion.width();
         let base = self
@@ -138,7 +139,7 @@ impl Layout {
         base && index < self.beam() && !index.is_multiple_of(width)
     }
 
-    /// Returns the index of the rod angle.
+    /// Returns the index of the rod angle in the state vector.
     pub const fn rod(&self) -> usize {
         if self.twins() {
             self.blocks() * self.motion.width() + 1
@@ -147,7 +148,7 @@ impl Layout {
         }
     }
 
-    /// Returns the index of the suspension height.
+    /// Returns the index of the suspension height in the state vector.
     pub const fn suspension(&self) -> usize {
         if self.twins() {
             self.blocks() * self.motion.width()
@@ -156,22 +157,22 @@ impl Layout {
         }
     }
 
-    /// Returns the index of the beam angle.
+    /// Returns the index of the beam angle in the state vector.
     pub const fn beam(&self) -> usize {
         self.blocks() * self.motion.width() + self.lead()
     }
 
-    /// Returns the number of in-plane modes, which are the first of `modes`.
+    /// Returns the number of in-plane head modes, which precede the out-of-plane modes.
     pub const fn plane_modes(&self) -> usize {
         self.modes - self.sway
     }
 
-    /// Returns the index of modal coordinate `k`.
+    /// Returns the index of modal coordinate `k` in the state vector.
     pub const fn mode(&self, k: usize) -> usize {
         self.beam() + 1 + k
     }
 
-    /// Returns the name of a coordinate for messages.
+    /// Returns the name of a coordinate for use in messages.
     pub fn describe(&self, index: usize) -> String {
         const NAMES: [&str; BLOCK] = ["x", "y", "z", "twist", "pitch angle", "plane angle"];
         if index >= self.beam() {

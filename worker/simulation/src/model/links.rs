@@ -140,7 +140,8 @@ impl Machine {
         marker
     }
 
-    /// Returns the rotation of a rope's fixed end caused by the modes; `None` for a single rope.
+    /// Returns the rotation of a rope's fixed end caused by the head's modes; `None` for a single rope, whose
+    /// end does not rotate.
     pub(crate) fn end_rotation(
         &self,
         face: &HeadResponse,
@@ -165,8 +166,8 @@ impl Machine {
     }
 }
 
-/// Rotation of a rope's fixed end caused by the head's modes, in W: first about the radius, then about the
-/// tangent of the arc, both axes rotating with the beam.
+/// Rotation of a rope's fixed end caused by the head's modes, in the world frame W: first about the radius,
+/// then about the tangent of the arc, both axes rotating with the beam.
 pub(crate) struct EndRotation {
     tangent: V3,
     radial: V3,
@@ -186,13 +187,14 @@ impl EndRotation {
         about(&self.tangent, self.angles[0]) * about(&self.radial, self.angles[1])
     }
 
-    /// Returns the axes of rotation of the two angles: the tangent, and `R_t r`.
+    /// Returns the axes about which the end's two angles rotate it: the tangent `t`, and the rotated radius
+    /// `R_t r`.
     pub(crate) fn axes(&self) -> [V3; 2] {
         let (s, c) = sin_cos(self.angles[0]);
         [self.tangent, self.radial * c - V3::z() * s]
     }
 
-    /// Returns the angular velocity that results from the rates of the two angles [rad/s].
+    /// Returns the angular velocity of the rope's end due to the rates of its two rotation angles [rad/s].
     pub(crate) fn velocity(&self) -> V3 {
         let [t, r] = self.axes();
         t * self.rates[0] + r * self.rates[1]

@@ -19,18 +19,17 @@ pub struct Machine {
     pub layout: Layout,
     /// Bottom dead centre of the inextensible mechanism, where the turn angle is zero.
     pub bottom: Position,
-    /// Height in W of the suspension point at its lowest design position \[m\]: bottom dead centre without
-    /// effects, front rope unstretched.
+    /// Height in the world frame W of the suspension point at its lowest design position \[m\]: bottom dead
+    /// centre without effects, front rope unstretched.
     pub lowest_suspension: f64,
     /// Horizontal position of the guided suspension point \[m\].
     pub suspension_x: f64,
     pub(crate) card: Splines,
-    /// Rope chains: those of the back head, then those of the front head. `strands` gives their positions.
+    /// Chains of cylinders, one per rope: those of the back head, then those of the front head.
     pub(crate) chains: Vec<Chain>,
     pub(crate) strands: Vec<Strand>,
     /// Elastic response of the back head (mode shapes, stress influence lines) for each back rope.
     pub(crate) faces: Vec<HeadResponse>,
-    /// Extensions added by effects.
     pub(crate) extensions: Extensions,
     /// Effects of the machine, and the curves of the ideal mechanism that they refer to; `None` without
     /// effects.
@@ -85,8 +84,8 @@ impl Machine {
         Ok(machine)
     }
 
-    /// Installs the extensions of the effects again; required after a change of the layout, since extensions hold
-    /// coordinate indices.
+    /// Installs the extensions of the effects again, because they hold coordinate indices that a change of
+    /// the layout invalidates.
     fn install_effects(&mut self) {
         let mut extensions = Extensions::default();
         if let Some((effects, cycle)) = &self.effects {
@@ -190,7 +189,8 @@ impl Machine {
         self
     }
 
-    /// Returns the share of one rope in the properties that a description states for all ropes on a head.
+    /// Returns the share of one rope in the stiffnesses, damping and masses that a description states for all
+    /// ropes on a head: 1 for a single rope, 0.5 for twin ropes.
     pub(crate) fn rope_share(&self) -> f64 {
         1.0 / self.layout.ropes as f64
     }
@@ -200,8 +200,8 @@ impl Machine {
         &self.chains[if rope == BACK { 0 } else { self.layout.ropes }]
     }
 
-    /// Returns the coefficients of an individual's ropes, scaled to the cylinder pitch and to one of the
-    /// ropes on a head.
+    /// Returns the coefficients of an individual's ropes, scaled to the cylinder length and, for twin ropes,
+    /// to one of the two.
     pub fn ropes(&self, law: &RopeLaw) -> Ropes {
         Ropes::new(law, &self.description.rope, self.layout.ropes)
     }

@@ -20,7 +20,7 @@ pub struct Pose {
     pub v: V3,
     /// Rotation matrix of the cylinder (`R_WB`); column 0 is its axis.
     pub R: M3,
-    /// Angular velocity in W [rad/s].
+    /// Angular velocity of the cylinder, in the world frame W [rad/s].
     pub w: V3,
     /// Rates of the cylinder's three angles [rad/s].
     pub rate: V3,
@@ -28,9 +28,9 @@ pub struct Pose {
     pub axis_by: [V3; 2],
     /// Direction `c = Rz(psi) e_y`, about which the angle theta rotates.
     pub c: V3,
-    /// Derivative of `c` with respect to psi.
+    /// Derivative of the direction `c` with respect to the angle psi.
     pub c_by_psi: V3,
-    /// Sine and cosine of theta.
+    /// Sine and cosine of the cylinder's angle theta out of the plane.
     pub tilt: [f64; 2],
 }
 
@@ -62,8 +62,8 @@ impl Pose {
         self.R.column(0).into_owned()
     }
 
-    /// Returns the matrix `E`: angular velocity per rate of the angles, and rotation per change of the
-    /// angles.
+    /// Returns the matrix `E` that converts rates of the cylinder's angles to its angular velocity, and
+    /// changes of the angles to a rotation.
     pub fn angular(&self) -> M3 {
         M3::from_columns(&[self.axis(), self.c, V3::z()])
     }
@@ -77,8 +77,8 @@ impl Pose {
         ])
     }
 
-    /// Returns the derivative of the generalised torque `E^T tau` with respect to the angles, at constant
-    /// `tau`.
+    /// Returns the derivative of the generalised torque `E^T tau` with respect to the cylinder's angles, for
+    /// a constant torque `tau`.
     pub fn torque_by_angles(&self, tau: &V3) -> M3 {
         M3::new(
             0.0,
@@ -109,7 +109,7 @@ impl Pose {
         ]
     }
 
-    /// Returns the time derivative of the axis direction.
+    /// Returns the time derivative of the cylinder's axis direction [1/s].
     pub fn axis_velocity(&self) -> V3 {
         self.axis_by[0] * self.rate.y + self.axis_by[1] * self.rate.z
     }
@@ -122,7 +122,7 @@ pub struct PlanePose {
     pub p: V2,
     /// Velocity of the centre [m/s].
     pub v: V2,
-    /// Direction of the axis.
+    /// Direction of the cylinder's axis, in the plane.
     pub axis: V2,
     /// Angle of the axis from +x \[rad\].
     pub angle: f64,
@@ -144,7 +144,7 @@ impl PlanePose {
         }
     }
 
-    /// Converts the pose to one in space.
+    /// Converts the plane pose to a pose in space.
     pub fn in_space(&self) -> Pose {
         let e = V3::new(self.axis.x, self.axis.y, 0.0);
         let c = V3::new(-e.y, e.x, 0.0);
@@ -162,8 +162,8 @@ impl PlanePose {
     }
 }
 
-/// Kinematic quantities of a cylinder needed for contact in the machine's plane; the axis depends on the last
-/// `A` coordinates.
+/// Kinematic quantities of a cylinder that contact in the machine's plane requires; its axis depends on its
+/// last `A` coordinates, the angles.
 pub(crate) trait InPlane<const A: usize> {
     /// Returns the position of the cylinder's centre in the plane \[m\].
     fn center(&self) -> V2;
@@ -171,11 +171,10 @@ pub(crate) trait InPlane<const A: usize> {
     fn velocity(&self) -> V2;
     /// Returns the projection of the axis onto the plane.
     fn axis(&self) -> V2;
-    /// Returns the derivatives of the axis with respect to the angles.
     fn axis_by(&self) -> [V2; A];
     /// Returns the second derivative of the axis with respect to the angles `a` and `b`.
     fn axis_by_twice(&self, a: usize, b: usize) -> V2;
-    /// Returns the time derivative of the axis.
+    /// Returns the time derivative of the cylinder's axis direction [1/s].
     fn sweep(&self) -> V2;
     /// Returns the derivatives of the axis's time derivative with respect to the angles.
     fn sweep_by(&self) -> [V2; A];

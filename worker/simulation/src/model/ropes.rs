@@ -1,18 +1,18 @@
-//! Coefficients of all ropes of an individual, in which the searched coefficients enter linearly.
+//! Stiffness and damping coefficients of all ropes of an individual, linear in the searched coefficients.
 use crate::element::{bushing::Bushing, impact::Impact};
 use crate::model::description::{Rope, RopeLaw};
 
-/// Coefficients of all ropes of an individual, scaled to the pitch of the chain and to the share of one of
-/// the ropes on a head.
+/// Stiffness and damping coefficients of an individual's ropes, scaled to the cylinder length and, for twin
+/// ropes, to one of the two.
 #[derive(Clone, Copy, Debug)]
 pub struct Ropes {
-    /// Joint between two cylinders.
+    /// Law of the joint between two cylinders.
     pub joint: Bushing,
-    /// Joint between crossbeam or suspension and the first cylinder.
+    /// Law of the joint between crossbeam or suspension and the first cylinder.
     pub base: Bushing,
-    /// Joint between the last cylinder and the head.
+    /// Law of the joint between the last cylinder and the head.
     pub anchor: Bushing,
-    /// Contact between a cylinder and a head.
+    /// Law of the contact between a cylinder and a head.
     pub contact: Impact,
 }
 

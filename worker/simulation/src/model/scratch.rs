@@ -6,14 +6,14 @@ use crate::model::machine::Machine;
 /// Buffers of a force evaluation: poses, loads and head deflection.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
-    /// Poses and loads of the back chains, then of the front chains.
+    /// Cylinder poses and joint loads of each chain: back chains, then front chains.
     pub chains: Vec<ChainState>,
     /// Deflection of the back head's arc under each back rope.
     pub deflection: Vec<WeightedSplines>,
 }
 
 impl Scratch {
-    /// Allocates the buffers for a machine.
+    /// Allocates the buffers of a force evaluation for a machine.
     pub fn new(machine: &Machine) -> Self {
         Self {
             chains: machine.chains.iter().map(ChainState::new).collect(),

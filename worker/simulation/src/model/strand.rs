@@ -22,18 +22,18 @@ use crate::math::spline::Splines;
 use crate::model::description::{Description, Twins};
 use crate::model::layout::Layout;
 
-/// Index of the back head's ropes; [`FRONT`] is the index of the front head's ropes.
+/// Index of the back head in arrays over both heads; `FRONT` is that of the front head.
 pub(crate) const BACK: usize = 0;
 pub(crate) const FRONT: usize = 1;
 
-/// Rope of a machine: its head, side and position.
+/// Position of one rope in the machine: its head, side and length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Strand {
     /// Head around which the rope wraps: back (0) or front (1).
     pub(crate) rope: usize,
     /// Side of the rope: +1 or -1 in a pair, 0 for a single rope.
     pub(crate) side: f64,
-    /// Out-of-plane position (z) \[m\].
+    /// Out-of-plane position (z) of the rope \[m\].
     pub(crate) z: f64,
     /// Excess of the rope's length over its nominal length, inserted before the first cylinder \[m\].
     pub(crate) excess_length: f64,
@@ -43,7 +43,7 @@ pub(crate) struct Strand {
 /// lines of gauge stress.
 #[derive(Clone, Debug)]
 pub(crate) struct HeadResponse {
-    /// Radial mode shapes along the arc, positive outwards.
+    /// Radial mode shapes of the head along its arc, positive outwards.
     pub(crate) radial: Splines,
     /// Motion of the rope's fixed end per unit of each mode.
     pub(crate) anchor: Vec<AnchorShape>,
@@ -58,18 +58,19 @@ pub(crate) struct HeadResponse {
 /// Gauge stress per unit of out-of-plane force and moment at the fixed end of one of two ropes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OutOfPlaneStress {
-    /// Gauge stress per unit of force along z [Pa/N].
+    /// Gauge stress per unit of force along z at the rope's fixed end [Pa/N].
     pub(crate) lateral: [f64; 4],
-    /// Gauge stress per unit of moment about the tangent and about the radius [Pa/(N m)].
+    /// Gauge stress per unit of moment on the rope's fixed end, about the tangent of the arc and about its
+    /// radius [Pa/(N m)].
     pub(crate) turning: [[f64; 4]; 2],
 }
 
 /// Motion of a rope's fixed end per unit of a modal coordinate, in the beam frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct AnchorShape {
-    /// Displacement of the rope's fixed end along x, y and z per unit of the modal coordinate.
+    /// Displacement of the rope's fixed end along x, y and z.
     pub(crate) moves: [f64; 3],
-    /// Rotation about the tangent and about the radius of the arc at the fixed end.
+    /// Rotation of the rope's fixed end about the tangent and about the radius of the arc.
     pub(crate) turns: [f64; 2],
 }
 

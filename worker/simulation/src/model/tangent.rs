@@ -1,9 +1,9 @@
 //! Analytic iteration matrix `S = mass M - damping D - K` with `K = dQ/dq`, `D = dQ/dv`.
 //!
-//! The integrator chooses the factors `mass` and `damping` ([`Shift`]); the element tangents do not depend on
-//! them. The derivatives of the cylinders' velocity terms and of their inertia with respect to the angles are
-//! omitted: a cylinder's moment of inertia is 1e-6 kg m2, so the omission has no measurable effect on the
-//! convergence of Newton's method and none on its solution.
+//! The integrator chooses the factors `mass` and `damping` ([`StateShift`]); the tangents of the joints and
+//! contacts do not depend on them. The derivatives of the cylinders' velocity terms and of their inertia with
+//! respect to the angles are omitted: a cylinder's moment of inertia is 1e-6 kg m2, so the omission has no
+//! measurable effect on the convergence of Newton's method and none on its solution.
 use crate::element::bushing::LinkTangent;
 use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
@@ -78,8 +78,8 @@ impl Machine {
         }
     }
 
-    /// Adds the tangent of a chain's end joints to each matrix. The number paired with a matrix is the
-    /// derivative of the rates with respect to the coordinates in that matrix.
+    /// Adds the tangent of a chain's end joints to each of the given matrices. The number paired with a
+    /// matrix is the factor of the damping tangent in that matrix.
     fn end_tangents(
         &self,
         chain: usize,
@@ -191,8 +191,7 @@ impl Machine {
     }
 }
 
-/// Returns the derivatives of a base joint's load with respect to the coordinate of the rod (its angle) or of
-/// the suspension (its height).
+/// Returns the derivatives of a base joint's load with respect to the rod's angle or the suspension's height.
 fn base_column(rod: bool, by: &LinkTangent, damping: f64) -> Column {
     std::array::from_fn(|r| {
         if rod {

@@ -89,14 +89,13 @@ fn drive(t: f64) -> DriveState {
     machine().drive_state(&drive, t)
 }
 
-/// Returns the indices of the coordinates that are not locked.
 pub(crate) fn free(machine: &Machine) -> impl Iterator<Item = usize> {
     let layout = machine.layout;
     (0..layout.len()).filter(move |&i| !layout.is_locked(i))
 }
 
-/// Returns the central difference of the generalised forces along coordinate `i`, whose rate changes by
-/// `gamma` times the coordinate's step.
+/// Returns the central difference of the generalised forces with respect to coordinate `i`, whose rate is
+/// changed by `gamma` times the change of the coordinate.
 fn difference(machine: &Machine, at: &Instant<'_>, i: usize, gamma: f64) -> Vec<f64> {
     let h = 1e-7;
     let step = |h: f64| {

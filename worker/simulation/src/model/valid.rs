@@ -10,19 +10,19 @@ pub enum InvalidDescription {
     /// Number in the description that must be positive and finite, but is not.
     #[error("{what} is {value}; it must be a positive number")]
     NotPositive {
-        /// Name of the number that is not positive.
+        /// Name of the number in the description that is not positive.
         what: &'static str,
-        /// Value of the number, in SI units.
+        /// Value of the number that is not positive, in SI units.
         value: f64,
     },
-    /// Table in the description with the wrong number of entries.
+    /// Table in the description with the wrong number of values.
     #[error("{what}: {found} entries found, {expected} expected")]
     Shape {
-        /// Name of the table.
+        /// Name of the table with the wrong number of values.
         what: &'static str,
-        /// Number of entries found in the table.
+        /// Number of values found in the table.
         found: usize,
-        /// Number of entries expected in the table.
+        /// Number of values expected in the table.
         expected: usize,
     },
     /// Quantity in the description (for example the number of head modes) above the maximum that a simulation
@@ -86,7 +86,7 @@ fn check_size(what: &'static str, found: usize, expected: usize) -> Result<(), I
     })
 }
 
-/// Checks the tables of the head, the number of cylinders and the number of card samples.
+/// Checks the head's tables, the number of cylinders and the number of load card samples in a description.
 fn check_tables(d: &Description, modes: usize) -> Result<(), InvalidDescription> {
     let head = &d.head;
     for (what, found, least) in [
@@ -109,7 +109,7 @@ fn check_tables(d: &Description, modes: usize) -> Result<(), InvalidDescription>
     shapes.try_for_each(|shape| check_size("mode shape", shape.len(), stations))
 }
 
-/// Checks the parameters of twin ropes and the antisymmetric tables of the head.
+/// Checks the twin ropes' parameters and the head's antisymmetric tables in a description.
 fn check_twins(d: &Description, twins: &Twins, modes: usize) -> Result<(), InvalidDescription> {
     check_positive("distance of twin ropes from the plane", twins.offset)?;
     let sway = &twins.sway;

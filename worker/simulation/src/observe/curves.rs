@@ -1,6 +1,6 @@
 //! Curves recorded over one revolution, and the machine's shape at a sample, as plain data.
 
-/// Curves recorded over one revolution, with one entry per sample reached.
+/// Curves recorded over one revolution, with one value per recorded sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curves {
     /// Stress at gauges 1 to 4 \[Pa\].
@@ -13,24 +13,24 @@ pub struct Curves {
     pub tension_difference: [Vec<f64>; 2],
     /// Beam angle \[rad\].
     pub beam: Vec<f64>,
-    /// Height of the suspension point in W \[m\], its velocity and acceleration.
+    /// Height of the suspension point in the world frame W \[m\], its velocity and its acceleration.
     pub suspension: [Vec<f64>; 3],
     /// Net crank torque [N m].
     pub torque: Vec<f64>,
     /// Modal coordinates of the back head, for each mode.
     pub modal: Vec<Vec<f64>>,
-    /// Machine shapes at every `shape_every`-th sample.
+    /// Shapes of the machine, one at every `shape_every`-th sample (see [`Recorder`](super::Recorder)).
     pub shapes: Vec<Shape>,
 }
 
-/// Position of the machine's parts and loads of its ropes at one sample, in W.
+/// Positions of the machine's moving bodies and loads of its ropes at one sample, in the world frame W.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
-    /// Index of the sample.
+    /// Index of the sample at which the shape was recorded.
     pub sample: usize,
     /// Position of the crank pin \[m\].
     pub pin: [f64; 2],
-    /// Position of the crossbeam, where the rod meets the back rope, in W \[m\].
+    /// Position of the crossbeam, where the rod meets the back rope \[m\].
     pub crossbeam: [f64; 2],
     /// Beam angle \[rad\].
     pub beam: f64,

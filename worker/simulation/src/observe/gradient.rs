@@ -12,14 +12,13 @@ use crate::model::layout::{MAX_MODES, Motion};
 use crate::model::{Machine, RopeMachine};
 use crate::system::State;
 
-/// Values of one quantity at the four gauges.
 type Each = [f64; 4];
 
 /// Derivatives of the stress at the four gauges with respect to state and contact law.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Gradient {
-    /// Nonzero stress derivatives: index of the coordinate, derivatives with respect to that coordinate and
-    /// to its rate \[Pa\] per unit.
+    /// Nonzero stress derivatives: index of the coordinate, and the derivatives of the gauge stress with
+    /// respect to that coordinate and to its rate.
     pub(crate) entries: Vec<(usize, [Each; 2])>,
     /// Derivative of the gauge stress with respect to the beam's angular acceleration.
     pub(crate) by_acceleration: Each,
@@ -27,12 +26,12 @@ pub(crate) struct Gradient {
     pub(crate) by_contact: [Each; 2],
     /// Derivatives with respect to the force of the rope's end along x and y of the beam frame [Pa/N].
     pub(crate) by_pull: [Each; 2],
-    /// Index in `entries` of each coordinate's derivatives; `None` if they are zero.
+    /// Index in `entries` of the stress derivatives with respect to each coordinate; `None` if they are zero.
     places: Vec<Option<usize>>,
 }
 
-/// Difference steps for the joint at the rope's end: of coordinates, and of rates, in which its force is
-/// linear.
+/// Finite-difference steps for the force of the joint at the rope's fixed end: of a coordinate, and of a rate
+/// (in which the force is linear).
 const STEPS: [f64; 2] = [1e-7, 1e-4];
 
 fn add(to: &mut Each, weight: f64, x: &Each) {

@@ -29,7 +29,8 @@ pub(crate) fn readings(
     stress
 }
 
-/// Returns the quantities available to readings at a state for which the individual holds all loads.
+/// Returns the quantities that stages of the measuring chain may use, at a state for which the individual
+/// holds all loads.
 pub(crate) fn sampled(individual: &RopeMachine<'_>, state: &State) -> SampleState {
     let machine = individual.machine;
     let recorded = individual.drive.turn(state.t)[0] - machine.extensions.index_offset();

@@ -11,7 +11,7 @@ use crate::system::{State, System};
 /// Recorder of gauge stress alone (for scoring), or of all curves.
 #[derive(Clone, Debug, Default)]
 pub struct Recorder {
-    /// Recorded curves.
+    /// Curves recorded so far.
     pub curves: Curves,
     gauges_only: bool,
     shape_every: usize,

@@ -40,12 +40,12 @@ pub(crate) fn turned_by_ropes(individual: &mut RopeMachine<'_>, state: &State) -
     turning(individual.machine, &drive, &pull.xy())
 }
 
-/// Difference steps for the crank torque: of coordinates, of rates, and of accelerations, in which the torque
-/// is linear.
+/// Finite-difference steps for the crank torque: of a coordinate, of a rate and of an acceleration (the
+/// torque is linear in rates and accelerations).
 const STEPS: [f64; 3] = [1e-7, 1e-4, 1e-2];
 
-/// Derivatives of the torque with respect to the state: index of the coordinate, derivatives with respect to
-/// coordinate, rate and acceleration.
+/// Derivatives of the crank torque with respect to the state, as a list: index of the coordinate, derivatives
+/// with respect to that coordinate, its rate and its acceleration.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct TorqueBy(pub(crate) Vec<(usize, [f64; 3])>);
 

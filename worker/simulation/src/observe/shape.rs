@@ -1,4 +1,4 @@
-//! Shape of the machine at a sample, with rope tensions and contact forces.
+//! Positions of the machine's moving bodies at a sample, with rope tensions and contact forces.
 use super::curves::Shape;
 use crate::drive::DriveState;
 use crate::math::elementary::sin_cos;

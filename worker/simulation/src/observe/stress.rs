@@ -82,7 +82,7 @@ struct HeadLoad<'a> {
     machine: &'a Machine,
     face: &'a HeadResponse,
     back: &'a ChainState,
-    /// Force of the rope's end, in the beam frame \[N\].
+    /// Force of the rope's end on the head, in the beam frame \[N\].
     pull: [f64; 3],
     /// Moment of the rope's end about the tangent of the arc and about the radius [N m]; `None` for a single
     /// rope, whose end does not rotate with the head.
@@ -114,7 +114,7 @@ impl<'a> HeadLoad<'a> {
         }
     }
 
-    /// Adds the static stress of the loads, from influence lines.
+    /// Adds the static gauge stress caused by the rope's loads on the head, from influence lines.
     fn add_stress(&self, stress: &mut [f64; 4]) {
         let Self { face, pull, .. } = self;
         for (angle, force) in self.back.points.forces() {

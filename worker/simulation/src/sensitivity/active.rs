@@ -15,19 +15,19 @@ use crate::run::RunSettings;
 use crate::system::State;
 use std::f64::consts::LN_10;
 
-/// Sample of the recorded revolution, with all that the columns' derivatives there require.
+/// Sample of the recorded revolution, with all that the computation of derivatives there requires.
 pub(super) struct Sample<'s> {
     pub(super) state: &'s State,
     /// States at both ends of the step that contains the sample.
     pub(super) ends: [&'s State; 2],
-    /// Gauge readings at the sample \[Pa\].
+    /// Readings of the four gauges of the simulated machine at the sample \[Pa\].
     pub(super) own: [f64; 4],
     /// Suspension height \[m\] and net crank torque [N m] at the sample.
     pub(super) shaft: [f64; 2],
     /// Quantities that reading extensions of perturbed machines may use; present only if the simulated machine has
     /// no reading extensions itself.
     pub(super) known: Option<SampleState>,
-    /// Run settings and index of the sample.
+    /// Settings of the run, and index of the sample, from which the sample's time follows.
     pub(super) turned: (&'s RunSettings, usize),
 }
 
@@ -39,7 +39,7 @@ fn front_radius_derivative(own: &Machine, beside: &[Machine; 2], difference: &Di
     difference.own * radius(own) + change.sum::<f64>()
 }
 
-/// Chooses the method by which the derivative of the forces with respect to the decimal logarithm of a
+/// Chooses how the derivative of the generalised forces with respect to the decimal logarithm of a
 /// coefficient is computed.
 fn by_coefficient<'a>(
     (machine, law): (&'a Machine, &RopeLaw),
@@ -81,11 +81,11 @@ fn by_coefficient<'a>(
 
 /// Column (derivative of the run with respect to one unknown) that must be computed.
 pub(super) struct Active<'a> {
-    /// Index of the column in the plan.
+    /// Index of the derivative column in the plan.
     pub(super) column: usize,
     pub(super) source: Source<'a>,
-    /// Two machines with perturbed parameters, from which differences are taken; empty if the column needs no
-    /// differences.
+    /// Machines with perturbed parameters (two for a central difference), from which differences are taken;
+    /// empty if the column needs none.
     pub(super) perturbed: Vec<PerturbedModel<'a>>,
     pub(super) difference: Difference,
     /// Whether the gauge readings depend on the parameter explicitly, at a fixed state.

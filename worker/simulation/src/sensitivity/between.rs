@@ -1,4 +1,5 @@
-//! Interpolation of columns within a step: derivatives of the state, of shaft quantities and of gauge stress.
+//! Interpolation of derivative columns within a step: derivatives of the state, of suspension height and
+//! crank torque, and of gauge stress.
 use super::block::Motion;
 use crate::integrator::dense::Weights;
 use crate::linear::Lanes;
@@ -26,7 +27,7 @@ pub(super) fn add_column(
     }
 }
 
-/// Returns the interpolated columns of coordinate `i` and of its rate.
+/// Returns the interpolated derivatives of coordinate `i` and of its rate, one lane per derivative column.
 fn at([from, to]: [&Motion; 2], weights: &Weights, i: usize) -> [Lanes; 2] {
     let [f0, f1] = weights.value;
     let [g0, g1] = weights.slope;
@@ -36,13 +37,15 @@ fn at([from, to]: [&Motion; 2], weights: &Weights, i: usize) -> [Lanes; 2] {
     ]
 }
 
-/// Returns the interpolated columns of the acceleration of coordinate `i`.
+/// Returns the interpolated derivatives of the acceleration of coordinate `i`, one lane per derivative
+/// column.
 fn acceleration([from, to]: [&Motion; 2], weights: &Weights, i: usize) -> Lanes {
     let [r, s] = weights.linear;
     from.a[i] * r + to.a[i] * s
 }
 
-/// Returns the interpolated columns of the suspension's coordinate `height` and of the torque.
+/// Returns the interpolated derivatives of the suspension height (coordinate index `height`) and of the crank
+/// torque, one lane per derivative column.
 pub(super) fn shaft(
     ends: [&Motion; 2],
     weights: &Weights,
@@ -59,7 +62,7 @@ pub(super) fn shaft(
     [height, sum]
 }
 
-/// Returns the interpolated columns of the gauge stress.
+/// Returns the interpolated derivatives of the stress at the four gauges, one lane per derivative column.
 pub(super) fn stress(
     ends: [&Motion; 2],
     weights: &Weights,

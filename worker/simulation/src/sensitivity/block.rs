@@ -5,7 +5,8 @@ use crate::linear::Lanes;
 use crate::system::Equations;
 use pulp::{Arch, Scalar, Simd, WithSimd};
 
-/// Derivatives of the n coordinates, rates and accelerations.
+/// Derivatives of coordinates, rates and accelerations of a state with respect to the unknowns, one lane per
+/// unknown.
 #[derive(Clone, Debug)]
 pub(super) struct Motion {
     pub(super) q: Vec<Lanes>,
@@ -16,16 +17,16 @@ pub(super) struct Motion {
 /// Block of columns, one per SIMD lane, for a state and for the stages of the step that begins there.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
-    /// Columns at the start and at the end of the step.
+    /// Derivatives of the states at the start and at the end of the step.
     pub(super) ends: [Motion; 2],
-    /// Columns of the rates at the intermediate stages.
+    /// Derivatives of the rates at the intermediate stages of the step.
     rates: Vec<Vec<Lanes>>,
-    /// Whether all columns are still zero.
+    /// Whether all derivatives of the block are still zero.
     zero: bool,
 }
 
-/// Workspace for the part of a stage's columns that does not depend on the rate at the same stage: columns of
-/// the coordinates, and `-v / c` of the rates.
+/// Workspace for the part of a stage's derivatives that does not depend on the rate at the same stage:
+/// derivatives of the coordinates, and `-v / c` of the rates.
 #[derive(Clone, Debug)]
 pub(super) struct StagePredictor {
     q: Vec<Lanes>,
@@ -42,20 +43,19 @@ impl Motion {
         }
     }
 
-    /// Returns the largest absolute derivative of any coordinate in the column of one lane.
+    /// Returns the largest absolute derivative of any coordinate in one lane.
     pub(super) fn size(&self, lane: usize) -> f64 {
         self.q.iter().fold(0.0, |size, q| q.0[lane].abs().max(size))
     }
 }
 
 impl StagePredictor {
-    /// Allocates the workspace for `n` coordinates.
     pub(super) fn new(n: usize) -> Self {
         let Motion { q, v, .. } = Motion::new(n);
         Self { q, scaled: v }
     }
 
-    /// Computes the part of a stage's columns that does not depend on the rate at the same stage.
+    /// Computes the part of a stage's derivatives that does not depend on the rate at the same stage.
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
@@ -89,12 +89,12 @@ impl StagePredictor {
     }
 }
 
-/// Maximum number of stages of a method.
+/// Maximum number of stages of an integration method.
 const STAGES: usize = 8;
 
-/// Weights with which the start of a step and the rates of earlier stages enter the columns of a stage: of
-/// its coordinates and of `-v / c` of its rates. Accelerations of stages are differences of rates and are not
-/// stored.
+/// Weights with which the start of a step and the rates of earlier stages enter the derivatives of a stage:
+/// of its coordinates and of `-v / c` of its rates. Accelerations of stages are differences of rates and are
+/// not stored.
 struct StageWeights {
     first: [f64; 2],
     acceleration: f64,
@@ -134,14 +134,14 @@ impl StageWeights {
     }
 }
 
-/// Computation of one stage for a block of columns.
+/// Arguments for computing one stage of a block of derivative columns.
 struct Advance<'a, E> {
     block: &'a mut Block,
     equations: &'a E,
     tangents: &'a Linearized,
     /// Coefficients of the integration method, index of the stage, size of the step.
     at: (&'a Tableau, usize, f64),
-    /// Right-hand side `dR/dp` of the columns' linear system, overwritten by its solution.
+    /// Right-hand side `dR/dp` of the linear system for the derivatives, overwritten by its solution.
     right: &'a mut [Lanes],
     bases: &'a mut StagePredictor,
 }
@@ -197,7 +197,8 @@ impl<E: Equations> WithSimd for Advance<'_, E> {
 }
 
 impl Block {
-    /// Creates zero columns for `n` coordinates and a method with `stages` intermediate stages.
+    /// Creates zero derivatives for `n` coordinates and an integration method with `stages` intermediate
+    /// stages.
     pub(super) fn new(n: usize, stages: usize) -> Self {
         Self {
             ends: [Motion::new(n), Motion::new(n)],
@@ -206,13 +207,14 @@ impl Block {
         }
     }
 
-    /// Returns whether the columns remain zero: they are zero, and so is `dR/dp`.
+    /// Returns whether the block's derivatives remain zero: they are zero, and so is `dR/dp`.
     fn remains_zero(&mut self, right: &[Lanes]) -> bool {
         self.zero = self.zero && right.iter().all(|x| *x == Lanes::default());
         self.zero
     }
 
-    /// Computes the block's columns at the static equilibrium from its `dR/dp` in `right`.
+    /// Computes the block's derivatives at the static equilibrium from the right-hand side `dR/dp` in
+    /// `right`.
     pub(super) fn rest(&mut self, tangents: &Linearized, right: &mut [Lanes]) {
         if self.remains_zero(right) {
             return;
@@ -221,7 +223,8 @@ impl Block {
         self.ends[0].q.copy_from_slice(right);
     }
 
-    /// Computes the columns of stage `i` of a step of size `h` from its `dR/dp` in `right`.
+    /// Computes the block's derivatives at stage `i` of a step of size `h` from the right-hand side `dR/dp`
+    /// in `right`.
     pub(super) fn stage<E: Equations>(
         &mut self,
         equations: &E,
@@ -244,7 +247,7 @@ impl Block {
         Arch::new().dispatch(stage);
     }
 
-    /// Accepts the step: its end becomes the start of the next step.
+    /// Accepts the step: the derivatives at its end become those at the start of the next step.
     pub(super) const fn accept(&mut self) {
         let [from, to] = &mut self.ends;
         std::mem::swap(from, to);

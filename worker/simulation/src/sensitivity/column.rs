@@ -1,29 +1,29 @@
-//! Quantities that may be varied, and the derivatives computed for them, as plain data.
+//! Unknowns with respect to which a run may be differentiated, and the resulting derivatives, as plain data.
 use crate::model::description::RopeLaw;
 use std::f64::consts::LN_10;
 
-/// Coefficient of rope or contact that the search varies.
+/// Coefficient of rope or contact that an optimisation varies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coefficient {
-    /// Axial stiffness `K_11`.
+    /// Axial stiffness `K_11` of the joints between cylinders.
     Kb1,
-    /// Shear stiffness `K_22`.
+    /// Shear stiffness `K_22` of the joints between cylinders.
     Kb23,
-    /// Torsional stiffness `K_44`.
+    /// Torsional stiffness `K_44` of the joints between cylinders.
     Kb4,
-    /// Bending stiffness `K_55`.
+    /// Bending stiffness `K_55` of the joints between cylinders.
     Kb56,
-    /// Axial damping `C_11`.
+    /// Axial damping `C_11` of the joints between cylinders.
     Cb1,
-    /// Shear damping `C_22`.
+    /// Shear damping `C_22` of the joints between cylinders.
     Cb23,
-    /// Torsional damping `C_44`.
+    /// Torsional damping `C_44` of the joints between cylinders.
     Cb4,
-    /// Bending damping `C_55`.
+    /// Bending damping `C_55` of the joints between cylinders.
     Cb56,
-    /// Contact stiffness.
+    /// Stiffness of the contact between cylinder and head.
     Kc,
-    /// Contact damping.
+    /// Damping of the contact between cylinder and head.
     Cc,
 }
 
@@ -89,9 +89,9 @@ pub enum Column {
     Coefficient(Coefficient),
     /// Parameter of an effect; the derivative is with respect to the parameter in its declared unit.
     Parameter {
-        /// Identifier of the effect.
+        /// Identifier of the effect whose parameter is varied.
         effect: String,
-        /// Name of the parameter.
+        /// Name of the parameter that is varied.
         parameter: String,
         /// Values of the effect's parameters by name, in declared units, for an effect that the machine
         /// lacks; parameters not named are absent (sizes) or typical (shapes). Empty for an effect that the
@@ -100,28 +100,29 @@ pub enum Column {
     },
 }
 
-/// Reason why the derivative of a column is unavailable, so that differences of whole runs are required.
+/// Reason why a derivative is unavailable, so that differences of whole runs are required.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Unavailable {
-    /// Change of the coordinates: with the effect the machine has coordinates that it lacks without, for
-    /// example the displacement of a post that is rigid without the effect.
+    /// The requested derivative is unavailable because the effect adds coordinates that the machine lacks
+    /// without it, for example the displacement of a post that is rigid without the effect.
     #[error("the effect changes the number of coordinates of the machine")]
     Coordinates,
-    /// Parameter that is rounded to a whole number.
+    /// The requested derivative is unavailable because the parameter is rounded to a whole number.
     #[error("the parameter is rounded to a whole number and has no derivative")]
     Integer,
-    /// Parameter whose perturbation gives a machine that cannot be built.
+    /// The requested derivative is unavailable because no machine can be built with the perturbed parameter.
     #[error("no valid machine can be built with the parameter slightly changed")]
     NoMachine,
-    /// Integration method without stages that can be differentiated.
+    /// The requested derivative is unavailable because the integration method has no implicit stages that can
+    /// be differentiated.
     #[error(
         "the integration method has no stages that can be differentiated; use a Runge-Kutta method"
     )]
     Method,
-    /// Tangent matrix of a stage that is singular, so that the stage cannot be differentiated.
+    /// The requested derivative is unavailable because the tangent matrix of a stage is singular.
     #[error("the tangent matrix of a stage is singular")]
     Singular,
-    /// Derivative that is not finite.
+    /// The requested derivative is unavailable because the computed values are not finite.
     #[error("the derivative is not finite")]
     NotFinite,
 }
@@ -145,29 +146,28 @@ impl DerivativeCurves {
         self.gauge.iter().chain(beside)
     }
 
-    /// Returns a mutable iterator over all curves: gauges, suspension height, torque.
     pub(super) fn each_mut(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
         let beside = [&mut self.suspension, &mut self.torque];
         self.gauge.iter_mut().chain(beside)
     }
 }
 
-/// Derivative of a run with respect to one requested column, or the reason why there is none.
+/// Derivative of a run with respect to one requested unknown, or the reason why there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Derivative {
-    /// Derivative curves.
+    /// Derivative of every recorded quantity at every sample.
     Curves(Box<DerivativeCurves>),
-    /// Zero derivative: the parameter has no influence.
+    /// Zero derivative, because the unknown has no influence on the run.
     Zero,
     /// Unavailable derivative, with the reason.
     Missing(Unavailable),
 }
 
-/// Derivatives of a completed run.
+/// Derivatives of a completed run with respect to all requested unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
-    /// Derivative of each requested column, in the order of the request.
+    /// Derivative with respect to each requested unknown, in the order of the request.
     pub columns: Vec<Derivative>,
-    /// Number of exact factorisations used for the columns.
+    /// Number of exact matrix factorisations used to compute the derivatives.
     pub factorizations: u64,
 }

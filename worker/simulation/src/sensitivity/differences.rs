@@ -1,4 +1,5 @@
-//! Finite-difference formulas for a stage or a sample: step sizes and weights.
+//! Finite-difference formulas (steps and weights) for derivatives of a stage's residual or a sample's
+//! readings.
 use crate::effect::Parameter;
 
 /// Relative difference step, as a share of a parameter's scale, for smooth residuals. The truncation error is

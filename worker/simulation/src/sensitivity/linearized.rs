@@ -1,4 +1,4 @@
-//! Linearisation of one solved stage.
+//! Linearisation of the equations of one solved stage of a time step.
 use super::source::add;
 use crate::element::plane::PLANE_COEFFICIENTS;
 use crate::integrator::stepper::Stages;
@@ -6,7 +6,8 @@ use crate::linear::{Bordered, SingularPivot};
 use crate::model::{RopeMachine, Scratch};
 use crate::system::{Equations, State, StateShift, System};
 
-/// Linearised stage: state, `-K'`, the factor of `S`, and the buffers of the force evaluation.
+/// Linearised stage of a time step: state, matrix `-K'`, factor of `S`, and the buffers of the force
+/// evaluation.
 #[derive(Debug)]
 pub(super) struct Linearized {
     /// State of the stage, including accelerations.
@@ -16,15 +17,14 @@ pub(super) struct Linearized {
     pub(super) stiffness: Bordered,
     /// Factorisation of the iteration matrix `S = M / c^2 - D / c - K'`, or of `-K` at rest.
     pub(super) factor: Bordered,
-    /// Poses, joint loads and contact at the stage.
+    /// Cylinder poses, joint loads and contact at the stage.
     pub(super) scratch: Scratch,
-    /// Generalised forces of the joints per unit of each coefficient, for motion in the plane and only if a
-    /// column requires them.
+    /// Generalised forces of the rope joints per unit of each joint coefficient, for motion in the plane and
+    /// only if a requested derivative needs them.
     pub(super) units: Vec<[f64; PLANE_COEFFICIENTS]>,
 }
 
 impl Linearized {
-    /// Allocates the buffers; `units` is the number of coordinates with unit joint forces, or zero.
     pub(super) fn new(equations: &RopeMachine<'_>, state: &State, units: usize) -> Self {
         Self {
             state: state.clone(),
@@ -35,7 +35,7 @@ impl Linearized {
         }
     }
 
-    /// Factorises `-K` at an equilibrium.
+    /// Linearises the equations at a static equilibrium and factorises `-K`.
     ///
     /// # Errors
     /// [`SingularPivot`] naming the unknown whose pivot vanished.

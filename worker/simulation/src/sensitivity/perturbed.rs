@@ -14,7 +14,7 @@ pub(super) struct PerturbedModel<'a> {
     pub(super) machine: &'a Machine,
     ropes: Ropes,
     pub(super) drive: Drive,
-    /// Memory of the axial laws, for each chain.
+    /// Memory of the axial laws in the joints of each chain.
     memory: Vec<Vec<Memory>>,
 }
 
@@ -28,12 +28,12 @@ impl<'a> PerturbedModel<'a> {
         }
     }
 
-    /// Returns the law of the joints between cylinders.
     pub(super) const fn inner(&self) -> &Bushing {
         &self.ropes.joint
     }
 
-    /// Calls `ask` with the individual, which uses the given buffers meanwhile.
+    /// Calls `ask` with the equations of motion of the perturbed individual, which borrow the given buffers
+    /// for the duration of the call.
     pub(super) fn with_buffers<T>(
         &mut self,
         scratch: &mut Scratch,
@@ -78,7 +78,7 @@ impl<'a> PerturbedModel<'a> {
         }
     }
 
-    /// Returns the gauge readings \[Pa\].
+    /// Returns the gauge readings of the perturbed individual at a state \[Pa\].
     pub(super) fn readings(
         &mut self,
         scratch: &mut Scratch,
@@ -91,8 +91,9 @@ impl<'a> PerturbedModel<'a> {
         })
     }
 
-    /// Returns the gauge readings \[Pa\] and, if requested, the quantities available to reading extensions; also
-    /// computes the derivatives of the stress if `gradient` is given. `room` is workspace for a state.
+    /// Returns the gauge readings \[Pa\] and, if requested, the quantities that stages of the measuring chain
+    /// may use; also computes the derivatives of the gauge stress if `gradient` is given. `room` is workspace
+    /// for a state.
     pub(super) fn gradient(
         &mut self,
         scratch: &mut Scratch,

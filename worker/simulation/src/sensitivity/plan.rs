@@ -1,4 +1,4 @@
-//! Plan of the requested columns: validation, and construction of the perturbed machines for effect
+//! Plan of the requested derivative columns: validation, and construction of machines with perturbed effect
 //! parameters.
 use super::column::{Coefficient, Column, Unavailable};
 use super::differences::{Difference, HYSTERETIC_STEP, SMOOTH, TOUCHING};
@@ -9,53 +9,54 @@ use crate::model::description::Description;
 use crate::model::extension::Extensions;
 use crate::model::layout::Motion;
 
-/// Constituents of a machine: description, number of modes, effects.
+/// Constituents from which machines with perturbed parameters are built: description, number of modes,
+/// effects.
 #[derive(Clone, Copy, Debug)]
 pub struct ColumnOrigin<'a> {
-    /// Description without effects.
+    /// Description of the machine without effects.
     pub description: &'a Description,
     /// Number of head modes that are kept.
     pub modes: usize,
-    /// Effects with their values.
+    /// Effects of the machine with their parameter values.
     pub effects: &'a [EffectRequest<'a>],
 }
 
-/// Error: a column that cannot be computed as requested; `column` is its position.
+/// Error: a derivative that cannot be requested in this form; `column` is its position in the request.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PlanError {
-    /// Invalid effect or parameter value.
+    /// Derivative with respect to a parameter of an invalid effect, or with an invalid parameter value.
     #[error("column {column}: {refused}")]
     Effect {
-        /// Position of the column in the request.
+        /// Position of the invalid derivative in the request.
         column: usize,
-        /// Reason why the column's effect or value is invalid.
+        /// Reason why the effect or parameter value is invalid.
         refused: crate::effect::SelectionError,
     },
-    /// Column that states values for an effect that the machine already has.
+    /// Derivative that states parameter values for an effect that the machine already has.
     #[error(
         "column {column}: the machine already has the effect `{effect}`; leave the values of the column empty"
     )]
     Present {
-        /// Position of the column in the request.
+        /// Position of the invalid derivative in the request.
         column: usize,
-        /// Identifier of the effect.
+        /// Identifier of the effect that the machine already has.
         effect: String,
     },
-    /// Invalid effects of the machine itself.
+    /// Invalid effect among those of the machine itself.
     #[error(transparent)]
     Machine(#[from] crate::effect::SelectionError),
 }
 
-/// Validated columns that a run is to compute.
+/// Validated derivatives that a run is to compute, with the method for each.
 #[derive(Debug)]
 pub struct DerivativePlan {
     pub(super) methods: Vec<ColumnMethod>,
 }
 
-/// Method by which a column is computed.
+/// Method by which a requested derivative is computed.
 #[derive(Debug)]
 pub(super) enum ColumnMethod {
-    /// Derivative with respect to a coefficient of rope or contact.
+    /// Derivative with respect to a coefficient of rope or contact, computed in closed form where possible.
     Coefficient(Coefficient),
     /// Difference of two machines that are built with perturbed parameter values.
     Difference {
@@ -63,15 +64,15 @@ pub(super) enum ColumnMethod {
         difference: Difference,
         differing: ChangedTerms,
     },
-    /// Extensions of an effect whose force is linear in its amplitude, at amplitude 1.
+    /// Force of an effect at amplitude 1, in whose amplitude the force is linear.
     Pieces(Box<Extensions>),
     Nothing,
     Missing(Unavailable),
 }
 
 impl DerivativePlan {
-    /// Validates the columns and builds the machines that they require; `machine` is the one that will be
-    /// simulated, built from `origin`.
+    /// Validates the requested derivatives and builds the perturbed machines that they require; `machine` is
+    /// the one that will be simulated, built from `origin`.
     ///
     /// # Errors
     /// [`PlanError`] for the first invalid column.
@@ -115,19 +116,19 @@ impl DerivativePlan {
         })
     }
 
-    /// Returns the number of columns.
+    /// Returns the number of requested derivatives.
     pub const fn len(&self) -> usize {
         self.methods.len()
     }
 
-    /// Returns whether the plan has no columns.
+    /// Returns whether no derivatives are requested.
     pub const fn is_empty(&self) -> bool {
         self.methods.is_empty()
     }
 }
 
-/// Returns the machine's effects together with the effect of a column, and the index of that effect in the
-/// list.
+/// Returns the machine's effects together with the effect whose parameter is varied, and the index of that
+/// effect in the list.
 fn with(
     own: &[ResolvedEffect],
     column: usize,
@@ -158,7 +159,7 @@ fn with(
     Ok((effects, at))
 }
 
-/// Chooses the method for the column of parameter `k` of the effect at index `varied`.
+/// Chooses the method for the derivative with respect to parameter `k` of the effect at index `varied`.
 fn choose_method(
     origin: &ColumnOrigin<'_>,
     machine: &Machine,

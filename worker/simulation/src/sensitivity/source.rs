@@ -24,7 +24,8 @@ pub(super) enum Source<'a> {
     Contact {
         /// Contact coefficient: stiffness or damping.
         by: DerivativeVariable,
-        /// Factor that converts the derivative into that with respect to the coefficient's decimal logarithm.
+        /// Factor that converts to the derivative with respect to the decimal logarithm of the contact
+        /// coefficient.
         factor: f64,
     },
     /// Generalised forces of an effect's extensions at amplitude 1.
@@ -33,28 +34,28 @@ pub(super) enum Source<'a> {
     /// included, and the derivative of the front head's radius with respect to the parameter, by which the
     /// contact forces are differentiated in closed form.
     Difference(Terms, bool, Option<f64>),
-    /// Zero: the parameter does not influence the motion.
+    /// Zero right-hand side, because the parameter does not influence the motion.
     Nothing,
 }
 
-/// Ropes with one joint coefficient equal to 1 and all others zero.
+/// Ropes in which one joint coefficient is 1 and all others are zero.
 #[derive(Clone, Debug)]
 pub(super) struct Joints<'a> {
     pub(super) unit: PerturbedModel<'a>,
-    /// Factor that converts the unit forces into the derivative with respect to the coefficient's decimal
-    /// logarithm.
+    /// Factor that converts the forces at coefficient 1 into the derivative with respect to the coefficient's
+    /// decimal logarithm.
     pub(super) factor: f64,
     /// Index of the unit joint force and its factor for the joints between cylinders, for motion in the
     /// plane; `None` if the coefficient has no effect in the plane.
     pub(super) inner: Option<(usize, f64)>,
 }
 
-/// Differences of a perturbed machine from the simulated one.
+/// Differences between a perturbed machine and the simulated one, which decide what must be evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ChangedTerms {
-    /// Terms of the forces that differ, and whether the inertia differs; `None` if the motion is the same.
+    /// Force terms that differ, and whether the inertia differs; `None` if both machines move alike.
     pub(super) terms: Option<(Terms, bool)>,
-    /// Whether the front head's arc differs in its radius and in nothing else.
+    /// Whether the front heads of the two machines differ in the radius of their arc and in nothing else.
     pub(super) front_radius: bool,
     /// Whether the machines differ in the gauge stress at a given state, or in the time of a sample.
     pub(super) stress: bool,
@@ -106,7 +107,7 @@ impl ChangedTerms {
     }
 }
 
-/// Selection of the force terms of the ropes: joints and contact.
+/// Selection of the force terms that depend on the ropes' coefficients: joints and contact.
 pub(super) const ROPES: Terms = Terms {
     ends: true,
     joints: true,
@@ -115,8 +116,8 @@ pub(super) const ROPES: Terms = Terms {
 };
 
 impl Source<'_> {
-    /// Computes `dR/dp` into `sum`, at a state whose poses and contact points `individual` holds; `units` are
-    /// the result of [`Individual::joint_units`], empty in space.
+    /// Computes `dR/dp` into `sum`, at a state whose cylinder poses and contact points `individual` holds;
+    /// `units` are the result of [`RopeMachine::joint_units`], empty in space.
     pub(super) fn right_hand_side(
         &mut self,
         individual: &mut RopeMachine<'_>,

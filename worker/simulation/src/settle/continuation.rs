@@ -24,7 +24,7 @@ pub fn follow(system: &mut System<RopeMachine<'_>>, q: &mut [f64]) -> bool {
     reached
 }
 
-/// Continuation path from compliant to given ropes.
+/// Continuation path of the ropes' coefficients from compliant values to those of the individual.
 struct Path<'a> {
     machine: &'a Machine,
     from: Ropes,
@@ -165,9 +165,9 @@ const SHORTEST_STRIDE: f64 = 2e-3;
 /// tried where Newton's method fails, because a cylinder snaps onto or off its arc there.
 const CAREFUL: f64 = 0.02;
 const PATIENCE: u32 = 40;
-/// Number of Newton steps of one solution that may fail to be clearly shorter than all previous steps.
+/// Maximum number of Newton steps of one solution that are not clearly shorter than all previous steps.
 const SETBACKS: u32 = 3;
-/// Maximum length of a Newton step (0.2 m), in units of Newton's tolerance; at [`LOST`] (20 m) Newton's
-/// method has diverged.
+/// Maximum length of a Newton step, 0.2 m in units of Newton's tolerance. A step longer than [`LOST`] (20 m)
+/// means that Newton's method has diverged.
 const LARGEST_STEP: f64 = 1e5;
 const LOST: f64 = 1e7;

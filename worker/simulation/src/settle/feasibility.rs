@@ -7,12 +7,11 @@ use crate::model::{Machine, Ropes};
 use crate::verdict::{Failure, Limits};
 use std::f64::consts::PI;
 
-/// Static forces and lengths of the ropes of the inextensible machine under a drive, for the back and the
-/// front rope.
+/// Static tensions and free lengths of the back and the front rope of the inextensible machine under a drive.
 pub(super) struct StaticTension {
-    /// Tension \[N\]; the sum for twin ropes.
+    /// Tension of the back and of the front rope \[N\]; the sum for twin ropes.
     pub(super) tension: [f64; 2],
-    /// Length of rope that does not lie on the arc \[m\].
+    /// Length of the back and of the front rope that does not lie on the arc \[m\].
     pub(super) span: [f64; 2],
 }
 

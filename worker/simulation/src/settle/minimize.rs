@@ -1,10 +1,10 @@
-//! Minimisation of the potential from a nearby start.
+//! Minimisation of the potential from a start near the equilibrium.
 use crate::system::{Loads, StateRef, Static, System};
 
 /// Maximum number of iterations (factorisations) of a minimisation.
 const BUDGET: u32 = 150;
 
-/// Damping of Newton steps that would raise the potential.
+/// Damping of the Newton steps of the minimisation, used where an undamped step would raise the potential.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Damping {
     /// Additional stiffness [N/m] with which a failed step is first repeated; results must not depend on it.
@@ -97,15 +97,15 @@ pub fn minimize_within<E: Static>(
 }
 
 /// Starts an iteration of the minimisation by factorising the damped stiffness matrix. Returns whether the
-/// factorisation succeeded, or `None` if no iteration is left.
+/// factorisation succeeded, or `None` if `left`, the number of iterations left, is zero.
 fn factorize<E: Static>(mut loads: Loads<'_, '_, E>, lambda: f64, left: &mut u32) -> Option<bool> {
     *left = left.checked_sub(1)?;
     loads.statistics().newton_iterations += 1;
     Some(loads.factorize_static(lambda).is_ok())
 }
 
-/// Maximum length of a step (0.05 m), in units of Newton's tolerance; at [`CONVERGED`] (2e-11 m) equilibrium
-/// is reached.
+/// Maximum length of a Newton step of the minimisation, 0.05 m in units of Newton's tolerance. After a step
+/// shorter than [`CONVERGED`] (2e-11 m) equilibrium is reached.
 const LARGEST_STEP: f64 = 2.5e4;
 pub(super) const CONVERGED: f64 = 1e-5;
 const ROUNDING: f64 = 1.0;

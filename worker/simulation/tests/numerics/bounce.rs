@@ -4,7 +4,6 @@ use simulation::element::impact::Impact;
 use simulation::rig::{Drum, End, Rig, Setup};
 use simulation::system::System;
 
-/// Penetration depth, contact duration and rebound speed of a cylinder that hits a flat floor at `speed`.
 struct Bounce {
     depth: f64,
     duration: f64,

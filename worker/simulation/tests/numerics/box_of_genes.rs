@@ -1,7 +1,7 @@
-//! Tests over the whole search box: the paper's ten coefficients, each varied by four decades up and down
+//! Tests over the whole search region: the paper's ten coefficients, each varied by four decades up and down
 //! from its recommended value (section 5.3), sampled by a seeded Latin hypercube.
 //!
-//! Most of the box describes no working machine. Every individual must end within its iteration budget,
+//! Most of the region describes no working machine. Every individual must end within its iteration budget,
 //! either complete or with a named failure, and the result of its statics must depend neither on the start of
 //! the search for equilibrium nor on the damping of its steps.
 use crate::rope::recommended;
@@ -33,7 +33,8 @@ fn hypercube(count: usize, random: &mut impl Rng) -> Vec<[f64; 10]> {
     points
 }
 
-/// Returns the recommended coefficients, each multiplied by a power of ten within plus or minus `decades`.
+/// Returns a rope law: the recommended coefficients, each multiplied by a power of ten between `-decades` and
+/// `+decades`.
 fn individual(point: &[f64; 10], decades: f64) -> RopeLaw {
     let factor = point.map(|x| 10_f64.powf(decades * (2.0 * x - 1.0)));
     let mut law = recommended();
@@ -104,7 +105,6 @@ fn statics(
     (found, system.statistics.newton_iterations)
 }
 
-/// Describes the verdict of a run in a few words.
 fn named(result: &RunResult) -> String {
     match result.verdict {
         Verdict::Complete => "complete".to_owned(),

@@ -15,13 +15,12 @@ const REFERENCE: &str = "digest 9ab65d941d9699d2 Statistics { steps: 694, error_
     newton_rejections: 20, newton_iterations: 7633, force_evaluations: 7652, jacobians: 490, \
     factorizations: 490 }";
 
-/// Digest of the reference derivatives that identify a build's numerics; to be updated like `REFERENCE`.
+/// Digest of the reference run's derivatives; to be updated like `REFERENCE`.
 const COLUMNS: &str = "columns e4fa8267de26a81f";
 
 /// Digest of the modal reduction of a small head; to be updated like `REFERENCE`.
 const HEAD: &str = "head a8ea7ade1a755e0d";
 
-/// Computes the 64-bit FNV-1a hash of the words.
 fn hash(bits: impl IntoIterator<Item = u64>) -> u64 {
     let bytes = bits.into_iter().flat_map(u64::to_le_bytes);
     bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
@@ -35,13 +34,13 @@ fn digest() -> String {
     format!("digest {:016x} {statistics:?}", hash(bits))
 }
 
-/// Returns the digest of the bits of the reference derivatives, as text.
+/// Returns the digest of the reference run's derivatives, as text.
 fn columns() -> String {
     format!("columns {:016x}", hash(reference::columns()))
 }
 
-/// Builds a sector of a ring of bricks, held at one end, with its arc outside. It has hundreds of unknowns,
-/// so that panels of the matrix factor are wider than its tiles.
+/// Builds the mesh of a small back head: a sector of a ring of bricks, held at one end. It has hundreds of
+/// unknowns, so that panels of the matrix factor are wider than its tiles.
 fn sector() -> Mesh {
     const COUNTS: [usize; 3] = [3, 14, 4];
     let [across, around, wide] = COUNTS;

@@ -17,7 +17,8 @@ const NONE: Bushing = Bushing {
     preload: 0.0,
 };
 
-/// Returns the setup of a rig with its joint laws mapped by `law` and its loads scaled by `share`.
+/// Returns a rig's setup with its joint laws replaced by the result of `law` and its loads multiplied by
+/// `share`.
 fn with(setup: &Setup, law: fn(&Bushing) -> Bushing, share: f64) -> Setup {
     let end = |end: &End| match *end {
         End::Held {
@@ -64,8 +65,8 @@ fn bending(law: &Bushing) -> Bushing {
     }
 }
 
-/// Returns the derivative of an equilibrium's coordinates with respect to the decimal logarithm of a factor
-/// that scales those forces of the rig that the setup `part` contains.
+/// Returns the derivative of an equilibrium's coordinates with respect to the decimal logarithm of a common
+/// factor of some of the rig's forces, namely those contained in the setup `part`.
 fn column(system: &mut System<Rig>, q: &[f64], part: &Setup) -> Vec<f64> {
     let still = vec![0.0; q.len()];
     let at = StateRef::new(0.0, q, &still);

@@ -16,7 +16,7 @@ use simulation::system::{Equations, System};
 /// Accuracy of Newton's method, far below the local error of any step.
 const TIGHT: f64 = 1e-8;
 
-/// Returns the state after `steps` equal steps over `time`.
+/// Integrates over `time` in `steps` equal steps, and returns the final state.
 fn equal_steps<E: Equations>(
     system: &mut System<E>,
     mut method: Box<dyn Stepper<E>>,
@@ -42,8 +42,8 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Checks that halving the step divides the error by `2^order`, with an observed order within 0.3 of the
-/// given one.
+/// Checks that halving the step divides the error by `2^order`; the observed order must lie within 0.3 of
+/// `order`.
 fn judge(name: &str, order: usize, errors: &[f64]) {
     for pair in errors.windows(2) {
         let found = (pair[0] / pair[1]).log2();

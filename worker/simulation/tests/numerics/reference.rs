@@ -181,8 +181,8 @@ fn drum_setup(law: &RopeLaw, pull: f64) -> Setup {
     }
 }
 
-/// Returns coordinates of cylinders laid on the drum clockwise from its top over the angle `wrap`, then
-/// straight on.
+/// Returns coordinates of cylinders that lie on the rig's drum, clockwise from its top over the angle `wrap`,
+/// and then continue straight.
 pub(crate) fn laid_on_drum(count: usize, wrap: f64) -> Vec<f64> {
     let (pitch, radius) = (0.05_f64, 1.205_f64);
     let turn = 2.0 * (0.5 * pitch / radius).asin();

@@ -121,7 +121,7 @@ pub(crate) fn strung(count: usize, law: Bushing, span: f64, gravity: f64) -> Set
     }
 }
 
-/// Finds the static equilibrium, starting from coordinates `q`.
+/// Finds the static equilibrium of a rig, starting from coordinates `q`.
 pub(crate) fn settled(setup: &Setup, mut q: Vec<f64>) -> (System<Rig>, Vec<f64>) {
     let mut system = System::new(Rig::new(*setup));
     assert!(minimize(&mut system, 0.0, &mut q), "no equilibrium");
@@ -152,7 +152,7 @@ pub(crate) fn bowed(count: usize, span: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Finds the static equilibrium, starting from a straight chain along +x.
+/// Finds the static equilibrium of a rig, starting from a straight chain along +x.
 pub(crate) fn settled_straight(setup: &Setup) -> (System<Rig>, Vec<f64>) {
     let q = Rig::new(*setup).straight(V3::zeros(), 0.0);
     settled(setup, q)
@@ -185,7 +185,7 @@ pub(crate) fn started(system: &mut System<Rig>, q: Vec<f64>, v: Vec<f64>) -> Sta
     state
 }
 
-/// Integrates from `state` to `until`; `each` is called with the two ends of every accepted step.
+/// Integrates a rig from `state` to time `until`; `each` is called with start and end of every accepted step.
 pub(crate) fn advance(
     system: &mut System<Rig>,
     course: &Course,

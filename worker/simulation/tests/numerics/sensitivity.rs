@@ -1,5 +1,5 @@
-//! Derivatives (columns) of a run compared with Richardson-extrapolated central differences of whole runs on
-//! the same list of steps, whose stages are solved to rounding.
+//! Derivatives of a run compared with Richardson-extrapolated central differences of whole runs on the same
+//! list of steps, whose stages are solved to rounding.
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use simulation::effect::{EffectRequest, Parameter, Role, Selection, catalogue};
@@ -54,8 +54,8 @@ impl Subject {
         Machine::with_effects(self.description.clone(), 2, selection.effects()).unwrap()
     }
 
-    /// Computes the derivatives (columns) of a run and the end times of its steps; `None` if the run fails or
-    /// its stages cannot be solved to rounding.
+    /// Computes the derivatives of a run with respect to the given unknowns, and the end times of its steps;
+    /// `None` if the run fails or its stages cannot be solved to rounding.
     fn columns(&self, columns: &[Column]) -> Option<(Vec<Derivative>, Vec<f64>)> {
         let machine = self.machine();
         let effects = asked(&self.effects);
@@ -75,8 +75,9 @@ impl Subject {
         Some((found?.columns, steps))
     }
 
-    /// Returns gauge, height and torque curves of a run on given steps, with the unknown of a column changed
-    /// by `by`; NaN where contact that closes or opens prevents a stage from being solved to rounding.
+    /// Returns gauge, height and torque curves of a run on given steps, with the unknown of a derivative
+    /// changed by `by`; NaN where contact that closes or opens prevents a stage from being solved to
+    /// rounding.
     fn moved(&self, column: &Column, by: f64, steps: &[f64]) -> Vec<f64> {
         let mut own = self.clone();
         match column {
@@ -112,8 +113,8 @@ impl Subject {
         gauges.chain(height).chain(recorder.curves.torque).collect()
     }
 
-    /// Returns the direction of a one-sided difference with respect to a column's parameter if the
-    /// parameter's bounds rule out a central difference with this step; otherwise `None`.
+    /// Returns the direction of a one-sided difference with respect to an unknown if its bounds rule out a
+    /// central difference with this step; otherwise `None`.
     fn side(&self, column: &Column, step: f64) -> Option<f64> {
         let Column::Parameter {
             effect, parameter, ..
@@ -179,7 +180,7 @@ fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Returns the norm of the difference of two columns, relative to the norm of the second.
+/// Returns the norm of the difference of two derivatives `x` and `y`, relative to the norm of `y`.
 fn distance(x: &[f64], y: &[f64]) -> f64 {
     let apart: Vec<f64> = x.iter().zip(y).map(|(x, y)| x - y).collect();
     norm(&apart) / norm(y).max(1e-300)
@@ -204,7 +205,7 @@ fn fast() -> Subject {
     }
 }
 
-/// Returns the coarser of the two difference steps for a column.
+/// Returns the coarser of the two difference steps for an unknown.
 fn step(column: &Column) -> f64 {
     match column {
         Column::Coefficient(_) => 2e-4,
@@ -214,8 +215,7 @@ fn step(column: &Column) -> f64 {
     }
 }
 
-/// Returns the typical change of a column's unknown: one decade of a coefficient, the typical value of a
-/// parameter.
+/// Returns the typical change of an unknown: one decade of a coefficient, the typical value of a parameter.
 fn usual(column: &Column) -> f64 {
     match column {
         Column::Coefficient(_) => 1.0,
@@ -232,14 +232,14 @@ fn usual(column: &Column) -> f64 {
 struct Judged {
     able: usize,
     of: usize,
-    /// Number of columns compared, including those that are correctly without curves.
+    /// Number of derivatives compared, including those that correctly have no curves.
     columns: usize,
     worst: f64,
     wrong: Vec<String>,
 }
 
 impl Judged {
-    /// Fails if any column is wrong, or if differences could test less than 95 % of the curves.
+    /// Fails the test if any derivative is wrong, or if differences could test less than 95 % of the curves.
     fn verdict(&self) {
         let Self {
             able,
@@ -256,20 +256,20 @@ impl Judged {
     }
 }
 
-/// Curves compared: unit, range of curves, and the factor that scales them to a size comparable with
-/// megapascals.
+/// Recorded quantities to compare: unit, range of curve indices, and the factor that scales the curves to a
+/// size comparable with megapascals.
 const READ: [(&str, std::ops::Range<usize>, f64); 3] =
     [("MPa", 0..4, 1e-6), ("m", 4..5, 10.0), ("kN m", 5..6, 1e-3)];
 
-/// Columns that are expected to be missing, by effect, parameter and reason; any other missing column is an
-/// error.
+/// Derivatives that are expected to be unavailable, by effect, parameter and reason; any other unavailable
+/// derivative is an error.
 const MISSING: &[(&str, &str, Unavailable)] = &[
     // a post that does not yield has no displacement
     ("post_compliance", "compliance", Unavailable::Coordinates),
 ];
 
-/// Checks a column without curves: either a run on the same steps with the unknown changed is identical, or
-/// the column is listed in [`MISSING`].
+/// Checks a derivative without curves: either a run on the same steps with the unknown changed is identical,
+/// or the derivative is listed in [`MISSING`].
 fn check_without_curves(
     subject: &Subject,
     steps: &[f64],
@@ -294,11 +294,11 @@ fn check_without_curves(
     }
 }
 
-/// Compares columns with differences; returns whether the run gave columns at all. Where differences of two
-/// step sizes agree to 2e-5, the column must agree to 1e-4; elsewhere it must agree to 1e-3 if a typical
-/// change moves the curve by more than 0.05. Of the two step sizes, the one whose extrapolated and plain
-/// differences agree better is used, because extrapolation amplifies rounding errors fourfold. Columns
-/// without curves are checked, too.
+/// Compares computed derivatives with differences; returns whether the run gave derivatives at all. Where
+/// differences of two step sizes agree to 2e-5, the derivative must agree to 1e-4; elsewhere it must agree to
+/// 1e-3 if a typical change of the unknown moves the curve by more than 0.05. Of the two step sizes, the one
+/// whose extrapolated and plain differences agree better is used, because extrapolation amplifies rounding
+/// errors fourfold. Derivatives without curves are checked, too.
 fn compare(subject: &Subject, columns: &[Column], judged: &mut Judged) -> bool {
     let Some((found, steps)) = subject.columns(columns) else {
         return false;
@@ -367,7 +367,7 @@ fn individual(seed: u64) -> Subject {
     subject
 }
 
-/// Returns columns for every `stride`-th size parameter in the list of those of all effects.
+/// Returns every `stride`-th of the size parameters of all effects, as unknowns to differentiate by.
 fn sizes(stride: usize) -> Vec<Column> {
     let sizes = catalogue().iter().flat_map(|d| {
         let sizes = d.parameters.iter().filter(|p| p.role == Role::Size);
@@ -380,7 +380,8 @@ fn sizes(stride: usize) -> Vec<Column> {
     sizes.step_by(stride).collect()
 }
 
-/// Returns a machine with an effect at its typical parameters, and columns for all of these parameters.
+/// Returns a machine with one effect at its typical parameters, and all of these parameters as unknowns to
+/// differentiate by.
 fn present(id: &str) -> (Subject, Vec<Column>) {
     let descriptor = catalogue().iter().find(|d| d.id == id).unwrap();
     let mut subject = fast();
@@ -436,8 +437,8 @@ fn every_column_agrees_with_differences_on_the_same_steps() {
     judged.verdict();
 }
 
-/// Checks that the run and its counters equal those of a run without columns, and that a column has the same
-/// bits regardless of which other columns are computed.
+/// Checks that the run and its counters equal those of a run without derivatives, and that a derivative has
+/// the same bits regardless of which others are computed.
 #[test]
 fn columns_change_no_bit_of_the_run_nor_of_each_other() {
     let subject = fast();
@@ -487,8 +488,8 @@ fn columns_change_no_bit_of_the_run_nor_of_each_other() {
     assert_eq!(shape, Derivative::Zero, "the shape of an absent size");
 }
 
-/// Checks that a failing run has the verdict of the run without columns and returns no columns, and that a
-/// method without stages is reported as such.
+/// Checks that a failing run has the same verdict as without derivatives and returns none, and that for a
+/// method without stages the derivatives are reported as unavailable.
 #[test]
 fn a_run_that_fails_has_no_columns() {
     let mut subject = fast();

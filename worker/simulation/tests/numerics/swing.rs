@@ -43,7 +43,7 @@ fn momentum(system: &System<RopeMachine<'_>>, q: &[f64], x: &[f64]) -> Vec<f64> 
     out.iter().map(|x| -x).collect()
 }
 
-/// Returns the static tangent stiffness matrix, not factorised.
+/// Returns a machine's static tangent stiffness matrix, not factorised.
 fn stiffness(system: &mut System<RopeMachine<'_>>, q: &[f64]) -> Bordered {
     let still = vec![0.0; q.len()];
     let mut force = still.clone();

@@ -3,22 +3,21 @@
 use exchange::pest::Control;
 use toml_edit::{Array, ArrayOfTables, InlineTable, Table, Value, value};
 
-/// Name of the file with the observations.
+/// Name of the CSV file to which an import writes the observations of a control file.
 pub(super) const OBSERVATIONS: &str = "observations.csv";
-/// Name of the channel for prior information.
+/// Name of the channel that an import creates for prior information.
 const PRIOR: &str = "prior_information";
 
-/// Observations that form one channel.
+/// PEST observations that an import converts to one channel.
 #[derive(Debug)]
 pub(super) struct Group {
-    /// Name of the channel that the group becomes.
     pub(super) name: String,
-    /// Whether the observations have positive weights.
+    /// Whether the group's observations have positive weights, so that they form a measured record.
     pub(super) is_measured: bool,
     pub(super) rows: Vec<Row>,
 }
 
-/// Observation: name, value and weight.
+/// PEST observation: name, value and weight.
 #[derive(Debug)]
 pub(super) struct Row {
     name: String,
@@ -75,7 +74,7 @@ fn sanitized(name: &str) -> String {
     name.chars().map(letter).collect()
 }
 
-/// Returns the CSV text with all observations.
+/// Returns a CSV text with the observations of all groups.
 pub(super) fn table(groups: &[Group]) -> String {
     let mut text = "channel,number,observation,value,weight\n".to_owned();
     for group in groups {
@@ -93,7 +92,7 @@ pub(super) fn table(groups: &[Group]) -> String {
     text
 }
 
-/// Returns the `[[channels]]` tables of the case file.
+/// Returns the `[[channels]]` tables of the imported case, one for each group of observations.
 pub(super) fn tables(groups: &[Group], condition: &str) -> ArrayOfTables {
     groups
         .iter()

@@ -1,4 +1,4 @@
-//! Copying of a folder with its contents.
+//! Copying of a control file's folder to the folder of the imported case.
 use protocol::external::MOST_BYTES;
 use std::{fs, io, path::Path};
 

@@ -14,10 +14,10 @@ use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Val
 
 /// Name of the only condition of an imported case.
 const CONDITION: &str = "model";
-/// Default deadline of one run (s).
+/// Deadline that an imported case states for one run of its program (s).
 const DEADLINE_S: f64 = 3600.0;
 
-/// Result of an import.
+/// Result of importing a PEST control file as a case.
 #[derive(Debug)]
 pub struct Imported {
     /// Folder of the new case.
@@ -31,16 +31,16 @@ pub struct Imported {
 /// Error that prevents an import.
 #[derive(Debug, thiserror::Error)]
 pub enum ImportError {
-    /// Problem in the control file or in a file that it names.
+    /// Problem in the PEST control file or in a file that it names.
     #[error(transparent)]
     File(#[from] Problem),
-    /// Target folder that exists already.
+    /// Target folder of the import, which exists already.
     #[error("{} exists already, and nothing was written", .0.display())]
     Exists(PathBuf),
     /// Input or output error of the operating system.
     #[error("{}: {source}", .path.display())]
     Io {
-        /// Path of the file or folder concerned.
+        /// Path of the file or folder that could not be read or written.
         path: PathBuf,
         /// Error of the operating system.
         source: io::Error,
@@ -107,7 +107,7 @@ fn case_name(control: &Path) -> String {
     parts.join("-")
 }
 
-/// Returns the text of the case file.
+/// Returns the text of the `case.toml` to which a PEST control file is converted.
 fn text_of(
     control: &Control,
     groups: &[Group],
@@ -133,7 +133,7 @@ fn text_of(
     format!("# Made from {file}, a control file of PEST.\n{document}")
 }
 
-/// Returns the `[model]` table of the case file.
+/// Returns the `[model]` table of the imported case.
 fn model(control: &Control, name: &str, files: &[String]) -> Table {
     let mut model = Table::new();
     model.insert("kind", value("command"));
@@ -187,8 +187,8 @@ fn plain_path(path: &str) -> String {
     path.trim_start_matches("./").to_owned()
 }
 
-/// Splits the command line into words; several lines, or a line with shell syntax, are passed to `/bin/sh
-/// -c`.
+/// Splits the command line of a PEST control file into words; several lines, or a line with shell syntax, are
+/// passed to `/bin/sh -c`.
 fn command(lines: &[String]) -> Vec<String> {
     let shell = |text: &str| text.contains(['|', '>', '<', '&', ';', '$', '`']);
     match lines {

@@ -12,7 +12,7 @@ pub(super) const fn is_searched(transform: &Transform) -> bool {
     matches!(transform, Transform::None | Transform::Log)
 }
 
-/// Returns the `[[unknowns]]` tables of the case file.
+/// Returns the `[[unknowns]]` tables of the imported case for the parameters of the control file.
 pub(super) fn tables(control: &Control) -> ArrayOfTables {
     let parameters = control.parameters.iter();
     parameters

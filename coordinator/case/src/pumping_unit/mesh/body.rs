@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 pub struct Mesh {
     /// Node positions in the beam frame \[m\].
     pub nodes_m: Vec<[f64; 3]>,
-    /// Kind of the elements.
+    /// Kind that all elements of the mesh have.
     pub kind: ElementKind,
     /// Elements of each volume group: node indices, element after element, in Gmsh's order.
     pub volumes: BTreeMap<String, Vec<usize>>,

@@ -10,13 +10,14 @@ const OUTDATED_TABLES_HELP: &str =
 /// Input of the head's reduction whose content hash the head's tables state.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) enum Origin {
-    /// Mesh file.
+    /// Mesh file alone.
     Mesh,
     /// All inputs of the reduction of the head: mesh, material, arc, stations and gauges.
     Source,
 }
 
-/// Checks that tables were computed from the current input, if both hashes are known.
+/// Checks that the head's tables were computed from the current mesh or other inputs, if both content hashes
+/// are known.
 ///
 /// # Errors
 /// Returns an error if the tables state another content hash.
@@ -54,7 +55,7 @@ pub(in super::super) fn check_origin(
     ))
 }
 
-/// Checks that the tables were computed from this mesh, if they state a hash.
+/// Checks that the head's tables were computed from this mesh, if they state a hash of it.
 ///
 /// # Errors
 /// Returns an error if the tables state another content hash.

@@ -13,9 +13,8 @@ use std::path::{Path, PathBuf};
 pub(in super::super) struct Expected<'a> {
     /// Index of the condition in the case.
     pub(in super::super) index: usize,
-    /// Name of the condition that the record belongs to, for messages.
     pub(in super::super) condition: &'a str,
-    /// Crank speed that the case states for the condition [1/min].
+    /// Crank speed that the case states for the record's condition [1/min].
     pub(in super::super) speed_rpm: f64,
     /// Path of the case file, for messages.
     pub(in super::super) case_file: &'a Path,
@@ -30,15 +29,15 @@ pub(in super::super) struct Expected<'a> {
 pub struct RecordFacts {
     /// Path of the record's file.
     pub path: PathBuf,
-    /// Number of samples in the file.
+    /// Number of samples in the record's file.
     pub samples: usize,
     /// Number of samples missing according to the time column.
     pub lost: u64,
-    /// Sampling rate \[Hz\].
+    /// Sampling rate of the record \[Hz\].
     pub rate_hz: f64,
     /// Mean crank speed between the first and the last index pulse [1/min].
     pub speed_rpm: f64,
-    /// Noise that the data sheet states, per sample \[MPa\].
+    /// Standard deviation of the noise of one sample that the data sheet states \[MPa\].
     pub stated_noise_mpa: Option<f64>,
     /// Names of the record's columns that are not used.
     pub unused: Vec<String>,

@@ -24,7 +24,7 @@ pub fn count_samples(path: &Path, csv: &[u8]) -> Result<usize, CaseError> {
     Samples::read(path, csv).map(|samples| samples.angle_deg.len())
 }
 
-/// Record as read from its files.
+/// Gauge record of a working condition as read from its files.
 #[derive(Debug)]
 pub(in super::super) struct GaugeRecord {
     /// Channels of all sensors of the condition, with the measured records of the gauges.

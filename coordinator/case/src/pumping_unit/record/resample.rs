@@ -16,7 +16,7 @@ use protocol::pumping_unit::Sensor;
 /// Cycles resampled on the output grid, with their mean and spread.
 #[derive(Debug)]
 pub(super) struct Cycles {
-    /// Indices of the cycles that cover the whole turn.
+    /// Indices of those cycles of the record that cover the whole turn.
     pub(super) whole: Vec<usize>,
     /// Mean over the cycles, per gauge and grid angle; `None` where no cycle has a value.
     pub(super) mean: Vec<Vec<Option<f64>>>,
@@ -121,7 +121,7 @@ pub(super) fn grid(step_deg: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Consecutive samples and their regression weights for one grid value.
+/// Consecutive samples of a record, with the weights of the local regression at one grid angle.
 #[derive(Debug)]
 struct Window {
     first: usize,

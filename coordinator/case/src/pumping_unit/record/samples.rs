@@ -25,7 +25,7 @@ const CURVES: [(&str, Sensor); 6] = [
 /// compare with.
 const IGNORED_COLUMNS: [&str; 1] = ["polished_rod_load_n"];
 
-/// Record as sampled.
+/// Samples of a gauge record, before resampling on the output grid.
 #[derive(Debug)]
 pub(super) struct Samples {
     /// Crank angle unwrapped over the cycles: cycle x 360 + angle \[deg\]; never decreasing.
@@ -45,7 +45,7 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    /// Reads and checks the columns.
+    /// Reads and checks the columns of a gauge record.
     ///
     /// # Errors
     /// Returns an error for any fault of the table; times that repeat or decrease; angles outside 0 to 360 or
@@ -111,7 +111,7 @@ impl Samples {
     }
 }
 
-/// Checks that times ascend strictly.
+/// Checks that the sample times of a gauge record ascend strictly.
 fn check_time(path: &Path, table: &CsvTable, time: &[f64]) -> Result<(), CaseError> {
     for (row, (before, after)) in time.iter().zip(time.iter().skip(1)).enumerate() {
         if after <= before {
@@ -178,7 +178,7 @@ fn unwrap_angle(
     Ok((angles, pulses))
 }
 
-/// Checks that stress has the magnitude of MPa and varies.
+/// Checks that the samples of a gauge have the magnitude of stress in MPa and vary.
 fn check_stress(
     path: &Path,
     table: &CsvTable,

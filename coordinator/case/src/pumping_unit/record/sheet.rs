@@ -229,7 +229,7 @@ impl Sheet {
     }
 }
 
-/// Checks that the stated standard deviations are finite and not negative.
+/// Checks that the standard deviations of a data sheet's `[tolerance]` table are finite and not negative.
 fn check_tolerance(document: &Document, tolerance: &Tolerance) -> Result<(), CaseError> {
     for (name, value) in tolerance.stated() {
         if !(value.is_finite() && value >= 0.0) {

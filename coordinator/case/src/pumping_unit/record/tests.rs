@@ -37,7 +37,6 @@ fn sampled(
     }
 }
 
-/// Returns the integer part of a small positive number.
 fn floor(value: f64) -> usize {
     usize::try_from(whole(value)).unwrap()
 }

@@ -13,7 +13,7 @@ pub(super) struct Tolerance {
     gauge_factor: Option<f64>,
     /// Standard deviation of the angular position of the index mark on the crank \[deg\].
     index_deg: Option<f64>,
-    /// Standard deviation of the load of the load card, relative \[1\].
+    /// Standard deviation of the load cell's error, relative to the load \[1\].
     load_cell: Option<f64>,
     /// Standard deviation of the amplifier's delay, which is never negative \[s\].
     amplifier_lag_s: Option<f64>,
@@ -29,12 +29,12 @@ pub(super) struct Tolerance {
 
 /// Model parameter that represents an instrument's error.
 enum ErrorModel {
-    /// Size parameter of a library effect: effect identifier, parameter name.
+    /// Parameter that sets the size of a library effect: identifier of the effect, name of the parameter.
     Effect(&'static str, &'static str),
-    /// Size parameter of a library effect that only one sensor shows: sensor, effect identifier, parameter
-    /// name.
+    /// Parameter that sets the size of a library effect which only one sensor shows: sensor, identifier of
+    /// the effect, name of the parameter.
     Seen(Sensor, &'static str, &'static str),
-    /// Gain of a sensor: sensor, identifier.
+    /// Gain of a sensor: the sensor, and the identifier of the gain.
     Gain(Sensor, &'static str),
 }
 

@@ -10,28 +10,27 @@ const CYCLES: usize = 3;
 /// cycles.
 #[derive(Clone, Debug)]
 pub(crate) struct LinearizedRecord {
-    /// Index of the record's condition.
+    /// Index of the working condition under which the record was measured.
     pub(crate) condition: usize,
     /// Residual of the mean of the cycles, measured less simulated, in units of the cycles' scatter.
     pub(crate) left: DVector<f64>,
-    /// Deviations of the cycles from their mean.
+    /// Deviation of each cycle from the mean over the cycles, in units of the scatter between cycles.
     pub(crate) deviations: Vec<DVector<f64>>,
-    /// Derivatives of the simulated curves, one column per unknown.
+    /// Derivatives of the simulated curves, one matrix column per unknown.
     pub(crate) columns: DMatrix<f64>,
-    /// Number of samples of each channel.
     samples: Vec<usize>,
     /// Start and end of the first channel's abscissa, in its unit.
     pub(crate) span: [f64; 2],
 }
 
 impl LinearizedRecord {
-    /// Returns whether a record has enough cycles for a scatter.
+    /// Returns whether a record has enough cycles to estimate the scatter between them.
     pub(crate) fn suits(record: &Record) -> bool {
         record.cycles.len() >= CYCLES
     }
 
-    /// Linearises a record with enough cycles, from the curves at the fitted point and their derivatives by
-    /// each unknown.
+    /// Linearises a record, from the curves at the fitted point and their derivatives by each unknown; the
+    /// record must have enough cycles to estimate their scatter.
     pub(crate) fn new(record: &Record, fitted: &Curves, changes: &[Curves]) -> Self {
         let variance = record.cycle_variance();
         let flat = |curves: &Curves| {
@@ -60,8 +59,8 @@ impl LinearizedRecord {
         }
     }
 
-    /// Returns the row indices of all channels' samples in part `part` (from 0) of `of` equal parts of the
-    /// abscissa.
+    /// Returns the indices of all channels' samples that lie in part `part` (from 0) of `of` equal parts of
+    /// the abscissa.
     pub(crate) fn rows(&self, part: usize, of: usize) -> Vec<usize> {
         let mut begin = 0;
         let mut rows = Vec::new();

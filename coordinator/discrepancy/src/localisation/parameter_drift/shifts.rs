@@ -23,16 +23,16 @@ pub enum RecordPart {
         /// End of the sector, in the unit of the first channel's abscissa.
         to: f64,
     },
-    /// The whole record of another condition, by its index.
+    /// Whole record of another working condition, given by the condition's index.
     Condition(usize),
 }
 
 /// Shift of a parameter that one part of the data would require.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterShift {
-    /// Part of the data that would require the shift.
+    /// Part of the data on which the parameter was refitted.
     pub part: RecordPart,
-    /// Shift from the fitted point (coordinate).
+    /// Shift of the parameter from its fitted value (coordinate of the search space).
     pub by: f64,
     /// Probability that noise shifts any parameter in any part by as much.
     pub p_value: f64,
@@ -43,7 +43,7 @@ pub struct ParameterShift {
 pub struct ParameterDrift {
     /// Index of the parameter among the unknowns.
     pub unknown: usize,
-    /// Shifts by part, those of the abscissa's sectors first.
+    /// Shifts of the parameter by part of the data; the sectors of the abscissa come first.
     pub shifts: Vec<ParameterShift>,
     /// Share of the residual that the parameter removes if it may differ between the sectors of the abscissa
     /// \[1\].
@@ -117,8 +117,8 @@ impl Sector {
         }
     }
 
-    /// Returns the shift that an unknown would need in this sector, and the squared length of the residual
-    /// that the shift removes.
+    /// Returns the shift of an unknown that best explains the residual in this sector, and the squared length
+    /// of the residual that the shift removes.
     fn shift(&self, unknown: usize) -> (ParameterShift, f64) {
         let column = self.columns.column(unknown).into_owned();
         let by = along(&column, &self.left);
@@ -182,7 +182,7 @@ impl Refit {
     }
 }
 
-/// Returns the coefficient of the least-squares projection of a vector `v` on a column; 0 for a zero column.
+/// Returns the coefficient of the least-squares projection of the vector `v` on `column`; 0 if that is zero.
 fn along(column: &DVector<f64>, v: &DVector<f64>) -> f64 {
     let length = column.norm_squared();
     if length > 0.0 {
@@ -198,7 +198,7 @@ fn squares(errors: impl ExactSizeIterator<Item = f64>) -> f64 {
     errors.map(|e| e * e).sum::<f64>() / (n * (n - 1.0))
 }
 
-/// Returns the two-sided p-value of a mean, from Student's distribution.
+/// Returns the two-sided p-value of a mean over `cycles` cycles, from Student's distribution.
 fn tail(value: f64, squared_error: f64, cycles: usize) -> f64 {
     if squared_error <= 0.0 {
         return 1.0;
@@ -216,7 +216,7 @@ mod tests {
     const GRID: usize = 120;
     const UNKNOWNS: usize = 4;
 
-    /// Returns the change of two channels per unit of an unknown; its shape along the abscissa differs
+    /// Returns a synthetic change of the curves of two channels per unit of unknown `k`; its shape differs
     /// between the unknowns.
     fn change(k: usize) -> Curves {
         let curve = |c: usize| {
@@ -258,8 +258,8 @@ mod tests {
         }
     }
 
-    /// Returns the shifts for a record and another condition, linearised at a point that was fitted to the
-    /// first.
+    /// Returns the parameter shifts that a record and another condition would require, linearised at a point
+    /// that was fitted to the first record.
     fn found(own: &Record, other: &Record) -> Vec<ParameterDrift> {
         let changes: Vec<Curves> = (0..UNKNOWNS).map(change).collect();
         let zero = vec![vec![0.0; GRID]; 2];

@@ -15,15 +15,16 @@ use nalgebra::DVector;
 /// Window of the abscissa in which the residual is significant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AbscissaWindow {
-    /// Index of the channel.
+    /// Index of the channel in the record.
     pub channel: usize,
-    /// Start of the window, in the unit of the channel's abscissa.
+    /// Start of the window on the channel's abscissa, in its unit.
     pub from: f64,
-    /// End of the window; it exceeds the end of the period where the window continues in the next one.
+    /// End of the window on the channel's abscissa; beyond the end of the period if the window continues in
+    /// the next period.
     pub to: f64,
     /// Strength of the window: mean of the residual over it, in standard deviations of that mean.
     pub strength: f64,
-    /// Probability that noise alone has a window of this strength anywhere.
+    /// Probability that noise alone has a window of at least this strength anywhere in the record.
     pub p_value: f64,
 }
 
@@ -31,7 +32,7 @@ pub struct AbscissaWindow {
 /// overlapping windows only the strongest is kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlongMap {
-    /// Bins of each channel's abscissa.
+    /// Bins into which each channel's abscissa is divided.
     pub bins: Vec<Bins>,
     /// Strength (window mean in standard deviations) of the narrowest windows, by channel and first bin.
     pub strength: Vec<Vec<f64>>,

@@ -12,7 +12,7 @@ pub(crate) fn can_flip(cycles: usize, alpha: f64) -> bool {
     cycles >= 2 && alpha * libm::exp2(cycles as f64 - 1.0) >= 1.0
 }
 
-/// Null distribution of window means.
+/// Null distribution of the largest window mean of a record.
 pub(crate) struct Null {
     /// Standard deviation of a window mean by channel and width.
     pub(crate) scales: Vec<Vec<f64>>,
@@ -24,7 +24,8 @@ pub(crate) struct Null {
 }
 
 impl Null {
-    /// Builds the distribution from the cycles' windows with signs flipped.
+    /// Builds the distribution from window means of the cycles, whose signs are flipped in up to `draws`
+    /// combinations.
     pub(crate) fn flipped(cycles: &[Windows], draws: usize) -> Self {
         let n = cycles.len();
         let square = |c: usize, w: usize| -> f64 {
@@ -72,7 +73,7 @@ impl Null {
         Self::new(maxima, scales, complete)
     }
 
-    /// Builds the distribution from noise drawn from the metric.
+    /// Builds the distribution from `draws` noise sets drawn from the metric and projected like the residual.
     pub(crate) fn drawn(metric: &Metric, tangent: &Tangent, draws: usize) -> Self {
         let streams = Streams::new(0x616e_676c, 0);
         let noise: Vec<Windows> = (0..draws)

@@ -2,10 +2,10 @@
 use crate::record::metric::Metric;
 use nalgebra::DVector;
 
-/// Widths of the windows (bins).
+/// Widths of the windows in which the residual is averaged (bins).
 pub const WIDTHS: [usize; 3] = [5, 11, 21];
 
-/// Window means by channel, width and first bin.
+/// Means of a whitened residual over windows, by channel, width and first bin of the window.
 pub(crate) type Windows = Vec<Vec<Vec<f64>>>;
 
 /// Computes the window means of every channel's whitened curve.

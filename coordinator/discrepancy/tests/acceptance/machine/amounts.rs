@@ -5,12 +5,12 @@ use nalgebra::Complex;
 use protocol::announce::EffectDescriptor;
 use protocol::job::SimulateSpec;
 
-/// Complex Fourier coefficient of one order of the crank.
+/// Complex Fourier coefficient of a curve over the crank angle.
 pub(super) type C = Complex<f64>;
 
-/// Highest order solved, eight above the highest order compared.
+/// Highest order of the crank for which the machine's motion is solved, eight above the highest compared.
 pub(super) const HIGHEST: usize = ORDERS + 8;
-/// Masses of rod, beam and head.
+/// Masses of rod, beam and head of the stand-in machine (kN t^2/m, with t the unit of time).
 pub(super) const MASSES: [f64; 3] = [2.0, 4.0, 5.9];
 /// Amounts of effects requested by a job, looked up by identifier and parameter index.
 pub(super) struct Amounts<'a> {

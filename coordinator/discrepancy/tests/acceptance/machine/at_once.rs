@@ -9,7 +9,6 @@ use std::convert::Infallible;
 /// Discretisation error of the stand-in machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Roughness {
-    /// No discretisation error.
     Exact,
     /// Ripple on every gauge with the usual discretisation (MPa).
     Ripple(f64),
@@ -25,7 +24,7 @@ pub(crate) enum Roughness {
 const RIPPLES: f64 = 17.0;
 const AT_GAUGES: [f64; 4] = [1.0, -0.7, 0.8, 0.5];
 
-/// Adds a ripple to the gauges (MPa).
+/// Adds a cosine ripple of amplitude `size` (MPa) to the simulated gauge readings.
 pub(crate) fn ripple(gauges: &mut [Vec<f64>], size: f64) {
     for (gauge, share) in gauges.iter_mut().zip(AT_GAUGES) {
         for (y, angle) in gauge.iter_mut().zip(grid()) {
@@ -38,15 +37,15 @@ pub(crate) fn ripple(gauges: &mut [Vec<f64>], size: f64) {
 /// outside than in the machine.
 pub(crate) struct ImmediateLaboratory<'a> {
     machine: &'a Machine,
-    /// Loss of one run in this many, spread by a hash of the run counter; 0 loses none.
+    /// Reciprocal of the share of simulation runs that are lost; 0 loses none.
     lost_every: u64,
-    /// Pairs of the label used outside and the machine's own identifier.
+    /// Pairs of the effect label used outside the machine and the machine's own identifier of the effect.
     labels: &'a [(String, String)],
     numerics: Roughness,
-    /// Whether observations include the derivative columns that a job requests.
+    /// Whether observations include the requested derivatives of the curves.
     columns: bool,
     runs: u64,
-    /// Number of lost runs.
+    /// Number of simulation runs lost so far.
     pub(crate) lost: u64,
 }
 
@@ -182,8 +181,8 @@ impl<'a> ImmediateLaboratory<'a> {
         }
     }
 
-    /// Returns the simulation with the value that a derivative column varies, and its finite-difference step;
-    /// `None` if the machine has no value of that name.
+    /// Returns the simulation with the value that a requested derivative varies, and the finite-difference
+    /// step; `None` if the machine has no value of that name.
     fn varied(&self, spec: &SimulateSpec, column: &Column) -> Option<Varied> {
         let mut spec = spec.clone();
         if let Some(k) = column
@@ -223,8 +222,8 @@ impl<'a> ImmediateLaboratory<'a> {
     }
 }
 
-/// Step of the differences, as a share of the value or of the effect's usual size; `AGREE` is the largest
-/// relative difference allowed between the results of two step sizes.
+/// Step of the finite differences, as a share of the varied value or of the effect's usual size; `AGREE` is
+/// the largest relative difference allowed between the results of two step sizes.
 const STEP: f64 = 2e-3;
 const AGREE: f64 = 1e-4;
 
@@ -235,11 +234,11 @@ struct Varied {
     step: f64,
 }
 
-/// Location of the varied number in a simulation.
+/// Location, in a simulation's inputs, of the number that is varied for a finite difference.
 #[derive(Clone, Copy)]
 enum Place {
     Unknown(usize),
-    /// Index of the effect, and index of its parameter.
+    /// Parameter of an effect: index of the effect, and index of its parameter.
     Effect(usize, usize),
 }
 

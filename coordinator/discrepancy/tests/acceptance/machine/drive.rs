@@ -4,7 +4,8 @@ use super::lags::Lags;
 use super::turn::FourierTable;
 use crate::case::{SAMPLES, grid};
 
-/// Motion of the drive on the grid: height (m), speed (m/t), acceleration (m/t^2), slope (m/rad).
+/// Motion of the crank drive on the grid of crank angles, with t the unit of time: height (m), speed (m/t),
+/// acceleration (m/t^2), slope (m/rad).
 pub(super) struct Drive {
     pub(super) height: Vec<f64>,
     pub(super) speed: Vec<f64>,

@@ -5,10 +5,10 @@ use crate::case::RECOMMENDED;
 use nalgebra::{Matrix3, Vector3};
 use protocol::job::SimulateSpec;
 
-/// Lags of the masses of one solution, one vector per order.
+/// Lags of the three masses behind the drive in one solution: a vector of Fourier coefficients per order.
 pub(super) struct Lags(pub(super) Vec<Vector3<C>>);
 
-/// Stiffness and loss coefficients of the equations of motion, converted from the genes.
+/// Stiffness and loss coefficients of the equations of motion, converted from the searched parameter values.
 pub(super) struct Genes {
     pub(super) back: f64,
     pub(super) back_loss: f64,

@@ -2,11 +2,11 @@
 use crate::case::{effect, size};
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
 
-/// Joints at which a generic force may act.
+/// Joints of the stand-in machine at which a probe force (without physical cause) may act.
 pub(crate) const JOINTS: [&str; 4] = ["rod", "beam", "head", "crank"];
-/// Forms of a generic force other than harmonics.
+/// Forms of a probe force other than harmonics of the period.
 pub(crate) const FORMS: [&str; 6] = ["const", "sgn_v", "v", "v2", "d2", "d3"];
-/// Highest harmonic of a generic force.
+/// Highest harmonic of a probe force.
 pub(crate) const HARMONICS: u32 = 5;
 
 fn shape(name: &str, unit: &str, typical: f64, range: [f64; 2], scale: f64) -> ParameterDescriptor {
@@ -23,7 +23,7 @@ fn shape(name: &str, unit: &str, typical: f64, range: [f64; 2], scale: f64) -> P
     }
 }
 
-/// Returns the named effects of the library.
+/// Returns the effects of the library that have a physical cause.
 pub(crate) fn named() -> Vec<EffectDescriptor> {
     use Place::{Drive, Dynamics, Load, Sensor};
     use Sign::{Either, Positive};
@@ -138,7 +138,7 @@ pub(crate) fn named() -> Vec<EffectDescriptor> {
     ]
 }
 
-/// Returns the generic forces, identified as `probe.JOINT.FORM`.
+/// Returns the probe forces of the library, identified as `probe.JOINT.FORM`.
 pub(crate) fn generic() -> Vec<EffectDescriptor> {
     let harmonics = (1..=HARMONICS).flat_map(|h| [format!("cos{h}"), format!("sin{h}")]);
     let forms: Vec<String> = FORMS

@@ -82,7 +82,7 @@ impl Machine {
             .collect()
     }
 
-    /// Simulates one turn.
+    /// Simulates one turn of the crank; returns the sensor curves.
     pub(crate) fn observe(&self, spec: &SimulateSpec) -> Observation {
         let amounts = Amounts {
             library: &self.library,
@@ -184,7 +184,7 @@ impl Machine {
         [self.turn.transform(&on_rod), self.turn.transform(&on_beam)]
     }
 
-    /// Returns the sum of the generic forces at one joint.
+    /// Returns the sum of the probe forces at one joint, over the crank angle.
     fn probe(&self, spec: &SimulateSpec, joint: &str, drive: &Drive, ratio: f64) -> Vec<f64> {
         let mut sum = vec![0.0; SAMPLES];
         let prefix = format!("probe.{joint}.");

@@ -3,7 +3,7 @@ use super::amounts::{C, HIGHEST};
 use crate::case::SAMPLES;
 use std::f64::consts::TAU;
 
-/// Table of the unit phasors at the grid's angles.
+/// Table of the phasors at the grid's crank angles, for Fourier transforms.
 pub(super) struct FourierTable(pub(super) Vec<C>);
 
 impl FourierTable {

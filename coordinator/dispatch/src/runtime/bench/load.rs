@@ -4,22 +4,22 @@ use protocol::{id::JobId, job::Job};
 
 /// Size of a job sent to a worker (bytes), about that of a gene vector with its frame.
 const JOB_BYTES: usize = 1000;
-/// Jobs queued per worker, enough to keep workers busy.
+/// Number of jobs to keep queued per worker, so that workers do not wait.
 const AHEAD: u64 = 4;
-/// Number of jobs between two clock readings, as a multiple of the number of queued jobs.
+/// Number of jobs between two clock readings of a benchmark, as a multiple of the number of queued jobs.
 const ROUND: u64 = 16;
 
-/// Generator of consecutively numbered empty jobs.
+/// Source of consecutively numbered empty jobs for a benchmark.
 pub(super) struct Load {
     workers: u64,
     result_bytes: u32,
-    /// Number of jobs requested so far, and number of the next job.
+    /// Number of the next job; equals the number of jobs submitted so far.
     pub(super) next: u64,
     open: u64,
 }
 
 impl Load {
-    /// Creates a load for a number of workers, with results of the given size (bytes).
+    /// Creates a job source for a number of workers; each job asks for a result of the given size (bytes).
     pub(super) fn new(workers: usize, result_bytes: u32) -> Self {
         Self {
             workers: workers.max(1) as u64,
@@ -39,7 +39,7 @@ impl Load {
         AHEAD * self.workers
     }
 
-    /// Runs a number of jobs to completion, keeping some queued ahead.
+    /// Submits a number of jobs, keeping some queued ahead, and waits for all results.
     pub(super) async fn run(
         &mut self,
         dispatch: &mut Dispatch,

@@ -17,8 +17,8 @@ pub(super) fn cost() -> Duration {
     cpu_time(|thread| thread != SESSIONS)
 }
 
-/// Sums the processor time of living threads whose name satisfies `counts`; zero if the system does not
-/// report it.
+/// Sums the processor time of this process's living threads whose name satisfies `counts`; zero if the
+/// operating system does not report it.
 fn cpu_time(counts: impl Fn(&str) -> bool) -> Duration {
     let threads = fs::read_dir("/proc/self/task")
         .into_iter()

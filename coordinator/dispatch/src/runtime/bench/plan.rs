@@ -16,23 +16,23 @@ pub enum BenchWorkers {
 /// Plan of a bus benchmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BenchPlan {
-    /// Kind of the workers.
+    /// Kind of the workers that do the benchmark's jobs.
     pub by: BenchWorkers,
-    /// Number of workers.
+    /// Number of workers that do the benchmark's jobs.
     pub workers: usize,
     /// Number of jobs to run at full rate.
     pub jobs: u64,
     /// Size of each result (bytes); a residual vector has about 10,000, a score 300.
     pub result_bytes: u32,
-    /// Silent connections whose cost is measured too. Not possible with [`BenchWorkers::Sessions`], which
-    /// have no address.
+    /// Plan of the additional measurement with silent connections, if any. Not possible with
+    /// [`BenchWorkers::Sessions`], which have no address.
     pub silent: Option<SilentPlan>,
 }
 
 /// Result of a bus benchmark.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BenchResult {
-    /// Number of workers, with one slot each.
+    /// Number of workers that did the jobs, with one slot each.
     pub workers: usize,
     /// Time from opening the run until all workers had joined \[s\].
     pub joined_s: f64,
@@ -93,7 +93,7 @@ pub struct SilentResult {
     pub jobs_per_s_beside: f64,
     /// Ratio of the job rate with silent connections to that of the preceding block without, median \[1\].
     pub rate_ratio: f64,
-    /// Smallest and largest ratio of the job rates \[1\].
+    /// Smallest and largest ratio of the job rates with and without silent connections \[1\].
     pub rate_ratio_range: (f64, f64),
     /// Ratio of the coordinator's processor time per job with silent connections to that without, median
     /// \[1\].

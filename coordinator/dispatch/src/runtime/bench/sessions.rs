@@ -36,7 +36,7 @@ use tokio::{
     time::{Instant, MissedTickBehavior, sleep, sleep_until},
 };
 
-/// Heartbeat interval of a session.
+/// Interval at which a benchmark session sends heartbeats.
 const BEAT: Duration = Duration::from_secs(1);
 
 /// Maximum number of connections being opened at a time.
@@ -48,7 +48,7 @@ const AGAIN: Duration = Duration::from_millis(200);
 pub(super) struct Sessions(Option<thread::JoinHandle<()>>);
 
 impl Sessions {
-    /// Starts a number of sessions and returns the coordinator's end of their link.
+    /// Starts a number of in-process sessions and returns the coordinator's end of their memory link.
     pub(super) fn start(count: usize, blob: Blob) -> (MemoryCoordinator, Self) {
         let (end, hub) = Hub::new(FaultInjection::NONE, blob);
         let work = move || {
@@ -243,7 +243,7 @@ fn beat(number: &mut u64, case: Option<ContentHash>, sleeper: &SimulatedWorker) 
     })
 }
 
-/// Returns whether a job asks the session to delay its answer.
+/// Returns whether a job asks a benchmark session to delay its answer.
 const fn sleeps(job: &Job) -> bool {
     matches!(job, Job::Nothing { delay_ms, .. } if *delay_ms > 0)
 }

@@ -92,7 +92,6 @@ pub(super) async fn measure(
     })
 }
 
-/// Returns the median of sorted values.
 fn middle(sorted: &[f64]) -> f64 {
     quantile::of(sorted, 50).unwrap_or(f64::NAN)
 }
@@ -110,8 +109,8 @@ async fn block(dispatch: &mut Dispatch, load: &mut Load) -> Result<Block, Dispat
     })
 }
 
-/// Waits until a condition holds or [`SETTLING`] has passed; the number of connections held is part of the
-/// result.
+/// Waits until `holds` returns true or [`SETTLING`] has passed; whether it did shows in the result's number
+/// of connections held.
 async fn settle(holds: impl Fn() -> bool) {
     let begun = Instant::now();
     while !holds() && begun.elapsed() < SETTLING {
@@ -146,13 +145,13 @@ impl Silent {
         Ok(Self { process, said })
     }
 
-    /// Waits until all connections are open.
+    /// Waits until the child process has opened all connections.
     async fn opened(mut self) -> io::Result<Self> {
         self.next_line().await?;
         Ok(self)
     }
 
-    /// Closes the connections; returns how many were reopened.
+    /// Makes the child process close its connections; returns how many it had reopened.
     async fn end(mut self) -> io::Result<u64> {
         drop(self.process.stdin.take());
         let word = self.next_line().await?;
@@ -245,7 +244,7 @@ impl Held {
         }
     }
 
-    /// Waits until the remote end closes; received data are discarded.
+    /// Waits until the coordinator closes the connection; received data are discarded.
     async fn closed(self) {
         match self {
             Self::Connection(connection) => {

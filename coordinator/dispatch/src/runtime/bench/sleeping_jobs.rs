@@ -12,7 +12,7 @@ use tokio::time::sleep;
 /// Time limit for sessions to join.
 const JOINING: Duration = Duration::from_mins(3);
 
-/// Result of a benchmark with sleeping jobs.
+/// Result of a benchmark with jobs that only sleep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SleepingJobsResult {
     /// Number of sessions that joined.
@@ -21,7 +21,7 @@ pub struct SleepingJobsResult {
     pub wall: Duration,
     /// Processor time of the coordinator from the first job to the end of the job source.
     pub processor: Duration,
-    /// Number of results.
+    /// Number of results received.
     pub results: u64,
     /// Accounts of slot time before the first job, and at the end of the job source.
     pub spent: [Spent; 2],

@@ -21,15 +21,15 @@ pub enum ControlError {
     /// No coordinator process works on the run.
     #[error("no `horsehead` process is working on the run {}: {reason}", folder.display())]
     NotRunning {
-        /// Run folder.
+        /// Folder of the run.
         folder: PathBuf,
-        /// Error of the operating system.
+        /// Error of the operating system when connecting to the control socket.
         reason: io::Error,
     },
     /// The coordinator does not understand the request, or has no worker of that name.
     #[error("{}: {reason}", folder.display())]
     Refused {
-        /// Run folder.
+        /// Folder of the run whose coordinator refused the request.
         folder: PathBuf,
         /// Reason given by the coordinator.
         reason: String,

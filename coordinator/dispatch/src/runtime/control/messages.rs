@@ -12,11 +12,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "ask", rename_all = "snake_case", deny_unknown_fields)]
 pub enum ControlRequest {
-    /// Lists the workers.
+    /// Request for a list of all workers of the run.
     List,
-    /// Drains workers: they get no further jobs.
+    /// Request to drain workers: they get no further jobs.
     Drain {
-        /// Workers by key name, host or id; all workers if empty.
+        /// Workers to drain, by key name, host or id; all workers if empty.
         names: Vec<String>,
         /// Whether workers return their unfinished jobs at once.
         now: bool,
@@ -35,7 +35,7 @@ pub enum ControlReply {
     Error(String),
 }
 
-/// Connected worker: a line of `workers list`.
+/// State of a connected worker, as `workers list` prints it in a line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WorkerReport {
     /// Name in the worker's certificate; `anyone` without key material.
@@ -48,15 +48,15 @@ pub struct WorkerReport {
     pub slots: u32,
     /// Version and build profile of the worker program.
     pub version: String,
-    /// State of the worker.
+    /// Phase of the worker: joining, working, draining or drained.
     pub state: WorkerPhase,
     /// Jobs held by the worker, those running in slots first.
     pub jobs: Vec<HeldJob>,
-    /// Number of results delivered.
+    /// Number of results that the worker has delivered.
     pub done: u64,
     /// Number of attempts that failed on the worker.
     pub failed: u64,
-    /// Results per minute since the worker joined.
+    /// Results per minute that the worker has delivered since it joined.
     pub per_minute: f64,
     /// Time since the worker joined \[s\].
     pub present_s: f64,
@@ -64,7 +64,7 @@ pub struct WorkerReport {
     pub last_seen_s: f64,
 }
 
-/// State of a worker.
+/// Phase of a worker's participation in a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WorkerPhase {

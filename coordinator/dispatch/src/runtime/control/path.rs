@@ -1,7 +1,7 @@
 //! Path of the control socket.
 use std::{fs::File, io, os::fd::AsRawFd, path::Path};
 
-/// Name of the socket in the run folder.
+/// Name of the control socket in the run folder.
 pub const SOCKET: &str = "workers.sock";
 
 /// Returns a short path to the control socket, through the descriptor of the run folder, which must stay open

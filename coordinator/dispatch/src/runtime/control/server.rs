@@ -18,14 +18,14 @@ use tokio::{
     time::timeout,
 };
 
-/// Maximum length of a request (bytes).
+/// Maximum length of a control request (bytes).
 const LONGEST: u64 = 64 << 10;
 /// Time limit for a client to send its request and read the answer.
 const PATIENCE: Duration = Duration::from_secs(5);
 /// Maximum number of simultaneous clients of the control socket.
 const MAX_CLIENTS: usize = 16;
 
-/// Request with the channel for its reply.
+/// Control request with the channel for its reply.
 pub(in crate::runtime) type PendingRequest = (ControlRequest, oneshot::Sender<ControlReply>);
 
 /// Open control socket, removed on drop.

@@ -1,4 +1,4 @@
-//! Slot-time accounting, compared with the simulated workers' own clocks.
+//! Tests of the slot-time accounting, compared with the simulated workers' own clocks.
 use super::{
     simulated::{Cluster, ClusterSetting, Fault, Generations},
     *,

@@ -1,4 +1,4 @@
-//! Admission of workers.
+//! Tests of the admission of workers to a run.
 use super::*;
 use protocol::{
     case::Reproducibility,
@@ -48,7 +48,7 @@ fn effect(id: &str) -> protocol::announce::EffectDescriptor {
     }
 }
 
-/// Returns the announcement with the given effects added to its model.
+/// Returns a worker's announcement with the given effects added to those supported by its model.
 fn with(
     mut announcement: Announcement,
     effects: Vec<protocol::announce::EffectDescriptor>,
@@ -211,8 +211,8 @@ fn another_result_of_the_reference_individual_is_refused() {
 }
 
 /// Checks that, for models without bitwise repeatable results, a worker is admitted if its result of the
-/// reference individual agrees within the case's tolerance, and that a worker on which the program fails is
-/// refused once another one has succeeded.
+/// reference individual agrees within the case's tolerance, and that a worker on which the external program
+/// fails is refused once another worker has succeeded.
 #[test]
 fn values_of_the_reference_individual_may_differ_by_what_the_case_allows() {
     let values = |value: f64| ReferenceResult::Values(vec![Sample { value, scale: 2.0 }]);

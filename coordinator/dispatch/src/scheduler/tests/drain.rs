@@ -1,4 +1,4 @@
-//! Draining of workers.
+//! Tests of draining workers.
 use super::*;
 
 fn drain(scene: &mut Scene, worker: u64, now: bool, end: bool) {

@@ -1,4 +1,4 @@
-//! Dispatch of jobs, and when a worker may forget a result.
+//! Tests of the dispatch of jobs, and of the point from which a worker may forget a result.
 use super::*;
 
 #[test]

@@ -1,4 +1,4 @@
-//! Workers that freeze, die, leave or outlive the coordinator.
+//! Tests with workers that freeze, die, leave or outlive the coordinator.
 use super::*;
 
 #[test]

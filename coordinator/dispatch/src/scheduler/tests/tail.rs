@@ -1,4 +1,4 @@
-//! Straggler handling at the end of a generation: waiting jobs are moved, slow ones copied.
+//! Tests of straggler handling at the end of a generation: waiting jobs are moved, slow ones copied.
 use super::{
     simulated::{Cluster, ClusterSetting, Fault, Generations},
     *,

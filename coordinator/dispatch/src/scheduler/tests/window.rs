@@ -1,5 +1,5 @@
-//! Steady-state search (without generations) on simulated clusters: bitwise equal results under all faults,
-//! and the share of the cluster's capacity used.
+//! Tests of a steady-state search (without generations) on simulated clusters: bitwise equal results under
+//! all faults, and the share of the cluster's capacity used.
 use super::{
     simulated::{Cluster, ClusterSetting, Fault, Generations, SimulatedSearch},
     *,

@@ -34,8 +34,8 @@ pub(super) fn section(subject: &DiagnosisInput<'_>) -> Section {
     }
 }
 
-/// Lists facts about the noise, the convergence of the recalibration and the dispersion of its residual;
-/// empty if the recalibration did not finish.
+/// Lists facts about the noise, the convergence of the recalibration and the dispersion of the recalibrated
+/// model's residual; empty if the recalibration did not finish.
 fn facts(subject: &DiagnosisInput<'_>) -> Vec<Fact> {
     let diagnosis = subject.diagnosis();
     let Some(fit) = &diagnosis.before else {

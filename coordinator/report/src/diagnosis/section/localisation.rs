@@ -9,7 +9,7 @@ use discrepancy::localisation::window_test::AbscissaWindow;
 use discrepancy::record::Record;
 use protocol::case::Abscissa;
 
-/// Maximum number of windows, and of peaks by order, listed in the text.
+/// Maximum number of windows of the abscissa, and of residual peaks by order, listed in the text.
 const NAMED: usize = 6;
 
 pub(super) fn section(subject: &DiagnosisInput<'_>) -> Section {
@@ -90,7 +90,8 @@ fn end(window: &AbscissaWindow, abscissa: &Abscissa) -> f64 {
     window.to - period.unwrap_or(0.0)
 }
 
-/// Describes the peaks of the residual by order; `None` where no channel is periodic.
+/// Describes the peaks of the residual by order (multiple of the period's frequency); `None` where no channel
+/// is periodic.
 fn peaks(seen: &Localisation, record: &Record) -> Option<String> {
     let mut abscissas = record.channels.iter().map(|own| &own.channel.abscissa);
     let of = &abscissas.find(|abscissa| abscissa.period.is_some())?.name;

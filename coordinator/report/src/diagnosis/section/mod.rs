@@ -14,8 +14,7 @@ mod verdict;
 use super::subject::DiagnosisInput;
 use crate::document::Section;
 
-/// All sections of the diagnosis report, in the order of the report's argument: from the verdict to its
-/// evidence and provenance.
+/// All sections of the diagnosis report in page order: from the verdict to its evidence and provenance.
 pub(super) const SECTIONS: &[fn(&DiagnosisInput<'_>) -> Section] = &[
     verdict::section,
     localisation::section,

@@ -1,5 +1,5 @@
-//! Tables of a diagnosis' answer: parameters of the added effects, and unknowns of the case before and after
-//! adding them.
+//! Tables of the outcome of a diagnosis: parameters of the added effects, and unknowns of the case before and
+//! after adding these effects.
 use crate::diagnosis::subject::DiagnosisInput;
 use crate::diagnosis::words::interval;
 use crate::document::{Row, Table};
@@ -58,8 +58,8 @@ pub(in crate::diagnosis) fn sizes(subject: &DiagnosisInput<'_>) -> Option<Table>
     .non_empty()
 }
 
-/// Returns a typical value of an effect's parameter: its scale if it is a size, its typical value if it is a
-/// shape.
+/// Returns a typical value of an effect's parameter: its scale if it is a size parameter, its typical value
+/// if it is a shape parameter.
 fn usual(parameter: &ParameterDescriptor) -> f64 {
     match parameter.role {
         Role::Size => parameter.scale,
@@ -67,7 +67,7 @@ fn usual(parameter: &ParameterDescriptor) -> f64 {
     }
 }
 
-/// Names the bound that a value on a linear scale lies at, if any.
+/// Names the bound, of a linearly scaled parameter, within half a per cent of which its value lies, if any.
 fn edge(value: f64, lower: f64, upper: f64) -> Option<&'static str> {
     let share = (value - lower) / (upper - lower);
     match share {

@@ -85,11 +85,11 @@ pub(in crate::diagnosis) fn generics(round: &Round) -> Option<Table> {
     .non_empty()
 }
 
-/// Builds the table of effects that this record cannot distinguish, with the additional cycles or records
-/// that would distinguish them.
+/// Builds the table of effects that the measured record cannot distinguish, with the additional cycles or
+/// records that would distinguish them.
 pub(in crate::diagnosis) fn look_alikes(subject: &DiagnosisInput<'_>) -> Option<Table> {
-    /// Largest realistic multiple of the recorded number of cycles; a larger one is reported as not
-    /// achievable.
+    /// Largest multiple of the recorded number of cycles that is realistic to measure; a larger requirement
+    /// is reported as not achievable.
     const MOST: f64 = 30.0;
     let times = |cycles: f64| {
         if cycles <= 1.0 {
@@ -126,7 +126,8 @@ pub(in crate::diagnosis) fn look_alikes(subject: &DiagnosisInput<'_>) -> Option<
     .non_empty()
 }
 
-/// Builds the table of detection limits: the smallest size of each effect that the record would have shown.
+/// Builds the table of detection limits: the smallest size of each effect that the measured record would have
+/// shown.
 pub(in crate::diagnosis) fn limits(subject: &DiagnosisInput<'_>) -> Option<Table> {
     let limits = subject.diagnosis().detection_limits();
     let rows: Vec<Row> = limits

@@ -37,7 +37,8 @@ pub(in crate::diagnosis) fn instruments(subject: &DiagnosisInput<'_>) -> Option<
     .non_empty()
 }
 
-/// Builds the table of effects absorbed by the unknowns, with the measurement that would reveal each.
+/// Builds the table of effects whose signature the unknowns absorb, with the measurement that would reveal
+/// each.
 pub(in crate::diagnosis) fn absorbed(subject: &DiagnosisInput<'_>) -> Option<Table> {
     let absorbed = subject.diagnosis().absorbed.iter();
     let rows = absorbed.map(|own| {

@@ -1,4 +1,4 @@
-//! Table of parameters that would have to vary along a record or between conditions.
+//! Table of the parameters that would have to vary along a record or between conditions for the model to fit.
 use crate::diagnosis::subject::DiagnosisInput;
 use crate::document::{Row, Table};
 use crate::number::{fixed, percent, significant};
@@ -11,19 +11,19 @@ const CLEAR: f64 = 0.05;
 /// Maximum number of parameters shown.
 const SHOWN: usize = 6;
 
-/// Input of the table of a fitted model's parameters that would have to vary from part to part of the record
-/// or between conditions.
+/// Input of the table of a fitted model's parameters that would have to vary from sector to sector of the
+/// record or between conditions.
 pub(in crate::diagnosis) struct VariationUnderModel<'a> {
     /// Title of the table.
     pub title: &'static str,
-    /// Fitted model.
+    /// Fitted model whose parameters are examined.
     pub fit: &'a Fit,
     /// Change that each unknown would need in each sector of the record or under each condition.
     pub wander: &'a [ParameterDrift],
 }
 
 /// Builds the table of the unknowns that would have to vary under a fitted model, with their value in each
-/// part; `None` if there are none.
+/// sector of the record or under each condition; `None` if there are none.
 pub(in crate::diagnosis) fn wander(
     subject: &DiagnosisInput<'_>,
     VariationUnderModel { title, fit, wander }: &VariationUnderModel<'_>,
@@ -73,7 +73,8 @@ pub(in crate::diagnosis) fn wander(
     ]))
 }
 
-/// Returns the unknowns of the case whose shift is significant in at least one part of the records.
+/// Returns the unknowns of the case whose shift is significant in at least one sector or condition of the
+/// records.
 fn clear<'a>(fit: &Fit, wander: &'a [ParameterDrift]) -> impl Iterator<Item = &'a ParameterDrift> {
     let genes = fit.model.space.dimension();
     wander.iter().filter(move |wander| {

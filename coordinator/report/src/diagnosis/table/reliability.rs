@@ -1,4 +1,4 @@
-//! Tables on numerical error and on the cost of the stages.
+//! Tables of a diagnosis on numerical error and on the cost of its stages.
 use crate::diagnosis::subject::DiagnosisInput;
 use crate::document::{Row, Table};
 use crate::number::{MISSING, count, duration, fixed, quantity};
@@ -54,7 +54,7 @@ pub(in crate::diagnosis) fn numerics(subject: &DiagnosisInput<'_>) -> Option<Tab
     .non_empty()
 }
 
-/// Builds the row of one channel of a numerical check.
+/// Builds one channel's row in the table of discretisation errors.
 fn row(check: &Preflight, c: usize, channel: &Channel) -> Row {
     let of = |values: &[f64]| {
         values.get(c).map_or_else(
@@ -72,7 +72,7 @@ fn row(check: &Preflight, c: usize, channel: &Channel) -> Row {
     )
 }
 
-/// Builds the table of the cost of each stage; `None` if no stage was accounted.
+/// Builds the table of the cost of each stage of the diagnosis; `None` if no cost was recorded.
 pub(in crate::diagnosis) fn stages(subject: &DiagnosisInput<'_>) -> Option<Table> {
     let accounts = &subject.diagnosed.accounts;
     let mut rows: Vec<Row> = accounts

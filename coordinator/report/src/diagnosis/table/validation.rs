@@ -9,8 +9,8 @@ use crate::words::{condition_name, with_unit};
 use discrepancy::validation::compare;
 use std::collections::BTreeSet;
 
-/// Builds the table of the gap before and after a change of the model, for the added effects, the best
-/// rejected rival effect and the generic force.
+/// Builds the table of the gap between model and measurement before and after a change of the model: by the
+/// added effects, the best rejected rival effect and the generic force.
 pub(in crate::diagnosis) fn gaps(subject: &DiagnosisInput<'_>) -> Option<Table> {
     let diagnosis = subject.diagnosis();
     let added = !subject.added().is_empty();

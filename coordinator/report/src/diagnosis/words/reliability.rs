@@ -71,8 +71,8 @@ pub(in crate::diagnosis) fn confidence(subject: &DiagnosisInput<'_>) -> Vec<Stri
     sentences
 }
 
-/// States the size of a generic force without a physical cause, and how far it closes the gap on each
-/// held-out record.
+/// States the size of a generic force without a physical cause, and how far this force closes the gap between
+/// model and measurement on each held-out record.
 fn force(subject: &DiagnosisInput<'_>, force: &ForceEstimate) -> Vec<String> {
     let phase = force.phase_deg.map_or_else(String::new, |phase| {
         format!(", largest at {} deg of its own turn", significant(phase))
@@ -90,7 +90,8 @@ fn force(subject: &DiagnosisInput<'_>, force: &ForceEstimate) -> Vec<String> {
     sentences
 }
 
-/// States the share of the gap that was closed or opened on the data of one row of the comparison.
+/// States the share of the gap between model and measurement that a change of the model closed or opened, on
+/// the data of one row of the comparison.
 fn closing(subject: &DiagnosisInput<'_>, row: &GapRow) -> String {
     let closed = row.closed;
     let spread = closed.interval.map_or_else(String::new, |[low, high]| {

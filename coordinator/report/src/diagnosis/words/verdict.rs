@@ -52,7 +52,8 @@ pub(in crate::diagnosis) fn verdict(subject: &DiagnosisInput<'_>) -> String {
     }
 }
 
-/// Lists the additions round by round: an effect's name, or the members of an ambiguity set joined by "or".
+/// Lists the effects added by a diagnosis, round by round: an effect's name, or the members of an ambiguity
+/// set joined by "or".
 fn choices(subject: &DiagnosisInput<'_>) -> Vec<String> {
     let rounds = subject.diagnosis().rounds.iter();
     let choice = |round: &Round| {

@@ -82,7 +82,8 @@ impl Frame {
     }
 }
 
-/// Draws the machine at the first frame; every moving part carries an id for the player.
+/// Draws the machine at the first frame of the animation; every moving part carries an id for the JavaScript
+/// player.
 pub(super) fn drawing(machine: &Machine, film: &Film) -> Markup {
     let frame = Frame::new(machine, film);
     let view = format!(

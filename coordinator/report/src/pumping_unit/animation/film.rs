@@ -1,6 +1,6 @@
-//! Snapshots of a simulation: thinned, rounded and packed for the player.
-//!
-//! Lengths are whole millimetres, forces tenths of kilonewtons: finer than a pixel, and compact in the file.
+//! Frames of the animation, made of snapshots of a simulation: thinned, rounded and packed for the JavaScript
+//! player. Lengths are whole millimetres, forces tenths of kilonewtons: finer than a pixel, and compact in
+//! the file.
 use crate::color::{Color, Ramp};
 use crate::number::{MISSING, fixed};
 use maud::{Markup, html};
@@ -22,16 +22,16 @@ pub(super) const TENSION: Ramp = Ramp([
 
 /// Millimetres per unit of the drawing (1 unit = 1 cm).
 pub(super) const MM: f64 = 10.0;
-/// Maximum number of frames: one every two degrees.
+/// Maximum number of frames of the animation: one every two degrees of the crank.
 const FRAMES: usize = 181;
 
 /// Scalar that the player shows next to the drawing.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Readout {
-    /// Label of the scalar.
+    /// Label of the scalar shown next to the drawing.
     pub label: String,
     pub unit: &'static str,
-    /// Number of decimals shown.
+    /// Number of decimals of the scalar shown.
     pub decimals: usize,
     /// Value per frame, rounded to the decimals; `None` where the simulation has no value.
     pub values: Vec<Option<f64>>,
@@ -54,15 +54,15 @@ pub(super) struct RopeFrame {
 pub(super) struct Film {
     /// Crank angle of each frame \[deg\].
     pub turn: Vec<f64>,
-    /// Seconds per degree of the crank.
+    /// Time that the machine takes per degree of crank angle, in seconds.
     pub seconds_per_deg: f64,
-    /// Beam angle \[deg\].
+    /// Angle of the beam in each frame \[deg\].
     pub beam: Vec<f64>,
-    /// Crank pin x, y \[mm\].
+    /// Position x, y of the crank pin in each frame \[mm\].
     pub pin: Vec<[i32; 2]>,
     /// Position x, y of the rod's end at the crossbeam in each frame \[mm\].
     pub crossbeam: Vec<[i32; 2]>,
-    /// Suspension point x, y \[mm\].
+    /// Position x, y of the rope's suspension point in each frame \[mm\].
     pub suspension: Vec<[i32; 2]>,
     /// Path and tension of the back rope in each frame.
     pub back: Vec<RopeFrame>,
@@ -75,7 +75,7 @@ pub(super) struct Film {
     /// Crank centre x, y \[mm\], and angle from the crank pin to the counterweight, counter-clockwise
     /// positive \[deg\].
     pub crank: [f64; 3],
-    /// Ends of the tension scale [0.1 kN].
+    /// Smallest and largest tension on the colour scale [0.1 kN].
     pub tension_range: [f64; 2],
     /// Colours of the tension scale, evenly spaced.
     pub stops: Vec<String>,
@@ -157,7 +157,7 @@ impl RopeFrame {
 }
 
 impl Film {
-    /// Packs the snapshots of a simulation; `None` if the simulation has none.
+    /// Packs the snapshots of a simulation into an animation; `None` if the simulation has none.
     pub(super) fn new(
         case: &Case,
         machine: &Machine,
@@ -242,7 +242,7 @@ impl Film {
         })
     }
 
-    /// Serialises the film as JSON, escaped for inline HTML.
+    /// Serialises the animation's data as JSON, escaped for inline HTML.
     pub(super) fn json(&self) -> String {
         // a list of numbers and strings always serialises
         serde_json::to_string(self)
@@ -251,7 +251,7 @@ impl Film {
             .replace('&', "\\u0026")
     }
 
-    /// Renders the readouts of the first frame as a table.
+    /// Renders the scalars shown next to the drawing, for the first frame, as a table.
     pub(super) fn readouts(&self) -> Markup {
         html! {
             table.readouts {
@@ -274,7 +274,7 @@ impl Film {
     }
 }
 
-/// Returns arc centre and anchor of a head in the beam frame \[mm\].
+/// Returns the arc centre and the rope anchor of a horse head in the beam frame, as x, y of each \[mm\].
 fn head((x, y): (f64, f64), radius_m: f64, anchor_deg: f64) -> [i32; 4] {
     let (sin, cos) = anchor_deg.to_radians().sin_cos();
     [mm(x), mm(y), mm(x + radius_m * cos), mm(y + radius_m * sin)]

@@ -14,12 +14,12 @@ use protocol::{
     pumping_unit::{Machine, Simulation},
 };
 
-/// JavaScript player that reads the film and moves the parts.
+/// JavaScript player that reads the animation's data and moves the parts of the drawing.
 const PLAYER: &str = include_str!("player.js");
 /// Style sheet of the machine parts, used by this section only.
 const STYLE: &str = include_str!("film.css");
 
-/// Draws the machine with its player; `None` without snapshots.
+/// Draws the machine with its player; `None` if the simulation has no snapshots.
 pub(super) fn machine(case: &Case, condition: usize, simulation: &Simulation) -> Option<Markup> {
     let machine = Machine::of(case).ok()?;
     let film = film::Film::new(case, &machine, condition, simulation)?;

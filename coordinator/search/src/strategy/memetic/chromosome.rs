@@ -5,7 +5,8 @@ use crate::{
     space::{Interval, Space},
 };
 
-/// Chromosome: one code per gene. Bit k of the string is bit `k % bits` of gene `k / bits`.
+/// Genes of an individual encoded as integers of `bits` bits each. Bit k of the bit string is bit `k % bits`
+/// of gene `k / bits`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Chromosome(pub(super) Vec<u32>);
 
@@ -13,7 +14,7 @@ pub(super) struct Chromosome(pub(super) Vec<u32>);
 #[derive(Clone, Debug)]
 pub(super) struct Codec {
     space: Space,
-    /// Interval that the codes of each gene cover (coordinate).
+    /// Interval of each gene over which its codes are spread (coordinate).
     intervals: Vec<Interval>,
     encoding: Encoding,
     scale: CodeScale,
@@ -38,22 +39,19 @@ impl Codec {
         self.encoding
     }
 
-    /// Returns the number of bits per gene.
     pub(super) const fn bits(&self) -> u32 {
         self.bits
     }
 
-    /// Returns the number of bits of a whole chromosome.
     pub(super) fn length(&self) -> usize {
         self.intervals.len() * self.bits as usize
     }
 
-    /// Returns the largest code.
+    /// Returns the largest code that a gene can have.
     pub(super) const fn largest(&self) -> u32 {
         (1 << self.bits) - 1
     }
 
-    /// Draws a uniformly random chromosome.
     pub(super) fn random(&self, stream: &mut Stream) -> Chromosome {
         let code = |_| {
             let bits = stream.bits() >> (u64::BITS - self.bits);
@@ -62,7 +60,7 @@ impl Codec {
         Chromosome((0..self.intervals.len()).map(code).collect())
     }
 
-    /// Decodes a chromosome to the values of all unknowns [declared units], inside the bounds.
+    /// Decodes a chromosome to the values of all unknowns [declared units], within their bounds.
     pub(super) fn decode(&self, chromosome: &Chromosome) -> Vec<f64> {
         let genes = chromosome
             .0
@@ -90,14 +88,14 @@ impl Codec {
         self.space.expand(&own)
     }
 
-    /// Returns the chromosome nearest to the starting point `index` of the space; `None` if the space has
+    /// Returns the chromosome nearest to starting point number `index` of the space; `None` if the space has
     /// fewer starting points.
     pub(super) fn start(&self, index: usize) -> Option<Chromosome> {
         let point = self.space.starts().get(index)?;
         Some(self.encode(point))
     }
 
-    /// Encodes a point (coordinate) as the nearest chromosome.
+    /// Returns the chromosome that is nearest to a point given by its coordinates.
     pub(super) fn encode(&self, point: &[f64]) -> Chromosome {
         let genes = point.iter().zip(&self.intervals).zip(self.space.axes());
         let codes = genes.map(|((&x, interval), axis)| {
@@ -118,7 +116,8 @@ impl Codec {
         Chromosome(codes.collect())
     }
 
-    /// Returns the code nearest to a share of the interval; shares outside 0..1 give the ends.
+    /// Returns the integer code nearest to a position in a gene's interval, given as a share of its length;
+    /// shares outside 0..1 give the codes of the ends.
     pub(super) fn code(&self, share: f64) -> u32 {
         #[expect(
             clippy::cast_possible_truncation,
@@ -129,7 +128,7 @@ impl Codec {
         code
     }
 
-    /// Flips one bit of the string.
+    /// Flips one bit of the chromosome's bit string.
     pub(super) fn flip(&self, chromosome: &mut Chromosome, bit: usize) {
         let bits = self.bits as usize;
         if let Some(code) = chromosome.0.get_mut(bit / bits) {
@@ -138,7 +137,6 @@ impl Codec {
     }
 }
 
-/// Returns the Hamming distance of two chromosomes [bit].
 pub(super) fn distance(a: &Chromosome, b: &Chromosome) -> u32 {
     a.0.iter()
         .zip(&b.0)

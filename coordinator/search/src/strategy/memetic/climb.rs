@@ -16,19 +16,19 @@ use crate::{
     strategy::{evaluation_result::EvaluationResult, proposal::Purpose},
 };
 
-/// Hill-climbing trial that is planned; its index selects its random stream.
+/// Planned hill-climbing trial; its index selects the random stream from which it is drawn.
 #[derive(Clone, Copy, Debug)]
 struct Trial {
     purpose: Purpose,
     index: usize,
 }
 
-/// Hill-climbing trial being evaluated.
+/// Hill-climbing trial whose chromosome is being evaluated.
 #[derive(Clone, Debug)]
 pub(super) struct Attempt {
     pub(super) purpose: Purpose,
     pub(super) chromosome: Chromosome,
-    /// Position in the population of the individual that a successful trial replaces.
+    /// Index in the population of the individual that this trial replaces if it is better.
     target: usize,
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Attempt {
 #[derive(Debug)]
 pub(super) struct Climb {
     generation: u32,
-    /// Trials whose outcome is still undecided, in order.
+    /// Hill-climbing trials whose outcome is still undecided, in order.
     trials: Vec<Trial>,
     /// Diversity of the population relative to its elite when the climb began [0 to 1].
     diversity: f64,
@@ -69,12 +69,11 @@ impl Climb {
         }
     }
 
-    /// Returns the number of undecided trials.
     pub(super) fn remaining(&self) -> usize {
         self.trials.len()
     }
 
-    /// Plans the next trials to evaluate at once; empty when the climb is over.
+    /// Plans the next hill-climbing trials, to be evaluated at once; empty when the climb is over.
     pub(super) fn plan(&mut self, craft: &Operators, population: &[Individual]) -> &[Attempt] {
         let width = self.width(craft);
         let elite = best(population);
@@ -95,8 +94,8 @@ impl Climb {
         &self.attempts
     }
 
-    /// Absorbs the results of the planned trials and replaces improved individuals of the population in
-    /// place.
+    /// Takes the results of the planned hill-climbing trials and replaces individuals of the population by
+    /// better trials.
     pub(super) fn absorb(
         &mut self,
         craft: &Operators,
@@ -133,7 +132,7 @@ impl Climb {
         self.trials.drain(..decided.min(self.trials.len()));
     }
 
-    /// Returns how many trials may be evaluated concurrently.
+    /// Returns how many hill-climbing trials may be evaluated at the same time.
     fn width(&self, craft: &Operators) -> usize {
         let all = self.trials.len();
         match (craft.settings.climbers, craft.settings.acceptance) {
@@ -186,8 +185,8 @@ fn plan(purpose: Purpose, count: usize) -> impl Iterator<Item = Trial> {
     (0..count).map(move |index| Trial { purpose, index })
 }
 
-/// Plans the trials of the paper's literal text: each individual in turn starts a crossover trial, with the
-/// crossover probability, and a mutation trial.
+/// Plans the hill-climbing trials of the paper's literal text: each individual in turn starts a crossover
+/// trial, with the crossover probability, and a mutation trial.
 fn literal_trials(craft: &Operators, generation: u32, population: usize) -> Vec<Trial> {
     let mut trials = Vec::with_capacity(2 * population);
     for index in 0..population {

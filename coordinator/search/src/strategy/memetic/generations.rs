@@ -69,20 +69,20 @@ impl StrategySettings for MemeticSettings {
     }
 }
 
-/// Stage of the memetic algorithm, which tells what the running batch contains.
+/// State of the memetic algorithm, which tells what the running batch contains.
 enum Stage {
-    /// Nothing has been planned.
+    /// No batch has been planned yet.
     Start,
-    /// The initial population or the children of a generation are being evaluated.
+    /// Evaluation of the initial population or of the children of a generation.
     Evaluating(Vec<Chromosome>),
-    /// The children are evaluated, and the hill climb is in progress.
+    /// Hill climb after the children of a generation have been evaluated.
     Climbing(Climb),
 }
 
 /// Memetic algorithm as one batch-wise part (piece) of a strategy.
 pub struct Memetic {
     craft: Operators,
-    /// First chromosomes of the initial population; the others are random.
+    /// Chromosomes with which the initial population begins; its other members are random.
     start: Vec<Chromosome>,
     population: Vec<Individual>,
     generation: u32,
@@ -144,8 +144,6 @@ impl Memetic {
         drawn.collect()
     }
 
-    /// Returns the generation and index that select the random stream of operation `index` in the current
-    /// generation.
     const fn at(&self, index: usize) -> DrawAddress {
         DrawAddress {
             generation: self.generation,
@@ -153,7 +151,7 @@ impl Memetic {
         }
     }
 
-    /// Replaces the population by the next generation.
+    /// Replaces the population by the survivors among parents and children.
     fn survive(&mut self, mut children: Vec<Individual>) {
         if self.population.is_empty() {
             self.population = children;

@@ -54,7 +54,8 @@ impl Operators {
         self.streams.at(at.generation, phase, at.index)
     }
 
-    /// Creates an individual of the initial population: a starting point of the space, or a random one.
+    /// Creates member `index` of the initial population: a starting point of the space, or a random
+    /// chromosome.
     pub(super) fn first(&self, index: usize) -> Chromosome {
         if let Some(start) = self.codec.start(index) {
             return start;
@@ -66,12 +67,11 @@ impl Operators {
         self.codec.random(&mut self.stream(at, Phase::Initial))
     }
 
-    /// Creates the roulette wheel from which parents of a population are drawn.
     pub(super) fn wheel(&self, population: &[Individual]) -> RouletteWheel {
         RouletteWheel::new(population, self.settings.roulette)
     }
 
-    /// Exchanges parts of two chromosomes, with the crossover probability.
+    /// Exchanges bits of two parent chromosomes, with the crossover probability.
     pub(super) fn cross(&self, at: DrawAddress, first: &mut Chromosome, second: &mut Chromosome) {
         let mut stream = self.stream(at, Phase::Crossover);
         if stream.chance(self.settings.crossover_probability) {
@@ -95,8 +95,9 @@ impl Operators {
         variation::mutate(&self.codec, child, rule, &mut self.stream(at, phase));
     }
 
-    /// Creates a trial of the first hill climb: the special crossover with a partner, which draws from the
-    /// trial's stream. `diversity` is the difference of the population from its elite [0 to 1].
+    /// Creates a trial of the first hill climb: the paper's special crossover of the elite with a partner
+    /// that is drawn from the trial's random stream. `diversity` is the difference of the population from its
+    /// elite [0 to 1].
     pub(super) fn crossover_trial<'a>(
         &self,
         at: DrawAddress,
@@ -113,7 +114,7 @@ impl Operators {
         variation::elite_crossover(&self.codec, start, partner, share, &mut stream)
     }
 
-    /// Creates a trial of the second hill climb: a few random bits flipped.
+    /// Creates a trial of the second hill climb: the elite with a few random bits flipped.
     pub(super) fn mutation_trial(
         &self,
         at: DrawAddress,
@@ -128,7 +129,7 @@ impl Operators {
     }
 }
 
-/// Returns the number of bits to flip, 1 to 4, more in a diverse population.
+/// Returns the number of bits that a mutation trial flips: 1 to 4, more in a more diverse population.
 fn adaptive_bits(diversity: f64) -> usize {
     match 3.0 * diversity {
         x if x < 0.5 => 1,

@@ -1,4 +1,4 @@
-//! Individuals with their results: best, worst, and diversity.
+//! Members of a population with their results: best, worst, and diversity.
 use super::chromosome::{Chromosome, Codec, distance};
 use crate::strategy::evaluation_result::EvaluationResult;
 
@@ -9,12 +9,12 @@ pub(super) struct Individual {
     pub(super) told: EvaluationResult,
 }
 
-/// Returns the position of the best individual; the first on ties.
+/// Returns the index of the population's best individual; the first one on ties.
 pub(super) fn best(population: &[Individual]) -> usize {
     extreme(population, EvaluationResult::beats)
 }
 
-/// Returns the position of the worst individual; the first on ties.
+/// Returns the index of the population's worst individual; the first one on ties.
 pub(super) fn worst(population: &[Individual]) -> usize {
     extreme(population, |one, other| other.beats(one))
 }

@@ -2,10 +2,10 @@
 use super::{population::Individual, settings::Roulette};
 use crate::{random::Stream, strategy::evaluation_result::EvaluationResult};
 
-/// Roulette wheel over a population.
+/// Roulette wheel that draws individuals of a population with probabilities by fitness.
 #[derive(Clone, Debug)]
 pub(super) struct RouletteWheel {
-    /// Cumulative sums of the individuals' weights.
+    /// Cumulative sums of the individuals' selection weights, in the order of the population.
     sums: Vec<f64>,
 }
 
@@ -49,7 +49,7 @@ impl RouletteWheel {
         Self { sums }
     }
 
-    /// Draws the position of an individual in the population.
+    /// Draws an individual at random by its weight and returns its index in the population.
     pub(super) fn draw(&self, stream: &mut Stream) -> usize {
         let total = self.sums.last().copied().unwrap_or(0.0);
         let mark = stream.unit() * total;

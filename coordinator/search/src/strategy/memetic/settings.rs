@@ -8,20 +8,20 @@ use serde::{Deserialize, Serialize};
 pub enum Encoding {
     /// Plain binary numbers; the paper speaks of bits. Default.
     Binary,
-    /// Gray code: neighbouring values differ in one bit.
+    /// Gray code, in which neighbouring gene values differ in one bit.
     Gray,
     /// Real numbers: crossover exchanges whole genes, and a mutation adds a normal step of
     /// [`MemeticSettings::real_step`] of the interval.
     Real,
 }
 
-/// Scale on which the codes of a gene are evenly spaced over its interval.
+/// Scale on which the codes of a gene are evenly spaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CodeScale {
-    /// Evenly in the logarithm: the recommended value is the centre, as the paper says. Default.
+    /// Logarithmic scale, on which the recommended value is the centre, as the paper says. Default.
     Logarithmic,
-    /// Evenly in the value: 90 % of the initial population lies in the highest decade.
+    /// Linear scale, on which 90 % of the initial population lies in the highest decade.
     Linear,
 }
 
@@ -43,21 +43,21 @@ pub enum Roulette {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Crossover {
-    /// Every bit is exchanged with probability 1/2. Default.
+    /// Exchange of every bit with probability 1/2. Default.
     Uniform,
-    /// All bits after one random point are exchanged.
+    /// Exchange of all bits after one random point.
     OnePoint,
 }
 
-/// Unit to which the mutation probability applies.
+/// Unit (bit, gene or individual) to which the mutation probability applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MutationUnit {
-    /// Every bit flips with this probability. Default.
+    /// Mutation that flips every bit with the mutation probability. Default.
     Bit,
-    /// One random bit of every gene flips with this probability.
+    /// Mutation that flips one random bit of every gene with the mutation probability.
     Gene,
-    /// One random bit of every individual flips with this probability.
+    /// Mutation that flips one random bit of every individual with the mutation probability.
     Individual,
 }
 
@@ -76,10 +76,10 @@ pub enum SpecialCrossover {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Climbers {
-    /// A generation of selection, crossover and mutation; then hill climbing of the elite. Default.
+    /// Hill climbing of the elite only, after a generation of selection, crossover and mutation. Default.
     Elite,
-    /// A generation of selection, crossover and mutation; then one climbing trial of each kind for every
-    /// individual, compared with that individual.
+    /// One hill-climbing trial of each kind for every individual, compared with that individual, after a
+    /// generation of selection, crossover and mutation.
     All,
     /// The paper's literal text: no other crossover or mutation; each selected individual starts one
     /// crossover trial (with the crossover probability) and one mutation trial (each bit with the mutation
@@ -91,10 +91,10 @@ pub enum Climbers {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Acceptance {
-    /// Sequential: every trial starts from the winner of the previous trial. Default.
+    /// Sequential hill climb: every trial starts from the winner of the previous trial. Default.
     First,
-    /// All trials start from the same elite and the best trial wins: a different algorithm, with two batches
-    /// per generation.
+    /// Hill climb in batches: all trials start from the same elite and the best trial wins, a different
+    /// algorithm with two batches per generation.
     BestOfBatch,
 }
 
@@ -102,14 +102,13 @@ pub enum Acceptance {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Survival {
-    /// The children, and the best parent in place of the worst child if no child is as good.
-    /// Default.
+    /// All children, with the best parent in place of the worst child if no child is as good. Default.
     Generational,
-    /// The best of parents and children together (plus selection).
+    /// Best individuals of parents and children together (plus selection).
     Plus,
 }
 
-/// Settings of the memetic algorithm.
+/// Settings of the memetic algorithm, also for the points that the paper leaves open.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MemeticSettings {
@@ -117,13 +116,13 @@ pub struct MemeticSettings {
     pub population: usize,
     /// Maximum number of generations; the initial population counts only with `initial_counts`.
     pub generations: u32,
-    /// Whether the initial population counts as the first generation; default no.
+    /// Fitness at or below which the search ends; `None` for no threshold.
     pub initial_counts: bool,
     /// Fitness at or below which the search ends, if any.
     pub threshold: Option<f64>,
     /// Probability of crossover for a pair of parents.
     pub crossover_probability: f64,
-    /// Probability of a mutation per `mutation_unit`.
+    /// Probability of a mutation, per bit, gene or individual as `mutation_unit` says.
     pub mutation_probability: f64,
     /// Trials of the crossover-based hill climb per generation; the paper gives no number.
     pub crossover_trials: usize,
@@ -148,11 +147,12 @@ pub struct MemeticSettings {
     /// Number of random bits that the second hill climb flips; `None`, the default: 1 to 4, more in a more
     /// diverse population.
     pub flipped_bits: Option<usize>,
-    /// Interpretation of the paper's steps 6 to 8: which individuals climb.
+    /// Interpretation of the paper's steps 6 to 8: which individuals climb, and against which individual they
+    /// are compared.
     pub climbers: Climbers,
-    /// Acceptance rule of a hill climb.
+    /// Acceptance rule of a hill climb, which sets whether its trials are sequential.
     pub acceptance: Acceptance,
-    /// Survivor selection.
+    /// Survivor selection: how the next generation is formed from parents and children.
     pub survival: Survival,
     /// Number of trials of a sequential climb that are evaluated ahead, from the current elite; trials after
     /// the first success are discarded. `None`: all remaining trials. The elite's path is identical, bit for
@@ -203,7 +203,6 @@ impl MemeticSettings {
         }
     }
 
-    /// Returns the number of generations bred after the initial population.
     pub(super) const fn bred_generations(&self) -> u32 {
         if self.initial_counts {
             self.generations.saturating_sub(1)
@@ -212,16 +211,13 @@ impl MemeticSettings {
         }
     }
 
-    /// Checks that every setting lies within its range.
-    ///
-    /// # Errors
-    /// If a setting lies outside its range.
     pub(super) fn check(&self) -> Result<(), SettingsError> {
         check(self, SETTINGS)
     }
 }
 
-/// Settings that can be set by name: the paper's numbers, and every point that the paper leaves open.
+/// Table of the memetic settings that can be set by name on the command line: the paper's numbers, and every
+/// point that the paper leaves open.
 pub(in crate::strategy) const SETTINGS: &[Setting] = &[
     Setting::new(
         "population",

@@ -8,7 +8,6 @@ use crate::{
     test_function::{self, SPHERE, TestFunction},
 };
 
-/// Function that changes the settings to another interpretation of the paper.
 type Change = fn(&mut MemeticSettings);
 
 /// Runs a small search of the paper's algorithm with settings modified by `change`.

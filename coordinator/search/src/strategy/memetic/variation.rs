@@ -5,7 +5,6 @@ use super::{
 };
 use crate::random::Stream;
 
-/// Exchanges parts of two chromosomes by the given crossover rule.
 pub(super) fn cross(
     codec: &Codec,
     rule: Crossover,
@@ -28,7 +27,8 @@ pub(super) fn cross(
     }
 }
 
-/// Returns the elite with each bit (or gene) taken from the partner with probability `share`.
+/// Returns a copy of the elite in which each bit (or gene) is taken from the partner with probability
+/// `share`.
 pub(super) fn elite_crossover(
     codec: &Codec,
     elite: &Chromosome,
@@ -78,8 +78,8 @@ pub(super) fn mutate(
     }
 }
 
-/// Returns a copy with `count` different random bits flipped, or with `count` genes moved for the real
-/// encoding.
+/// Returns a copy of a chromosome with `count` different random bits flipped, or, with the real encoding,
+/// with `count` genes moved by a normal step.
 pub(super) fn flip_some(
     codec: &Codec,
     from: &Chromosome,
@@ -108,15 +108,15 @@ pub(super) fn flip_some(
     child
 }
 
-/// Moves one gene by a share of its interval, at most to the end of the interval.
+/// Moves one gene of a chromosome by `step`, a share of its interval; stops at the ends of the interval.
 fn shift(codec: &Codec, chromosome: &mut Chromosome, gene: usize, step: f64) {
     if let Some(code) = chromosome.0.get_mut(gene) {
         *code = codec.code(f64::from(*code) / f64::from(codec.largest()) + step);
     }
 }
 
-/// Returns the mask of those bits of a gene for which `chosen` returns true; with the real encoding all bits
-/// or none.
+/// Returns a bit mask of a gene with those bits set for which `chosen` returns true; with the real encoding
+/// all bits or none.
 fn mask(codec: &Codec, gene: usize, chosen: &mut impl FnMut(usize) -> bool) -> u32 {
     let bits = codec.bits() as usize;
     if codec.encoding() == Encoding::Real {

@@ -79,7 +79,6 @@ pub const WINDOW: Preset = Preset {
     build: build_as::<WindowSettings>,
 };
 
-/// Table of the settings that the sliding window adds to those of the memetic algorithm.
 const WINDOWED: &[Setting] = &[Setting::new(
     "window",
     AllowedValues::Whole(1, 1_000_000),
@@ -100,7 +99,7 @@ pub struct WindowSettings {
 }
 
 impl WindowSettings {
-    /// Returns the paper's settings with the window for this number of workers.
+    /// Returns the paper's settings, with a window that keeps the given number of workers busy.
     pub const fn for_workers(workers: usize) -> Self {
         Self {
             window: Self::window_for(workers),
@@ -128,7 +127,7 @@ pub struct Window {
     lag: usize,
     craft: Operators,
     population: Vec<Individual>,
-    /// Chromosomes of proposals whose results have not been consumed, in id order.
+    /// Chromosomes of the proposed individuals whose results have not been consumed, in id order.
     open: VecDeque<Chromosome>,
     outbox: Vec<Proposal>,
     early: BTreeMap<u64, EvaluationResult>,
@@ -167,8 +166,8 @@ impl Window {
         population.max(self.lag + population / 2) as u64
     }
 
-    /// Returns the number of individuals after which the pattern of children and trials repeats: population
-    /// plus trials.
+    /// Returns the period of the repeating sequence of children and hill-climbing trials: population plus
+    /// trials.
     const fn cycle(&self) -> u64 {
         (self.craft.settings.population + self.trials()) as u64
     }
@@ -177,13 +176,12 @@ impl Window {
         self.craft.settings.crossover_trials + self.craft.settings.mutation_trials
     }
 
-    /// Returns the number of planned evaluations.
     fn planned(&self) -> u64 {
         let generations = u64::from(self.craft.settings.bred_generations());
         self.first() + generations * self.cycle()
     }
 
-    /// Returns the generation to which an individual would belong, for progress reports.
+    /// Returns the generation to which individual `id` would belong, for progress reports.
     fn generation(&self, id: u64) -> u32 {
         let bred = id.checked_sub(self.first());
         bred.map_or(0, |bred| {
@@ -191,8 +189,8 @@ impl Window {
         })
     }
 
-    /// Returns the purpose of individual `id`: initial, child or hill-climbing trial; trials are spread
-    /// evenly over both kinds.
+    /// Returns the purpose of individual `id`: member of the initial population, child or hill-climbing
+    /// trial; both kinds of trial are spread evenly over the search.
     fn purpose(&self, id: u64) -> Purpose {
         let Some(bred) = id.checked_sub(self.first()) else {
             return Purpose::Initial;
@@ -211,7 +209,7 @@ impl Window {
         }
     }
 
-    /// Proposes every individual that can be bred from the results consumed so far.
+    /// Proposes every individual whose parents are determined by the results consumed so far.
     fn propose(&mut self) {
         let consumed = self.archive.entries().len() as u64;
         // individual k needs results 0 ..= k - L; random ones need none
@@ -264,7 +262,7 @@ impl Window {
         child
     }
 
-    /// Consumes the next result in index order and updates the population.
+    /// Consumes the result of individual `id`, the next in order, and updates the population.
     fn consume(&mut self, id: u64, chromosome: Chromosome, told: EvaluationResult) {
         self.archive.push(EvaluatedIndividual {
             id,

@@ -1,4 +1,5 @@
-//! Tests of windows of several sizes: plan, independence of the order of arrival, and cost of a window.
+//! Tests of the sliding-window memetic algorithm with windows of several sizes: plan, independence of the
+//! order in which results arrive, and cost of a window.
 use super::*;
 use crate::strategy::build;
 use crate::test_function::{self, SPHERE, TestFunction};
@@ -16,7 +17,8 @@ fn settings(window: usize) -> WindowSettings {
     }
 }
 
-/// Runs a search to its end, answering one open proposal per step: the first, or one at random.
+/// Runs a sliding-window search to its end, answering one open proposal per step: the first, or with `order`
+/// a random one.
 fn run(settings: &WindowSettings, function: &TestFunction, order: Option<u64>) -> Window {
     let space = function.space();
     let mut window = Window::new(settings, &space, 3).unwrap();
@@ -46,7 +48,7 @@ fn a_window_of_any_size_does_not_see_the_order_of_arrival() {
     }
 }
 
-/// Checks that a result affects no individual closer than the window, by changing one result.
+/// Checks that individual k depends on no result after k - L, by changing one result.
 #[test]
 fn individual_k_depends_on_results_up_to_k_minus_the_window_and_on_no_later_one() {
     let window = 7;

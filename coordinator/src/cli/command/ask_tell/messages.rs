@@ -11,15 +11,14 @@ use support::Problem;
 pub(super) struct Opening {
     /// Axes of the search space, one per unknown.
     pub(super) space: Vec<Axis>,
-    /// Seed of the random number generator.
     #[serde(default = "one")]
     pub(super) seed: u64,
-    /// Maximum number of evaluations; if absent, the number that the strategy plans.
+    /// Maximum number of evaluations of the search; if absent, the number that the strategy plans.
     pub(super) budget: Option<u64>,
-    /// Points to evaluate first; the search starts from them.
+    /// Starting points, which the search evaluates first.
     #[serde(default)]
     pub(super) start: Vec<Vec<f64>>,
-    /// Settings that replace those of the preset, by name.
+    /// Settings of the search that replace those of the preset, by name.
     #[serde(default)]
     pub(super) settings: BTreeMap<String, Value>,
 }
@@ -37,7 +36,7 @@ pub(super) struct Axis {
     pub(super) upper: f64,
     #[serde(default)]
     pub(super) scale: Scale,
-    /// Starting value; the middle of the range if absent.
+    /// Starting value of the unknown; the middle of its range if absent.
     pub(super) start: Option<f64>,
 }
 
@@ -50,7 +49,7 @@ pub(super) enum Scale {
     Log,
 }
 
-/// Input line after the opening line: results for proposed points.
+/// Input line after the opening line, with the results of proposed points.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Answers {
@@ -67,16 +66,16 @@ pub(super) struct Answer {
     /// Whether the evaluation of the point failed, so that there is no objective value.
     #[serde(default)]
     pub(super) failed: bool,
-    /// Residual vector, scaled so that its squared length is `f`; empty if not reported.
+    /// Residual vector of the point, scaled so that its squared length is `f`; empty if not reported.
     #[serde(default)]
     pub(super) residual: Vec<f64>,
 }
 
-/// Line of the dialogue written to standard output.
+/// Line of the ask-tell dialogue that is written to standard output.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 pub(super) enum Line {
-    /// Points to evaluate.
+    /// Request to evaluate points.
     Ask { ask: Vec<Point> },
     /// Last line of a search that ended normally.
     Done {
@@ -93,12 +92,12 @@ pub(super) enum Line {
     },
 }
 
-/// A point to evaluate.
+/// Proposed point, which the external program is to evaluate.
 #[derive(Debug, Serialize)]
 pub(super) struct Point {
     id: u64,
     x: Vec<f64>,
-    /// Whether the strategy can use the residual vector besides the objective value.
+    /// Whether the strategy can use the residual vector of this point besides its objective value.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     residual: bool,
 }
@@ -113,7 +112,7 @@ impl From<Proposal> for Point {
     }
 }
 
-/// Best point reported so far.
+/// Best point that the external program has reported so far.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Best {
     pub(super) id: u64,
@@ -127,13 +126,13 @@ pub(super) fn empty_input() -> Problem {
     Problem::new("the input ended before its first line", help)
 }
 
-/// Prefixes the message of a problem with the line number, counted from 1.
+/// Prefixes an error about an input line with its line number, counted from 1.
 pub(super) fn with_line_number(problem: Problem, number: usize) -> Problem {
     let message = format!("line {number}: {}", problem.message);
     Problem { message, ..problem }
 }
 
-/// Parses a JSON line of the dialogue; if that fails, the error's remedy shows `example`.
+/// Parses an input line of the dialogue; if that fails, the error's remedy shows the valid line `example`.
 pub(super) fn read<T: DeserializeOwned>(line: &str, example: &str) -> Result<T, Problem> {
     serde_json::from_str(line).map_err(|error| {
         let mut help = format!("a line is one object, as {example}");

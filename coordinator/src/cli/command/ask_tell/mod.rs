@@ -44,7 +44,7 @@ pub(super) struct Arguments {
     strategy: String,
 }
 
-/// Runs the dialogue until the strategy finishes, the input ends, or a line is rejected.
+/// Runs the ask-tell dialogue until the strategy finishes, the input ends, or a line is rejected.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut talk: Option<Dialogue> = None;
     for (number, line) in (1..).zip(io::stdin().lock().lines()) {
@@ -81,8 +81,7 @@ fn say(line: &Line) -> anyhow::Result<()> {
     terminal::write(&text)
 }
 
-/// Writes the last line of a dialogue that ends with an error: the error, and the best point found until
-/// then.
+/// Writes the last line of a dialogue that ends with an error: the error, and the best point found so far.
 fn end(talk: Option<&Dialogue>, problem: Problem) -> anyhow::Result<()> {
     let (evaluations, best) = talk.map_or((0, None), Dialogue::summary);
     say(&Line::Error {

@@ -1,5 +1,5 @@
-//! Dialogue with an external evaluator: passes the reported values to the search strategy and returns the
-//! next points to evaluate. Independent of where the lines come from.
+//! State of the dialogue with an external evaluator: passes the reported values to the search strategy and
+//! returns the next points to evaluate. Independent of where the lines come from.
 use super::messages::{Answer, Answers, Axis, Best, Line, Point, Scale, read};
 use crate::cli::argument::settings::SettingsChoice;
 use protocol::case::{self, Unknown};
@@ -15,14 +15,11 @@ pub(super) use super::messages::Opening;
 /// State of a running ask-tell dialogue.
 pub(super) struct Dialogue {
     strategy: Box<dyn Strategy>,
-    /// Number of points that may still be proposed within the budget.
     left: u64,
-    /// Number of points proposed so far; their ids are all smaller than this number.
     proposed: u64,
-    /// Proposed points without a reported value, by id.
     open: BTreeMap<u64, Vec<f64>>,
     reported: u64,
-    /// Best reported point, even if the strategy has not processed it yet.
+    /// Best point reported so far, even if the strategy has not processed its result yet.
     best: Option<Best>,
 }
 
@@ -40,8 +37,8 @@ impl Axis {
     }
 }
 
-/// Checks that every starting point has one value per axis and lies inside the bounds, and returns the
-/// points.
+/// Checks that every starting point of the opening line has one value per axis, inside the bounds, and
+/// returns the points.
 fn first_points(space: &Space, points: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Problem> {
     for (number, point) in (1..).zip(points) {
         let axes = space.axes();
@@ -75,7 +72,7 @@ impl Opening {
         read(line, example)
     }
 
-    /// Builds the search space and the strategy, and returns the dialogue.
+    /// Builds the search space and the strategy that the opening line defines, and returns the dialogue.
     pub(super) fn begin(self, strategy: &str) -> Result<Dialogue, Problem> {
         let unknowns: Vec<Unknown> = self.space.into_iter().map(Axis::unknown).collect();
         let bounds = "give each a name of its own, finite lower < upper with the start between, above \
@@ -136,7 +133,8 @@ impl Dialogue {
         Line::Ask { ask }
     }
 
-    /// Processes a line of answers and returns the reply; if one answer is invalid, none is processed.
+    /// Processes a line of answers and returns the line to reply with; if one answer is invalid, none is
+    /// processed.
     pub(super) fn take(&mut self, line: &str) -> Result<Line, Problem> {
         let answers: Answers = read(line, "{\"tell\": [{\"id\": 0, \"f\": 3.5}]}")?;
         let mut told = BTreeMap::new();
@@ -180,12 +178,12 @@ impl Dialogue {
         self.end(done)
     }
 
-    /// Ends the dialogue because the input ended, and returns the last line.
+    /// Ends the dialogue because the input ended, and returns the last line to write.
     pub(super) fn close(&self) -> Result<Line, Problem> {
         self.end("input")
     }
 
-    /// Returns the number of points with a reported value, and the best of them.
+    /// Returns the number of points whose value has been reported, and the best of them.
     pub(super) fn summary(&self) -> (u64, Option<Best>) {
         (self.reported, self.best.clone())
     }

@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use study::{EvaluationRequest, Scored};
 
-/// Input line: an individual to score.
+/// Input line of `horsehead evaluate`: an individual to score.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RequestLine {
@@ -31,7 +31,7 @@ pub(super) enum Line<'a> {
         #[serde(skip_serializing_if = "Option::is_none")]
         residual: Option<&'a [f64]>,
     },
-    /// Error for an input line that was rejected.
+    /// Result of an individual that was scored.
     Refused {
         id: &'a Value,
         line: usize,
@@ -54,7 +54,7 @@ pub(super) struct Refused {
     pub(super) help: String,
 }
 
-/// Parses an input line and checks its individual against the search space.
+/// Parses an input line of `horsehead evaluate` and checks its individual against the search space.
 ///
 /// # Errors
 /// If the line is not an object of the expected form, or an unknown is missing, unrecognised, not finite or
@@ -118,8 +118,8 @@ pub(super) fn read(line: &str, space: &Space) -> Result<EvaluationRequest<Tag>, 
 }
 
 impl<'a> Line<'a> {
-    /// Builds the output line for a result; the residual is included if it was requested and the simulation
-    /// was complete.
+    /// Builds the output line for a scored individual; the residual is included if it was requested and the
+    /// simulation was complete.
     pub(super) fn scored(tag: &'a Tag, scored: &'a Scored) -> Self {
         let residual = scored.as_ref().ok().filter(|own| {
             let complete = own.verdict == Verdict::Complete;

@@ -16,7 +16,6 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Name of the folder for failed jobs within the run folder.
 const FOLDER: &str = "failed";
 /// Name of the file in each job's folder that states why the job failed.
 const WHY: &str = "why.txt";
@@ -24,11 +23,10 @@ const WHY: &str = "why.txt";
 /// JSON object printed by `export --failed --output json`.
 #[derive(Debug, Serialize)]
 pub(super) struct FailedOutput {
-    /// Path of the run folder.
     run: String,
     /// Folder that contains the folders of the failed jobs; null if no files were left.
     folder: Option<String>,
-    /// All jobs that were given up.
+    /// All jobs of the run that were given up.
     failed: Vec<OneFailed>,
     /// Descriptions of data missing because the journal is damaged.
     pub(super) notes: Vec<String>,
@@ -39,9 +37,9 @@ pub(super) struct FailedOutput {
 struct OneFailed {
     /// Number of the job, as in the table `results`.
     job: u64,
-    /// Kind of the job's failure.
+    /// Kind of failure for which the job was given up.
     kind: &'static str,
-    /// Description of the job's failure.
+    /// Description of the failure for which the job was given up.
     why: String,
     /// Folder of this job; null if the worker sent no files.
     folder: Option<String>,
@@ -51,8 +49,8 @@ struct OneFailed {
     shortened: Vec<String>,
 }
 
-/// Writes the files of failed jobs into folders below `to`, or below the run folder, and returns a list of
-/// all given-up jobs.
+/// Writes the files of failed jobs into folders below `to`, or below the run folder; returns a list of all
+/// given-up jobs.
 pub(super) fn fetch(run: &Path, to: Option<&Path>, force: bool) -> anyhow::Result<FailedOutput> {
     let folder = RunFolder::at(run)?;
     let journal = folder.file(journal::FILE);
@@ -113,8 +111,8 @@ pub(super) fn fetch(run: &Path, to: Option<&Path>, force: bool) -> anyhow::Resul
     })
 }
 
-/// Creates an empty folder for the export: the run's own folder of failed jobs is replaced; a folder chosen
-/// by the user must be empty unless `force` is set.
+/// Creates an empty folder for the files of failed jobs: the run's own folder for them is replaced; a folder
+/// chosen by the user must be empty unless `force` is set.
 fn prepare(place: &Path, is_own: bool, force: bool) -> anyhow::Result<()> {
     let is_empty = fs::read_dir(place).map_or(true, |mut entries| entries.next().is_none());
     if !is_empty {
@@ -164,7 +162,6 @@ fn unpack(folder: &Path, why: &str, left: &FailureFiles) -> anyhow::Result<()> {
     fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// Formats the list of failed jobs as text.
 pub(super) fn text(object: &FailedOutput) -> String {
     if object.failed.is_empty() {
         return "no run was given up\n".to_owned();

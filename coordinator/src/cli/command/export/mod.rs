@@ -79,21 +79,19 @@ impl From<Form> for Format {
 /// JSON object printed by `export --output json`.
 #[derive(Debug, Serialize)]
 struct ExportOutput {
-    /// Path of the run folder.
     run: String,
     /// Format of the exported tables.
     format: &'static str,
-    /// Paths of the exported files.
     files: Vec<String>,
     /// Number of rows of each exported table.
     rows: BTreeMap<&'static str, u64>,
     /// Whether the results of all simulations that the run requested are exported.
     complete: bool,
-    /// Notes on data missing from the export, each with the reason.
+    /// Notes on data that are missing from the export, each with the reason.
     notes: Vec<String>,
 }
 
-/// Exports the run and prints a summary.
+/// Exports the chosen run and prints a summary.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.failed {
         let to = arguments.to.as_deref();

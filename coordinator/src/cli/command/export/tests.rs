@@ -30,8 +30,8 @@ use std::{
 };
 use study::{Completed, EvaluationLog, Evaluator, EvaluatorError, WorkersSnapshot};
 
-/// Evaluator that simulates with the test oracle and writes every result to a journal as a run does; fails
-/// after `left` results to interrupt the run.
+/// Evaluator that simulates with the test oracle and writes every result to a journal, as a run does; fails
+/// after `left` results, to imitate an interrupted run.
 struct JournalingEvaluator {
     oracle: TestEvaluator,
     journal: Journal,
@@ -78,8 +78,8 @@ impl Evaluator for JournalingEvaluator {
     }
 }
 
-/// Calibrates until the journal holds the given number of results; returns the evaluation log if the run
-/// finished.
+/// Calibrates with a [`JournalingEvaluator`] until the journal holds the given number of results; returns the
+/// evaluation log if the run finished.
 fn run_with(folder: &Path, results: usize) -> (JournalingEvaluator, Option<EvaluationLog>) {
     let case = case();
     let space = Space::new(&case.unknowns).unwrap();
@@ -138,13 +138,11 @@ fn arguments(run: &Path, format: Form, to: Option<&Path>) -> Arguments {
     }
 }
 
-/// Returns the contents of files, by path.
 fn files(paths: &[String]) -> BTreeMap<String, Vec<u8>> {
     let read = |path: &String| (path.clone(), fs::read(path).expect("it was written"));
     paths.iter().map(read).collect()
 }
 
-/// Returns the values of a column of a table.
 fn column<'a>(tables: &'a Tables, table: &str, column: &str) -> Vec<&'a Value> {
     let (names, rows) = &tables[table];
     let place = names.iter().position(|name| name == column).unwrap();

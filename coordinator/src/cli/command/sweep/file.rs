@@ -33,7 +33,7 @@ use search::space::Space;
 use std::path::{Path, PathBuf};
 use study::{Sweep, Watch as _, score_all};
 
-/// Name of the table that a sweep writes into its run folder.
+/// Name of the result table that a sweep writes into its run folder.
 const TABLE: &str = "sweep.csv";
 
 #[derive(Debug, Args)]
@@ -56,7 +56,7 @@ pub(super) struct FileArguments {
     output: OutputChoice,
 }
 
-/// Runs the sweep that a file defines.
+/// Runs the sweep that a grid file or a table of individuals defines.
 pub(super) fn run(arguments: &FileArguments) -> anyhow::Result<()> {
     let session = Session::begin(&arguments.workers);
     let (run, all) = begin(arguments)?;
@@ -133,7 +133,7 @@ fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<SweptFile>, Individua
     Ok((Run::begin(&path, manifest, case)?, all))
 }
 
-/// Runs every search of a grid.
+/// Runs every search of a grid of settings.
 fn search(
     session: &Session,
     run: &Run<SweptFile>,

@@ -23,10 +23,10 @@ pub(super) struct Grid {
     /// Case folder, relative to the folder of the grid file.
     pub(super) case: Option<PathBuf>,
     preset: Option<String>,
-    /// Fixed settings shared by all searches.
+    /// Fixed settings shared by all searches of the grid.
     #[serde(default)]
     set: BTreeMap<String, toml::Value>,
-    /// Levels of every varied setting, by its name.
+    /// Levels (values to try) of every varied setting, by its name.
     #[serde(rename = "grid")]
     varied: BTreeMap<String, Vec<toml::Value>>,
     seeds: Option<Vec<u64>>,
@@ -121,7 +121,8 @@ impl Grid {
     }
 }
 
-/// Returns every combination of level indices of the varied settings, one row per combination.
+/// Returns every combination of levels of the varied settings, each as a list with one level index per
+/// setting.
 pub(super) fn rows(searches: &Searches) -> Vec<Vec<usize>> {
     let levels = searches.factors.iter().map(|factor| factor.levels.len());
     combinations(&levels.collect::<Vec<_>>())

@@ -104,8 +104,9 @@ fn arrays() -> impl clap::builder::TypedValueParser<Value = Array> {
     })
 }
 
-/// Returns the default factors of an orthogonal array: the paper's, with hill-climbing trials in place of
-/// generations, because generations would determine the budget.
+/// Returns the default factors of an orthogonal array: those of the paper, but with the number of
+/// hill-climbing trials in place of the number of generations, because generations would determine the
+/// budget.
 fn default_factors(array: Array) -> Vec<Factor> {
     // L9 takes the first three of each, with what the paper found best among them
     const LEVELS: [(&str, [&str; 5]); 4] = [

@@ -92,7 +92,6 @@ fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Sorts the numbers of an option, removes duplicates, and drops zeros, which stand for none.
 fn counts(all: &[u64]) -> Vec<u64> {
     let mut counts: Vec<u64> = all.iter().copied().filter(|count| *count > 0).collect();
     counts.sort_unstable();

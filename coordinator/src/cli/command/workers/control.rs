@@ -89,13 +89,10 @@ pub(super) struct DownArguments {
 /// JSON object printed by `workers list --output json`; a stable format: keys are never removed or redefined.
 #[derive(Debug, Serialize)]
 struct ListOutput<'a> {
-    /// Path of the run folder.
     run: String,
-    /// Workers that take part in the run.
     workers: &'a [WorkerReport],
 }
 
-/// Prints the workers of a run.
 pub(super) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
     let folder = arguments.run.folder()?;
     let workers = ask(&folder, &ControlRequest::List)?;
@@ -134,7 +131,7 @@ pub(super) fn down(arguments: &DownArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Reports for each worker what happens to it and to the jobs that it holds.
+/// Prints for each drained or ended worker what happens to it and to the jobs that it holds.
 fn tell(workers: &[WorkerReport], now: bool, what: &str) {
     for WorkerReport {
         name, host, jobs, ..
@@ -167,7 +164,8 @@ fn ask(folder: &Path, question: &ControlRequest) -> anyhow::Result<Vec<WorkerRep
 }
 
 impl RunChoice {
-    /// Returns the named run folder, or else the only one below `runs/` whose coordinator answers.
+    /// Returns the run folder given by the user, or else the only one below `runs/` whose coordinator
+    /// answers.
     ///
     /// # Errors
     /// If no coordinator or more than one answers.
@@ -197,7 +195,6 @@ impl RunChoice {
     }
 }
 
-/// Formats the workers as a text table.
 fn table(workers: &[WorkerReport]) -> String {
     let row = |worker: &WorkerReport| {
         let state = match worker.state {

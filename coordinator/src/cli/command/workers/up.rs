@@ -105,7 +105,7 @@ pub(super) struct LogsArguments {
     hosts: HostsChoice,
 }
 
-/// Builds the launch plan, and prints it (`--dry-run`) or executes it.
+/// Builds the plan for launching workers, and prints it (`--dry-run`) or executes it.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let plan = plan(arguments)?;
     if arguments.dry_run {
@@ -161,8 +161,8 @@ fn plan(arguments: &Arguments) -> Result<LaunchPlan, Problem> {
     ssh::up(&order, &arguments.hosts.read()?, &programs, arguments.wait)
 }
 
-/// Returns the name of the worker key folder that all workers of a launch share, for launches with a common
-/// file system or secret; `None` without TLS.
+/// Returns the name of the key folder that all workers of a launch use, for launches with a common file
+/// system or secret; `None` without TLS.
 fn shared_key_folder(order: &WorkerOptions) -> Result<Option<String>, Problem> {
     let Some(folder) = &order.tls else {
         return Ok(None);

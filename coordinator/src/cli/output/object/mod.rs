@@ -1,5 +1,5 @@
-//! JSON objects printed by `--output json`, exactly one per command. Stable format: fields may be added, not
-//! renamed. Numbers that are not finite become `null`.
+//! JSON objects printed by `--output json`, exactly one per command. Their format is stable: fields may be
+//! added but not renamed. Numbers that are not finite become `null`.
 pub(crate) mod calibration;
 pub(in crate::cli) mod diagnosis;
 pub(in crate::cli) mod identification;

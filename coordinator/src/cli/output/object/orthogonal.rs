@@ -10,9 +10,10 @@ pub(crate) struct OrthogonalOutput {
     /// Name of the orthogonal array: `L9`, `L16` or `L25`.
     array: &'static str,
     factors: Vec<FactorOutput>,
-    /// Results of the searches, row by row of the array, each row with every seed.
+    /// Results of the searches, for each row of the orthogonal array and each seed.
     runs: Vec<SearchOutput>,
-    /// Range analysis of the responses, one entry per factor; null if a search found no complete individual.
+    /// Range analysis of the responses, one element per factor; null if a search found no complete
+    /// individual.
     ranges: Option<Vec<RangeOutput>>,
     /// Analysis of variance of the responses; null if a search found no complete individual or the design is
     /// saturated.
@@ -40,7 +41,7 @@ struct SearchOutput {
 #[derive(Debug, Serialize)]
 struct RangeOutput {
     factor: String,
-    /// Mean response at each level of the factor.
+    /// Mean of the responses at each level of the factor.
     means: Vec<f64>,
     range: f64,
     best: Value,
@@ -48,7 +49,7 @@ struct RangeOutput {
 
 #[derive(Debug, Serialize)]
 struct TermOutput {
-    /// Source of variation: a factor's name, `seed` or `error`.
+    /// Source of variation in the analysis of variance: a factor's name, `seed` or `error`.
     source: String,
     sum_of_squares: f64,
     freedom: usize,
@@ -101,12 +102,11 @@ impl From<&TestResult> for OrthogonalOutput {
 #[derive(Debug, Serialize)]
 pub(crate) struct GridOutput {
     factors: Vec<FactorOutput>,
-    /// Searches, combination by combination with the last factor varying fastest, each with every seed.
+    /// Results of the searches: for every combination of levels, last factor varying fastest, and every seed.
     runs: Vec<SearchOutput>,
 }
 
 impl GridOutput {
-    /// Builds the JSON object from the results of the searches of a grid.
     pub(crate) fn new(factors: &[Factor], runs: &[TrialRun]) -> Self {
         Self {
             factors: listed(factors),
@@ -115,8 +115,8 @@ impl GridOutput {
     }
 }
 
-/// Formats searches as a CSV table: a column per factor, `seed`, `objective` (empty if no individual was
-/// complete), `evaluations`.
+/// Formats the results of searches as a CSV table: a column per factor, `seed`, `objective` (empty if no
+/// individual was complete), `evaluations`.
 ///
 /// # Errors
 /// If a row cannot be written.
@@ -158,7 +158,7 @@ fn terms(factors: &[Factor], anova: &Anova) -> Vec<TermOutput> {
     anova.terms.iter().map(one).collect()
 }
 
-/// Converts searches to their JSON form, with levels by factor name.
+/// Converts the results of searches to their JSON form, with levels by factor name.
 fn tried(factors: &[Factor], runs: &[TrialRun]) -> Vec<SearchOutput> {
     let one = |run: &TrialRun| SearchOutput {
         levels: levels(factors, &run.levels),
@@ -175,7 +175,7 @@ fn levels(factors: &[Factor], row: &[usize]) -> Map<String, Value> {
     factors.iter().zip(row).map(one).collect()
 }
 
-/// Converts a level to a JSON number or boolean if it is one, else to a string.
+/// Converts a factor level from text to a JSON number or boolean if it is one, else to a string.
 fn value(words: &str) -> Value {
     let plain = serde_json::from_str(words).ok();
     plain

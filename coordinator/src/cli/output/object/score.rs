@@ -1,4 +1,5 @@
-//! JSON forms of unknowns and of the agreement with measured records, shared by all objects.
+//! JSON forms of unknowns and of the agreement with measured records, shared by the objects of several
+//! commands.
 use crate::kind;
 use discrepancy::identify::{Determination, UnknownEstimate};
 use protocol::{
@@ -42,12 +43,10 @@ pub(crate) struct ConditionOutput {
     pub(crate) channels: BTreeMap<String, RecommendedAndOptimised<Option<ScoreOutput>>>,
 }
 
-/// Pair of values, for the recommended and the optimised parameters.
+/// Pair of results of the same kind, one for the recommended and one for the optimised parameters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct RecommendedAndOptimised<T> {
-    /// Value for the recommended parameters.
     pub(crate) recommended: T,
-    /// Value for the optimised parameters.
     pub(crate) optimised: T,
 }
 
@@ -101,7 +100,7 @@ pub(crate) struct ScoreOutput {
     rmse_over_half_range: f64,
     relative_error: f64,
     peak_to_peak_error: f64,
-    /// Further scores of the channel, under names that depend on the kind of model.
+    /// Further scores of the channel that only this kind of model has, by name.
     #[serde(flatten)]
     own: Map<String, Value>,
 }
@@ -130,7 +129,7 @@ pub(crate) fn channels(
     scores.iter().filter_map(output).collect()
 }
 
-/// Returns the objective of a complete simulation; `None` otherwise.
+/// Returns the objective of a completed simulation; `None` if there is none.
 pub(crate) fn objective(evaluation: Option<&Evaluation>) -> Option<f64> {
     let complete = evaluation.filter(|evaluation| evaluation.verdict == Verdict::Complete)?;
     Some(complete.fitness)

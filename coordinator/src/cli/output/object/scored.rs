@@ -19,7 +19,7 @@ pub(crate) struct ScoredOutput {
     /// null if it could not be computed.
     objective: Option<f64>,
     complete: bool,
-    /// How the simulation ended, or why there was none.
+    /// How the individual's simulation ended, or why there was none.
     #[serde(flatten)]
     verdict: VerdictOutput,
 }
@@ -48,23 +48,24 @@ impl From<&Scored> for ScoredOutput {
 /// JSON object printed by `horsehead sweep FILE.csv`, also written as `result.json` in the run folder.
 #[derive(Debug, Serialize)]
 pub(crate) struct IndividualsOutput {
-    /// Results of the individuals, in the order of the table.
+    /// Results of the individuals, in the order of the user's table.
     individuals: Vec<IndividualOutput>,
 }
 
-/// Result of the individual in one row of the table.
+/// Result of one individual of the user's table.
 #[derive(Debug, Serialize)]
 struct IndividualOutput {
-    /// Values of the unknowns in the row, by name.
+    /// Values of the individual's unknowns, by name.
     genes: BTreeMap<String, f64>,
     #[serde(flatten)]
     scored: ScoredOutput,
-    /// Agreement with the record by channel; empty if the simulation did not complete.
+    /// Agreement with the measured record by channel; empty if the simulation did not complete.
     channels: BTreeMap<String, ScoreOutput>,
 }
 
 impl IndividualsOutput {
-    /// Builds the object from the rows of a table and their results; `names` are the unknowns of the columns.
+    /// Builds the JSON object from the rows of a table of individuals and their results; `names` are the
+    /// unknowns of the columns.
     pub(crate) fn new(case: &Case, names: &[String], rows: &[Vec<f64>], found: &[Scored]) -> Self {
         let one = |(row, scored): (&Vec<f64>, &Scored)| IndividualOutput {
             genes: names.iter().cloned().zip(row.iter().copied()).collect(),
@@ -77,8 +78,8 @@ impl IndividualsOutput {
     }
 }
 
-/// Formats the results as a CSV table: the columns of the input, `objective`, `verdict`, then
-/// `CHANNEL.SCORE`, empty where there is no score.
+/// Formats the results of individuals as a CSV table: the columns of the user's table, `objective`,
+/// `verdict`, then one column `CHANNEL.SCORE` per score, empty where there is no score.
 ///
 /// # Errors
 /// If a number cannot be written.

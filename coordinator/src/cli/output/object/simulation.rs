@@ -14,9 +14,7 @@ use study::ComparedCurves;
 /// JSON object printed by `horsehead simulate CASE --output json`.
 #[derive(Debug, Serialize)]
 pub(crate) struct SimulateOutput<'a> {
-    /// Name of the case.
     pub(crate) case: &'a str,
-    /// Name of the condition.
     pub(crate) condition: &'a str,
     /// How the simulation ended.
     #[serde(flatten)]
@@ -25,21 +23,21 @@ pub(crate) struct SimulateOutput<'a> {
     pub(crate) wall_s: f64,
     /// Counters of the solver's work in the simulation.
     pub(crate) counters: Counters,
-    /// Values of the unknowns by name.
     #[serde(flatten)]
     pub(crate) unknowns: Unknowns,
-    /// Objective, in the square of the unit that its channels share; null if there is no record or the
-    /// simulation did not complete.
+    /// Objective of the simulation, in the square of the unit that its channels share; null if there is no
+    /// measured record or the simulation did not complete.
     pub(crate) objective: Option<f64>,
-    /// Agreement with the record by channel; empty without a record.
+    /// Agreement with the measured record by channel; empty if there is no record.
     pub(crate) channels: BTreeMap<String, ScoreOutput>,
-    /// Curves and further results, under keys that depend on the kind of model.
+    /// Simulated curves and further results, under keys that depend on the kind of model.
     #[serde(flatten)]
     pub(crate) drawn: Map<String, Value>,
     /// Derivatives of the curves, by name of the unknown or effect parameter; absent if none were requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) derivatives: Option<Map<String, Value>>,
-    /// Wall time on the worker including all derivatives (s); absent if none were requested.
+    /// Wall time on the worker of the simulation including all derivatives (s); absent if none were
+    /// requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) derivatives_wall_s: Option<f64>,
     /// Hash of all bits of the simulation's result.
@@ -76,9 +74,9 @@ impl From<Verdict> for VerdictOutput {
     }
 }
 
-/// Converts the derivatives of the curves to their JSON form, by name of the unknown or effect parameter:
-/// zeros with `nothing` where the curves do not depend on it, `missing` with the reason where there is no
-/// derivative.
+/// Converts the derivatives of the simulated curves to their JSON form, by name of the unknown or effect
+/// parameter: zeros with `nothing` where the curves do not depend on it, `missing` with the reason where
+/// there is no derivative.
 fn derivatives(
     case: &Case,
     condition: usize,

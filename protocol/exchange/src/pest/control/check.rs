@@ -3,8 +3,8 @@ use super::model::{Control, Parameter, Transform};
 use crate::Problem;
 use std::collections::BTreeSet;
 
-/// Lower bound as a fraction of the initial value, used where a logarithmic parameter has a lower bound of 0
-/// or less, which has no logarithm.
+/// Substitute lower bound, as a fraction of the initial value, for a logarithmic parameter whose lower bound
+/// is not positive and so has no logarithm.
 const BELOW: f64 = 1e-10;
 
 /// Fault of a control file: the text found, and a description of what is allowed.

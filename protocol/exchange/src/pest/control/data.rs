@@ -129,7 +129,8 @@ pub(super) fn read(lines: &Lines, open: Open<'_>) -> Result<Control, Problem> {
     Ok(control)
 }
 
-/// Reads the stated numbers of items from `control data` of the older format, by position.
+/// Reads the stated numbers of parameters, observations and files from section `control data` of the older
+/// format, where each has a fixed position.
 fn counts(lines: &Lines, section: &Section, control: &mut Control) -> Result<Counts, Problem> {
     let word = |line: usize, place: usize, name: &str| {
         let found = section.lines.get(line);
@@ -218,7 +219,8 @@ fn group(row: &Row) -> Result<ParameterGroup, Problem> {
     })
 }
 
-/// Reads the parameters; in the older format the rows after them state what tied parameters are tied to.
+/// Reads the parameters of a control file; in the older format the rows after them state to which parameter
+/// each tied one is tied.
 fn parameters(
     lines: &Lines,
     counts: Option<&Counts>,

@@ -1,10 +1,8 @@
 //! Splitting of a control file into sections of lines, without comments; options are collected separately.
 use crate::{Problem, problem::clip};
 
-/// Line of a control file.
 #[derive(Clone, Debug)]
 pub(super) struct Line {
-    /// Line number in the file, from 1.
     pub(super) number: usize,
     pub(super) text: String,
 }
@@ -12,9 +10,9 @@ pub(super) struct Line {
 /// Section of a control file: the lines from one `*` heading to the next.
 #[derive(Clone, Debug)]
 pub(super) struct Section {
-    /// Name in lower case.
+    /// Name of the section in lower case.
     pub(super) name: String,
-    /// Line number of the heading.
+    /// Line number of the section's heading in the control file.
     pub(super) number: usize,
     pub(super) lines: Vec<Line>,
 }
@@ -24,7 +22,7 @@ pub(super) struct Section {
 pub(super) struct Lines {
     pub(super) file: String,
     pub(super) sections: Vec<Section>,
-    /// Options `++name(value)` as pairs of name and value.
+    /// Options of PEST++ in the control file, written `++name(value)`, as pairs of name and value.
     pub(super) options: Vec<(String, String)>,
 }
 
@@ -92,12 +90,11 @@ impl Lines {
         ))
     }
 
-    /// Returns the section of the given name, if it exists.
     pub(super) fn section(&self, name: &str) -> Option<&Section> {
         self.sections.iter().find(|section| section.name == name)
     }
 
-    /// Creates a problem at a line of the file.
+    /// Creates the error for a fault at a line of the control file.
     pub(super) fn problem(
         &self,
         number: usize,
@@ -114,7 +111,7 @@ impl Lines {
     }
 }
 
-/// Parses all `name(value)` options of a line.
+/// Parses all `name(value)` options in a line of the control file.
 fn options(line: &str) -> Vec<(String, String)> {
     let each = line.split(')').filter_map(|part| part.split_once('('));
     each.map(|(name, value)| {

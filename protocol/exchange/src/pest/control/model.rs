@@ -1,13 +1,13 @@
-//! Contents of a control file as plain data.
+//! Contents of a PEST control file as plain data.
 
-/// Parsed control file.
+/// Contents of a PEST control file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Control {
-    /// Parameters in the file's order.
+    /// Parameters of the model, in the control file's order.
     pub parameters: Vec<Parameter>,
     /// Parameter groups, which share the settings for finite differences.
     pub groups: Vec<ParameterGroup>,
-    /// Observations in the file's order.
+    /// Observations to which the model is calibrated, in the control file's order.
     pub observations: Vec<Observation>,
     /// Command lines that run the model.
     pub commands: Vec<String>,
@@ -21,7 +21,7 @@ pub struct Control {
     pub iterations: i64,
     /// Options of PEST++ (`++name(value)`).
     pub options: Vec<(String, String)>,
-    /// Notes on entries that were interpreted differently from their text or ignored.
+    /// Notes on parts of the control file that were ignored or interpreted differently from their text.
     pub notes: Vec<String>,
 }
 
@@ -46,14 +46,14 @@ pub struct Parameter {
     pub offset: f64,
 }
 
-/// Transformation of a parameter for estimation.
+/// Transformation of a parameter during estimation, or the reason why it is not estimated.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Transform {
-    /// Estimated without a transformation.
+    /// Parameter is estimated without a transformation.
     None,
-    /// Estimated by its logarithm.
+    /// Parameter is estimated by its logarithm.
     Log,
-    /// Held at its initial value.
+    /// Parameter is held at its initial value.
     Fixed,
     /// Tied to the named parameter at the ratio of the initial values.
     Tied(String),
@@ -62,7 +62,7 @@ pub enum Transform {
 /// Finite-difference settings of a parameter group.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterGroup {
-    /// Name of the group.
+    /// Name of the parameter group.
     pub name: String,
     /// Reference of the finite-difference increment: the value, the greatest value in the group, or an
     /// absolute number.
@@ -71,9 +71,9 @@ pub struct ParameterGroup {
     pub increment: f64,
     /// Minimum absolute increment (DERINCLB).
     pub floor: f64,
-    /// Number of points of a difference (FORCEN).
+    /// Number of points of the finite differences (FORCEN).
     pub method: IncrementMethod,
-    /// Factor on the increment for three-point differences (DERINCMUL).
+    /// Factor on the increment for three-point finite differences (DERINCMUL).
     pub multiplier: f64,
 }
 
@@ -91,20 +91,20 @@ pub enum IncrementKind {
 /// Number of points of a finite difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum IncrementMethod {
-    /// Two points at first, three in later iterations.
+    /// Two-point differences at first, three-point differences in later iterations.
     Switch,
-    /// Two points.
+    /// Two-point (forward) differences.
     Two,
-    /// Three points.
+    /// Three-point (central) differences.
     Three,
 }
 
-/// Observation of a control file.
+/// Observation of a PEST control file: measured value and weight of a model output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observation {
     /// Name of the observation in lower case.
     pub name: String,
-    /// Measured value.
+    /// Measured value of the observation.
     pub value: f64,
     /// Factor on the residual of the observation; 0 for a mere prediction.
     pub weight: f64,
@@ -136,12 +136,12 @@ pub struct PriorInformation {
     pub group: String,
 }
 
-/// Term of prior information.
+/// Term of a prior information equation: a factor times a parameter or its logarithm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PriorTerm {
     /// Factor on the parameter or its logarithm.
     pub factor: f64,
-    /// Name of the parameter.
+    /// Name of the parameter in the term.
     pub parameter: String,
     /// Whether the term uses the parameter's decimal logarithm.
     pub log: bool,

@@ -31,7 +31,8 @@ pub(super) fn read(
     })
 }
 
-/// Parses a sum of `factor * parameter` terms joined by `+` or `-`.
+/// Parses the left-hand side of a prior information equation: `factor * parameter` terms joined by `+` or
+/// `-`.
 fn terms(sum: &str) -> Option<Vec<PriorTerm>> {
     let mut terms = Vec::new();
     let mut words = sum.split_whitespace().flat_map(separate);

@@ -3,7 +3,7 @@ use super::lines::{Lines, Section};
 use crate::{Problem, number, problem::clip};
 use std::collections::BTreeMap;
 
-/// Row of a table: its position and its cells by column name.
+/// Row of a table in a control file: its file and line, and its cells by column name.
 pub(super) struct Row {
     pub(super) file: String,
     pub(super) line: usize,
@@ -33,12 +33,12 @@ impl Row {
         )
     }
 
-    /// Returns a cell in lower case.
+    /// Returns the cell of the named column in lower case.
     pub(super) fn word(&self, name: &str) -> Result<String, Problem> {
         self.plain(name).map(|cell| cell.to_lowercase())
     }
 
-    /// Returns a cell unchanged.
+    /// Returns the cell of the named column unchanged.
     pub(super) fn plain(&self, name: &str) -> Result<String, Problem> {
         let found = self.cells.get(name).filter(|cell| !cell.is_empty());
         found.cloned().ok_or_else(|| {
@@ -54,7 +54,7 @@ impl Row {
         self.word(name).unwrap_or_else(|_| other.to_owned())
     }
 
-    /// Parses a cell as a finite number.
+    /// Parses the cell of the named column as a finite number.
     pub(super) fn number(&self, name: &str) -> Result<f64, Problem> {
         let cell = self.plain(name)?;
         number(&cell)
@@ -95,7 +95,7 @@ pub(super) fn rows(
     Ok(all)
 }
 
-/// Reads the rows of the CSV files named by an external section.
+/// Reads the table rows of the CSV files named by a control file section with the suffix `external`.
 fn files(
     lines: &Lines,
     section: &Section,

@@ -1,6 +1,6 @@
 //! Parsed instructions of a PEST instruction file.
 
-/// Parsed instruction file.
+/// Parsed PEST instruction file, by which observations are read from a model output file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Instructions {
     pub(super) file: String,
@@ -11,12 +11,11 @@ pub struct Instructions {
 /// advances to a later line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Line {
-    /// Line number in the instruction file, from 1.
     pub(super) number: usize,
     pub(super) all: Vec<Instruction>,
 }
 
-/// Single instruction; columns count from 1.
+/// Single instruction for reading a model output file; columns count from 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Instruction {
     /// Search for a text: in the following lines if it is the first instruction, otherwise in the rest of the
@@ -24,9 +23,9 @@ pub(super) enum Instruction {
     Marker(String),
     /// Advance by a number of lines.
     Lines(usize),
-    /// Advance to the last blank before the next word.
+    /// Advance to the last blank before the next word of the current line.
     Word,
-    /// Advance to a column.
+    /// Advance to a column of the current line.
     Tab(usize),
     /// Read the number that lies exactly between two columns, for the named observation.
     Fixed(String, usize, usize),

@@ -2,12 +2,12 @@
 use super::list::{DUMMY, Instruction, Instructions, Line};
 use crate::{Problem, number, problem::clip};
 
-/// Reading position in a file.
+/// Reading position in a model output file.
 struct Reader<'a> {
     lines: std::str::Lines<'a>,
-    /// Characters of the current line; empty before the first line.
+    /// Characters of the current line of the model output file; empty before the first line.
     line: Vec<char>,
-    /// Number of the current line, from 1.
+    /// Number of the current line of the model output file, from 1.
     number: usize,
     /// Number of characters of the current line already consumed.
     at: usize,

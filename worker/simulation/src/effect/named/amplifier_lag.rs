@@ -34,7 +34,8 @@ impl Reading for Lag {
     }
 }
 
-/// Filters one period in place; `ratio` is the sample spacing divided by the time constant.
+/// Applies the first-order lag in place to one period of a curve; `ratio` is the sample spacing divided by
+/// the time constant.
 fn lagged(curve: &mut [f64], ratio: f64) {
     let kept = exp(-ratio);
     let mixed = (1.0 - kept) / ratio;

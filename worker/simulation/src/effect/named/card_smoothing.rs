@@ -1,10 +1,10 @@
-//! Smoothing of the card before delivery, which removed the rod string's own vibrations.
+//! Restoration of what smoothing removed from the load card before delivery: the rod string's own vibrations.
 //!
-//! Two corrections are available. Harmonics above a given number that the card still has are amplified by a
-//! share: `F + x (F - F_kept)`; -1 removes them. Where none are left to amplify, the rod string itself rings
-//! after each load transfer, at its fundamental `a / 4 L` and decaying: `+- (A sin w t + B cos w t (1 -
-//! exp(-t / 0.1 s))) exp(-c t)` after the steepest rise (+) and the steepest fall (-) of the smoothed card.
-//! Sine and cosine together represent any phase.
+//! Two corrections are available. Harmonics of the card's load `F` above a given number are amplified by a
+//! share `x`: `F + x (F - F_kept)`, where `F_kept` has only the lower harmonics; -1 removes the upper ones.
+//! Where none are left to amplify, the rod string itself rings after each load transfer, at its fundamental
+//! `a / 4 L` and decaying: `+- (A sin w t + B cos w t (1 - exp(-t / 0.1 s))) exp(-c t)` after the steepest
+//! rise (+) and the steepest fall (-) of the smoothed card. Sine and cosine together represent any phase.
 //!
 //! Source: a smoothed card loses the rod string's reflections: Gibbs, "Predicting the Behavior of Sucker-Rod
 //! Pumping Systems", JPT 15 (1963).
@@ -47,10 +47,10 @@ struct Smoothing {
     decay: f64,
 }
 
-/// Time constant of the onset of the cosine part \[s\].
+/// Time constant with which the cosine part of the rod string's ringing sets in \[s\].
 const ONSET: f64 = 0.1;
 
-/// Number of revolutions whose ringing is summed, including the current one.
+/// Number of crank revolutions, including the current one, whose load transfers still contribute ringing.
 const EARLIER: u32 = 6;
 
 impl Effect for Smoothing {
@@ -84,7 +84,8 @@ impl Effect for Smoothing {
 }
 
 impl Smoothing {
-    /// Computes the ringing load \[N\] at a time \[s\] after a periodic rise with a given period \[s\].
+    /// Computes the load that the rod string's ringing adds \[N\], at a time \[s\] after a load rise that
+    /// recurs with a given period \[s\].
     fn ringing(&self, since: f64, period: f64) -> f64 {
         let mut sum = 0.0;
         for earlier in 0..EARLIER {

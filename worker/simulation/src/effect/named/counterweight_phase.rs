@@ -1,9 +1,9 @@
 //! Phase error of the counterweight, or a deviation of its moment.
 //!
-//! With a prescribed crank motion this effect is visible only through the slip of the motor: it is the change
-//! of the crank speed ripple due to the counterweight, at the slip of a usual motor, so that it is separate
-//! from the ripple itself. Slip is no shape here, since it would be a factor of phase and moment, and a
-//! record determines only their product.
+//! Since the crank motion is prescribed, the counterweight acts only through the slip of the motor: this
+//! effect is the change of the crank speed ripple that the deviation causes at the slip of a usual motor. The
+//! ripple itself is a separate effect (`crank_speed_ripple`). The slip is no shape parameter, since it would
+//! only multiply phase and moment, and a record determines only the product.
 //!
 //! Source: counterbalance moment with its phase angle: API Spec 11E.
 use super::crank_speed_ripple::{RATED, sampled, warp};

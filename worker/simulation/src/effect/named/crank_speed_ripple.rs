@@ -30,13 +30,14 @@ pub(super) fn descriptor() -> Descriptor {
         })
 }
 
-/// Torque at the crank at which slip is stated [N m]: 242 N m of the motor times the ratios 28 and 5.21. Only
-/// the quotient of slip and rated torque acts, so a record does not determine the rated torque.
+/// Rated torque at the crank, at which slip is stated [N m]: 242 N m of the motor times the gear ratios 28
+/// and 5.21. Only the quotient of slip and rated torque has an influence, so a record does not determine the
+/// rated torque.
 pub(super) const RATED: f64 = 35.3e3;
 
 #[derive(Clone, Copy, Debug)]
 struct Ripple {
-    /// Slip at [`RATED`] torque \[1\].
+    /// Slip of the motor at [`RATED`] torque \[1\].
     slip: f64,
     /// Breakdown torque of the motor divided by [`RATED`] \[1\].
     breakdown: f64,
@@ -44,11 +45,11 @@ struct Ripple {
     inertia: f64,
 }
 
-/// Share of the breakdown torque to which the load of the quasi-static motor is limited.
+/// Limit of the load torque, as a share of the motor's breakdown torque, in the quasi-static motor model.
 const MAX_TORQUE_SHARE: f64 = 0.98;
 
 impl Ripple {
-    /// Computes the slip at a load torque, on the stable branch of the motor characteristic.
+    /// Computes the motor's slip at a load torque, on the stable branch of its torque-slip characteristic.
     fn holding(&self, torque: f64) -> f64 {
         let k = self.breakdown;
         let share = (torque / (k * RATED)).clamp(-MAX_TORQUE_SHARE, MAX_TORQUE_SHARE);
@@ -57,7 +58,8 @@ impl Ripple {
         breakdown * share / (1.0 + (1.0 - share * share).sqrt())
     }
 
-    /// Computes the relative loss of crank speed over the revolution, at [`NODES`] equal angles.
+    /// Computes the relative loss of crank speed due to motor slip over one revolution, at [`NODES`] equal
+    /// crank angles.
     fn loss(&self, speed: f64, torque: impl Fn(f64) -> f64) -> Vec<f64> {
         let held = sampled(|turn| self.holding(torque(turn)));
         // in turns of the crank
@@ -84,7 +86,7 @@ impl Effect for Ripple {
 /// Upper limit of the relative deviation of the crank speed from its mean.
 const MAX_SPEED_DEVIATION: f64 = 0.9;
 
-/// Number of samples per crank revolution.
+/// Number of samples per crank revolution of torque, speed loss and lead.
 const NODES: usize = 720;
 
 /// Samples a function of the turn angle at [`NODES`] equal angles.
@@ -94,8 +96,8 @@ pub(super) fn sampled(of: impl Fn(f64) -> f64) -> Vec<f64> {
         .collect()
 }
 
-/// Computes the lead of the crank over uniform rotation, as a function of the uniform angle, for a speed of
-/// `1 - slow` up to a constant factor; `slow` is sampled at [`NODES`] equal angles.
+/// Computes the lead of the crank over uniform rotation \[rad\], as a function of the uniform angle, for a
+/// speed proportional to `1 - slow`; `slow` is sampled at [`NODES`] equal angles.
 pub(super) fn warp(slow: &[f64]) -> Splines {
     let step = TAU / NODES as f64;
     let mean = slow.iter().sum::<f64>() / NODES as f64;
@@ -130,8 +132,8 @@ mod tests {
     use super::*;
     use crate::math::elementary::{atan2, sin_cos};
 
-    /// Checks the lead against the closed form: `w = 1 - a cos phi` gives `tan(u / 2) = sqrt((1 + a) / (1 -
-    /// a)) tan(phi / 2)`.
+    /// Checks the computed lead of the crank for the speed `w = 1 - a cos phi` against its closed form `tan(u
+    /// / 2) = sqrt((1 + a) / (1 - a)) tan(phi / 2)`.
     #[test]
     fn a_known_ripple_gives_its_lead() {
         let a = 0.02_f64;

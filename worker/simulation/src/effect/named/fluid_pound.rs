@@ -29,7 +29,7 @@ pub(super) fn descriptor() -> Descriptor {
     .with_edit(pound)
 }
 
-/// Time constant of the decay of the impact's ringing \[s\].
+/// Time constant with which the ringing after the plunger's impact decays \[s\].
 const DECAY: f64 = 3.0;
 
 fn pound(v: &ParameterValues, d: &mut Description) {

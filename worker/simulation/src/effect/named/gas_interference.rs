@@ -21,7 +21,7 @@ pub(super) fn descriptor() -> Descriptor {
         .with_edit(late)
 }
 
-/// Crank angle from top dead centre over which the load is delayed \[rad\].
+/// Range of crank angle after top dead centre in which gas compression delays the load \[rad\].
 const LATE: f64 = 120.0 * PI / 180.0;
 
 fn late(v: &ParameterValues, d: &mut Description) {

@@ -34,8 +34,8 @@ mod valve_leakage;
 
 use super::descriptor::Descriptor;
 
-/// Descriptors of the named effects in their order of action: load, machine, crank, structure next to the
-/// gauges, gauges.
+/// Constructors of the named effects' descriptors in the order in which the effects act: load, machine,
+/// crank, structure next to the gauges, gauges.
 const IN_ORDER: &[fn() -> Descriptor] = &[
     card_time_shift::descriptor,
     load_cell_lag::descriptor,

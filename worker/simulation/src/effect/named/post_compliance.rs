@@ -1,9 +1,11 @@
-//! Compliance of post and foundation: the beam's pivot moves, `u / c + D u' = T + F + W`.
+//! Compliance of post and foundation: the beam's pivot moves, `u / c + D u' = T + F + W`, with displacement
+//! `u`, compliance `c`, damping `D`, rope tension `T`, load `F` and weight `W`.
 //!
 //! The pivot's displacement is represented by two additional modes of the back head, whose shapes are rigid
 //! translations along the axes of the beam frame: contact, anchor and weight act on them as on any mode. The
-//! front side is not modelled twice: the load with the carrier's weight acts on the pivot as a prescribed
-//! force. The post is equally stiff along and across the beam; `mass` moves with the pivot.
+//! front rope does not act on these modes: the load and the weight at the suspension point act on the pivot
+//! as a prescribed force instead. The post is equally stiff along and across the beam; `mass` moves with the
+//! pivot.
 //!
 //! Source: elastic supports: Craig and Kurdila, *Fundamentals of Structural Dynamics*, 2nd ed. (2006).
 use crate::effect::descriptor::{Descriptor, Place};
@@ -38,8 +40,8 @@ struct Post {
 }
 
 impl Post {
-    /// Computes an upper bound of the load on the pivot, twice its maximum in slow motion \[N\]; dynamic
-    /// loads stay well below.
+    /// Computes twice the largest quasi-static load on the pivot \[N\], as an upper bound that dynamic loads
+    /// stay well below.
     fn heaviest(&self, d: &Description, cycle: &Cycle) -> f64 {
         let turns = (0..360_u32).map(|k| TAU * f64::from(k) / 360.0);
         let rope = turns.map(|turn| cycle.tension(turn)).fold(0.0, f64::max);
@@ -107,8 +109,9 @@ impl Effect for Post {
     }
 }
 
-/// Force of the load `P` on the displaced pivot; two modal coordinates `x`, `y` displace it by `(x, y) /
-/// sqrt(m)` in the beam frame. Its potential is `V = P (x sin theta + y cos theta) / sqrt(m)`.
+/// Force on the displaced pivot by the load `P` at the front head; two modal coordinates `x`, `y` displace
+/// the pivot by `(x, y) / sqrt(m)` in the beam frame. Its potential is `V = P (x sin theta + y cos theta) /
+/// sqrt(m)`.
 #[derive(Clone, Copy, Debug)]
 struct FrontPull {
     weight: f64,
@@ -119,8 +122,8 @@ struct FrontPull {
 }
 
 impl FrontPull {
-    /// Returns the load divided by `sqrt(m)`; the height of the pivot times `sqrt(m)` with its derivative by
-    /// the beam angle; and sine and cosine of that angle.
+    /// Returns the terms of the force: the load divided by `sqrt(m)`; the pivot's height times `sqrt(m)` with
+    /// its derivative with respect to the beam angle; sine and cosine of the beam angle.
     fn parts(&self, at: &Instant<'_>) -> (f64, [f64; 2], (f64, f64)) {
         let (s, c) = sin_cos(at.q[self.beam]);
         let (x, y) = (at.q[self.along], at.q[self.across]);
@@ -155,7 +158,7 @@ impl Force for FrontPull {
         pull * height
     }
 
-    /// Computes the power that the load receives from the sinking pivot.
+    /// Computes the power that the load at the front head receives as the pivot sinks \[W\].
     fn lost(&self, at: &Instant<'_>) -> f64 {
         let (pull, [_, turned], (s, c)) = self.parts(at);
         pull * (s * at.v[self.along] + c * at.v[self.across] + turned * at.v[self.beam])

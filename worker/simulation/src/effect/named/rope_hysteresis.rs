@@ -33,7 +33,7 @@ pub(super) fn descriptor() -> Descriptor {
 #[derive(Clone, Copy, Debug)]
 struct BoucWen {
     share: f64,
-    /// Yield strain, at which the wires slip.
+    /// Yield strain of the rope, at which its wires slip \[1\].
     yields: f64,
 }
 
@@ -46,8 +46,8 @@ impl Effect for BoucWen {
 }
 
 impl BoucWen {
-    /// Computes the hysteretic variable `z` after a monotonic change of strain, and its derivative by the
-    /// strain.
+    /// Computes the hysteretic variable `z` after the strain has moved monotonically to `now`, and its
+    /// derivative with respect to the strain.
     fn advanced(&self, [strain, z]: Memory, now: f64) -> [f64; 2] {
         let moved = now - strain;
         let sense = if moved < 0.0 { -1.0 } else { 1.0 };

@@ -50,7 +50,8 @@ impl Effect for Twins {
     }
 }
 
-/// Sharing of the tension between two parallel ropes of unequal length.
+/// Multiplier of gauge stress due to unequal sharing of the tension between two parallel ropes of different
+/// length.
 #[derive(Clone, Copy, Debug)]
 struct Sharing {
     /// Difference of the two rope lengths \[m\]; `length` is the back rope's length \[m\].

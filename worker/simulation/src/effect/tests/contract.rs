@@ -122,7 +122,7 @@ fn absent_effects_leave_every_bit_alone() {
     assert_eq!((bits(&gauges), result.statistics), plain);
 }
 
-/// Checks that every effect at its typical size completes a revolution and changes the gauge readings.
+/// Checks that every effect at its typical size lets a revolution complete and changes the gauge readings.
 #[test]
 fn every_effect_at_its_typical_size_acts() {
     let (_, plain) = run(&[]);

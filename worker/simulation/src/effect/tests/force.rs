@@ -140,7 +140,8 @@ fn plane_and_space_agree() {
     }
 }
 
-/// Checks that contact is detected on a surface that an effect raises above the head's own deflection.
+/// Checks that contact is still detected on a head surface that an effect raises by more than the head itself
+/// can deflect.
 #[test]
 fn nothing_of_a_raised_surface_lies_out_of_reach() {
     for (id, parameter, value) in [

@@ -1,12 +1,12 @@
-//! Tests of the load cell's lag on harmonic loads with a known response.
+//! Tests of the effect `load_cell_lag` on harmonic loads with a known response.
 use crate::effect::catalogue;
 use crate::math::elementary::{powf, sin_cos};
 use crate::model::description::Description;
 use crate::reference;
 use std::f64::consts::TAU;
 
-/// Checks that a logger with any number of poles delays a slow wave by its lag and attenuates a fast one as
-/// predicted, and that the lag of opposite sign restores the wave.
+/// Checks that the effect inverts a logger's filter: a load lagged by any number of poles has the predicted
+/// delay and attenuation, and the lag of opposite sign restores it.
 #[test]
 fn what_a_logger_took_is_restored() {
     let known = catalogue().iter().find(|d| d.id == "load_cell_lag");

@@ -1,5 +1,5 @@
-//! Test that no shape parameter is a mere factor of a size, from the contributions of each effect without a
-//! simulation.
+//! Test that no shape parameter merely scales a size's contribution, computed from what each effect changes
+//! in the machine, without a simulation.
 use crate::drive::DriveState;
 use crate::effect::{Descriptor, Effect, Hollow, Place, Role, SampleState, Unit, catalogue};
 use crate::model::extension::axial::RopeProperties;
@@ -14,8 +14,8 @@ fn scattered(k: usize) -> f64 {
     libm::sin(12.9898 * k as f64 + 0.3)
 }
 
-/// Concatenates all changes that an effect makes to the reference machine: load, added modes, lead of the
-/// crank, forces, laws along the ropes, surface, readings.
+/// Concatenates everything that an effect changes in the reference machine into one vector: load, added
+/// modes, lead of the crank, forces, laws along the ropes, surface, readings.
 fn trace(effect: Arc<dyn Effect>) -> Vec<f64> {
     let plain = Machine::new(reference::description(), 2).unwrap();
     let machine = Machine::with_effects(reference::description(), 2, &[effect]).unwrap();
@@ -88,7 +88,8 @@ fn trace(effect: Arc<dyn Effect>) -> Vec<f64> {
     trace
 }
 
-/// Returns the ratio of the second list of changes (of [`trace`]) to the first if they are proportional.
+/// Returns the factor between two proportional vectors of changes (see [`trace`]), second by first; `None` if
+/// they are not proportional.
 fn ratio(a: &[f64], b: &[f64]) -> Option<f64> {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let (aa, ab, bb) = (dot(a, a), dot(a, b), dot(b, b));
@@ -121,8 +122,8 @@ fn factor(d: &Descriptor) -> Option<String> {
     None
 }
 
-/// Checks that no shape is a factor of a size: the six signatures computed per shape would then be identical
-/// up to scale.
+/// Checks that no shape parameter merely scales a size: the six signatures that a diagnosis computes per
+/// shape would then be identical up to scale.
 #[test]
 fn no_shape_is_a_factor_of_a_size() {
     let mut shapes = 0;
@@ -137,7 +138,7 @@ fn no_shape_is_a_factor_of_a_size() {
     assert!(shapes > 20, "{shapes}");
 }
 
-/// Groove in the back head, of a given depth \[m\].
+/// Test effect that has the flaw: a groove in the back head of a given depth \[m\].
 #[derive(Debug)]
 struct Groove(f64);
 
@@ -151,7 +152,7 @@ impl Effect for Groove {
     }
 }
 
-/// Checks that a groove whose depth is a size times a shape is detected.
+/// Checks that an effect is refused whose groove depth is the product of a size and a shape.
 #[test]
 fn a_factor_is_found() {
     let groove = Descriptor::new("groove", "Groove")

@@ -9,16 +9,16 @@
 /// the arc's axis.
 pub(in super::super) type AngleAndHeight<'a> = &'a dyn Fn(usize) -> [f64; 2];
 
-/// Point of a face where a line of constant angle crosses it.
+/// Point on the face of an element through which a line of constant angle passes.
 #[derive(Clone, Debug)]
 pub(in super::super) struct Crossing {
-    /// Nodes and the values of their shape functions at the point.
+    /// Indices of the face's nodes with the values of their shape functions at the point.
     pub(in super::super) nodes: Vec<(usize, f64)>,
-    /// Height of the point \[m\].
+    /// Height of the point along the rope arc's axis \[m\].
     pub(in super::super) height: f64,
 }
 
-/// Line of constant angle across one face, from edge to edge.
+/// Section of a line of constant angle that crosses one element face, from edge to edge.
 #[derive(Clone, Debug)]
 pub(in super::super) enum Cut {
     /// Cut along which displacement is linear, given by its two ends.
@@ -28,8 +28,8 @@ pub(in super::super) enum Cut {
 }
 
 impl Cut {
-    /// Returns the points along the cut with their weights in the mean over the cut (trapezoidal or Simpson's
-    /// rule).
+    /// Returns the integration points of the cut with their weights in the mean over it (trapezoidal or
+    /// Simpson's rule).
     pub(in super::super) fn points(&self) -> impl Iterator<Item = (&Crossing, f64)> {
         let (points, shares): (&[Crossing], &[f64]) = match self {
             Self::Linear(points) => (points, &[0.5, 0.5]),
@@ -45,8 +45,8 @@ impl Cut {
         }
     }
 
-    /// Returns the points along the cut with their interpolation weights for the point at a height \[m\]
-    /// between the ends.
+    /// Returns the cut's points with the weights that interpolate displacement to a height \[m\] between its
+    /// ends.
     pub(in super::super) fn at(&self, height: f64) -> Vec<(&Crossing, f64)> {
         match self {
             Self::Linear([p, q]) => {
@@ -72,8 +72,8 @@ pub(in super::super) trait Face: Sync {
     fn cut(&self, face: &[usize], seen: AngleAndHeight<'_>, psi: f64) -> Option<Cut>;
 }
 
-/// Returns whether the line at angle `psi` passes between two corners. A corner exactly on the line counts as
-/// lying below it, so that no edge is crossed twice.
+/// Returns whether the line at angle `psi` passes between two face corners, whose angles are `a` and `b`. A
+/// corner exactly on the line counts as lying below it, so that no edge is crossed twice.
 fn crosses(a: f64, b: f64, psi: f64) -> bool {
     (a <= psi) != (b <= psi)
 }
@@ -110,7 +110,7 @@ impl Face for Quadrilateral {
 pub(super) struct Triangle;
 
 impl Triangle {
-    /// Returns the shape functions at area coordinates.
+    /// Returns the triangle's six shape functions at area coordinates.
     fn shape(l: &[f64; 3]) -> [f64; 6] {
         std::array::from_fn(|node| match node.checked_sub(3) {
             None => l[node] * (2.0 * l[node] - 1.0),
@@ -156,7 +156,7 @@ impl Face for Triangle {
     }
 }
 
-/// Returns the quadratic shape functions of the start, middle and end of a line at `t` in 0..1.
+/// Returns the quadratic interpolation weights of a line's start, middle and end at `t` in 0..1.
 fn along(t: f64) -> [f64; 3] {
     [
         (1.0 - t) * (1.0 - 2.0 * t),
@@ -165,8 +165,8 @@ fn along(t: f64) -> [f64; 3] {
     ]
 }
 
-/// Returns the argument at which the quadratic with given values at 0, 1/2 and 1 equals `level`, which lies
-/// between the first and the last value.
+/// Solves for the argument in 0..1 at which a quadratic function, given by its values at 0, 1/2 and 1, equals
+/// `level`, which lies between the first and the last value.
 fn reach([start, middle, end]: [f64; 3], level: f64) -> f64 {
     let constant = start - level;
     let linear = 4.0 * middle - 3.0 * start - end;

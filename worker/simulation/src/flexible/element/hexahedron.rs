@@ -19,7 +19,7 @@ use nalgebra::{DMatrix, SMatrix, Vector3};
 
 /// Number of nodal displacements of one element (24).
 const DOFS: usize = 24;
-/// Number of amplitudes of the incompatible modes.
+/// Number of internal amplitudes of the incompatible modes (9) of one element.
 const INNER: usize = 9;
 /// Number of scalar shape functions: 8 nodes and 3 incompatible modes.
 const SHAPES: usize = 8 + INNER / 3;
@@ -60,7 +60,8 @@ fn slopes(point: &[f64; 3]) -> [Vector3<f64>; 8] {
     })
 }
 
-/// Returns the shape functions of the nodes, then those of the incompatible modes.
+/// Returns the shape functions of the eight nodes, then those of the three incompatible modes, at a point of
+/// the reference cube.
 fn all_shapes(point: &[f64; 3]) -> [f64; SHAPES] {
     let nodes = shape(point);
     std::array::from_fn(|i| {
@@ -102,7 +103,7 @@ impl Element for Hexahedron {
         point.iter().fold(0.0_f64, |most, x| most.max(x.abs())) - 1.0
     }
 
-    /// Returns stiffness and mass after condensation of the incompatible modes.
+    /// Computes the element's stiffness and mass matrices after condensation of the incompatible modes.
     fn matrices(&self, nodes: &[[f64; 3]], steel: &Steel) -> Result<Matrices, InsideOut> {
         const ALL: usize = DOFS + INNER;
         let lame = steel.lame();
@@ -144,8 +145,8 @@ impl Element for Hexahedron {
     }
 }
 
-/// Returns the condensed mass `T' M T`, with M the mass over all shape functions and `T = (1, -follow)`: the
-/// amplitudes of the incompatible modes are `-follow` times the nodal displacements.
+/// Computes the mass `T' M T` over the nodal displacements, with M the mass over all shape functions and `T =
+/// (1, -follow)`: the amplitudes of the incompatible modes are `-follow` times the nodal displacements.
 fn condensed(weight: &[[f64; SHAPES]; SHAPES], follow: &SMatrix<f64, INNER, DOFS>) -> Square {
     // M T, of which every direction is its own
     let part = |shape: usize, k: usize, column: usize| {

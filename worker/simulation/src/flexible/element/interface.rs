@@ -4,13 +4,13 @@ use super::integral::jacobian;
 use super::steel::Steel;
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-/// Stiffness and mass matrices of one element; rows and columns are ordered node by node, x y z within a
-/// node.
+/// Stiffness and mass matrices of one element; rows and columns are ordered node by node, with x, y, z of
+/// each node together.
 #[derive(Clone, Debug)]
 pub(in crate::flexible) struct Matrices {
-    /// Stiffness over the nodal displacements [N/m].
+    /// Element stiffness matrix over the nodal displacements [N/m].
     pub(in crate::flexible) stiffness: DMatrix<f64>,
-    /// Mass over the nodal displacements \[kg\].
+    /// Element mass matrix over the nodal displacements \[kg\].
     pub(in crate::flexible) mass: DMatrix<f64>,
 }
 
@@ -18,7 +18,7 @@ pub(in crate::flexible) struct Matrices {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::flexible) struct InsideOut;
 
-/// Largest number of Newton steps when searching for reference coordinates.
+/// Largest number of Newton steps in the search for the reference coordinates of a position.
 const STEPS: usize = 30;
 
 /// Element kind, defined on its reference element. Arguments `nodes` are the positions of all nodes of one
@@ -30,13 +30,13 @@ pub(in crate::flexible) trait Element: Sync {
     /// Returns the kind of the element's faces.
     fn face(&self) -> &'static dyn Face;
 
-    /// Returns the reference coordinates of the element's centre.
     fn center(&self) -> [f64; 3];
 
-    /// Returns the n shape functions at a point.
+    /// Returns the values of the n nodal shape functions at a point of the reference element.
     fn shape(&self, point: &[f64; 3]) -> Vec<f64>;
 
-    /// Returns the n gradients of the shape functions with respect to the reference coordinates.
+    /// Returns the gradients of the n nodal shape functions with respect to the reference coordinates, at a
+    /// point.
     fn slopes(&self, point: &[f64; 3]) -> Vec<Vector3<f64>>;
 
     /// Returns how far a point lies outside the reference element, in reference coordinates; negative inside.
@@ -50,7 +50,7 @@ pub(in crate::flexible) trait Element: Sync {
 }
 
 impl dyn Element {
-    /// Returns the Jacobian `d x_column / d xi_row` at a point.
+    /// Computes the Jacobian `d x_column / d xi_row` of an element at a point of the reference element.
     pub(in crate::flexible) fn jacobian(
         &self,
         nodes: &[[f64; 3]],
@@ -59,8 +59,8 @@ impl dyn Element {
         jacobian(&self.slopes(point), nodes)
     }
 
-    /// Computes the reference coordinates of a position by Newton's method, or `None` if the iteration does
-    /// not converge.
+    /// Computes the reference coordinates of a position in an element by Newton's method, or `None` if the
+    /// iteration does not converge.
     pub(in crate::flexible) fn invert(
         &self,
         nodes: &[[f64; 3]],
@@ -85,8 +85,8 @@ impl dyn Element {
         None
     }
 
-    /// Returns the stress at the centre \[Pa\]: xx, yy, zz, xy, yz, zx. The incompatible modes have zero
-    /// gradient there and do not contribute.
+    /// Computes the stress at the element's centre \[Pa\] from the nodal displacements: xx, yy, zz, xy, yz,
+    /// zx. The incompatible modes have zero gradient there and do not contribute.
     pub(in crate::flexible) fn center_stress(
         &self,
         steel: &Steel,

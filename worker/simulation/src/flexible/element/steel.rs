@@ -3,11 +3,11 @@
 /// Isotropic, linear elastic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steel {
-    /// Young's modulus \[Pa\].
+    /// Young's modulus of the material \[Pa\].
     pub young: f64,
-    /// Poisson's ratio \[1\].
+    /// Poisson's ratio of the material \[1\].
     pub poisson: f64,
-    /// Density [kg/m3].
+    /// Density of the material [kg/m3].
     pub density: f64,
 }
 

@@ -12,7 +12,7 @@ const STEEL: Steel = Steel {
     density: 7850.0,
 };
 
-/// Returns the nodes of the reference tetrahedron, each mapped by `place`.
+/// Returns the ten nodes of the reference tetrahedron, each moved by the map `place`.
 fn tetrahedron(place: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<[f64; 3]> {
     let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let middles = EDGES.map(|[a, b]| [0, 1, 2].map(|k| 0.5 * (corners[a][k] + corners[b][k])));
@@ -107,8 +107,8 @@ fn only_rigid_motions_cost_no_energy() {
     }
 }
 
-/// Checks that the mass of a rigid translation is density times volume and its first moment is that of the
-/// centre of mass, with curved edges too. The Jacobian of [`curved`] has the determinant `1 - 0.24 x z`.
+/// Checks that the mass matrix gives density times volume for a rigid translation and the right centre of
+/// mass, with curved edges too. The Jacobian of [`curved`] has the determinant `1 - 0.24 x z`.
 #[test]
 fn mass_is_density_times_volume_with_curved_edges() {
     let nodes = tetrahedron(curved);

@@ -37,7 +37,7 @@ fn volume_coordinates(&[r, s, t]: &[f64; 3]) -> [f64; 4] {
     [1.0 - r - s - t, r, s, t]
 }
 
-/// Returns the shape functions at a point.
+/// Returns the ten nodal shape functions at a point of the reference tetrahedron.
 fn shape(point: &[f64; 3]) -> [f64; NODES] {
     let l = volume_coordinates(point);
     std::array::from_fn(|node| match node.checked_sub(4) {
@@ -61,8 +61,8 @@ fn slopes(point: &[f64; 3]) -> [Vector3<f64>; NODES] {
     })
 }
 
-/// Returns the reference coordinates of the point whose volume coordinates all equal `rest`, except that of
-/// `corner`.
+/// Returns the reference coordinates of the point on the line from the centre through `corner` whose other
+/// three volume coordinates equal `rest`.
 fn towards(corner: usize, rest: f64) -> [f64; 3] {
     let at = |k: usize| {
         if k == corner { 1.0 - 3.0 * rest } else { rest }

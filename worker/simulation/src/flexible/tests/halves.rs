@@ -2,15 +2,15 @@
 //! tables against directly applied loads, and rejected inputs.
 use super::*;
 
-/// Returns the same body meshed with each element kind.
+/// Returns the same body as a mesh of bricks and as a mesh of tetrahedra.
 fn of_every_kind() -> [Mesh; 2] {
     let bricks = mirrored();
     let tetrahedra = tetrahedra::of_bricks(&bricks);
     [bricks, tetrahedra]
 }
 
-/// Checks that the modes of the symmetric and the antisymmetric half model together are those of the whole
-/// body.
+/// Checks that the modes of the symmetric and of the antisymmetric half model, taken together, are the modes
+/// of the whole body.
 #[test]
 fn both_families_are_the_whole() {
     for mesh in of_every_kind() {

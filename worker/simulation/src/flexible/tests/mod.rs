@@ -162,7 +162,7 @@ fn a_row_of_bricks_bends_like_a_beam() {
     assert!((share - 1.0).abs() < 0.02, "{share}");
 }
 
-/// Length, height and width of the beam in the bending test \[m\].
+/// Length, height and width of the beam whose bending is tested \[m\].
 const BEAM: [f64; 3] = [2.0, 0.1, 0.08];
 
 /// Returns the tip deflection of [`BEAM`] under a tip force, divided by that of beam theory with shear.
@@ -192,7 +192,7 @@ fn a_cantilever_rings_at_its_natural_frequencies() {
     }
 }
 
-/// Length, height and width of the cantilever in the frequency test \[m\].
+/// Length, height and width of the cantilever whose frequencies are tested \[m\].
 const CANTILEVER: [f64; 3] = [3.0, 0.1, 0.06];
 
 /// Returns the four lowest frequencies of [`CANTILEVER`] divided by those of the slender beam; checks that

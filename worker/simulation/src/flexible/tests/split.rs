@@ -1,5 +1,5 @@
-//! Division of bricks into 10-node tetrahedra with matching faces: a mesh with a known solution for the
-//! second element kind.
+//! Division of a brick mesh into 10-node tetrahedra with matching faces, which gives the tests the same body
+//! in the second element kind.
 //!
 //! Every brick is divided from its node of lowest rank towards the faces that do not contain it; every face
 //! is divided from its own node of lowest rank, so that neighbours divide it alike. Ranks that are equal on
@@ -16,15 +16,16 @@ const FACES: [[usize; 4]; 6] = [
     [3, 0, 4, 7],
 ];
 
-/// End nodes of the edges that carry mid-edge nodes, in Gmsh's order: for a triangle and for a tetrahedron.
+/// Corners at the ends of a triangle's edges, in Gmsh's order of the mid-edge nodes; `OF_TETRAHEDRON`
+/// likewise.
 const OF_TRIANGLE: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 const OF_TETRAHEDRON: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [3, 0], [2, 3], [3, 1]];
 
-/// Mesh of bricks under division into tetrahedra.
+/// State of the division of a brick mesh into tetrahedra.
 pub(crate) struct Split<R> {
-    /// Positions \[m\]: the bricks' nodes, then the mid-edge nodes.
+    /// Positions of the nodes \[m\]: those of the bricks, then the added mid-edge nodes.
     pub(crate) nodes: Vec<[f64; 3]>,
-    /// Mid-edge nodes, keyed by the edge's end nodes in ascending order.
+    /// Index of the mid-edge node of each edge, keyed by the edge's end nodes in ascending order.
     pub(crate) middles: BTreeMap<[usize; 2], usize>,
     rank: R,
 }
@@ -40,7 +41,7 @@ impl<R: Fn(usize) -> usize> Split<R> {
         }
     }
 
-    /// Divides bricks into tetrahedra of 10 nodes each.
+    /// Divides bricks into 10-node tetrahedra; returns their node indices.
     pub(crate) fn tetrahedra(&mut self, bricks: &[usize]) -> Vec<usize> {
         let mut tetrahedra = Vec::new();
         for brick in bricks.chunks_exact(8) {
@@ -55,7 +56,7 @@ impl<R: Fn(usize) -> usize> Split<R> {
         tetrahedra
     }
 
-    /// Divides faces into triangles of 6 nodes each.
+    /// Divides quadrilateral faces into 6-node triangles; returns their node indices.
     pub(crate) fn triangles(&mut self, faces: &[usize]) -> Vec<usize> {
         let mut triangles = Vec::new();
         for face in faces.chunks_exact(4) {
@@ -71,7 +72,8 @@ impl<R: Fn(usize) -> usize> Split<R> {
         ranked.expect("an element has nodes")
     }
 
-    /// Divides a face into two triangles that keep its orientation.
+    /// Returns the corners of the two triangles into which a quadrilateral face is divided, with the face's
+    /// orientation.
     fn corners(&self, face: &[usize]) -> [[usize; 3]; 2] {
         let first = self.lowest(face);
         let at = face.iter().position(|&node| node == first);

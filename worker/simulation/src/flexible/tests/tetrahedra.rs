@@ -3,7 +3,8 @@
 use super::{split::Split, *};
 use std::collections::BTreeSet;
 
-/// Returns a position in micrometres, with z without sign, so that a node and its mirror image are equal.
+/// Returns the key of a node position: coordinates in micrometres, z without sign, so that mirror images have
+/// equal keys.
 fn place(&[x, y, z]: &[f64; 3]) -> [i64; 3] {
     #[expect(clippy::cast_possible_truncation, reason = "bodies of some metres")]
     let cell = |x: f64| (x * 1e6).round() as i64;

@@ -1,27 +1,29 @@
 //! Weighted sum of splines on one grid, evaluated as a single spline.
 //!
-//! If many places are evaluated with the same weights, the curves are summed knot by knot once, and every
-//! place costs the evaluation of one curve. The adjoint works likewise: forces at places are distributed to
-//! the knots, and the generalised force on each curve is gathered from the knots at the end.
+//! If the same weights apply at many positions, the curves are summed once at each grid point (knot), and
+//! each position costs the evaluation of one curve. The adjoint works likewise: forces at positions are
+//! distributed to the knots, and the generalised force on each curve is gathered from the knots at the end.
 use super::{SplinePosition, Splines, ValueAndDerivatives};
 
-/// Weighted sums of the curves of [`Splines`]: with the weights and with the weights' time derivatives.
+/// Two sums of the curves of [`Splines`], evaluated like single splines: weighted with the weights, and with
+/// the weights' time derivatives.
 #[derive(Clone, Debug, Default)]
 pub struct WeightedSplines {
-    /// Per knot: value and scaled second derivative of the sum with the weights, then of the sum with their
-    /// rates.
+    /// Values at each knot: value and scaled second derivative of the sum with the weights, then of the sum
+    /// with the weights' time derivatives.
     knots: Vec<[f64; 4]>,
 }
 
-/// Forces at places of a grid, distributed to its knots: per knot, the sums weighted for its value and for
-/// its scaled second derivative.
+/// Forces at positions on a spline grid, distributed to its knots: sums weighted for the value and for the
+/// scaled second derivative at each knot.
 #[derive(Clone, Debug, Default)]
 pub struct KnotForces {
     knots: Vec<[f64; 2]>,
 }
 
 impl WeightedSplines {
-    /// Computes the sums of the curves with `weights` and with `rates`; both hold one entry per curve.
+    /// Computes the two sums of the curves, with `weights` and with their time derivatives `rates`; both hold
+    /// one number per curve.
     pub fn assemble(&mut self, splines: &Splines, weights: &[f64], rates: &[f64]) {
         let points = splines.points();
         self.knots.resize(points, [0.0; 4]);
@@ -38,8 +40,8 @@ impl WeightedSplines {
         }
     }
 
-    /// Returns value and derivatives of the sum with the weights at a place, and the value of the sum with
-    /// the rates.
+    /// Returns value and derivatives of the sum with the weights at a grid position, and the value of the sum
+    /// with the weights' time derivatives.
     #[inline]
     pub fn at(&self, splines: &Splines, place: &SplinePosition) -> (ValueAndDerivatives, f64) {
         let [y0, m0, dy0, dm0] = self.knots[place.left];
@@ -64,8 +66,8 @@ impl WeightedSplines {
         (jet, rate)
     }
 
-    /// Computes, at several places, values and slopes of the sum with the weights and values of the sum with
-    /// the rates.
+    /// Computes, at several grid positions, values and slopes of the sum with the weights and values of the
+    /// sum with the weights' time derivatives.
     pub fn evaluate_all(
         &self,
         splines: &Splines,
@@ -90,7 +92,7 @@ impl KnotForces {
         self.knots.resize(splines.points(), [0.0; 2]);
     }
 
-    /// Distributes `force` at a place on the grid to the neighbouring knots.
+    /// Distributes `force` at a grid position to the neighbouring knots.
     #[inline]
     pub fn add(&mut self, place: &SplinePosition, force: f64) {
         let [a, b, cubic_a, cubic_b] = place.weights();
@@ -102,7 +104,8 @@ impl KnotForces {
         *bend += force * cubic_b;
     }
 
-    /// Computes, for each curve, the sum over all places of force times the curve's value.
+    /// Computes the generalised force on each curve: the sum, over all positions, of force times the curve's
+    /// value.
     pub fn gather(&self, splines: &Splines, sums: &mut [f64]) {
         sums.fill(0.0);
         let curves = splines.knots.chunks_exact(splines.curves.max(1));

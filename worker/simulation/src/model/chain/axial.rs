@@ -1,6 +1,8 @@
-//! Axial effect laws of a rope: forces between its cylinders in addition to those of the joints.
+//! Axial effect laws of a rope: forces that effects of the catalogue add between its cylinders, on top of the
+//! joints' forces.
 //!
-//! A law depends only on extension and its rate, not on whether the cylinders move in the plane or in space.
+//! A law depends only on a joint's extension and its rate, not on whether the cylinders move in the plane or
+//! in space.
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
 use crate::element::bushing::{AxialTension, LinkLoad};
@@ -12,8 +14,8 @@ use crate::model::extension::LineForceValue;
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Returns the result of the axial effect laws for a joint between two cylinders, with its extension
-    /// \[m\] and rate [m/s]; `None` for an end joint or without such laws.
+    /// Evaluates the axial effect laws of the rope at a joint between two cylinders; returns their force with
+    /// the joint's extension \[m\] and its rate [m/s]; `None` for an end joint or a rope without such laws.
     #[inline]
     pub(super) fn axial_effect(
         &self,
@@ -28,8 +30,8 @@ impl Chain {
         Some((laws.pull(extension, rate, memories.unwrap_or(&[])), at))
     }
 
-    /// Returns the axial force of the effect laws at a joint, with its derivatives and its dissipated power;
-    /// `None` as for `along`.
+    /// Returns the additional tension of the axial effect laws at a joint, with its derivatives and its
+    /// dissipated power; `None` for an end joint or a rope without such laws.
     #[inline]
     pub(super) fn pull(
         &self,
@@ -46,7 +48,7 @@ impl Chain {
         })
     }
 
-    /// Adds the forces of the axial effect laws, without the joints' own forces.
+    /// Adds the forces of the axial effect laws on the cylinders to `force`, without the joints' own forces.
     pub(crate) fn add_pulls(&self, joints: &Joints<'_>, state: &ChainState, force: &mut [f64]) {
         for joint in 1..self.count {
             let Some(pull) = self.pull(joint, joints, state) else {
@@ -93,7 +95,7 @@ impl Chain {
         state.memory = memory;
     }
 
-    /// Returns extension \[m\] and rate [m/s] of a joint between two cylinders.
+    /// Returns the extension \[m\] of a joint between two cylinders and its rate [m/s].
     fn extension(&self, joint: usize, joints: &Joints<'_>, state: &ChainState) -> Option<[f64; 2]> {
         if self.in_plane(joint) {
             let [i, j] = self.plane_markers(joint, &state.plane);

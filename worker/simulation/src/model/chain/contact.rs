@@ -1,4 +1,5 @@
-//! Contact forces between a chain and an arc, on the cylinders and on the structure that carries the arc.
+//! Contact forces between a chain (rope) and an arc, on the chain's cylinders and on the beam or head that
+//! carries the arc.
 use super::parts::Chain;
 use super::points::{CylinderContact, Points};
 use super::state::ChainState;
@@ -13,7 +14,7 @@ use crate::model::pose::InPlane;
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Evaluates the contact points for the poses in `state`.
+    /// Evaluates geometry and force law at the contact points for the cylinder poses in `state`.
     pub(crate) fn evaluate_contact(
         &self,
         surface: &Surface<'_>,
@@ -27,8 +28,8 @@ impl Chain {
         }
     }
 
-    /// Adds the contact forces on the cylinders and on the `border` coordinates: the beam angle, then the
-    /// modes. An arc fixed in W has no border.
+    /// Evaluates the contact and adds its forces on the cylinders and on the `border` coordinates, which are
+    /// the beam angle and the modes. An arc fixed in the world frame W has no border.
     pub(crate) fn add_contact(
         &self,
         surface: &Surface<'_>,
@@ -42,7 +43,8 @@ impl Chain {
         state.deepest = state.points.deepest();
     }
 
-    /// Adds the forces of the contact points, which must already be evaluated in `state`.
+    /// Adds the contact forces, for contact points already evaluated in `state`, to the forces on cylinders
+    /// and border.
     pub(crate) fn add_evaluated_contact(
         &self,
         surface: &Surface<'_>,
@@ -78,8 +80,8 @@ impl Chain {
         }
     }
 
-    /// Adds the forces of all contact points to the cylinders' rows; returns the reaction on the carrier of
-    /// the arc.
+    /// Adds the forces of all contact points to the generalised forces of the cylinders; returns the reaction
+    /// on the beam, which carries the arc.
     fn accumulate_contact_forces<const A: usize>(
         &self,
         points: &Points,

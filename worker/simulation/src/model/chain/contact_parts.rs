@@ -1,7 +1,9 @@
-//! Contact tangent of a chain in two matrices: without the rate-dependent part, and complete.
+//! Tangent of a chain's contact, added to two matrices at once: without its rate-dependent part, and
+//! complete.
 //!
-//! With the derivatives `G` of a point's penetration and `c` of its force with respect to the penetration's
-//! rate, the rate-dependent part is `c G G^T`, without any second derivatives.
+//! With the derivatives `G` of a contact point's penetration with respect to the coordinates, and `c` of its
+//! force with respect to the penetration's rate, the rate-dependent part is `c G G^T`, without any second
+//! derivatives.
 use super::contact_point::{BORDER, Derivatives, FEW};
 use super::contact_tangent::{Sums, Tangent};
 use super::parts::Chain;
@@ -19,7 +21,8 @@ use pulp::{Arch, Simd, WithSimd};
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Adds the contact's `-K` to the first matrix and its `-gamma D - K` to the second.
+    /// Adds the contact's negative stiffness `-K` to the first matrix and its `-gamma D - K`, with damping D,
+    /// to the second.
     pub(crate) fn add_contact_stiffness_and_tangent(
         &self,
         on: (&Surface<'_>, &Impact),

@@ -13,24 +13,25 @@ type V2 = Vector2<f64>;
 pub(super) const OWN: usize = 4;
 /// Largest number of border coordinates, which all cylinders share: the beam angle and the modes.
 pub(crate) const BORDER: usize = MAX_MODES + 1;
-/// Number of border coordinates that suffices for a usual head; with this bound, sums are short enough to be
-/// unrolled.
+/// Number of border coordinates (beam angle, modes) that suffices for a usual head; arrays of this length are
+/// short enough for loops to be unrolled.
 pub(crate) const FEW: usize = 8;
 
-/// Derivatives of penetration and force of a contact point, with room for `B` border coordinates (beam angle,
+/// Derivatives of a contact point's penetration and force, with room for `B` border coordinates (beam angle,
 /// modes).
 pub(super) struct Derivatives<const B: usize> {
-    /// Derivatives of the penetration with respect to the cylinder's coordinates; `own_force` holds those of
-    /// the force.
+    /// Derivatives of the penetration with respect to the cylinder's coordinates; the field `own_force` holds
+    /// those of the force.
     pub(super) own: [f64; OWN],
     pub(super) own_force: [f64; OWN],
     /// Derivatives of the point's position with respect to the cylinder's coordinates.
     pub(super) moved: [V2; OWN],
-    /// Derivatives of the penetration with respect to the border coordinates; `force_by` holds those of the
-    /// force.
+    /// Derivatives of the penetration with respect to the border coordinates (beam angle, modes); the field
+    /// `force_by` holds those of the force.
     pub(super) gradient: [f64; B],
     pub(super) force_by: [f64; B],
-    /// Slopes of the mode shapes along the arc; zero for the beam angle.
+    /// Slopes of the mode shapes along the arc at the contact point, one per border coordinate; zero for the
+    /// beam angle.
     pub(super) slope: [f64; B],
 }
 
@@ -100,21 +101,22 @@ impl<const B: usize> Derivatives<B> {
     }
 }
 
-/// Loaded contact point of a cylinder in the plane, with the derivatives of its force and arc angle that a
-/// measured channel needs.
+/// Contact point under load of a cylinder in the plane, with the derivatives of its force and arc angle;
+/// gauge stress is differentiated with them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LoadedPoint<const B: usize> {
-    /// Contact force \[N\]; `angle` is the arc angle \[rad\].
+    /// Contact force \[N\]; the field `angle` holds the arc angle of the point \[rad\].
     pub(crate) force: f64,
     pub(crate) angle: f64,
     /// Derivatives of the force with respect to stiffness and damping of the contact law.
     pub(crate) by_law: [f64; 2],
-    /// Derivatives of the force with respect to the cylinder's coordinates and to their rates; `angle_by`
-    /// holds those of the arc angle.
+    /// Derivatives of the contact force with respect to the cylinder's coordinates and to their rates; the
+    /// field `angle_by` holds those of the arc angle.
     pub(crate) force_by: [[f64; 3]; 2],
     pub(crate) angle_by: [f64; 3],
-    /// Derivatives of the force with respect to the border coordinates (beam angle, then modes) and to their
-    /// rates. Of these coordinates, only the beam angle changes the arc angle (`angle_by_beam`).
+    /// Derivatives of the contact force with respect to the border coordinates (beam angle, then modes) and
+    /// to their rates. Of these coordinates, only the beam angle changes the arc angle (field
+    /// `angle_by_beam`).
     pub(crate) force_by_border: [[f64; B]; 2],
     pub(crate) angle_by_beam: f64,
 }

@@ -18,7 +18,8 @@ use crate::model::contact::Surface;
 use crate::model::layout::Motion;
 use crate::model::pose::InPlane;
 
-/// Accumulator for the contact tangent of one chain, with room for `B` border coordinates.
+/// Accumulator for the contact tangent of one chain, with room for `B` border coordinates (beam angle,
+/// modes).
 pub(super) struct Tangent<'a, const B: usize> {
     pub(super) chain: &'a Chain,
     pub(super) surface: &'a Surface<'a>,
@@ -29,12 +30,12 @@ pub(super) struct Tangent<'a, const B: usize> {
     pub(super) corner: [[f64; B]; B],
 }
 
-/// Tangent entries summed over the contact points of one cylinder.
+/// Tangent matrix of one cylinder's contact, summed over its contact points.
 pub(super) struct Sums<const B: usize> {
     pub(super) own: [[f64; OWN]; OWN],
-    /// Tangent entries in the cylinder's rows and the border's columns.
+    /// Sums in the rows of the cylinder and the columns of the border.
     pub(super) right: [[f64; B]; OWN],
-    /// Tangent entries in the border's rows and the cylinder's columns, transposed.
+    /// Sums in the rows of the border and the columns of the cylinder, stored transposed.
     pub(super) bottom: [[f64; B]; OWN],
 }
 
@@ -43,7 +44,8 @@ pub(super) struct Sums<const B: usize> {
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Adds the contact's tangent to the cylinders' blocks and to the border, if there is one.
+    /// Adds the tangent of the chain's contact to the matrix: to the cylinders' blocks and to the border, if
+    /// there is one.
     pub(crate) fn add_contact_tangent(
         &self,
         surface: &Surface<'_>,
@@ -140,7 +142,7 @@ impl<const B: usize> Tangent<'_, B> {
         }
     }
 
-    /// Adds the tangent entries of one cylinder's contact points to its block and to the border of the
+    /// Adds the sums over one cylinder's contact points to the cylinder's block and to the border of the
     /// matrix.
     pub(super) fn add_sums<const A: usize>(
         &self,
@@ -163,8 +165,7 @@ impl<const B: usize> Tangent<'_, B> {
         }
     }
 
-    /// Adds the tangent of one contact point to the sums of its cylinder and to the entries within the
-    /// border.
+    /// Adds the tangent of one contact point to the sums of its cylinder and to the part within the border.
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
     pub(super) fn add_point<const A: usize>(

@@ -9,8 +9,8 @@ use nalgebra::Vector3;
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Returns the part of the static potential of axial effect laws that is not stored energy \[J\]:
-    /// non-elastic force times extension.
+    /// Returns the potential of the non-elastic forces of axial effect laws in a static state \[J\]: force
+    /// times extension.
     pub(crate) fn non_elastic_potential(&self, joints: &Joints<'_>, state: &ChainState) -> f64 {
         let mut sum = 0.0;
         if joints.axial.is_none() {
@@ -25,7 +25,7 @@ impl Chain {
     }
 
     /// Adds the elastic energy of joints and contact and the gravitational energy of the cylinders to `sum`
-    /// \[J\]. The contact points must have been evaluated by [`Self::touch`].
+    /// \[J\]. The contact points must already be evaluated in `state`.
     pub(crate) fn add_potential(
         &self,
         sum: &mut f64,

@@ -16,7 +16,7 @@ type V3 = Vector3<f64>;
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Computes the poses of all cylinders.
+    /// Computes the poses of all cylinders from coordinates `q` and rates `v` into `state`.
     pub(crate) fn pose(&self, q: &[f64], v: &[f64], state: &mut ChainState) {
         let width = self.motion.width();
         let (q, v) = (&q[self.range()], &v[self.range()]);
@@ -38,7 +38,8 @@ impl Chain {
         }
     }
 
-    /// Adds the weight of the cylinders under `gravity` [m/s2] and their velocity-dependent inertia terms.
+    /// Adds the weight of the cylinders under `gravity` [m/s2] and their velocity-dependent inertia terms to
+    /// the generalised forces.
     pub(crate) fn add_weights(&self, gravity: &V3, state: &ChainState, force: &mut [f64]) {
         let [along, across] = self.inertia;
         let weight = gravity * self.mass;
@@ -64,14 +65,15 @@ impl Chain {
         }
     }
 
-    /// Computes only the load of the joint at the chain's head end, and stores it in `state`.
+    /// Computes only the load of the joint that fixes the chain to the head, and stores it in `state`.
     pub(crate) fn load_head(&self, joints: &Joints<'_>, state: &mut ChainState) {
         if let Some(([i, j], law)) = self.link(self.count, joints, state) {
             state.joints[self.count] = law.load(&i, &j);
         }
     }
 
-    /// Adds the joints' forces on the cylinders; the loads are stored in `state`.
+    /// Adds the forces of all joints on the cylinders to the generalised forces; stores the joints' loads in
+    /// `state`.
     pub(crate) fn add_joints(
         &self,
         joints: &Joints<'_>,
@@ -87,7 +89,8 @@ impl Chain {
         }
     }
 
-    /// Adds the forces of the two end joints only; the loads are stored in `state`.
+    /// Adds the forces of the two end joints on the cylinders to the generalised forces; stores the joints'
+    /// loads in `state`.
     pub(crate) fn add_ends(&self, joints: &Joints<'_>, state: &mut ChainState, force: &mut [f64]) {
         if self.motion == Motion::Plane {
             self.add_plane_ends(joints, state, force);
@@ -116,7 +119,7 @@ impl Chain {
         state.joints[joint] = load;
     }
 
-    /// Adds a joint's load to the one or two cylinders that it connects, in space.
+    /// Adds a joint's load to the generalised forces of the one or two cylinders that it connects, in space.
     pub(super) fn add_load(
         &self,
         joint: usize,

@@ -10,7 +10,7 @@ use crate::state::StateRef;
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Subtracts `M(q) a` of the cylinders from `out`.
+    /// Subtracts the product of the cylinders' mass matrix `M(q)` and the accelerations `a` from `out`.
     pub(crate) fn subtract_inertia<T: MatrixEntry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
         let [along, across] = self.inertia;
         let of = self.range();
@@ -36,7 +36,7 @@ impl Chain {
         }
     }
 
-    /// Adds the cylinders' `M(q)` times the factor `mass` to the matrix.
+    /// Adds the cylinders' mass matrix `M(q)`, multiplied by the factor `mass`, to the system matrix.
     pub(crate) fn add_inertia_blocks(&self, q: &[f64], mass: f64, matrix: &mut Bordered) {
         let [along, across] = self.inertia;
         match matrix {
@@ -65,7 +65,8 @@ impl Chain {
         }
     }
 
-    /// Adds the derivatives of the velocity-dependent terms and of `M(q) a` to the matrix `-damping D - K`.
+    /// Adds the contribution of the velocity-dependent inertia terms and of `M(q) a` to the matrix `-damping
+    /// D - K`.
     pub(crate) fn add_spin_tangent(
         &self,
         StateRef { q, v, .. }: StateRef<'_>,
@@ -126,8 +127,9 @@ impl Chain {
         ]
     }
 
-    /// Adds `lambda W` to the matrix, with the diagonal `W` weighting a cylinder's displacement by 1 and its
-    /// rotations by the squared length, so that both measure displacement of its ends.
+    /// Adds `lambda W` to the matrix for the equilibrium search; the diagonal `W` weights a cylinder's
+    /// displacement by 1 and its rotations by the squared length, so that both measure displacement of its
+    /// ends.
     pub(crate) fn add_static_weight(&self, lambda: f64, matrix: &mut Bordered) {
         let turning = lambda * self.pitch * self.pitch;
         for j in self.first..self.first + self.count {

@@ -1,4 +1,4 @@
-//! Markers of a chain's joints.
+//! Markers (frames on the connected bodies) of a chain's joints.
 use super::parts::{Chain, EndJoint, Joints};
 use super::state::ChainState;
 use crate::element::bushing::{Bushing, LinkLoad, Marker};
@@ -8,7 +8,7 @@ use crate::model::layout::Motion;
 use crate::model::pose::{PlanePose, Pose};
 use nalgebra::{Matrix3, Vector2};
 
-/// Side of a joint (cylinder I or J) to which the rows of a block belong.
+/// Side of a joint: whether a cylinder is body I or body J of it.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Side {
     I,
@@ -35,8 +35,8 @@ impl Chain {
         ]
     }
 
-    /// Returns the load of the joint at the head for the given coordinates and rates, independent of the
-    /// poses stored in a `ChainState`; `None` if the end is free.
+    /// Computes the load of the joint at the chain's head end for the given coordinates and rates,
+    /// independent of the poses stored in a `ChainState`; `None` if that end is free.
     pub(crate) fn head_load(&self, joints: &Joints<'_>, q: &[f64], v: &[f64]) -> Option<LinkLoad> {
         let held = joints.head?;
         let pose = self.pose_at(self.count - 1, q, v);
@@ -44,8 +44,8 @@ impl Chain {
         Some(held.law.load(&i, &j))
     }
 
-    /// Returns the load of the joint at the base for the given coordinates and rates; `None` if the end is
-    /// free.
+    /// Computes the load of the joint at the chain's base end for the given coordinates and rates; `None` if
+    /// that end is free.
     pub(crate) fn base_load(&self, joints: &Joints<'_>, q: &[f64], v: &[f64]) -> Option<LinkLoad> {
         let held = joints.base?;
         let pose = self.pose_at(0, q, v);
@@ -71,8 +71,8 @@ impl Chain {
         }
     }
 
-    /// Returns the markers I and J of a joint and its law; `None` for a free end. Joints between cylinders in
-    /// the plane use `plane_markers` instead.
+    /// Returns the markers I and J of a joint and its force law; `None` for a free end. Joints between
+    /// cylinders in the plane use `plane_markers` instead.
     pub(super) fn link<'a>(
         &self,
         joint: usize,
@@ -96,8 +96,8 @@ impl Chain {
 }
 
 impl EndJoint<'_> {
-    /// Returns the markers of a joint with their axes permuted for a pinned law, whose axis is the holding
-    /// body's z axis.
+    /// Returns the markers of an end joint; for a pinned joint their axes are permuted such that the law's
+    /// axis is the z axis of the body that holds the end.
     fn with_law_axes(&self, markers: &[Marker; 2]) -> [Marker; 2] {
         if !self.pinned {
             return *markers;

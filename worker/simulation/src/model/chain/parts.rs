@@ -1,13 +1,13 @@
-//! Constant data of a chain (blocks, cylinders), and its joints at one instant.
+//! Constant data of a chain of cylinders, and the joint laws that hold at one instant.
 use crate::element::bushing::{Bushing, Marker};
 use crate::model::contact::{GAUSS, POINTS};
 use crate::model::extension::axial::AxialLaws;
 use crate::model::layout::Motion;
 
-/// Position of a chain's blocks among the unknowns, and the properties of its cylinders.
+/// Chain of equal cylinders (a rope): its position among the unknowns and the properties of its cylinders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chain {
-    /// Index of the first cylinder's block.
+    /// Index of the matrix block of the chain's first cylinder.
     pub first: usize,
     /// Number of cylinders, at least one.
     pub count: usize,
@@ -50,26 +50,27 @@ impl Chain {
     }
 }
 
-/// Held end of a chain: marker on the holding body and law of the joint.
+/// End of a chain that is held by another body: marker on that body and force law of the joint.
 #[derive(Clone, Copy, Debug)]
 pub struct EndJoint<'a> {
-    /// Marker on the holding body.
+    /// Marker on the body that holds the end.
     pub marker: Marker,
-    /// Law of the joint.
+    /// Force law of the end joint.
     pub law: &'a Bushing,
-    /// Whether the law's axis is a pin along the holding body's z axis instead of the chain's axis.
+    /// Whether the joint is pinned: its law's axis is then a pin along the holding body's z axis instead of
+    /// the chain's axis.
     pub pinned: bool,
 }
 
-/// Joints of a chain at one instant.
+/// Joints of a chain with their force laws, at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Joints<'a> {
-    /// Law of the joints between two cylinders.
+    /// Force law of the joints between two cylinders.
     pub inner: &'a Bushing,
     /// Joint that holds the first cylinder; `None` if that end is free.
     pub base: Option<EndJoint<'a>>,
     /// Joint that holds the last cylinder; `None` if that end is free.
     pub head: Option<EndJoint<'a>>,
-    /// Axial effect laws between the cylinders.
+    /// Axial effect laws that act between the cylinders; `None` without any.
     pub axial: Option<AxialLaws<'a>>,
 }

@@ -1,6 +1,6 @@
-//! Joints between cylinders that move in the plane, and their tangent.
+//! Forces and tangent of the joints between cylinders that move in the plane.
 //!
-//! The two end joints use their spatial form here too.
+//! The two end joints use their spatial form in the plane too.
 use super::link::Side;
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
@@ -13,7 +13,8 @@ use crate::linear::{Blocks, MatrixBlock};
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Adds the joints' forces on cylinders in the plane; the loads are stored in `state`.
+    /// Adds the forces of all joints on cylinders in the plane to the generalised forces; stores the joints'
+    /// loads in `state`.
     pub(super) fn add_plane_joints(
         &self,
         joints: &Joints<'_>,
@@ -69,7 +70,7 @@ impl Chain {
         }
     }
 
-    /// Adds the forces of the two end joints; the loads are stored in `state`.
+    /// Adds the forces of the two end joints on cylinders in the plane; stores the joints' loads in `state`.
     pub(super) fn add_plane_ends(
         &self,
         joints: &Joints<'_>,
@@ -113,8 +114,8 @@ impl Chain {
         }
     }
 
-    /// Subtracts the joints' tangent, without the rate-dependent part from the first matrix and complete from
-    /// the second.
+    /// Subtracts the tangent of the joints between cylinders: without its rate-dependent part from the first
+    /// matrix, complete from the second.
     pub(super) fn add_plane_stiffness_and_tangent(
         &self,
         joints: &Joints<'_>,

@@ -13,73 +13,77 @@ type V2 = Vector2<f64>;
 /// One value per contact point of a cylinder.
 type Each = [f64; POINTS];
 
-/// Contact points of the cylinders that may touch, for one evaluation; allocated once.
+/// Contact points of the cylinders that may touch the arc, in one evaluation; buffers are allocated once.
 #[derive(Clone, Debug, Default)]
 pub struct Points {
-    /// Indices of the cylinders that may touch, in ascending order.
+    /// Indices of the cylinders that may touch the arc, in ascending order.
     cylinders: Vec<usize>,
-    /// Position of each point along its cylinder, from the centre \[m\]; `share` is the point's share of the
-    /// contact coefficients.
+    /// Position of each point along its cylinder's axis, from the centre \[m\]; the field `share` holds its
+    /// share of the contact coefficients.
     along: Each,
     share: Each,
-    /// Position of the cylinder's centre relative to the arc's centre \[m\]; `place` is that of the point.
+    /// Position of each cylinder's centre relative to the arc's centre \[m\]; the field `place` holds that of
+    /// each contact point.
     toward: [Vec<Each>; 2],
     place: [Vec<Each>; 2],
-    /// Velocities of the points [m/s].
+    /// Velocities of the contact points [m/s].
     velocity: [Vec<Each>; 2],
-    /// Arc angle of the cylinder's centre in the beam frame \[rad\]; `angle` is that of the point. Both are 0
-    /// for a circular surface.
+    /// Arc angle of each cylinder's centre in the beam frame \[rad\]; the field `angle` holds that of each
+    /// contact point. Both are 0 for a circular surface.
     bearing: Vec<Each>,
     angle: Vec<Each>,
-    /// Positions of the points on the grid of the arc's mode shapes, if the arc has any.
+    /// Positions of the contact points on the grid of the arc's mode shapes; meaningless without modes.
     on_grid: Vec<[SplinePosition; POINTS]>,
-    /// Height of the surface above its circle \[m\]; `slope` is its derivative with respect to the arc angle
-    /// [m/rad], `rising` its rate [m/s].
+    /// Height of the arc's deformed surface above the undeformed circle at each contact point \[m\]; `slope`
+    /// is its derivative with respect to the arc angle [m/rad], `rising` its rate [m/s].
     height: Vec<Each>,
     slope: Vec<Each>,
     rising: Vec<Each>,
-    /// Penetration \[m\]; `rate` is its rate [m/s].
+    /// Penetration of each contact point \[m\]; the field `rate` holds its rate [m/s].
     depth: Vec<Each>,
     rate: Vec<Each>,
-    /// Derivatives of the penetration with respect to the point's position; `by_beam` is that with respect to
-    /// the beam angle.
+    /// Derivatives of the penetration with respect to the contact point's position; the field `by_beam` holds
+    /// those with respect to the beam angle.
     by_point: [Vec<Each>; 2],
     by_beam: Vec<Each>,
-    /// Normal contact force, never negative \[N\]; `lost` is the power dissipated by the damping \[W\].
+    /// Normal contact force at each point, never negative \[N\]; the field `lost` holds the power dissipated
+    /// by the damping \[W\].
     force: Vec<Each>,
     lost: Vec<Each>,
 }
 
-/// Sums over the contact points of one cylinder.
+/// Contact load of one cylinder, summed over its contact points.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CylinderContact {
     /// Sum of the normal contact forces \[N\].
     pub(super) total: f64,
-    /// Force on the cylinder \[N\]; `bend` is its first moment along the axis [N m].
+    /// Contact force on the cylinder as a vector \[N\]; the field `bend` holds its first moment along the
+    /// cylinder's axis [N m].
     pub(super) push: V2,
     pub(super) bend: V2,
-    /// Moment on the beam [N m].
+    /// Moment of the contact forces on the beam [N m].
     pub(super) beam: f64,
-    /// Power dissipated by the damping \[W\].
+    /// Power dissipated by the contact damping \[W\].
     pub(super) lost: f64,
 }
 
 /// Loaded contact point with the quantities that a tangent needs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContactPoint {
-    /// Position along the cylinder from its centre \[m\]; `velocity` is the point's velocity [m/s].
+    /// Position of the point along the cylinder's axis, from the centre \[m\]; the field `velocity` holds the
+    /// point's velocity [m/s].
     pub(super) along: f64,
     pub(super) velocity: V2,
-    /// Arc angle in the beam frame \[rad\]; 0 for a circular surface.
+    /// Arc angle of the point in the beam frame \[rad\]; 0 for a circular surface.
     pub(super) angle: f64,
-    /// First derivatives of the penetration with respect to the point (`by_point`) and the beam angle
-    /// (`by_beam`); `curvature` holds the second derivatives.
+    /// First derivatives of the penetration with respect to the point's position; the field `by_beam` holds
+    /// that with respect to the beam angle, `curvature` the second derivatives.
     pub(super) by_point: V2,
     pub(super) by_beam: f64,
     pub(super) curvature: Curvature,
-    /// Position on the grid of the arc's mode shapes, if the arc has any.
+    /// Position of the point on the grid of the arc's mode shapes; meaningless without modes.
     pub(super) on_grid: SplinePosition,
-    /// Force of the contact law with its derivatives, multiplied by the point's share.
+    /// Contact force with its derivatives, multiplied by the point's share of the contact coefficients.
     pub(super) law: ImpactForce,
 }
 
@@ -110,12 +114,13 @@ impl Points {
         }
     }
 
-    /// Returns the indices of the cylinders that may touch, in ascending order.
+    /// Returns the indices of the cylinders that may touch the arc, in ascending order.
     pub(super) fn cylinders(&self) -> &[usize] {
         &self.cylinders
     }
 
-    /// Collects the contact points of all cylinders that may touch, and evaluates the contact law there.
+    /// Collects the contact points of all cylinders that may touch the arc, and evaluates the contact law
+    /// there.
     pub(super) fn evaluate<'a, const A: usize, P: InPlane<A> + 'a>(
         &mut self,
         chain: &Chain,
@@ -138,8 +143,8 @@ impl Points {
         );
     }
 
-    /// Replaces the contact forces by their derivatives with respect to the parameter `by` of the contact
-    /// law.
+    /// Replaces the contact forces of all points by their derivatives with respect to the coefficient `by` of
+    /// the contact law.
     pub(crate) fn replace_forces_by_derivatives(&mut self, law: &Impact, by: DerivativeVariable) {
         let n = self.cylinders.len();
         let force = self.force[..n].as_flattened_mut();
@@ -191,8 +196,8 @@ impl Points {
         }
     }
 
-    /// Computes the heights of the arc's surface above its circle at the contact points, with slopes and
-    /// rates.
+    /// Computes, at all contact points, height, slope and rate of the arc's deformed surface relative to the
+    /// undeformed circle.
     fn compute_heights(&mut self, surface: &Surface<'_>) {
         let c = self.cylinders.len();
         let height = self.height[..c].as_flattened_mut();
@@ -220,7 +225,7 @@ impl Points {
         }
     }
 
-    /// Computes the penetrations of the contact points with their rates and derivatives.
+    /// Computes the penetrations of all contact points, with their rates and derivatives.
     fn compute_penetrations(&mut self, surface: &Surface<'_>) {
         let c = self.cylinders.len();
         let n = c * POINTS;
@@ -258,7 +263,7 @@ impl Points {
         }
     }
 
-    /// Sums up the contact forces on the `k`-th of [`Self::cylinders`].
+    /// Sums up the contact forces on the `k`-th cylinder of [`Self::cylinders`].
     #[inline]
     pub(super) fn cylinder_contact(&self, k: usize) -> CylinderContact {
         let (force, lost) = (&self.force[k], &self.lost[k]);
@@ -277,7 +282,7 @@ impl Points {
         sum
     }
 
-    /// Iterates over the loaded contact points of the `k`-th of [`Self::cylinders`].
+    /// Iterates over the contact points under load on the `k`-th cylinder of [`Self::cylinders`].
     pub(super) fn loaded_points(&self, k: usize) -> impl Iterator<Item = usize> {
         let pressed = move |&i: &usize| self.share[i] * self.force[k][i] != 0.0;
         (0..POINTS).filter(pressed)
@@ -313,7 +318,8 @@ impl Points {
         by.map(|by| self.share[i] * by)
     }
 
-    /// Returns the second derivatives of a point's penetration.
+    /// Returns the second derivatives of the penetration of point `i` on the `k`-th cylinder of
+    /// [`Self::cylinders`].
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
     fn curvature(&self, k: usize, i: usize, surface: &Surface<'_>) -> Curvature {
@@ -331,14 +337,14 @@ impl Points {
         }
     }
 
-    /// Returns the largest penetration, not negative \[m\].
+    /// Returns the largest penetration among all contact points \[m\], at least 0.
     pub(super) fn deepest(&self) -> f64 {
         let depths = self.depth[..self.cylinders.len()].as_flattened();
         let deeper = |deepest: f64, &depth: &f64| if depth > deepest { depth } else { deepest };
         depths.iter().fold(0.0, deeper)
     }
 
-    /// Distributes the contact forces to the knots of the arc's mode shapes.
+    /// Distributes the contact forces to the knots (grid points) of the arc's mode shapes, into `pressure`.
     pub(super) fn distribute_to_knots(&self, pressure: &mut KnotForces) {
         for (k, places) in self.on_grid[..self.cylinders.len()].iter().enumerate() {
             for (i, place) in places.iter().enumerate() {
@@ -370,7 +376,7 @@ mod tests {
     use crate::model::extension::profile::{Hollow, Profile};
     use crate::model::pose::PlanePose;
 
-    /// Contact point with all its derivatives.
+    /// Contact point in a test, with all its derivatives.
     struct Seen {
         depth: f64,
         rate: f64,
@@ -380,7 +386,7 @@ mod tests {
         curvature: Curvature,
     }
 
-    /// Coordinates of the test configuration: centre of the cylinder and its angle, beam angle, modal
+    /// Coordinates of the test configuration: cylinder centre (x, y) and angle, beam angle, modal
     /// coordinates; `MOTION` holds their rates.
     const PLACE: [f64; 6] = [-1.9, -0.4, 1.3, 0.2, 0.3, -0.2];
     const MOTION: [f64; 6] = [0.4, -0.9, 0.8, 0.6, 0.5, 0.7];

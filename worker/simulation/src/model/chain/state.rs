@@ -1,4 +1,4 @@
-//! Poses and loads of a chain at the last evaluation of its forces.
+//! Poses of a chain's cylinders and loads of its joints and contact at the last evaluation of its forces.
 use super::parts::Chain;
 use super::points::Points;
 use crate::element::bushing::LinkLoad;
@@ -8,7 +8,8 @@ use crate::model::layout::Motion;
 use crate::model::pose::{PlanePose, Pose};
 use nalgebra::Vector2;
 
-/// Poses and loads of a chain at the last evaluation of its forces; allocated once.
+/// Poses of a chain's cylinders and loads of its joints and contact at the last evaluation of its forces;
+/// buffers are allocated once.
 #[derive(Clone, Debug)]
 pub struct ChainState {
     /// Poses of the cylinders of a chain in space; empty for a chain in the plane.
@@ -17,25 +18,25 @@ pub struct ChainState {
     pub plane: Vec<PlanePose>,
     /// Angles of the cylinders in the plane \[rad\], their sines and cosines.
     pub(super) turns: [Vec<f64>; 3],
-    /// Loads of all joints, one more than cylinders; zero for a free end.
+    /// Loads of all joints of the chain, one more than it has cylinders; zero for a free end.
     pub joints: Vec<LinkLoad>,
     /// Contact force of each cylinder \[N\].
     pub contact: Vec<f64>,
-    /// Contact points of the last evaluation.
+    /// Contact points of the chain at the last evaluation.
     pub points: Points,
-    /// Contact forces on a deflected arc, distributed to the knots of its mode shapes.
+    /// Contact forces on a flexible arc, distributed to the knots (grid points) of its mode shapes.
     pub pressure: KnotForces,
-    /// Largest penetration \[m\].
+    /// Largest penetration of a contact point \[m\].
     pub deepest: f64,
     /// Power dissipated by the contact damping \[W\].
     pub dissipated: f64,
-    /// Memory of history-dependent axial laws at the last accepted step, joint by joint and law by law; empty
-    /// if no law has memory, or before the first step.
+    /// Memory of history-dependent axial effect laws at the last accepted step, joint by joint and law by
+    /// law; empty if no law has memory, or before the first step.
     pub memory: Vec<Memory>,
 }
 
 impl ChainState {
-    /// Allocates the buffers for a chain.
+    /// Allocates the buffers for the state of a chain.
     pub fn new(chain: &Chain) -> Self {
         let (poses, plane) = match chain.motion {
             Motion::Plane => (0, chain.count),
@@ -62,13 +63,13 @@ impl ChainState {
             .map_or_else(|| self.poses[j], PlanePose::in_space)
     }
 
-    /// Returns the power dissipated by joints and contact \[W\].
+    /// Returns the power dissipated by the joints and the contact of the chain \[W\].
     pub fn losses(&self) -> f64 {
         let joints = self.joints.iter().map(|load| load.dissipated);
         joints.sum::<f64>() + self.dissipated
     }
 
-    /// Returns the tension in a joint \[N\], positive in tension.
+    /// Returns the tension in a joint of the chain \[N\], negative under compression.
     pub fn tension(&self, joint: usize) -> f64 {
         -self.joints[joint].axial
     }

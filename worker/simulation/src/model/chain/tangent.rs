@@ -1,7 +1,8 @@
 //! Tangent of a chain's joints.
 //!
-//! Interior joints couple two neighbouring blocks. An end joint couples the cylinder with the body that holds
-//! it: the cylinder's own block is filled here, the remaining derivatives are returned for the holding body.
+//! A joint between two cylinders couples their two matrix blocks. An end joint couples a cylinder with the
+//! body that holds the end: the derivatives within the cylinder's own block are added here, the remaining
+//! ones are returned for the holding body.
 use super::link::Side;
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
@@ -13,7 +14,8 @@ use nalgebra::{Matrix3, Vector3};
 type V3 = Vector3<f64>;
 type M3 = Matrix3<f64>;
 
-/// Derivatives of force, torque on I and torque on J with respect to one generalised coordinate.
+/// Derivatives of a joint's force, torque on body I and torque on body J with respect to one generalised
+/// coordinate.
 pub(crate) type Column = [V3; 3];
 
 /// Derivatives of a joint's force and torques with respect to the position and the angles of a cylinder.
@@ -24,21 +26,21 @@ pub(crate) struct CylinderColumns {
 }
 
 /// Derivatives of an end joint's load with respect to displacement, velocity, rotation and angular velocity
-/// of its cylinder and of the holding body, each taken as independent.
+/// of its cylinder and of the body that holds the end, each taken as independent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EndJointTangent {
     side: Side,
-    /// Matrix block of the cylinder; `pose` is its pose.
+    /// Index of the matrix block of the cylinder; the field `pose` holds the cylinder's pose.
     block: usize,
     pose: Pose,
     by_own: LinkTangent,
     by_body: LinkTangent,
 }
 
-/// Derivatives of an end joint's load, for the body that holds the chain there.
+/// Derivatives of an end joint's load that enter the equations of the body that holds the end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EndTangent {
-    /// Derivatives with respect to the motion of the holding body.
+    /// Derivatives of the load with respect to the motion of the holding body.
     pub(crate) by_body: LinkTangent,
     /// Derivatives with respect to the coordinates of the cylinder.
     pub(crate) by_cylinder: CylinderColumns,
@@ -49,7 +51,7 @@ pub(crate) struct EndTangent {
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Adds the tangent of the joints between the cylinders.
+    /// Adds the tangent of the joints between two cylinders to the matrix.
     pub(crate) fn add_joint_tangent(
         &self,
         joints: &Joints<'_>,
@@ -70,8 +72,8 @@ impl Chain {
         }
     }
 
-    /// Adds the joints' tangent, without the rate-dependent part to the first matrix and complete to the
-    /// second; returns whether this was done, which requires a chain in the plane.
+    /// Adds the tangent of the joints between two cylinders: without its rate-dependent part to the first
+    /// matrix, complete to the second. Returns whether this was done, which requires a chain in the plane.
     pub(crate) fn add_joint_stiffness_and_tangent(
         &self,
         joints: &Joints<'_>,
@@ -87,7 +89,7 @@ impl Chain {
         true
     }
 
-    /// Returns the derivatives of the joints at base and head; `None` for a free end.
+    /// Returns the derivatives of the loads of the two end joints, at base and head; `None` for a free end.
     pub(crate) fn ends(
         &self,
         joints: &Joints<'_>,
@@ -110,8 +112,8 @@ impl Chain {
         })
     }
 
-    /// Adds the tangent of the end joints to the blocks of the cylinders that they hold; returns the
-    /// derivatives for the holding bodies.
+    /// Adds the tangent of the end joints to the matrix blocks of the cylinders there; returns the
+    /// derivatives that the holding bodies need.
     pub(crate) fn add_end_tangent(
         &self,
         ends: &[Option<EndJointTangent>; 2],
@@ -136,8 +138,8 @@ impl Chain {
         })
     }
 
-    /// Adds the tangent of turning cylinders: a joint torque's components along the angle coordinates change
-    /// with the angles.
+    /// Adds the tangent that arises because a joint torque's components along a cylinder's angle coordinates
+    /// change with the angles.
     fn add_torque_geometric_stiffness(&self, state: &ChainState, matrix: &mut Blocks<BLOCK>) {
         for (j, pose) in state.poses.iter().enumerate() {
             let torque = state.joints[j].torque_i + state.joints[j + 1].torque_j;
@@ -195,8 +197,8 @@ impl CylinderColumns {
     }
 }
 
-/// Subtracts a joint's derivatives from a block, in the rows (force, generalised torque) of the cylinder on
-/// one side.
+/// Subtracts the derivatives of a joint's load from a matrix block, in the rows (force, generalised torque)
+/// of the cylinder on one side of the joint.
 fn subtract_own(block: &mut MatrixBlock, columns: &CylinderColumns, angular: &M3, side: Side) {
     let (sign, torque) = match side {
         Side::I => (1.0, 1),

@@ -23,25 +23,25 @@ pub trait Axial: Debug + Send + Sync {
     }
 }
 
-/// State of a law with memory: strain \[1\] and internal variable at the last accepted step.
+/// Memory of an axial law with hysteresis: strain \[1\] and internal variable at the last accepted step.
 pub type Memory = [f64; 2];
 
 /// State of a rope joint at which an axial law is evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct Strain<'a> {
-    /// State of crank and load.
+    /// State of the machine's drive: crank motion and load.
     pub drive: &'a DriveState,
     /// Axial strain of the joint \[1\].
     pub strain: f64,
-    /// Strain rate [1/s].
+    /// Rate of the joint's axial strain [1/s].
     pub rate: f64,
     /// Axial stiffness of the individual's rope, force per unit strain \[N\].
     pub stiffness: f64,
-    /// State stored by this law for this joint at the last accepted step; `None` before the first step.
+    /// Memory of the axial law for this joint at the last accepted step; `None` before the first step.
     pub memory: Option<Memory>,
 }
 
-/// Properties of the rope on which axial laws act.
+/// Properties of a rope that the axial laws of effects need.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RopeProperties {
     /// Axial stiffness, force per unit strain, of all ropes on a head together \[N\].
@@ -154,7 +154,6 @@ mod tests {
         }
     }
 
-    /// Test law without memory: an elastic force equal to the strain.
     #[derive(Debug)]
     struct Straight;
 

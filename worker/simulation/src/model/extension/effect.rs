@@ -8,7 +8,7 @@ use crate::model::layout::Layout;
 use crate::model::strand::HeadResponse;
 use std::fmt::Debug;
 
-/// Effect with its parameter values.
+/// Effect (optional physical phenomenon added to the model) with its parameter values.
 pub trait Effect: Debug + Send + Sync {
     /// Edits the description before the machine is built (geometry, inertia, samples of the card) and the
     /// number `modes` of head modes that are kept.
@@ -18,18 +18,18 @@ pub trait Effect: Debug + Send + Sync {
     fn install(&self, _site: &Site<'_>, _hooks: &mut Extensions) {}
 }
 
-/// Properties of a machine that are available to an effect when it is installed.
+/// Properties of a machine that an effect may read while it adds its extensions.
 #[derive(Clone, Copy, Debug)]
 pub struct Site<'a> {
     /// Description that the machine was built from, including the edits of effects.
     pub description: &'a Description,
     /// Indices of the machine's coordinates.
     pub layout: Layout,
-    /// Curves of the machine's ideal mechanism over one turn.
+    /// Beam angle and other curves of the machine's inextensible mechanism over one turn.
     pub cycle: &'a Cycle,
     /// Bottom dead centre of the inextensible mechanism, where the turn angle is zero.
     pub bottom: Position,
-    /// Height in W of the suspension point at its lowest design position \[m\].
+    /// Height in the world frame W of the suspension point at its lowest design position \[m\].
     pub lowest_suspension: f64,
     /// Load card: load at the suspension point as a function of the turn angle \[N\].
     pub card: &'a Splines,

@@ -3,9 +3,9 @@ use crate::linear::Bordered;
 use crate::model::instant::Instant;
 use std::fmt::Debug;
 
-/// Generalised force added by an effect.
+/// Generalised force that an effect adds to the equations of motion.
 pub trait Force: Debug + Send + Sync {
-    /// Adds the generalised force to `force`.
+    /// Adds the generalised force at the instant `at` to `force`, one element per coordinate.
     fn add(&self, at: &Instant<'_>, force: &mut [f64]);
 
     /// Adds the force's contribution to `-K - gamma D`, where `K` and `D` are its derivatives with respect to
@@ -19,6 +19,6 @@ pub trait Force: Debug + Send + Sync {
     /// energy \[J\].
     fn potential(&self, at: &Instant<'_>) -> f64;
 
-    /// Returns the power extracted from the machine by the force, excluding stored energy \[W\].
+    /// Returns the power that the force extracts from the machine \[W\], not counting energy that it stores.
     fn lost(&self, at: &Instant<'_>) -> f64;
 }

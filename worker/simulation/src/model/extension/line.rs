@@ -1,7 +1,7 @@
-//! Forces along one coordinate: `Q = f(d, d', drive)`.
+//! Forces that act on a single generalised coordinate: `Q = f(d, d', drive)`.
 //!
-//! Their tangent is a single diagonal entry, and their power and potential are products with the rate and the
-//! coordinate.
+//! The tangent matrix of such a force is a single diagonal element, its power the product with the
+//! coordinate's rate, and its potential the product with the coordinate.
 use super::along::LineForceValue;
 use super::force::Force;
 use crate::drive::DriveState;
@@ -10,7 +10,7 @@ use crate::math::elementary::tanh;
 use crate::model::instant::Instant;
 use std::fmt::Debug;
 
-/// Force law of one coordinate and its rate; the coordinate is chosen in
+/// Force law on one coordinate as a function of its value and rate; the coordinate is chosen in
 /// [`Extensions::add_line_force`](super::set::Extensions::add_line_force).
 pub trait LineForce: Debug + Send + Sync {
     /// Returns the force on the coordinate, positive in the direction of increasing `place` (the coordinate's

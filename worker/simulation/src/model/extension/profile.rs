@@ -1,7 +1,8 @@
-//! Deviation of the back head's surface from the circle of the description.
+//! Deviation of the back head's surface from the nominal circle of the head's arc.
 use crate::math::elementary::exp;
 
-/// Deviation of the back head's surface from a circle, as a sum of smooth hollows over the arc angle.
+/// Deviation of the back head's surface from the nominal circle of its arc, as a sum of smooth hollows over
+/// the arc angle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Profile {
     hollows: Vec<Hollow>,
@@ -10,7 +11,7 @@ pub struct Profile {
 /// Hollow of depth `depth exp(-((s - centre) / reach)^2)` at arc angle `s`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hollow {
-    /// Greatest depth, positive into the head \[m\].
+    /// Greatest depth of the hollow, positive into the head \[m\].
     pub depth: f64,
     /// Arc angle of greatest depth, in the beam frame \[rad\].
     pub centre: f64,
@@ -29,14 +30,15 @@ impl Profile {
         self.hollows.is_empty()
     }
 
-    /// Returns an upper bound of the height of the profile above the circle \[m\].
+    /// Returns an upper bound of the height of the back head's surface above the nominal circle of its arc
+    /// \[m\].
     pub fn highest(&self) -> f64 {
         let seams = self.hollows.iter().map(|hollow| (-hollow.depth).max(0.0));
         seams.sum()
     }
 
-    /// Returns the height of the surface above the circle \[m\] with its first and second derivatives with
-    /// respect to the arc angle.
+    /// Returns the height of the back head's surface above the nominal circle of its arc \[m\], with its
+    /// first and second derivatives with respect to the arc angle.
     pub fn height(&self, angle: f64) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for hollow in &self.hollows {

@@ -30,12 +30,12 @@ pub struct Extensions {
 }
 
 impl Extensions {
-    /// Adds a generalised force.
+    /// Adds a generalised force of an effect to the machine.
     pub fn add_force(&mut self, force: impl Force + 'static) {
         self.forces.push(Arc::new(force));
     }
 
-    /// Adds a force law on one coordinate.
+    /// Adds a force law of an effect on the coordinate with index `coordinate`.
     pub fn add_line_force(&mut self, coordinate: usize, law: impl LineForce + 'static) {
         self.add_force(OnCoordinate { coordinate, law });
     }
@@ -53,19 +53,18 @@ impl Extensions {
         self.readings.push(Arc::new(reading));
     }
 
-    /// Increases the turn angle of the crank at which the recorded revolution has its zero by an angle
-    /// \[rad\].
+    /// Shifts the start of the recorded revolution by a turn angle of the crank \[rad\].
     pub const fn move_index(&mut self, angle: f64) {
         self.index_offset += angle;
     }
 
-    /// Adds a lead of the crank over uniform rotation \[rad\], as a curve over the uniform turn angle
-    /// \[rad\].
+    /// Adds a deviation of the crank from uniform rotation: lead \[rad\] as a curve over the uniform turn
+    /// angle \[rad\].
     pub fn add_warp(&mut self, ahead: Splines) {
         self.phase_leads.push(ahead);
     }
 
-    /// Adds a hollow to the surface profile of the back head.
+    /// Adds a hollow to the surface of the back head.
     pub fn add_hollow(&mut self, hollow: Hollow) {
         self.profile.add_profile_change(hollow);
     }
@@ -90,7 +89,6 @@ impl Extensions {
         warped
     }
 
-    /// Returns the turn angle of the crank at which the recorded revolution has its zero \[rad\].
     pub(crate) const fn index_offset(&self) -> f64 {
         self.index_offset
     }
@@ -114,7 +112,7 @@ impl Extensions {
         self.forces.iter().map(|one| one.energy(at)).sum()
     }
 
-    /// Returns the part of the potential at rest of the effects' forces that is not stored energy \[J\].
+    /// Returns the potential at rest of the effects' forces minus the energy that they store \[J\].
     pub(crate) fn potential_beyond_energy(&self, at: &Instant<'_>) -> f64 {
         let beyond = |one: &Arc<dyn Force>| one.potential(at) - one.energy(at);
         self.forces.iter().map(beyond).sum()
@@ -140,7 +138,6 @@ impl Extensions {
         })
     }
 
-    /// Returns whether the crank deviates from uniform rotation.
     pub(crate) fn has_warps(&self) -> bool {
         !self.phase_leads.is_empty()
     }
@@ -155,23 +152,24 @@ impl Extensions {
         self.axial.iter().any(|laws| !laws.is_empty())
     }
 
-    /// Returns whether no hook acts on the motion of the bodies.
+    /// Returns whether the set contains neither generalised forces nor axial laws.
     pub(crate) fn is_empty(&self) -> bool {
         self.forces.is_empty() && !self.has_axial()
     }
 
-    /// Returns the profile of the back head's surface; `None` if the surface is the plain circle.
+    /// Returns the deviation of the back head's surface from the nominal circle of its arc; `None` if there
+    /// is none.
     pub(crate) fn profile(&self) -> Option<&Profile> {
         (!self.profile.is_flat()).then_some(&self.profile)
     }
 
-    /// Returns an upper bound of the height by which effects raise the back head's surface above its circle
-    /// \[m\].
+    /// Returns an upper bound of the height by which effects raise the back head's surface above the nominal
+    /// circle of its arc \[m\].
     pub(crate) fn extra_reach(&self) -> f64 {
         self.profile.highest() + self.rise
     }
 
-    /// Returns whether any stage modifies the readings.
+    /// Returns whether effects have added stages to the measuring chain.
     pub(crate) fn has_readings(&self) -> bool {
         !self.readings.is_empty()
     }

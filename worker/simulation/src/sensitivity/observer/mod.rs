@@ -1,5 +1,4 @@
-//! Forward sensitivity of a run: an observer that differentiates each step and sample after the run has
-//! computed it.
+//! Forward sensitivity of a run: an observer that differentiates each step and each sample of the run.
 mod read;
 mod step;
 
@@ -22,7 +21,7 @@ use crate::system::{State, System};
 use crate::verdict::Verdict;
 
 /// Simulates one individual and differentiates the run. Verdict, samples and counters are those of
-/// [`run::simulate`](crate::run::simulate), bit for bit. A failed run has no columns.
+/// [`run::simulate`](crate::run::simulate), bit for bit. A failed run has no derivatives.
 pub fn simulate(
     machine: &Machine,
     law: &RopeLaw,
@@ -70,13 +69,13 @@ struct SensitivityObserver<'a, 'o> {
     own: PerturbedModel<'a>,
     active: Vec<Active<'a>>,
     blocks: Vec<Block>,
-    /// Buffers, allocated at the start of the run.
+    /// Buffers of the sensitivity analysis; `None` until the run starts.
     room: Option<Workspace>,
-    /// Reason why propagation of the columns has stopped.
+    /// Reason why the derivatives could not be propagated to the end; `None` while they can.
     missing: Option<Unavailable>,
-    /// States at both ends of the last step.
+    /// States at the start and at the end of the last step.
     ends: [State; 2],
-    /// Gauge readings at each sample, before filters that act on whole curves.
+    /// Gauge readings at each sample, before stages of the measuring chain that act on whole curves.
     readings: [Vec<f64>; 4],
 }
 
@@ -128,7 +127,8 @@ impl<'a, 'o> SensitivityObserver<'a, 'o> {
         }
     }
 
-    /// Returns the result of each column (curves, zero or unavailable) in the order of the plan.
+    /// Returns the derivatives (curves, zero or unavailable) with respect to all unknowns, in the order of
+    /// the plan.
     fn columns(self, plan: &DerivativePlan) -> Columns {
         let missing = self.missing;
         let mut columns: Vec<_> = plan

@@ -100,7 +100,8 @@ impl SensitivityObserver<'_, '_> {
     }
 }
 
-/// Returns the derivatives of the readings along a column, by central differences.
+/// Returns the derivatives of the gauge readings along a derivative column, by central differences of the
+/// state.
 fn differenced(
     own: &mut PerturbedModel<'_>,
     (ends, lane, weights): ([&Motion; 2], usize, &Weights),

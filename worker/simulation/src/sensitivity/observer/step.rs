@@ -23,7 +23,7 @@ const CACHED_BLOCKS: usize = 6;
     reason = "steps and samples are files of their own"
 )]
 impl SensitivityObserver<'_, '_> {
-    /// Computes `dR/dp` of the columns of one block at a stage into `room.right`.
+    /// Computes the right-hand side `dR/dp` for one block of derivative columns at a stage into `room.right`.
     fn right_hand_side(
         &mut self,
         (block, stage): (usize, usize),
@@ -59,8 +59,8 @@ impl SensitivityObserver<'_, '_> {
         std::mem::swap(&mut individual.scratch, &mut at.scratch);
     }
 
-    /// Updates the memory of axial laws, for the simulated machine and for the perturbed machines at their
-    /// current columns.
+    /// Updates the memory of axial laws after a step, for the simulated machine and for the machines with
+    /// perturbed parameters.
     fn remember(&mut self, state: &State) {
         let Some(Workspace {
             scratch,
@@ -134,8 +134,8 @@ impl SensitivityObserver<'_, '_> {
         Ok(())
     }
 
-    /// Allocates the buffers and computes the columns of the equilibrium; `stages` is the number of stages of
-    /// the method.
+    /// Allocates the buffers and computes the derivatives of the static equilibrium; `stages` is the number
+    /// of stages of the integration method.
     pub(super) fn start(
         &mut self,
         system: &mut System<RopeMachine<'_>>,

@@ -31,7 +31,7 @@ impl Marker {
     }
 }
 
-/// Stiffness and damping of a bushing: axial, lateral and in bending.
+/// Stiffness and damping of a bushing: in axial direction, in lateral direction and in bending.
 type Law = [[Dual; 2]; 3];
 
 /// Computes the force of a bushing on body I and its torques on I and J (paper, Eqs. 1 to 3, in the axes of
@@ -51,14 +51,14 @@ fn bushing([along, across, bending]: Law, i: &Marker, j: &Marker) -> (Vector, [D
     (force, [torque + i.arm.moment(force), -torque - on_j])
 }
 
-/// Coordinates, rates and accelerations, each with its derivative.
+/// Coordinates, rates and accelerations as dual numbers, which carry the derivative with respect to one
+/// coefficient.
 pub(super) type Motion = [Vec<Dual>; 3];
 
 /// Machine with one rope law, evaluated in dual numbers that carry the derivative with respect to the decimal
 /// logarithm of one coefficient.
 pub(super) struct DualMachine<'a> {
     machine: &'a Machine,
-    /// Bushing laws: between cylinders, at the rope's base, at the head.
     laws: [Law; 3],
     /// Stiffness and damping of the contact, and the penetration at which its damping is fully active.
     contact: [Dual; 3],
@@ -125,7 +125,7 @@ impl<'a> DualMachine<'a> {
         asked
     }
 
-    /// Returns a point along a cylinder's axis; `along` is measured from its centre in half lengths.
+    /// Returns a point on the axis of cylinder `j`; `along` is its distance from the centre in half lengths.
     fn on(&self, [q, v, _]: &Motion, (chain, j): (usize, usize), along: f64) -> Marker {
         let at = 3 * (self.machine.layout.first(chain) + j);
         let half = number(0.5 * along * self.machine.description.rope.pitch);
@@ -251,7 +251,7 @@ impl<'a> DualMachine<'a> {
     }
 }
 
-/// Adds a force and a torque to the three rows of the residual that belong to a cylinder.
+/// Adds a force and a torque on a cylinder to the three elements of the residual that belong to it.
 fn push(rows: &mut [Dual], force: Vector, torque: Dual) {
     for (row, x) in rows.iter_mut().zip([force.0[0], force.0[1], torque]) {
         *row = *row + x;

@@ -1,6 +1,6 @@
-//! Derivatives (columns) of whole runs of a small machine compared with dual numbers: an independent
-//! implementation of the equations uses numbers that carry the derivative by one coefficient, and the stages
-//! of the method are differentiated with a dense matrix that these numbers give column by column.
+//! Derivatives of whole runs of a small machine compared with dual numbers: an independent implementation of
+//! the equations uses numbers that carry the derivative with respect to one coefficient, and the stages of
+//! the integration method are differentiated with a dense matrix that these numbers give column by column.
 //!
 //! Both are derivatives at the run's own states, so they agree up to rounding.
 mod machine;
@@ -20,7 +20,8 @@ use simulation::sensitivity::{
 };
 use simulation::system::{State, System};
 
-/// Observer of a run that integrates the derivatives by one coefficient along its stages.
+/// Observer of a run that integrates the derivatives with respect to one coefficient through the stages of
+/// each step.
 struct Follower<'a> {
     machine: &'a Machine,
     twin: DualMachine<'a>,

@@ -1,7 +1,7 @@
-//! Dual numbers, which carry the derivative by one parameter, and planar vectors of dual numbers.
+//! Dual numbers, which carry the derivative with respect to one parameter, and planar vectors of dual
+//! numbers.
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// Dual number: a value and its derivative.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Dual(pub(super) f64, pub(super) f64);
 
@@ -49,7 +49,6 @@ impl Dual {
     }
 }
 
-/// Planar vector of dual numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Vector(pub(super) [Dual; 2]);
 

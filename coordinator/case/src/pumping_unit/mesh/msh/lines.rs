@@ -42,13 +42,13 @@ impl<'a> Lines<'a> {
         damaged(self.path, format!("line {}: {problem}", self.number), help)
     }
 
-    /// Returns the next line; an error at the end of the file.
+    /// Returns the next line of the mesh file; an error at the end of the file.
     pub(super) fn line(&mut self) -> Result<&'a str, CaseError> {
         self.next()
             .ok_or_else(|| self.wrong("the file ends inside a section"))
     }
 
-    /// Parses the numbers of the next line, of which there must be at least `least`.
+    /// Parses the numbers of the mesh file's next line, of which there must be at least `least`.
     pub(super) fn numbers<T: std::str::FromStr>(
         &mut self,
         least: usize,
@@ -62,7 +62,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Parses `N` integers of the next line; further numbers are ignored.
+    /// Parses `N` integers of the mesh file's next line; further numbers are ignored.
     pub(super) fn integers<const N: usize>(&mut self) -> Result<[i64; N], CaseError> {
         let numbers = self.numbers::<i64>(N)?;
         numbers

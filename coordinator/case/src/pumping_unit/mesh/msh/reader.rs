@@ -74,7 +74,7 @@ fn check_version(path: &Path, bytes: &[u8]) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// Skips a section that is not needed.
+/// Skips a section of the mesh file that is not needed.
 fn skip(lines: &mut Lines<'_>, tag: &str) -> Result<(), CaseError> {
     let Some(name) = tag.strip_prefix('$') else {
         return Err(lines.wrong("a section like `$Nodes` is expected here"));

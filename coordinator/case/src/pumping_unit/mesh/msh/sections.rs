@@ -3,12 +3,12 @@ use super::{super::body::Mesh, lines::Lines};
 use crate::error::CaseError;
 use std::collections::BTreeMap;
 
-/// Contents of the sections read so far.
+/// Contents of those sections of the mesh file that have been read so far.
 #[derive(Debug, Default)]
 pub(super) struct Sections {
-    /// Map from (dimension, physical tag) to group name.
+    /// Map from (dimension, physical tag) to the name of the physical group.
     pub(super) names: BTreeMap<(usize, i64), String>,
-    /// Map from (dimension, entity tag) to physical tags.
+    /// Map from (dimension, entity tag) to the tags of the physical groups that contain the entity.
     pub(super) groups: BTreeMap<(usize, i64), Vec<i64>>,
     /// Map from the tag of a node in the file to its index in the mesh.
     pub(super) index: BTreeMap<i64, usize>,
@@ -71,7 +71,7 @@ fn integer(value: f64) -> i64 {
     integer
 }
 
-/// Reads the blocks of nodes: first the tags, then the positions.
+/// Reads the mesh file's blocks of nodes: in each block first the tags, then the positions.
 pub(super) fn nodes(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(), CaseError> {
     let [blocks, total, _, _] = lines.integers::<4>()?;
     for _ in 0..blocks {

@@ -50,7 +50,7 @@ pub(super) fn validated_mesh(path: &Path, sections: Sections) -> Result<Mesh, Ca
     Ok(mesh)
 }
 
-/// Checks that a required group has elements.
+/// Checks that a required group of the mesh has elements.
 fn require(path: &Path, sections: &Sections, wanted: &str, count: usize) -> Result<(), CaseError> {
     if count > 0 {
         return Ok(());

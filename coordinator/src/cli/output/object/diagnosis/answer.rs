@@ -20,28 +20,29 @@ pub(crate) struct DiagnoseOutput {
     run: String,
     case: String,
     verdict: Verdict,
-    /// Reason for the verdict; null if it needs none.
+    /// Reason for the verdict of the diagnosis; null if it needs none.
     reason: Option<String>,
     /// Effects that the diagnosis added to the model, followed by the other members of their ambiguity sets,
     /// best first. Empty if the verdict names no effect: suspected effects are listed in the rounds.
     effects: Vec<EffectOutput>,
-    /// Form and joint of a generic force that fits better than every named effect.
+    /// Generic force (form and joint) that fits better than every named effect.
     generic: Option<String>,
-    /// Best generic force with its size, reported even if the verdict does not accept it.
+    /// Best-fitting generic force with its size, reported even if the verdict does not accept it.
     generic_force: Option<ForceOutput>,
     rounds: Vec<RoundOutput>,
     #[serde(rename = "where")]
     whereabouts: Option<LocalisationOutput>,
     wander: VaryingUnknownsOutput,
     detection_limits: Vec<Limit>,
-    /// Estimated instrument errors (nuisance parameters), reported besides the effects.
+    /// Estimated instrument errors (nuisance parameters), reported separately from the effects.
     nuisances: Vec<NuisanceEstimate>,
-    /// Effects that the measured record cannot reveal because the unknowns absorb them, largest absorbed
-    /// share first.
+    /// Effects that the measured record cannot reveal because a change of the unknowns imitates them, largest
+    /// imitated share first.
     absorbed: Vec<Absorbed>,
-    /// Pairs of effects that this record cannot distinguish at three times their detection limits.
+    /// Pairs of effects that the measured record cannot distinguish when each is three times its detection
+    /// limit.
     inseparable: Vec<[String; 2]>,
-    /// Measurements that would distinguish the inseparable pairs, in the order of the pairs.
+    /// Further measurements that would distinguish the pairs in `inseparable`, in the order of the pairs.
     data_worth: Vec<IndistinguishablePair>,
     gap: GapOutput,
     /// Predictive scores, on all data excluded from the fit, of the accepted model or, if none was accepted,
@@ -58,7 +59,7 @@ pub(crate) struct DiagnoseOutput {
     wall_s: f64,
 }
 
-/// P-values of the whiteness test of the residual, before and after the effects were added.
+/// P-values of the test whether the residual is white noise, before and after the effects were added.
 #[derive(Debug, Serialize)]
 struct WhitenessOutput {
     p_before: f64,
@@ -71,14 +72,14 @@ struct RivalOutput {
     gap: GapOutput,
 }
 
-/// Discretisation error of the simulation, by channel: change of each channel under a finer model, in the
-/// channel's unit.
+/// Discretisation error of the simulation: change of each channel under a finer model, in the channel's unit.
 #[derive(Debug, Serialize)]
 struct NumericalOutput {
     rms: Vec<f64>,
     rms_after_recalibration: Vec<f64>,
     standard_error: Vec<f64>,
-    /// Discretisation error of the final model, with the found effects; absent if there is none.
+    /// Discretisation error of the final model, which contains the found effects; absent if no effect was
+    /// found.
     #[serde(skip_serializing_if = "Option::is_none")]
     at_answer: Option<Box<Self>>,
 }
@@ -185,8 +186,8 @@ fn numerical_error(diagnosis: &Diagnosis) -> Option<NumericalOutput> {
     })
 }
 
-/// Replaces the size of a detection limit by infinity (null in JSON) if no size within the effect's bounds
-/// would be detected.
+/// Replaces the size of an effect's detection limit by infinity (null in JSON) if no size within the effect's
+/// bounds would be detected.
 fn bounded(limit: &Limit) -> Limit {
     Limit {
         size: if limit.is_within_bounds() {

@@ -1,10 +1,11 @@
-//! Effects, suspected effects and generic forces, with their sizes and tests.
+//! JSON forms of the effects, suspected effects and generic forces of a diagnosis, with their sizes and
+//! tests.
 use super::gap::{GapOutput, gap};
 use discrepancy::diagnose::{Diagnosis, Estimate, ForceEstimate, ParameterEstimate, Round};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Effect with its estimated parameters and its test.
+/// Effect found by a diagnosis, with its estimated parameters and its statistical test.
 #[derive(Debug, Serialize)]
 pub(super) struct EffectOutput {
     id: String,
@@ -22,7 +23,8 @@ struct ParameterOutput {
     ci95: [f64; 2],
 }
 
-/// Round of the search for effects: its test, the suspected effects and the effect that was added.
+/// Round of the search for effects: its statistical test, the suspected effects, and the effect that was
+/// added.
 #[derive(Debug, Serialize)]
 pub(super) struct RoundOutput {
     p_value: f64,
@@ -59,7 +61,6 @@ pub(super) struct ForceOutput {
     gap: GapOutput,
 }
 
-/// Converts a parameter estimate to its name and its JSON form.
 fn parameter(own: &ParameterEstimate) -> (String, ParameterOutput) {
     let output = ParameterOutput {
         value: own.value,
@@ -69,7 +70,6 @@ fn parameter(own: &ParameterEstimate) -> (String, ParameterOutput) {
     (own.name.clone(), output)
 }
 
-/// Converts an effect of the diagnosis to its JSON form.
 pub(super) fn effect(diagnosis: &Diagnosis, found: &Estimate) -> EffectOutput {
     EffectOutput {
         id: found.id.clone(),
@@ -84,7 +84,6 @@ pub(super) fn effect(diagnosis: &Diagnosis, found: &Estimate) -> EffectOutput {
     }
 }
 
-/// Converts a generic force of the diagnosis to its JSON form.
 pub(super) fn force(found: &ForceEstimate) -> ForceOutput {
     ForceOutput {
         id: found.id.clone(),
@@ -101,7 +100,6 @@ pub(super) fn force(found: &ForceEstimate) -> ForceOutput {
     }
 }
 
-/// Converts all rounds of the diagnosis, in order, to their JSON form.
 pub(super) fn rounds(diagnosis: &Diagnosis) -> Vec<RoundOutput> {
     let round = |(at, round): (usize, &Round)| RoundOutput {
         p_value: round.p_value,

@@ -36,7 +36,8 @@ pub(super) fn predictions(case: &Case, scores: &[Prediction]) -> Vec<PredictionO
     scores.iter().filter_map(one).collect()
 }
 
-/// Gap before and after the effects were added, on the fitted record and on held-out data.
+/// Gap (unexplained share of the measured variance) before and after the effects were added, on the fitted
+/// record and on held-out data.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct GapOutput {
     calibration: Option<Closed>,
@@ -48,7 +49,7 @@ pub(super) struct GapOutput {
     other_condition: Option<Closed>,
 }
 
-/// Selects the gap before and after the effects for each kind of data from the rows of the comparison.
+/// Selects the gap before and after the effects for each kind of data from the rows of the gap comparison.
 pub(super) fn gap(rows: &[GapRow]) -> GapOutput {
     let one = |part: DataRole| {
         let row = rows.iter().find(|row| row.part == part)?;

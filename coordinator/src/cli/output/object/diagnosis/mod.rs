@@ -1,5 +1,5 @@
-//! JSON object printed by `horsehead diagnose CASE --output json`. Stable format: fields may be added, not
-//! renamed.
+//! JSON object printed by `horsehead diagnose CASE --output json`. Its format is stable: fields may be added
+//! but not renamed.
 pub(in crate::cli) mod answer;
 mod effects;
 mod gap;

@@ -7,15 +7,15 @@ use discrepancy::{
 use report::diagnosis::DiagnosisInput;
 use serde::Serialize;
 
-/// Unknowns whose values would have to vary under the recalibrated baseline model, and under the final model;
-/// empty for the latter if no effect was added.
+/// Unknowns whose values would have to vary along the turn or between conditions, under the recalibrated
+/// baseline model and under the final model; empty for the latter if no effect was added.
 #[derive(Debug, Serialize)]
 pub(super) struct VaryingUnknownsOutput {
     before: Vec<VaryingUnknownOutput>,
     after: Vec<VaryingUnknownOutput>,
 }
 
-/// Unknown refitted alone on sectors of a period and under other conditions.
+/// Unknown that was refitted on its own for each sector of a period and for each other condition.
 #[derive(Debug, Serialize)]
 struct VaryingUnknownOutput {
     gene: String,
@@ -36,8 +36,8 @@ struct PartOutput {
     p_value: f64,
 }
 
-/// Converts the unknowns whose values would have to vary, before and after effects were added, to their JSON
-/// form.
+/// Converts the unknowns whose values would have to vary to their JSON form, for the models before and after
+/// effects were added.
 pub(super) fn wandered(subject: &DiagnosisInput<'_>) -> VaryingUnknownsOutput {
     let diagnosis = &subject.diagnosed.diagnosis;
     VaryingUnknownsOutput {

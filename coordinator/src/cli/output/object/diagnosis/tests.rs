@@ -262,8 +262,8 @@ fn a_force_without_a_cause_is_printed_with_its_size() {
     assert!(printed(full(Verdict::Named))["generic_force"].is_null());
 }
 
-/// Checks the JSON form of genes whose value would have to vary: sectors of the turn are given by angles,
-/// other conditions by name, both with a value.
+/// Checks the JSON form of unknowns whose value would have to vary: sectors of the turn are given by angles,
+/// other conditions by name, both with the refitted value.
 #[test]
 fn wandering_genes_have_their_values() {
     let case = case();

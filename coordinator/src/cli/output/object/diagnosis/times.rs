@@ -1,10 +1,10 @@
-//! Stage times read back from a diagnosis result that was written earlier.
+//! Stage times of a diagnosis, read back from a result file that was written earlier.
 use discrepancy::laboratory::Stage;
 use serde::Deserialize;
 use std::time::Duration;
 use study::StageCost;
 
-/// Wall times of the stages in a result written earlier.
+/// Wall times of the diagnosis stages in a result file that was written earlier.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Times {
     stages: Vec<StageTime>,
@@ -17,7 +17,8 @@ struct StageTime {
 }
 
 impl Times {
-    /// Restores the wall times of the stages; stages that are not in the result keep theirs.
+    /// Restores the wall times of the diagnosis stages from an earlier result file; stages that it lacks keep
+    /// theirs.
     pub(crate) fn restore(&self, accounts: &mut [(Stage, StageCost)]) {
         for (stage, account) in accounts {
             let known = self.stages.iter().find(|time| time.stage == stage.name());

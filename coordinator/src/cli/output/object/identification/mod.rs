@@ -16,23 +16,23 @@ use study::StageCost;
 pub(crate) struct IdentifyOutput {
     run: String,
     case: String,
-    /// Estimates of the unknowns, by name.
+    /// Estimates and confidence intervals of the unknowns, by name.
     unknowns: BTreeMap<String, UnknownOutput>,
-    /// Directions in the space of unknowns, from the best determined to the undetermined ones.
+    /// Directions in the space of unknowns, ordered from the best determined to the undetermined ones.
     directions: Vec<Direction>,
-    /// Prediction bands of the channels, by condition.
+    /// Prediction bands of the channels, by condition name.
     prediction: BTreeMap<String, Map<String, Value>>,
     nuisances: Vec<NuisanceEstimate>,
     /// Proposed further measurements, each with the unknowns that it would determine better.
     further: Vec<FurtherMeasurement>,
-    /// Root mean square of the residual divided by that of the noise [1].
+    /// Root mean square of the residual divided by that of the measurement noise [1].
     times_noise: f64,
-    /// Whether the residual exceeds the noise: intervals are then widened, and a diagnosis should be run
-    /// first.
+    /// Whether the residual exceeds the measurement noise: the confidence intervals are then widened, and a
+    /// diagnosis should be run first.
     diagnose_first: bool,
     assumed_noise: bool,
     notes: Vec<String>,
-    /// Number of simulations requested in all stages.
+    /// Number of simulations that the analysis requested in all its stages.
     simulations: u64,
     wall_s: f64,
 }
@@ -47,7 +47,8 @@ struct UnknownOutput {
     ci95: Option<[Option<f64>; 2]>,
     seen: Determination,
     correlated_with: Vec<CorrelationOutput>,
-    /// Reason why the likelihood profile ends on each side: `rises`, `bound`, `fails`, `given_up`.
+    /// Reason why the likelihood profile of the unknown ends, for each side: `rises`, `bound`, `fails`,
+    /// `given_up`.
     ends: [discrepancy::identify::IntervalEnd; 2],
     /// Likelihood profile of the unknown: pairs of its value and the increase of -2 ln L over the minimum,
     /// with all other unknowns refitted.

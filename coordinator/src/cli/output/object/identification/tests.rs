@@ -11,7 +11,8 @@ use protocol::case::Case;
 use report::{Origin, identification::report};
 use std::path::Path;
 
-/// Returns an analysis with four unknowns: bounded on both sides, only below, only above, and not at all.
+/// Returns an identifiability analysis of four unknowns: bounded on both sides, only below, only above, and
+/// not at all.
 fn identified(case: &Case) -> IdentificationResult {
     let own = |name: &str, interval: [Option<f64>; 2]| UnknownEstimate {
         name: name.to_owned(),
