@@ -93,7 +93,7 @@ pub(crate) const MAX_PREDICTED_DECREASE: f64 = 0.1;
 pub(crate) const STATED: f64 = 2.0;
 
 /// Squared distance of two effects, over the dispersion, from which they are told apart: a likelihood ratio
-/// of 1 in 250 at even odds (DISCOVERY: isolability).
+/// of 1 in 250 at even odds.
 pub const APART: f64 = 11.0;
 
 /// Share of false entries allowed in a map of the disagreement between simulation and measurement (Benjamini

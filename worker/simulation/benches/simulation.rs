@@ -1,10 +1,11 @@
 //! Benchmarks of the kernels and of whole runs. The times are informative only; regressions are detected by
 //! the counts of work that tests/numerics compares with its snapshots.
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use nalgebra::Vector3;
 use simulation::drive::Drive;
 use simulation::effect::{Role, catalogue};
 use simulation::integrator::method::CATALOGUE;
+use simulation::model::description::RopeLaw;
 use simulation::model::{Machine, RopeMachine};
 use simulation::observe::Recorder;
 use simulation::reference;
@@ -24,7 +25,7 @@ fn machine() -> Machine {
 }
 
 /// Returns the two sets of rope coefficients in the paper's Table 3: the recommended and the optimised one.
-fn laws() -> [(&'static str, simulation::model::description::RopeLaw); 2] {
+fn laws() -> [(&'static str, RopeLaw); 2] {
     let optimised = reference::law();
     let mut recommended = optimised;
     let deg = 180.0 / std::f64::consts::PI;
@@ -182,5 +183,47 @@ fn columns(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, kernels, runs, columns, settles);
+/// 200 individuals of the shipped case's quick calibration (seed 1), evenly spaced over the 374 different ones that
+/// completed, as `horsehead export` writes them; rotational coefficients per degree, as in the case.
+const INDIVIDUALS: &str = include_str!("quick_individuals.csv");
+
+/// Returns the rope laws of [`INDIVIDUALS`].
+fn individuals() -> Vec<RopeLaw> {
+    let mut reader = csv::Reader::from_reader(INDIVIDUALS.as_bytes());
+    let rows = reader.deserialize::<[f64; 10]>();
+    let deg = 180.0 / std::f64::consts::PI;
+    let law = |row: Result<[f64; 10], csv::Error>| {
+        let [kb1, kb23, kb4, kb56, cb1, cb23, cb4, cb56, kc, cc] = row.expect("ten numbers");
+        let mut law = reference::law();
+        law.bushing.stiffness = [kb1, kb23];
+        law.bushing.rotational_stiffness = [kb4 * deg, kb56 * deg];
+        law.bushing.damping = [cb1, cb23];
+        law.bushing.rotational_damping = [cb4 * deg, cb56 * deg];
+        law.contact.stiffness = kc;
+        law.contact.damping = cc;
+        law
+    };
+    rows.map(law).collect()
+}
+
+/// Measures simulations per second over the individuals of a quick calibration, on one core.
+fn throughput(criterion: &mut Criterion) {
+    let machine = machine();
+    let laws = individuals();
+    let settings = RunSettings::default();
+    let mut group = criterion.benchmark_group("throughput");
+    group.sample_size(10).sampling_mode(SamplingMode::Flat);
+    group.throughput(Throughput::Elements(laws.len() as u64));
+    group.bench_function("individuals of a quick calibration", |b| {
+        b.iter(|| {
+            for law in &laws {
+                let mut recorder = Recorder::gauges_only();
+                std::hint::black_box(simulate(&machine, law, &settings, &mut recorder));
+            }
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, kernels, runs, columns, settles, throughput);
 criterion_main!(benches);

@@ -2,7 +2,7 @@
 //!
 //! Deviations of the cycles from their mean, with the input's known scatter regressed out, give the
 //! covariance of the channels at every entry of their basis, smoothed over neighbouring entries and shrunk
-//! towards its diagonal as far as the small number of cycles demands (DISCOVERY: noise model). With one cycle
+//! towards its diagonal as far as the small number of cycles demands. With one cycle
 //! there is no scatter: the noise is then taken from the channels' statements and from the roughness of the
 //! curves, and all results are marked as resting on that assumption.
 use crate::linear::score::student;
