@@ -343,7 +343,7 @@ const MISTAKES: &[Mistake] = &[
         |_| {},
         "calibrate case --measured tests/of/march",
         2,
-        &["tests/of/march: there is no such folder"],
+        &["tests/of/march: the folder given by --measured does not exist"],
     ),
     (
         "an address without a port",
@@ -439,7 +439,7 @@ const MISTAKES: &[Mistake] = &[
         2,
         &[
             "test_5rpm.csv.gz",
-            "column `stress_1_mpa` stands twice, in places 3 and 5",
+            "column `stress_1_mpa` occurs twice, as columns 3 and 5",
         ],
     ),
     (

@@ -15,7 +15,7 @@ pub trait Effect: Debug + Send + Sync {
     fn describe(&self, _description: &mut Description, _modes: &mut usize) {}
 
     /// Adds the extensions of the effect (forces, laws, readings) to the built machine.
-    fn install(&self, _site: &Site<'_>, _hooks: &mut Extensions) {}
+    fn install(&self, _site: &Site<'_>, _extensions: &mut Extensions) {}
 }
 
 /// Properties of a machine that an effect may read while it adds its extensions.
