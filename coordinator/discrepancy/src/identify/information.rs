@@ -142,7 +142,7 @@ fn seen_to(deviation: f64, linear: bool) -> String {
             100.0 * half
         )
     } else if half < 0.2 {
-        format!("seen to {:.2} %", 100.0 * (libm::exp10(half) - 1.0))
+        format!("determined to {:.2} %", 100.0 * (libm::exp10(half) - 1.0))
     } else {
         format!("determined to a factor of {:.1}", libm::exp10(half))
     }

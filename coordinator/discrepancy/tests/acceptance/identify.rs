@@ -185,7 +185,7 @@ fn intervals_are_those_of_the_closed_form() {
     let light = named(&all, "light");
     assert_eq!(light.seen, Determination::UpperBound, "{light:?}");
     let last = all.directions.last().expect("six");
-    assert!(last.words.contains("not seen"), "{last:?}");
+    assert!(last.words.contains("not determined"), "{last:?}");
 }
 
 /// Checks that prediction bands cover the true curves of unmeasured channels and conditions at their nominal

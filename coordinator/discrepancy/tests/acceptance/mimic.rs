@@ -175,7 +175,8 @@ fn an_effect_that_predicts_what_does_not_happen_is_taken_back() {
         .iter()
         .filter_map(|round| round.reason.as_ref());
     assert!(
-        reasons.any(|reason| reason.starts_with("fourth") && reason.contains("less likely")),
+        reasons
+            .any(|reason| reason.starts_with("fourth") && reason.contains("log likelihood falls")),
         "{said}"
     );
 }

@@ -372,7 +372,7 @@ fn instruments_do_not_swallow_what_is_missing() {
     let reason = answer.reason.unwrap_or_default();
     assert_eq!(answer.verdict, Verdict::Unresolved, "{said}");
     assert!(
-        reason.contains("force.gain") && reason.contains("something else is missing"),
+        reason.contains("force.gain") && reason.contains("a missing effect"),
         "{reason}"
     );
 }

@@ -174,7 +174,7 @@ fn factors_that_cannot_be_tested_are_refused() {
     );
     refused(
         &["--factor", "population=8,16,8"],
-        &["factor population: 8 stands twice"],
+        &["factor population: the value 8 is given twice"],
     );
     refused(
         &[

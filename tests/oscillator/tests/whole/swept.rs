@@ -93,7 +93,7 @@ fn a_table_that_cannot_be_scored_is_refused_by_row_and_column() {
     );
     let error = rig.refused(&["sweep", &table]);
     assert!(
-        error.contains("of which case?") && error.contains("--case"),
+        error.contains("no case folder is given") && error.contains("--case"),
         "{error}"
     );
 }
@@ -158,5 +158,5 @@ fn a_grid_that_makes_no_searches_is_refused() {
         &["`preset` = papier", "paper"],
     );
     refused("= 40", "= 0", &["`evaluations` = 0"]);
-    refused("case = \"case\"", "", &["of which case?"]);
+    refused("case = \"case\"", "", &["no case folder is given"]);
 }
