@@ -140,7 +140,7 @@ fn a_full_disk_pauses_the_run_and_room_lets_it_go_on() {
         return;
     };
     wait_until("it says that it pauses", LIMIT, || {
-        run.says("the run pauses")
+        run.says("the run is paused")
     });
     thread::sleep(Duration::from_secs(1));
     let paused = run.results();
@@ -148,7 +148,7 @@ fn a_full_disk_pauses_the_run_and_room_lets_it_go_on() {
     assert_eq!(run.results(), paused, "nothing goes on meanwhile");
     assert!(paused < JOBS, "the disk was too large: {paused}");
     run.make_room();
-    wait_until("it goes on", LIMIT, || run.says("the run goes on"));
+    wait_until("it goes on", LIMIT, || run.says("the run continues"));
     wait_until("it is done", LIMIT, || run.results() > JOBS);
     let last = run.end();
     assert!(last.starts_with("done repeated 0 "), "{last}");
@@ -177,7 +177,7 @@ fn a_pause_that_is_too_long_ends_the_run_with_what_it_has() {
     let said = run.said.lock().unwrap().clone();
     let words = "the journal could not be written for 2 s (";
     assert!(
-        said.contains(words) && said.contains("the same command goes on"),
+        said.contains(words) && said.contains("repeat the command to continue"),
         "{said}"
     );
 }

@@ -57,10 +57,10 @@ fn jobs_that_kill_local_workers_cost_only_themselves() {
     done.sort_unstable();
     assert_eq!(done, (0..12).collect::<Vec<_>>(), "{:?}", ended.lines);
     for job in [3, 5, 7] {
-        let words = format!("job {job} is given up: 4 workers were lost over it");
+        let words = format!("job {job} was abandoned: 4 workers were lost over it");
         assert!(ended.errors.contains(&words), "{}", ended.errors);
     }
-    assert_eq!(ended.errors.matches("is given up").count(), 3);
+    assert_eq!(ended.errors.matches("was abandoned").count(), 3);
 }
 
 #[test]

@@ -155,7 +155,7 @@ fn a_record_beyond_the_curve_that_the_program_left_in_the_folder_is_refused() {
         "from 0 to 2",
         "from 0 to 1.5",
         "out.csv",
-        "cut the record",
+        "shorten the record",
     ] {
         assert!(said.contains(words), "{words}: {said}");
     }

@@ -34,8 +34,8 @@ fn what_went_wrong_is_said_in_the_programs_own_words() {
         ("printf 'y\\n1\\n2\\n4' | head -c 5 > out.csv\n", "2 values"),
         ("printf 'y\\n1\\nNaN\\n4\\n' > out.csv\n", "line 3: `NaN`"),
         ("printf 'z\\n1\\n2\\n4\\n' > out.csv\n", "column `y`"),
-        ("ln -s /etc/passwd out.csv\n", "no plain file"),
-        ("mkfifo out.csv\n", "no plain file"),
+        ("ln -s /etc/passwd out.csv\n", "not a regular file"),
+        ("mkfifo out.csv\n", "not a regular file"),
         ("kill -9 $$\n", "signal 9"),
     ] {
         let said = failure(&Rig::shell(program, ""));

@@ -92,7 +92,7 @@ fn what_cannot_be_planned_is_refused_before_anything_is_done() {
     let foreign = format!("mips={}", worker.display());
     for (words, wanted) in [
         (vec!["--ssh", "a,a"], "a is named twice"),
-        (vec!["--ssh=-oProxyCommand=x"], "is no host"),
+        (vec!["--ssh=-oProxyCommand=x"], "is not a valid host"),
         (vec!["--hosts", "none.txt"], "none.txt: No such file"),
         (
             vec!["--slurm", "nodes"],
