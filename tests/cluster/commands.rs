@@ -152,7 +152,7 @@ fn a_case_without_records_is_checked_and_simulated() {
     let words = String::from_utf8_lossy(&refused.stderr);
     assert_eq!(refused.status.code(), Some(2), "{words}");
     assert!(
-        words.contains("`kb7` is no unknown") && words.contains("kb1, kb23"),
+        words.contains("`kb7` is not an unknown") && words.contains("kb1, kb23"),
         "{words}"
     );
     // nothing to compare it with

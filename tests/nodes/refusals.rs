@@ -33,7 +33,7 @@ fn every_host_that_fails_is_named_with_its_step_and_its_remedy() {
         ),
         (
             "other",
-            "it is a machine of \"Linux mips\"",
+            "the host runs \"Linux mips\"",
             "--worker-program ARCH=PATH",
         ),
     ];
