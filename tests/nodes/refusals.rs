@@ -9,7 +9,7 @@ fn every_host_that_fails_is_named_with_its_step_and_its_remedy() {
         (
             "unknown",
             "cannot see whether a worker can run there",
-            "log in once by hand",
+            "log in once with",
         ),
         (
             "changed",
