@@ -1,10 +1,7 @@
 //! Checks that each name of a public type exists once in the product, or that its further uses stand for the
 //! same idea.
-use std::{
-    collections::BTreeMap,
-    fs,
-    path::{Path, PathBuf},
-};
+use crate::banned_words::sources;
+use std::{collections::BTreeMap, ffi::OsStr, fs, path::Path};
 use syn::{Item, Visibility};
 
 /// Type names that several crates use for the same idea, each with its meaning. The pumping unit's parts
@@ -44,19 +41,10 @@ const SHARED: &[(&str, &str)] = &[
     ),
 ];
 
-/// Collects the Rust files of a folder, without tests and benches.
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in folder.read_dir().expect("a folder") {
-        let path = entry.expect("an entry").path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if path.is_dir() {
-            if !["tests", "benches", "target"].contains(&&*name) {
-                sources(&path, found);
-            }
-        } else if path.extension().is_some_and(|ending| ending == "rs") {
-            found.push(path);
-        }
-    }
+/// Returns whether a file belongs to the product: it lies in no folder of tests or benches.
+fn is_product(file: &Path) -> bool {
+    let aside = |part: &OsStr| part == "tests" || part == "benches";
+    !file.iter().any(aside)
 }
 
 /// Returns the names of the types that a list of items declares with `pub`, those of inner modules included.
@@ -91,17 +79,18 @@ fn public_types(items: &[Item]) -> Vec<String> {
 #[test]
 fn a_public_type_name_has_one_meaning() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let mut files = Vec::new();
-    for folder in ["coordinator", "protocol", "worker"] {
-        sources(&root.join(folder), &mut files);
-    }
+    let folders = ["coordinator", "protocol", "worker"];
     let mut names: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    for file in &files {
-        let text = fs::read_to_string(file).expect("readable");
+    for file in folders.iter().flat_map(|part| sources(&root.join(part))) {
+        let place = file.strip_prefix(&root).expect("inside");
+        if !is_product(place) {
+            continue;
+        }
+        let text = fs::read_to_string(&file).expect("readable");
         let parsed = syn::parse_file(&text).expect("Rust");
-        let place = file.strip_prefix(&root).expect("inside").display();
         for name in public_types(&parsed.items) {
-            names.entry(name).or_default().push(place.to_string());
+            let places = names.entry(name).or_default();
+            places.push(place.display().to_string());
         }
     }
     let shared = |name: &str| SHARED.iter().any(|(known, _)| *known == name);
