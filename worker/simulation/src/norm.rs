@@ -2,6 +2,7 @@
 //!
 //! Coordinates that determine measured quantities (beam, rod, suspension, modes) have tight tolerances, the
 //! cylinders of a rope loose ones.
+use pulp::{Arch, Simd, WithSimd};
 
 /// Tolerance of Newton's method for a cylinder's position \[m\]. `TURN` is that for a cylinder's angle
 /// \[rad\], `ANGLE` for the angles of beam and rod \[rad\], `MODAL` for a modal coordinate [kg^1/2 m].
@@ -15,6 +16,7 @@ pub(crate) fn square(x: f64) -> f64 {
 }
 
 /// Returns the larger of `norm` and the absolute value of `x`, or NaN if `x` is NaN.
+#[inline]
 pub(crate) fn worst(norm: f64, x: f64) -> f64 {
     let x = x.abs();
     if norm < x || x.is_nan() { x } else { norm }
@@ -47,6 +49,27 @@ fn cylinders(norm: f64, x: &[f64], width: usize, [length, turn]: [f64; 2]) -> f6
 
 /// Returns the largest absolute value over all cylinders of each of a cylinder's `W` coordinates.
 fn largest<const W: usize>(x: &[f64]) -> [f64; W] {
+    Arch::new().dispatch(Largest(x))
+}
+
+/// Evaluation of [`largest`], compiled for each set of instructions.
+struct Largest<'a, const W: usize>(&'a [f64]);
+
+impl<const W: usize> WithSimd for Largest<'_, W> {
+    type Output = [f64; W];
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> [f64; W] {
+        largest_inlined(self.0)
+    }
+}
+
+#[inline(always)]
+fn largest_inlined<const W: usize>(x: &[f64]) -> [f64; W] {
     // each comparison waits for the one before it: four of them side by side
     const ROWS: usize = 4;
     let mut norms = [[0.0; W]; ROWS];

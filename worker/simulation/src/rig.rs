@@ -251,11 +251,12 @@ impl Equations for Rig {
         matrix.clear();
         chain.add_inertia_blocks(at.state().q, mass, matrix);
         let joints = self.setup.joints();
-        chain.add_joint_tangent(&joints, &self.state, damping, matrix);
+        chain.add_joint_tangent(&joints, &self.state, damping, (None, &mut *matrix));
         let ends = chain.ends(&joints, &self.state);
         chain.add_end_tangent(&ends, damping, matrix);
         if let Some((surface, law)) = self.surface() {
-            chain.add_contact_tangent(&surface, &law, &self.state, damping, matrix);
+            let on = (&surface, &law);
+            chain.add_contact_tangent(on, &self.state, damping, (None, &mut *matrix));
         }
         for (j, along, force, _) in self.dead_loads() {
             let bends = self.state.poses[j].axis_by_twice();

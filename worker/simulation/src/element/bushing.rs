@@ -13,6 +13,9 @@
 //! kept: preloads in shear and bending need a preferred direction across the rope, which has none, and a
 //! torque would turn cylinders out of the plane of a single rope, where nothing holds them (two ropes of
 //! opposite lay balance it).
+use super::law::{ForceLaw, Response};
+use super::plane::DEFORMATIONS;
+use crate::math::real::Real;
 use crate::math::rotation::{inverse_left_jacobian, rotation_vector, skew};
 use nalgebra::{Matrix3, Vector3};
 
@@ -330,5 +333,80 @@ impl Bushing {
             ],
         };
         [tangent_i, tangent_j]
+    }
+}
+
+/// Number of coefficients of a bushing in the plane: three stiffnesses, three damping coefficients, preload.
+pub const PLANE_COEFFICIENTS: usize = 7;
+/// Index of the preload (tension along the axis) among the coefficients of a bushing in the plane.
+pub const PRELOAD_INDEX: usize = 6;
+
+/// Law of extension, shear and bending in the plane, with the coefficients `K_11`, `K_22`, `K_55`, `C_11`,
+/// `C_22`, `C_55` and the preload; torsion does not occur.
+impl ForceLaw<DEFORMATIONS, PLANE_COEFFICIENTS> for Bushing {
+    fn coefficients(&self) -> [f64; PLANE_COEFFICIENTS] {
+        let ([k1, k2], [c1, c2]) = (self.stiffness, self.damping);
+        let [[_, k5], [_, c5]] = [self.rotational_stiffness, self.rotational_damping];
+        [k1, k2, k5, c1, c2, c5, self.preload]
+    }
+
+    fn with_coefficients(&self, of: [f64; PLANE_COEFFICIENTS]) -> Self {
+        let [k1, k2, k5, c1, c2, c5, preload] = of;
+        Self {
+            stiffness: [k1, k2],
+            damping: [c1, c2],
+            rotational_stiffness: [self.rotational_stiffness[0], k5],
+            rotational_damping: [self.rotational_damping[0], c5],
+            preload,
+        }
+    }
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn response<T: Real>(&self, x: [T; 3], rate: [T; 3]) -> Response<T, 3> {
+        let [k1, k2, k5, c1, c2, c5, preload] = self.coefficients();
+        let zero = x[0].constant(0.0);
+        let diagonal = |[a, b, c]: [f64; 3]| {
+            [
+                [zero.constant(a), zero, zero],
+                [zero, zero.constant(b), zero],
+                [zero, zero, zero.constant(c)],
+            ]
+        };
+        let viscous = [rate[0] * c1, rate[1] * c2, rate[2] * c5];
+        let elastic = [x[0] * k1, x[1] * k2, x[2] * k5];
+        Response {
+            force: [
+                elastic[0] + viscous[0] + preload,
+                elastic[1] + viscous[1],
+                elastic[2] + viscous[2],
+            ],
+            stiffness: diagonal([k1, k2, k5]),
+            damping: diagonal([c1, c2, c5]),
+            energy: (elastic[0] * x[0] + elastic[1] * x[1] + elastic[2] * x[2]) * 0.5
+                + x[0] * preload,
+            dissipated: viscous[0] * rate[0] + viscous[1] * rate[1] + viscous[2] * rate[2],
+        }
+    }
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn by_coefficients<T: Real>(&self, x: [T; 3], rate: [T; 3]) -> [[T; 3]; PLANE_COEFFICIENTS] {
+        let zero = x[0].constant(0.0);
+        [
+            [x[0], zero, zero],
+            [zero, x[1], zero],
+            [zero, zero, x[2]],
+            [rate[0], zero, zero],
+            [zero, rate[1], zero],
+            [zero, zero, rate[2]],
+            [zero.constant(1.0), zero, zero],
+        ]
     }
 }

@@ -5,7 +5,9 @@
 //! paper's Eq. 4 has no `max(0, ..)` and would pull a rope that leaves its arc fast; the `IMPACT` function of
 //! the program used for the paper cuts the force off in the same way, and the power balance accounts for the
 //! energy lost by it.
-use crate::math::elementary::power_law;
+use super::law::{ForceLaw, Response};
+use crate::math::elementary::powf;
+use crate::math::real::Real;
 
 /// Coefficients of the contact force law, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,47 +22,6 @@ pub struct Impact {
     pub full_damping_penetration: f64,
 }
 
-/// Contact force with its derivatives and the dissipated power.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ImpactForce {
-    /// Repulsive contact force, never negative \[N\].
-    pub force: f64,
-    /// Derivative of the contact force with respect to the penetration [N/m].
-    pub by_penetration: f64,
-    /// Derivative of the contact force with respect to the penetration rate [N s/m].
-    pub by_rate: f64,
-    /// Power dissipated by the contact damping \[W\]; if a fast rebound cuts the force off, the power that
-    /// the spring loses.
-    pub dissipated: f64,
-}
-
-/// Intermediate results of the contact law at one penetration and rate.
-#[derive(Clone, Copy)]
-struct ContactState {
-    /// Repulsive contact force, never negative \[N\]; the field `lost` holds the dissipated power \[W\].
-    force: f64,
-    lost: f64,
-    /// Part of the contact force from the spring \[N\].
-    spring: f64,
-    /// Share of the full damping coefficient that acts at this penetration; the field `slope` holds its
-    /// derivative with respect to the penetration.
-    step: f64,
-    slope: f64,
-}
-
-impl ImpactForce {
-    /// Returns contact force, derivatives and dissipated power, all multiplied by `share`.
-    #[must_use]
-    pub fn share(self, share: f64) -> Self {
-        Self {
-            force: self.force * share,
-            by_penetration: self.by_penetration * share,
-            by_rate: self.by_rate * share,
-            dissipated: self.dissipated * share,
-        }
-    }
-}
-
 /// Coefficient or state of the contact law with respect to which the force has a closed-form derivative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum DerivativeVariable {
@@ -69,117 +30,126 @@ pub(crate) enum DerivativeVariable {
     Penetration,
 }
 
+/// Intermediate results of the contact law at one penetration and rate.
+#[derive(Clone, Copy)]
+struct ContactState<T> {
+    /// Penetration, zero outside the surface \[m\], its power by the law's exponent, and the derivative of
+    /// that power.
+    inside: T,
+    power: T,
+    slope: T,
+    /// Share of the full damping coefficient that acts at this penetration, and its derivative [1/m].
+    step: T,
+    step_slope: T,
+    /// Force of spring and damper together \[N\]; where it is negative, the contact is torn open.
+    sum: T,
+}
+
 impl Impact {
-    /// Evaluates the contact law at one penetration and rate without branches; negative penetration counts as
-    /// zero. `power` raises the penetration to the law's exponent.
     #[expect(
         clippy::inline_always,
-        reason = "loops over many places become vectors; what they do not ask for is never computed"
+        reason = "compiled for each set of instructions; what is not used is not computed"
     )]
     #[inline(always)]
-    fn pressed(&self, depth: f64, rate: f64, power: impl Fn(f64) -> f64) -> ContactState {
-        let inside = if depth > 0.0 { depth } else { 0.0 };
-        let spring = self.stiffness * power(inside);
-        let u = inside / self.full_damping_penetration;
-        let u = if u < 1.0 { u } else { 1.0 };
-        let step = u * u * (3.0 - 2.0 * u);
-        let damper = self.damping * step * rate;
-        let sum = spring + damper;
-        // what the spring gives back while the contact is torn open is lost
-        let torn = -spring * rate;
-        ContactState {
-            force: if sum > 0.0 { sum } else { 0.0 },
-            lost: if sum > 0.0 { damper * rate } else { torn },
-            spring,
-            step,
-            slope: 6.0 * u * (1.0 - u) / self.full_damping_penetration,
-        }
-    }
-
-    /// Computes the derivative of the contact force with respect to one variable; zero where the force is
-    /// zero.
-    pub(crate) fn derivative(&self, depth: f64, rate: f64, by: DerivativeVariable) -> f64 {
-        match by {
-            DerivativeVariable::Stiffness => self.force_by(depth, rate)[0],
-            DerivativeVariable::Damping => self.force_by(depth, rate)[1],
-            DerivativeVariable::Penetration => self.force(depth, rate).by_penetration,
-        }
-    }
-
-    /// Computes the derivatives of the contact force with respect to stiffness and damping coefficient; zero
-    /// where the force is zero.
-    pub fn force_by(&self, depth: f64, rate: f64) -> [f64; 2] {
+    fn state<T: Real>(&self, depth: T, rate: T) -> ContactState<T> {
+        let zero = depth.constant(0.0);
+        let inside = zero.select_less(depth, depth, zero);
         #[expect(clippy::float_cmp, reason = "selects the exact special case")]
-        let root = self.exponent == 1.5;
-        let power = |x: f64| match x > 0.0 {
-            true if root => x * x.sqrt(),
-            true => power_law(x, self.exponent),
-            false => 0.0,
-        };
-        let at = self.pressed(depth, rate, power);
-        if at.force > 0.0 {
-            [at.spring / self.stiffness, at.step * rate]
-        } else {
-            [0.0; 2]
-        }
-    }
-
-    /// Computes contact force \[N\] and dissipated power \[W\] for arrays of penetrations \[m\] and rates
-    /// [m/s], bit-identical to [`Self::force`].
-    pub fn forces_batch(&self, [depth, rate]: [&[f64]; 2], [force, lost]: [&mut [f64]; 2]) {
-        let n = depth.len();
-        let (rate, force, lost) = (&rate[..n], &mut force[..n], &mut lost[..n]);
-        #[expect(clippy::float_cmp, reason = "selects the exact special case")]
-        if self.exponent == 1.5 {
-            for i in 0..n {
-                let at = self.pressed(depth[i], rate[i], |x| x * x.sqrt());
-                (force[i], lost[i]) = (at.force, at.lost);
-            }
+        let [power, slope] = if self.exponent == 1.5 {
+            let root = inside.sqrt();
+            [inside * root, root * 1.5]
         } else {
             // a power is dear, and most points touch nothing
-            let power = |x: f64| {
+            inside.each(|x| {
                 if x > 0.0 {
-                    power_law(x, self.exponent)
+                    let power = powf(x, self.exponent);
+                    [power, self.exponent * power / x]
                 } else {
-                    0.0
+                    [0.0; 2]
                 }
-            };
-            for i in 0..n {
-                let at = self.pressed(depth[i], rate[i], power);
-                (force[i], lost[i]) = (at.force, at.lost);
-            }
+            })
+        };
+        let full = 1.0 / self.full_damping_penetration;
+        let u = (inside * full).at_most(zero.constant(1.0));
+        let step = u * u * (u * -2.0 + 3.0);
+        ContactState {
+            inside,
+            power,
+            slope,
+            step,
+            step_slope: u * (zero.constant(1.0) - u) * (6.0 * full),
+            sum: power * self.stiffness + step * rate * self.damping,
         }
     }
 
-    /// Computes the contact force, with its derivatives, at penetration `depth` \[m\] and rate `rate` [m/s].
-    #[inline]
-    pub fn force(&self, depth: f64, rate: f64) -> ImpactForce {
-        let at = self.pressed(depth, rate, |x| power_law(x, self.exponent));
-        if at.force == 0.0 {
-            return ImpactForce {
-                dissipated: at.lost,
-                ..ImpactForce::default()
-            };
-        }
-        ImpactForce {
-            force: at.force,
-            by_penetration: self.exponent * at.spring / depth + self.damping * at.slope * rate,
-            by_rate: self.damping * at.step,
-            dissipated: at.lost,
+    /// Returns the derivative of the contact force with respect to one variable; zero where the force is
+    /// zero.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    pub(crate) fn derivative<T: Real>(&self, depth: T, rate: T, by: DerivativeVariable) -> T {
+        let [[by_stiffness], [by_damping]] = self.by_coefficients([depth], [rate]);
+        match by {
+            DerivativeVariable::Stiffness => by_stiffness,
+            DerivativeVariable::Damping => by_damping,
+            DerivativeVariable::Penetration => self.response([depth], [rate]).stiffness[0][0],
         }
     }
 
-    /// Computes the elastic energy stored in the contact at penetration `depth` \[J\].
-    pub fn energy(&self, depth: f64) -> f64 {
-        if depth <= 0.0 {
-            return 0.0;
-        }
-        self.stiffness * power_law(depth, self.exponent) * depth / (self.exponent + 1.0)
-    }
-
-    /// Computes the penetration at which the spring alone carries `force` \[m\].
+    /// Returns the penetration at which the spring alone carries `force` \[m\].
     pub fn depth_under(&self, force: f64) -> f64 {
-        crate::math::elementary::powf(force.max(0.0) / self.stiffness, 1.0 / self.exponent)
+        powf(force.max(0.0) / self.stiffness, 1.0 / self.exponent)
+    }
+}
+
+/// Law of the penetration \[m\], with the coefficients K and C.
+impl ForceLaw<1, 2> for Impact {
+    fn coefficients(&self) -> [f64; 2] {
+        [self.stiffness, self.damping]
+    }
+
+    fn with_coefficients(&self, [stiffness, damping]: [f64; 2]) -> Self {
+        Self {
+            stiffness,
+            damping,
+            ..*self
+        }
+    }
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn response<T: Real>(&self, [depth]: [T; 1], [rate]: [T; 1]) -> Response<T, 1> {
+        let at = self.state(depth, rate);
+        let zero = depth.constant(0.0);
+        let pressed = |value: T, torn: T| zero.select_less(at.sum, value, torn);
+        let spring = at.power * self.stiffness;
+        let damper = at.step * rate * self.damping;
+        let by_depth = at.slope * self.stiffness + at.step_slope * rate * self.damping;
+        Response {
+            force: [pressed(at.sum, zero)],
+            stiffness: [[pressed(by_depth, zero)]],
+            damping: [[pressed(at.step * self.damping, zero)]],
+            energy: spring * at.inside * (1.0 / (self.exponent + 1.0)),
+            // what the spring gives back while the contact is torn open is lost
+            dissipated: pressed(damper * rate, -spring * rate),
+        }
+    }
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn by_coefficients<T: Real>(&self, [depth]: [T; 1], [rate]: [T; 1]) -> [[T; 1]; 2] {
+        let at = self.state(depth, rate);
+        let zero = depth.constant(0.0);
+        let pressed = |value: T| zero.select_less(at.sum, value, zero);
+        [[pressed(at.power)], [pressed(at.step * rate)]]
     }
 }
 
@@ -195,28 +165,22 @@ mod tests {
     };
 
     #[test]
-    fn derivatives_match_differences() {
-        for (depth, rate) in [(4e-4, 0.3), (9.9e-4, -0.2), (3e-3, 0.7)] {
-            let at = LAW.force(depth, rate);
-            let h = 1e-9;
-            let by_depth =
-                (LAW.force(depth + h, rate).force - LAW.force(depth - h, rate).force) / (2.0 * h);
-            assert!((by_depth - at.by_penetration).abs() < 1e-5 * at.by_penetration.abs());
-            let h = 1e-6;
-            let by_rate =
-                (LAW.force(depth, rate + h).force - LAW.force(depth, rate - h).force) / (2.0 * h);
-            assert!((by_rate - at.by_rate).abs() < 1e-6 * at.by_rate.max(1.0));
-            let energy = (LAW.energy(depth + 1e-8) - LAW.energy(depth - 1e-8)) / 2e-8;
-            let spring = LAW.force(depth, 0.0).force;
-            assert!((energy - spring).abs() < 1e-6 * spring);
-            assert!((LAW.depth_under(spring) - depth).abs() < 1e-12);
-        }
+    fn contact_never_pulls() {
+        let apart = LAW.response([-1e-6], [5.0]);
+        assert!(apart.force[0].abs() + apart.dissipated.abs() < f64::MIN_POSITIVE);
+        let torn = LAW.response([5e-4], [-1e3]);
+        assert_eq!(
+            [torn.force[0], torn.stiffness[0][0]].map(f64::to_bits),
+            [0; 2]
+        );
+        assert!(torn.dissipated > 0.0);
     }
 
     #[test]
-    fn contact_never_pulls() {
-        assert_eq!(LAW.force(-1e-6, 5.0), ImpactForce::default());
-        let torn = LAW.force(5e-4, -1e3);
-        assert!(torn.force == 0.0 && torn.by_penetration == 0.0 && torn.dissipated > 0.0);
+    fn spring_carries_its_force_at_its_depth() {
+        for depth in [4e-4, 9.9e-4, 3e-3] {
+            let [spring] = LAW.response([depth], [0.0]).force;
+            assert!((LAW.depth_under(spring) - depth).abs() < 1e-12);
+        }
     }
 }

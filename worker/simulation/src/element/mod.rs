@@ -1,11 +1,13 @@
-//! Force laws between two markers, or between a point and a surface, independent of bodies, coordinates and
+//! Force laws, and the joints that map coordinates to the deformations of a law; independent of bodies and
 //! integrators.
 //!
-//! The bushing is the only law between two markers: between cylinders, and pinned, revolute or clamped at a
-//! rope's ends. Its tangent, its energy, action and reaction, and its independence of the frame are tested
-//! for each of these (`contract`).
+//! A law of a joint or a contact is one file that implements [`ForceLaw`](law::ForceLaw), and one line in the
+//! list of `contract`, whose tests hold every law to the trait: stiffness, damping, derivatives with respect
+//! to coefficients, power balance, equal bits in lanes. The joint between two rods in the plane is `plane`;
+//! the bushing in space, with its markers, is [`bushing`].
 pub mod bushing;
 #[cfg(test)]
 mod contract;
 pub mod impact;
+pub mod law;
 pub mod plane;

@@ -1,320 +1,207 @@
-//! Planar bushing: the law of [`Bushing`] between markers that move in one plane, without the vanishing
-//! terms.
+//! Joint between two rods in a plane: the map from their coordinates to the joint's deformations.
 //!
-//! All axes lie in the plane and all rotations are about its normal, so that a force has two components, a
-//! torque one, and the rotation vector is a difference of angles. Torsion does not occur: `K_44` and `C_44`
-//! have no influence.
-use super::bushing::{AxialTension, Bushing};
-use nalgebra::Vector2;
-use std::f64::consts::{PI, TAU};
+//! The deformations are extension and shear, along and across the axis of rod J, and the turn of rod I
+//! relative to J. A [`ForceLaw`](super::law::ForceLaw) of these three answers with forces; this module returns
+//! the forces on the rods, and the stiffness and damping by their coordinates.
+use super::law::Response;
+use crate::math::real::Real;
+use std::f64::consts::TAU;
 
-type V2 = Vector2<f64>;
+/// Number of deformations of a planar joint: extension, shear, turn.
+pub const DEFORMATIONS: usize = 3;
+/// Number of independent coordinates of a planar joint: x, y and angle of I, angle of J. The joint depends on
+/// the difference of the rods' positions, so derivatives with respect to those of J are the opposite.
+pub(crate) const INDEPENDENT: usize = 4;
 
-/// Planar marker: a frame fixed on a body, with the motion of that body.
+/// Pose and velocity of a rod in the plane.
 #[derive(Clone, Copy, Debug)]
-pub struct PlaneMarker {
-    /// Position of the body's reference point \[m\].
-    pub p: V2,
-    /// Vector from the body's reference point to the marker \[m\].
-    pub rho: V2,
-    /// Velocity of the body's reference point [m/s].
-    pub v: V2,
-    /// Angular velocity of the body [rad/s].
-    pub w: f64,
-    /// Unit vector along the marker's axis.
-    pub axis: V2,
-    /// Angle of the marker's axis from +x \[rad\].
-    pub angle: f64,
+pub struct PlaneRod<T> {
+    /// Position of the rod's centre \[m\].
+    pub place: [T; 2],
+    /// Velocity of the centre [m/s].
+    pub velocity: [T; 2],
+    /// Direction of the rod's axis: cosine and sine of its angle.
+    pub axis: [T; 2],
+    /// Angle of the axis from +x \[rad\].
+    pub angle: T,
+    /// Rate of the angle [rad/s].
+    pub rate: T,
 }
 
-/// Force and torques that a planar joint exerts on its two bodies I and J; torques are about the bodies'
-/// reference points.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct PlaneLoad {
-    /// Force on body I \[N\]; the opposite force acts on body J.
-    pub force: V2,
-    /// Torque on body I about its reference point [N m].
-    pub torque_i: f64,
-    /// Torque on body J about its reference point [N m].
-    pub torque_j: f64,
-    /// Component of the joint force along the axis of marker J; negative where the joint pulls \[N\].
-    pub axial: f64,
-    /// Power dissipated by the joint's damping \[W\].
-    pub dissipated: f64,
-}
-
-/// Number of coefficients of a planar joint: three stiffnesses, three damping coefficients and the preload.
-pub const PLANE_COEFFICIENTS: usize = 7;
-/// Index of the preload (tension along the axis) among the coefficients of a planar joint.
-pub const PRELOAD_INDEX: usize = 6;
-
-/// Derivatives of a planar joint's force and torques with respect to one coordinate of a body.
+/// Joint between the near ends of two rods of equal length, at one pose and velocity of both.
 #[derive(Clone, Copy, Debug)]
-pub struct PlaneColumn {
-    /// Derivative of the force on body I with respect to the coordinate.
-    pub force: V2,
-    /// Derivative of the torque on body I with respect to the coordinate.
-    pub torque_i: f64,
-    /// Derivative of the torque on body J with respect to the coordinate.
-    pub torque_j: f64,
+pub struct PlaneJoint<T> {
+    /// Extension \[m\], shear \[m\] and turn \[rad\].
+    pub deformation: [T; DEFORMATIONS],
+    /// Rates of the deformations.
+    pub rate: [T; DEFORMATIONS],
+    /// Half the length of a rod \[m\].
+    half: f64,
+    /// Axis of rod J, and of rod I in the frame of J.
+    axis: [T; 2],
+    turned: [T; 2],
+    /// Rate of the angle of rod J [rad/s].
+    spin: T,
 }
 
-/// Computes `z x r`, the vector rotated by +90 degrees.
-#[inline]
-fn perp(r: &V2) -> V2 {
-    V2::new(-r.y, r.x)
+/// Force and torques of a planar joint on its two rods.
+#[derive(Clone, Copy, Debug)]
+pub struct PlaneLoad<T> {
+    /// Force on rod I \[N\]; the opposite force acts on rod J.
+    pub force: [T; 2],
+    /// Torques on rod I and on rod J about their centres [N m].
+    pub torque: [T; 2],
 }
 
-/// Computes the z component of `a x b`.
-#[inline]
-fn cross_z(a: &V2, b: &V2) -> f64 {
-    a.x * b.y - a.y * b.x
+/// Derivatives of the forces of a planar joint, negative, by the coordinates of both rods: three by three
+/// blocks of the rows of I and J and the columns of I and J.
+#[derive(Clone, Copy, Debug)]
+pub struct PlaneTangent<T>(pub(crate) [[T; INDEPENDENT]; INDEPENDENT]);
+
+/// Rod of a planar joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Rod I, behind the joint.
+    I,
+    /// Rod J, before the joint, whose frame defines extension and shear.
+    J,
 }
 
-/// Computes the difference of two angles, reduced to the range of -pi to pi \[rad\].
-#[inline]
-fn turned(i: f64, j: f64) -> f64 {
-    let turn = i - j;
-    if turn.abs() > PI {
-        turn - TAU * (turn / TAU).round()
-    } else {
-        turn
-    }
-}
+/// Rounds to an integer when added to a number and subtracted again: 1.5 times 2^52.
+const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// Motion of marker I relative to marker J: position and its rate in the frame of J, angle and its rate; used
-/// by both load and tangent.
-struct Deformation {
-    d: V2,
-    V: V2,
-    theta: f64,
-    w: f64,
-}
-
-#[inline]
-fn deformation(i: &PlaneMarker, j: &PlaneMarker) -> Deformation {
-    let d = (i.p + i.rho) - (j.p + j.rho);
-    let velocity = (i.v + perp(&i.rho) * i.w) - (j.v + perp(&j.rho) * j.w);
-    Deformation {
-        d,
-        V: velocity - perp(&d) * j.w,
-        theta: turned(i.angle, j.angle),
-        w: i.w - j.w,
-    }
-}
-
-impl PlaneColumn {
-    fn opposite(self) -> Self {
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+impl<T: Real> PlaneJoint<T> {
+    /// Computes the deformations of the joint between the end of rod J and the start of rod I, both of length
+    /// `2 half` \[m\].
+    #[inline(always)]
+    pub fn new(half: f64, i: &PlaneRod<T>, j: &PlaneRod<T>) -> Self {
+        let ([ex, ey], [ix, iy]) = (j.axis, i.axis);
+        // in the order of the bushing in space, which rounds alike
+        let ([ax, ay], [bx, by]) = ([ix * -half, iy * -half], [ex * half, ey * half]);
+        let dx = (i.place[0] + ax) - (j.place[0] + bx);
+        let dy = (i.place[1] + ay) - (j.place[1] + by);
+        let wx = (i.velocity[0] - ay * i.rate) - (j.velocity[0] - by * j.rate);
+        let wy = (i.velocity[1] + ax * i.rate) - (j.velocity[1] + bx * j.rate);
+        let extension = ex * dx + ey * dy;
+        let shear = ex * dy - ey * dx;
+        let turn = i.angle - j.angle;
+        let turns = (turn * (1.0 / TAU) + ROUND) - ROUND;
         Self {
-            force: -self.force,
-            torque_i: -self.torque_i,
-            torque_j: -self.torque_j,
+            deformation: [extension, shear, turn - turns * TAU],
+            rate: [
+                ex * wx + ey * wy + j.rate * shear,
+                ex * wy - ey * wx - j.rate * extension,
+                i.rate - j.rate,
+            ],
+            half,
+            axis: [ex, ey],
+            turned: [ex * ix + ey * iy, ex * iy - ey * ix],
+            spin: j.rate,
         }
     }
-}
 
-impl PlaneLoad {
-    /// Adds the force and torques of an additional axial tension between the markers to the load.
-    #[inline]
-    pub fn add_pull(&mut self, (i, j): (&PlaneMarker, &PlaneMarker), pull: &AxialTension) {
-        let Deformation { d, .. } = deformation(i, j);
-        let force = j.axis * -pull.force;
-        self.force += force;
-        self.torque_i += cross_z(&i.rho, &force);
-        self.torque_j -= cross_z(&(d + j.rho), &force);
-        self.axial -= pull.force;
-        self.dissipated += pull.dissipated;
+    /// Returns the joint's force and torques on the rods under the forces that resist its deformations.
+    #[inline(always)]
+    pub fn load(&self, [along, across, bending]: [T; DEFORMATIONS]) -> PlaneLoad<T> {
+        let ([ex, ey], [cosine, sine]) = (self.axis, self.turned);
+        let [extension, shear, _] = self.deformation;
+        PlaneLoad {
+            force: [ey * across - ex * along, -(ey * along + ex * across)],
+            torque: [
+                (cosine * across - sine * along) * self.half - bending,
+                bending - shear * along + (extension + self.half) * across,
+            ],
+        }
+    }
+
+    /// Returns the joint's stiffness and its damping by the coordinates of both rods, under the response of its
+    /// law.
+    #[inline(always)]
+    pub fn tangents(&self, law: &Response<T, DEFORMATIONS>) -> [PlaneTangent<T>; 2] {
+        let ([ex, ey], [cosine, sine]) = (self.axis, self.turned);
+        let (half, spin) = (self.half, self.spin);
+        let [extension, shear, _] = self.deformation;
+        let [stretching, shearing, turning] = self.rate;
+        let (zero, one) = (ex.constant(0.0), ex.constant(1.0));
+        // rows: deformations; columns: x, y and angle of I, angle of J
+        let by = [
+            [ex, ey, sine * half, shear],
+            [-ey, ex, -(cosine * half), -(extension + half)],
+            [zero, zero, one, -one],
+        ];
+        let by_rate = [
+            [-(spin * ey), spin * ex, cosine * half * turning, shearing],
+            [
+                -(spin * ex),
+                -(spin * ey),
+                sine * half * turning,
+                -stretching,
+            ],
+            [zero; INDEPENDENT],
+        ];
+        let [along, across, _] = law.force;
+        let swing = (along * cosine + across * sine) * half;
+        let (x, y) = (-(along * ey) - across * ex, along * ex - across * ey);
+        let last = -(along * (extension + half)) - across * shear;
+        // the forces times the second derivatives of the deformations
+        let mut stiffness = [
+            [zero, zero, zero, x],
+            [zero, zero, zero, y],
+            [zero, zero, swing, -swing],
+            [x, y, -swing, last],
+        ];
+        let mut damping = [[zero; INDEPENDENT]; INDEPENDENT];
+        for r in 0..DEFORMATIONS {
+            let (mut k, mut c) = ([zero; INDEPENDENT], [zero; INDEPENDENT]);
+            for s in 0..DEFORMATIONS {
+                for column in 0..INDEPENDENT {
+                    k[column] = k[column]
+                        + law.stiffness[r][s] * by[s][column]
+                        + law.damping[r][s] * by_rate[s][column];
+                    c[column] = c[column] + law.damping[r][s] * by[s][column];
+                }
+            }
+            for row in 0..INDEPENDENT {
+                for column in 0..INDEPENDENT {
+                    stiffness[row][column] = stiffness[row][column] + by[r][row] * k[column];
+                    damping[row][column] = damping[row][column] + by[r][row] * c[column];
+                }
+            }
+        }
+        [PlaneTangent(stiffness), PlaneTangent(damping)]
     }
 }
 
 #[expect(
-    clippy::multiple_inherent_impl,
-    reason = "the law in the plane is a file of its own"
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
 )]
-impl Bushing {
-    /// Computes the joint's force and torques ([`Self::load`]) for planar motion.
-    #[inline]
-    pub fn plane_load(&self, i: &PlaneMarker, j: &PlaneMarker) -> PlaneLoad {
-        let [k1, k2] = self.stiffness;
-        let [c1, c2] = self.damping;
-        let [k5, c5] = [self.rotational_stiffness[1], self.rotational_damping[1]];
-        let Deformation { d, V, theta, w } = deformation(i, j);
-        let e = j.axis;
-        let damping = V * c2 + e * ((c1 - c2) * e.dot(&V));
-        let force = -(d * k2 + e * ((k1 - k2) * e.dot(&d) + self.preload) + damping);
-        let bending_damping = w * c5;
-        let torque = -(theta * k5 + bending_damping);
-        PlaneLoad {
-            force,
-            torque_i: torque + cross_z(&i.rho, &force),
-            torque_j: -torque - cross_z(&(d + j.rho), &force),
-            axial: e.dot(&force),
-            dissipated: damping.dot(&V) + bending_damping * w,
-        }
-    }
-
-    /// Computes, for planar motion, the extension of the joint along its axis \[m\] and its rate [m/s].
-    #[inline]
-    pub fn plane_extension(&self, i: &PlaneMarker, j: &PlaneMarker) -> [f64; 2] {
-        let Deformation { d, V, .. } = deformation(i, j);
-        [j.axis.dot(&d), j.axis.dot(&V)]
-    }
-
-    /// Computes the elastic energy stored in the joint for planar motion \[J\].
-    pub fn plane_energy(&self, i: &PlaneMarker, j: &PlaneMarker) -> f64 {
-        let [k1, k2] = self.stiffness;
-        let Deformation { d, theta, .. } = deformation(i, j);
-        let axial = j.axis.dot(&d);
-        self.preload * axial
-            + 0.5 * (k2 * d.norm_squared() + (k1 - k2) * axial * axial)
-            + 0.5 * self.rotational_stiffness[1] * theta * theta
-    }
-
-    /// Computes the derivatives of [`Self::plane_load`] by x, y and angle of I and of J, where each rate
-    /// changes `gamma` times as much as its coordinate; includes an additional tension that `force` already
-    /// contains.
-    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
+impl<T: Real> PlaneTangent<T> {
+    /// Returns the sum of the tangent and `factor` times another one.
     #[inline(always)]
-    pub fn plane_tangent(
-        &self,
-        (i, j): (&PlaneMarker, &PlaneMarker),
-        force: &V2,
-        gamma: f64,
-        further: Option<&AxialTension>,
-    ) -> [[PlaneColumn; 3]; 2] {
-        let [mut k1, k2] = self.stiffness;
-        let [mut c1, c2] = self.damping;
-        let Deformation { d, V, w, .. } = deformation(i, j);
-        let mut pull = self.preload + (k1 - k2) * j.axis.dot(&d) + (c1 - c2) * j.axis.dot(&V);
-        if let Some(further) = further {
-            pull += further.force;
-            k1 += further.by_extension;
-            c1 += further.by_rate;
-        }
-        let e = j.axis;
-        let stiff = |x: V2| x * k2 + e * ((k1 - k2) * e.dot(&x));
-        let damp = |x: V2| x * c2 + e * ((c1 - c2) * e.dot(&x));
-        let bend = self.rotational_stiffness[1] + gamma * self.rotational_damping[1];
-        // how the force turns with the axis of J
-        let side = perp(&e);
-        let sweep = side * pull + e * side.dot(&(d * (k1 - k2) + V * (c1 - c2)));
-        let arm = d + j.rho;
-        let turn_i = perp(&i.rho);
-
-        let by_place = |x: V2| -stiff(x) - damp(x * gamma - perp(&x) * j.w);
-        let force_x = by_place(V2::x());
-        let force_y = by_place(V2::y());
-        let force_i = -stiff(turn_i) - damp(turn_i * gamma - i.rho * w);
-        let force_j = -sweep + stiff(perp(&j.rho)) + damp(perp(&arm) * gamma);
-
-        let column = |by: V2, torque: f64, own: f64, reaction: f64| PlaneColumn {
-            force: by,
-            torque_i: torque + cross_z(&i.rho, &by) + own,
-            torque_j: -torque - cross_z(&arm, &by) + reaction,
-        };
-        // with I moves its arm about J's reference point, with its angle also its arm about its own
-        let along = force.dot(&i.rho);
-        [
-            [
-                column(force_x, 0.0, 0.0, -force.y),
-                column(force_y, 0.0, 0.0, force.x),
-                column(force_i, -bend, -along, along),
-            ],
-            [
-                column(-force_x, 0.0, 0.0, force.y),
-                column(-force_y, 0.0, 0.0, -force.x),
-                column(force_j, bend, 0.0, 0.0),
-            ],
-        ]
+    #[must_use]
+    pub fn plus(&self, factor: f64, other: &Self) -> Self {
+        let row = |r: usize| std::array::from_fn(|c| self.0[r][c] + other.0[r][c] * factor);
+        Self(std::array::from_fn(row))
     }
+}
 
-    /// Computes [`Self::plane_tangent`] for `gamma = 0` and for the given `gamma` at once.
-    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
+impl PlaneTangent<f64> {
+    /// Returns the entry in the row of coordinate `row` of one rod and the column of coordinate `column` of a
+    /// rod; coordinates are x, y and angle.
+    #[expect(clippy::inline_always, reason = "sides and coordinates are constants")]
     #[inline(always)]
-    pub fn plane_tangents(
-        &self,
-        (i, j): (&PlaneMarker, &PlaneMarker),
-        force: &V2,
-        gamma: f64,
-        further: Option<&AxialTension>,
-    ) -> [[[PlaneColumn; 3]; 2]; 2] {
-        let [mut k1, k2] = self.stiffness;
-        let [mut c1, c2] = self.damping;
-        let Deformation { d, V, w, .. } = deformation(i, j);
-        let e = j.axis;
-        let side = perp(&e);
-        let mut pull = self.preload + (k1 - k2) * e.dot(&d) + (c1 - c2) * e.dot(&V);
-        if let Some(further) = further {
-            pull += further.force;
-            k1 += further.by_extension;
-            c1 += further.by_rate;
-        }
-        let stiff = |x: V2| x * k2 + e * ((k1 - k2) * e.dot(&x));
-        let damp = |x: V2| x * c2 + e * ((c1 - c2) * e.dot(&x));
-        let turned = side.dot(&(d * (k1 - k2) + V * (c1 - c2)));
-        let arm = d + j.rho;
-        let [damp_x, damp_y, damp_i] = [V2::x(), V2::y(), i.rho].map(damp);
-        let turn_i = perp(&i.rho);
-        // by x, y and the angle of I, by the angle of J
-        let by_place = [
-            damp_y * j.w - stiff(V2::x()),
-            -damp_x * j.w - stiff(V2::y()),
-            damp_i * w - stiff(turn_i),
-            stiff(perp(&j.rho)) - side * pull - e * turned,
-        ];
-        let by_rate = [-damp_x, -damp_y, -damp(turn_i), damp(perp(&arm))];
-        let along = force.dot(&i.rho);
-        let columns = |by: [V2; 4], bend: f64| {
-            let column = |by: V2, torque: f64, own: f64, reaction: f64| PlaneColumn {
-                force: by,
-                torque_i: torque + cross_z(&i.rho, &by) + own,
-                torque_j: -torque - cross_z(&arm, &by) + reaction,
-            };
-            let [x, y] = [
-                column(by[0], 0.0, 0.0, -force.y),
-                column(by[1], 0.0, 0.0, force.x),
-            ];
-            [
-                [x, y, column(by[2], -bend, -along, along)],
-                [x.opposite(), y.opposite(), column(by[3], bend, 0.0, 0.0)],
-            ]
+    pub fn entry(&self, (of, row): (Side, usize), (by, column): (Side, usize)) -> f64 {
+        let place = |side: Side, k: usize| match (side, k) {
+            (Side::I, k) => (k, 1.0),
+            (Side::J, 2) => (3, 1.0),
+            (Side::J, k) => (k, -1.0),
         };
-        let [k5, c5] = [self.rotational_stiffness[1], self.rotational_damping[1]];
-        let whole = std::array::from_fn(|k| by_place[k] + by_rate[k] * gamma);
-        [columns(by_place, k5), columns(whole, k5 + gamma * c5)]
-    }
-
-    /// Returns the joint's coefficients in the order of [`Self::plane_units`]; the unit forces of that
-    /// function, multiplied by these coefficients, sum to the joint's forces.
-    pub const fn plane_coefficients(&self) -> [f64; PLANE_COEFFICIENTS] {
-        let ([k1, k2], [c1, c2]) = (self.stiffness, self.damping);
-        let [[_, k5], [_, c5]] = [self.rotational_stiffness, self.rotational_damping];
-        [k1, k2, k5, c1, c2, c5, self.preload]
-    }
-
-    /// Computes the generalised forces of a joint per unit of `K_11`, `K_22`, `K_55`, `C_11`, `C_22`, `C_55`
-    /// and preload, in which the forces are linear; first on the three coordinates of body J, then on those
-    /// of I.
-    #[inline]
-    pub fn plane_units((i, j): (&PlaneMarker, &PlaneMarker)) -> [[f64; PLANE_COEFFICIENTS]; 6] {
-        let Deformation { d, V, theta, w } = deformation(i, j);
-        let e = j.axis;
-        let arm = d + j.rho;
-        let [along_d, along_v] = [d, V].map(|x| e * e.dot(&x));
-        let forces = [-along_d, along_d - d, -along_v, along_v - V, -e];
-        let mut units = [[0.0; PLANE_COEFFICIENTS]; 6];
-        for (k, force) in [0, 1, 3, 4, PRELOAD_INDEX].into_iter().zip(forces) {
-            units[0][k] = -force.x;
-            units[1][k] = -force.y;
-            units[2][k] = -cross_z(&arm, &force);
-            units[3][k] = force.x;
-            units[4][k] = force.y;
-            units[5][k] = cross_z(&i.rho, &force);
-        }
-        for (k, turn) in [(2, theta), (5, w)] {
-            units[2][k] = turn;
-            units[5][k] = -turn;
-        }
-        units
+        let ((row, above), (column, beside)) = (place(of, row), place(by, column));
+        above * beside * self.0[row][column]
     }
 }

@@ -6,6 +6,7 @@
 use super::newton::{ImplicitStage, Newton};
 use super::stepper::{Stages, StepResult, Stepper, TimeStep};
 use super::tableau::Tableau;
+use crate::math::vector::{add_scaled, set_sum};
 use crate::system::{Equations, Powers, State, System};
 
 /// ESDIRK method with its buffers.
@@ -43,12 +44,8 @@ impl Esdirk {
         self.base_v.copy_from_slice(&from.v);
         for (weight, (v, a)) in self.tableau.rows[i].iter().zip(&self.stages) {
             let weight = h * weight;
-            for (base, v) in self.base_q.iter_mut().zip(v) {
-                *base += weight * v;
-            }
-            for (base, a) in self.base_v.iter_mut().zip(a) {
-                *base += weight * a;
-            }
+            add_scaled(&mut self.base_q, weight, v);
+            add_scaled(&mut self.base_v, weight, a);
         }
     }
 
@@ -57,18 +54,14 @@ impl Esdirk {
         let node = self.tableau.nodes[i];
         let (_, first) = &self.stages[0];
         if i == 1 {
-            for k in 0..first.len() {
-                to.v[k] = self.base_v[k] + c * first[k];
-            }
+            set_sum(&mut to.v, &self.base_v, c, first);
             return;
         }
         // linear through the first stage and the latest one
         let (_, latest) = &self.stages[i - 1];
         let ratio = node / self.tableau.nodes[i - 1];
-        for k in 0..first.len() {
-            let a = first[k] + ratio * (latest[k] - first[k]);
-            to.v[k] = self.base_v[k] + c * a;
-        }
+        set_sum(&mut to.v, &self.base_v, c * (1.0 - ratio), first);
+        add_scaled(&mut to.v, c * ratio, latest);
     }
 
     fn estimate(&mut self, h: f64, to: &State) {
@@ -79,10 +72,7 @@ impl Esdirk {
             *error = weight(last) * to.v[k];
         }
         for (i, (v, _)) in self.stages.iter().enumerate() {
-            let weight = weight(i);
-            for (error, v) in self.error.iter_mut().zip(v) {
-                *error += weight * v;
-            }
+            add_scaled(&mut self.error, weight(i), v);
         }
     }
 

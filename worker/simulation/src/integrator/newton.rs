@@ -1,5 +1,6 @@
 //! Newton's method for one implicit stage, reusing a factorisation of the iteration matrix while it converges
 //! fast enough.
+use crate::math::vector::{add_scaled, set_sum};
 use crate::system::{Equations, Loads, Powers, StateRef, StateShift, System};
 
 /// Policy that decides when the iteration matrix is factorised anew: a small state machine without numerics.
@@ -144,11 +145,9 @@ impl Newton {
                 rate < 1.0 && norm * rate / (1.0 - rate) < self.accuracy
             };
             let kept = loads.release_state();
-            for (i, change) in self.change.iter().enumerate() {
-                q[i] += change;
-                v[i] += damping * change;
-                a[i] += mass * change;
-            }
+            add_scaled(q, 1.0, &self.change);
+            add_scaled(v, damping, &self.change);
+            add_scaled(a, mass, &self.change);
             if converged {
                 self.policy.record_rate(rate);
                 return Ok(kept.powers(StateRef { t: stage.t, q, v }, a));
@@ -194,11 +193,9 @@ impl Newton {
             loads.solve(&mut self.change);
             let norm = loads.equations().newton_norm(&self.change);
             let kept = loads.release_state();
-            for (i, change) in self.change.iter().enumerate() {
-                q[i] += change;
-                v[i] += damping * change;
-                a[i] += mass * change;
-            }
+            add_scaled(q, 1.0, &self.change);
+            add_scaled(v, damping, &self.change);
+            add_scaled(a, mass, &self.change);
             // below, the next change would be rounding; or it is already, and shrinks no more
             if norm < QUADRATIC || (norm < ROUNDING && norm > 0.5 * last) {
                 return Ok(kept.powers(StateRef { t: stage.t, q, v }, a));
@@ -237,9 +234,10 @@ impl ImplicitStage<'_> {
 
 /// Computes the coordinates and accelerations that correspond to the predicted rates in a stage.
 fn predict(stage: &ImplicitStage<'_>, q: &mut [f64], v: &[f64], a: &mut [f64]) {
-    for i in 0..q.len() {
-        q[i] = stage.base_q[i] + stage.c * v[i];
-        a[i] = (v[i] - stage.base_v[i]) / stage.d;
+    set_sum(q, stage.base_q, stage.c, v);
+    set_sum(a, v, -1.0, stage.base_v);
+    for a in a {
+        *a /= stage.d;
     }
 }
 

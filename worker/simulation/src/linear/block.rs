@@ -13,7 +13,7 @@ pub const BLOCK: usize = 6;
 pub type MatrixBlock<const N: usize = BLOCK> = SMatrix<f64, N, N>;
 
 /// Section of a vector of unknowns that belongs to one body.
-pub(super) type Column<const N: usize> = SVector<f64, N>;
+type Column<const N: usize> = SVector<f64, N>;
 
 /// Replaces a block by its inverse (Gauss-Jordan with row exchanges).
 ///
@@ -59,31 +59,20 @@ pub(super) fn invert<const N: usize>(a: &mut MatrixBlock<N>) -> Result<(), usize
 }
 
 /// Returns the product of a matrix block and a vector.
-#[inline]
-pub(super) fn product<const N: usize>(a: &MatrixBlock<N>, x: &Column<N>) -> Column<N> {
-    let mut y = Column::<N>::zeros();
-    for k in 0..N {
-        let value = x[k];
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+pub(super) fn product<const N: usize>(a: &MatrixBlock<N>, x: &[f64; N]) -> [f64; N] {
+    let columns = &a.data.0;
+    let mut y = columns[0].map(|a| a * x[0]);
+    for k in 1..N {
         for i in 0..N {
-            y[i] += a[(i, k)] * value;
+            y[i] += columns[k][i] * x[k];
         }
     }
     y
-}
-
-/// Subtracts the product of a matrix block `A` and a vector `x` from `y`.
-#[inline]
-pub(super) fn subtract_product<const N: usize>(
-    a: &MatrixBlock<N>,
-    x: &Column<N>,
-    y: &mut Column<N>,
-) {
-    for k in 0..N {
-        let value = x[k];
-        for i in 0..N {
-            y[i] -= a[(i, k)] * value;
-        }
-    }
 }
 
 #[cfg(test)]

@@ -6,8 +6,10 @@
 //!
 //! Every chain is eliminated from its free end towards its anchored end, so a border column fills in only
 //! from the first block that couples to it, or to a border column behind it. Cost O(blocks).
-use super::block::{Column, MatrixBlock, invert, product, subtract_product};
+use super::block::{MatrixBlock, invert, product};
 use super::entry::MatrixEntry;
+use pulp::{Arch, Simd, WithSimd};
+use std::ops::Range;
 
 /// Error: a pivot is zero or not finite, so the matrix is singular or holds a value that is not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,19 +31,20 @@ pub struct Blocks<const N: usize> {
     pub(super) upper: Vec<MatrixBlock<N>>,
     /// Coupling of block i + 1 (row) with block i (column).
     pub(super) lower: Vec<MatrixBlock<N>>,
-    /// Matrix values in the rows of the blocks and the columns of the border: `blocks * border` columns of
-    /// length N.
-    pub(super) right: Vec<Column<N>>,
-    /// Matrix values in the rows of the border and the columns of the blocks: `blocks * border` rows of
-    /// length N.
-    pub(super) bottom: Vec<Column<N>>,
+    /// Matrix values in the rows of the blocks and the columns of the border, column by column: N values for
+    /// each block.
+    pub(super) right: Vec<[f64; N]>,
+    /// Matrix values in the rows of the border and the columns of the blocks, row by row: N values for each
+    /// block.
+    pub(super) bottom: Vec<[f64; N]>,
     /// Matrix values in rows and columns of the border, `border * border`, column-major.
     pub(super) corner: Vec<f64>,
     /// For each block, one more than the highest index of a border unknown that may couple to it.
     pub(super) touches: Vec<usize>,
-    /// For each block, number of leading border unknowns whose coupling the factorisation fills in: the
-    /// maximum of `touches` over the block and the blocks before it in its chain.
-    pub(super) filled: Vec<usize>,
+    /// For each chain, one after the other, and each border unknown: first block of the chain whose coupling
+    /// with the unknown the factorisation fills in, because it or a block before it couples to this unknown or
+    /// to one behind it in the border; the end of the chain if there is none.
+    filled: Vec<usize>,
     corner_pivots: Vec<usize>,
 }
 
@@ -58,11 +61,11 @@ impl<const N: usize> Blocks<N> {
             diagonal: vec![MatrixBlock::zeros(); blocks],
             upper: vec![MatrixBlock::zeros(); blocks],
             lower: vec![MatrixBlock::zeros(); blocks],
-            right: vec![Column::zeros(); blocks * border],
-            bottom: vec![Column::zeros(); blocks * border],
+            right: vec![[0.0; N]; blocks * border],
+            bottom: vec![[0.0; N]; blocks * border],
             corner: vec![0.0; border * border],
             touches: vec![0; blocks],
-            filled: vec![0; blocks],
+            filled: vec![0; chains.len() * border],
             corner_pivots: vec![0; border],
         }
     }
@@ -89,20 +92,15 @@ impl<const N: usize> Blocks<N> {
         self.upper.fill(MatrixBlock::zeros());
         self.lower.fill(MatrixBlock::zeros());
         self.corner.fill(0.0);
-        for b in 0..self.diagonal.len() {
-            let used = self.used(b);
-            self.right[used.clone()].fill(Column::zeros());
-            self.bottom[used].fill(Column::zeros());
-        }
+        self.right.fill([0.0; N]);
+        self.bottom.fill([0.0; N]);
         self.touches.fill(0);
-        self.filled.fill(0);
     }
 
-    /// Returns the index range, in `right` and `bottom`, of the couplings of block `b` with the border that
-    /// may be nonzero, whether assembled or filled in by the factorisation.
-    fn used(&self, b: usize) -> std::ops::Range<usize> {
-        let used = self.touches[b].max(self.filled[b]);
-        b * self.border..b * self.border + used
+    /// Returns the index, in `right` and `bottom`, of the coupling of block `b` with border unknown `k`.
+    #[inline]
+    const fn at(&self, b: usize, k: usize) -> usize {
+        k * self.touches.len() + b
     }
 
     /// Returns the diagonal block of the matrix with the given index, for writing.
@@ -124,7 +122,8 @@ impl<const N: usize> Blocks<N> {
     pub fn add_right(&mut self, block: usize, row: usize, k: usize, value: f64) {
         let k = self.lead + k;
         self.touches[block] = self.touches[block].max(k + 1);
-        self.right[block * self.border + k][row] += value;
+        let at = self.at(block, k);
+        self.right[at][row] += value;
     }
 
     /// Adds `value` to the matrix at border row `k` and column `column` of `block`; `k` counts from the end
@@ -133,7 +132,8 @@ impl<const N: usize> Blocks<N> {
     pub fn add_bottom(&mut self, block: usize, k: usize, column: usize, value: f64) {
         let k = self.lead + k;
         self.touches[block] = self.touches[block].max(k + 1);
-        self.bottom[block * self.border + k][column] += value;
+        let at = self.at(block, k);
+        self.bottom[at][column] += value;
     }
 
     /// Adds small matrices of one body: `own` to the given rows and columns of its `block`, `right` to these
@@ -154,9 +154,10 @@ impl<const N: usize> Blocks<N> {
             }
         }
         self.touches[block] = self.touches[block].max(self.lead + reach);
-        let first = block * self.border + self.lead;
+        let (first, blocks) = (self.at(block, self.lead), self.touches.len());
         for (to, from) in [(&mut self.right, right), (&mut self.bottom, bottom)] {
-            for (k, column) in to[first..first + reach].iter_mut().enumerate() {
+            for k in 0..reach {
+                let column = &mut to[first + k * blocks];
                 for (&row, from) in rows.iter().zip(from) {
                     column[row] += from[k];
                 }
@@ -186,12 +187,14 @@ impl<const N: usize> Blocks<N> {
             (true, false) => {
                 let ((block, row), k) = (split(row), column - base);
                 self.touches[block] = self.touches[block].max(k + 1);
-                self.right[block * self.border + k][row] += value;
+                let at = self.at(block, k);
+                self.right[at][row] += value;
             }
             (false, true) => {
                 let ((block, column), k) = (split(column), row - base);
                 self.touches[block] = self.touches[block].max(k + 1);
-                self.bottom[block * self.border + k][column] += value;
+                let at = self.at(block, k);
+                self.bottom[at][column] += value;
             }
             (true, true) => {
                 let ((b, r), (c, k)) = (split(row), split(column));
@@ -210,24 +213,31 @@ impl<const N: usize> Blocks<N> {
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         y.fill(0.0);
         let base = self.diagonal.len() * N;
-        let part = |b: usize| column::<N>(x, b);
-        let mut first = 0;
-        for &count in &self.chains {
-            for b in first..first + count {
-                let mut sum = self.diagonal[b] * part(b);
-                if b + 1 < first + count {
-                    sum += self.upper[b] * part(b + 1);
+        let (parts, _) = x[..base].as_chunks::<N>();
+        let (border, x_border) = (self.border, &x[base..]);
+        let (out, y_border) = y.split_at_mut(base);
+        let (out, _) = out.as_chunks_mut::<N>();
+        for Range { start, end } in self.spans() {
+            for b in start..end {
+                let mut sum = product(&self.diagonal[b], &parts[b]);
+                let mut add = |more: [f64; N]| {
+                    for (sum, more) in sum.iter_mut().zip(more) {
+                        *sum += more;
+                    }
+                };
+                if b + 1 < end {
+                    add(product(&self.upper[b], &parts[b + 1]));
                 }
-                if b > first {
-                    sum += self.lower[b - 1] * part(b - 1);
+                if b > start {
+                    add(product(&self.lower[b - 1], &parts[b - 1]));
                 }
-                for k in 0..self.border {
-                    sum += self.right[b * self.border + k] * x[base + k];
-                    y[base + k] += self.bottom[b * self.border + k].dot(&part(b));
+                for k in 0..border {
+                    let at = self.at(b, k);
+                    add(self.right[at].map(|x| x * x_border[k]));
+                    y_border[k] += dot(&self.bottom[at], &parts[b]);
                 }
-                y[b * N..(b + 1) * N].copy_from_slice(sum.as_slice());
+                out[b] = sum;
             }
-            first += count;
         }
         for k in 0..self.border {
             for row in 0..self.border {
@@ -277,43 +287,65 @@ impl<const N: usize> Blocks<N> {
             from + 1 < count
         });
         made?;
-        let mut first = 0;
-        for chain in 0..self.chains.len() {
-            let end = first + self.chains[chain];
-            let mut reach = 0;
-            for b in first..end {
-                reach = reach.max(self.touches[b]);
-                self.filled[b] = reach;
-                self.eliminate(b, b + 1 < end, reach);
-            }
-            first = end;
-        }
+        self.find_filled();
+        Arch::new().dispatch(EliminateBorder(self));
         self.factorize_corner()
     }
 
-    /// Eliminates one block, whose inverse is already stored, from the first `reach` unknowns of the border;
-    /// its couplings `right` become `D^-1 right`, with D the block.
-    fn eliminate(&mut self, b: usize, has_next: bool, reach: usize) {
+    /// Finds the first block of each chain whose coupling with each border unknown is filled in.
+    fn find_filled(&mut self) {
         let m = self.border;
-        for k in 0..reach {
-            self.right[b * m + k] = product(&self.diagonal[b], &self.right[b * m + k]);
-        }
-        if has_next {
-            let (head, tail) = self.right.split_at_mut((b + 1) * m);
-            for k in 0..reach {
-                subtract_product(&self.lower[b], &head[b * m + k], &mut tail[k]);
-            }
-            let transposed = self.upper[b].transpose();
-            let (head, tail) = self.bottom.split_at_mut((b + 1) * m);
-            for k in 0..reach {
-                subtract_product(&transposed, &head[b * m + k], &mut tail[k]);
+        for (chain, Range { start, end }) in spans(&self.chains).enumerate() {
+            let filled = &mut self.filled[chain * m..(chain + 1) * m];
+            filled.fill(end);
+            let mut reach = 0;
+            for b in start..end {
+                let touches = self.touches[b];
+                for first in filled.iter_mut().take(touches).skip(reach) {
+                    *first = b;
+                }
+                reach = reach.max(touches);
             }
         }
-        let of = b * m..b * m + reach;
-        let (right, bottom) = (&self.right[of.clone()], &self.bottom[of]);
-        for (right, corner) in right.iter().zip(self.corner.chunks_exact_mut(m.max(1))) {
-            for (bottom, corner) in bottom.iter().zip(corner) {
-                *corner -= bottom.dot(right);
+    }
+
+    /// Eliminates all blocks, whose inverses `D^-1` are already stored, from the border; the couplings `right`
+    /// become `D^-1 right`, and the couplings `lower` with the next blocks become `lower D^-1`.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn eliminate_border(&mut self) {
+        let (m, blocks) = (self.border, self.touches.len());
+        for (chain, Range { start, end }) in spans(&self.chains).enumerate() {
+            let filled = &self.filled[chain * m..(chain + 1) * m];
+            for b in start..end {
+                let last = b + 1 == end;
+                if !last {
+                    self.lower[b] *= self.diagonal[b];
+                }
+                let transposed = self.upper[b].transpose();
+                for k in (0..m).take_while(|&k| filled[k] <= b) {
+                    let at = k * blocks + b;
+                    if !last {
+                        let handed = product(&self.lower[b], &self.right[at]);
+                        subtract(&mut self.right[at + 1], &handed);
+                        let handed = product(&transposed, &self.bottom[at]);
+                        subtract(&mut self.bottom[at + 1], &handed);
+                    }
+                    self.right[at] = product(&self.diagonal[b], &self.right[at]);
+                }
+            }
+            for column in 0..m {
+                for row in 0..m {
+                    let first = filled[row].max(filled[column]);
+                    let right =
+                        self.right[column * blocks + first..column * blocks + end].as_flattened();
+                    let bottom =
+                        self.bottom[row * blocks + first..row * blocks + end].as_flattened();
+                    self.corner[column * m + row] -= dot(bottom, right);
+                }
             }
         }
     }
@@ -358,50 +390,122 @@ impl<const N: usize> Blocks<N> {
     /// Solves the linear system with the factorised matrix, overwriting the right-hand side with the
     /// solution.
     pub fn solve(&self, x: &mut [f64]) {
-        let m = self.border;
-        let base = self.diagonal.len() * N;
-        let (blocks, border) = x.split_at_mut(base);
-        let (blocks, _) = blocks.as_chunks_mut::<N>();
-        // what the block before hands on
-        let mut handed = [Column::<N>::zeros(); 2];
-        interleave_chains(&self.chains, |k, [first, count], from| {
-            if from == 0 {
-                handed[k] = Column::zeros();
+        Arch::new().dispatch(Solve(self, x));
+    }
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn solve_inlined(&self, x: &mut [f64]) {
+        let (m, blocks) = (self.border, self.touches.len());
+        let (x, border) = x.split_at_mut(blocks * N);
+        let (x, _) = x.as_chunks_mut::<N>();
+        for [one, other] in self.pairs() {
+            let (mut first, mut second) = ([0.0; N], [0.0; N]);
+            let common = one.len().min(other.len());
+            for i in 0..common {
+                self.reduce(one.start + i, x, &mut first);
+                self.reduce(other.start + i, x, &mut second);
             }
-            let b = first + from;
-            let y = product(&self.diagonal[b], &(Column::from(blocks[b]) - handed[k]));
-            blocks[b] = y.into();
-            handed[k] = product(&self.lower[b], &y);
-            from + 1 < count
-        });
-        for (b, y) in blocks.iter().enumerate() {
-            let bottom = &self.bottom[b * m..b * m + self.filled[b]];
-            let y = Column::from(*y);
-            for (x, bottom) in border.iter_mut().zip(bottom) {
-                *x -= bottom.dot(&y);
+            for b in one.skip(common) {
+                self.reduce(b, x, &mut first);
+            }
+            for b in other.skip(common) {
+                self.reduce(b, x, &mut second);
+            }
+        }
+        let filled = |chain: usize, k: usize, end: usize| {
+            let first = self.filled[chain * m + k];
+            (first..end, k * blocks + first..k * blocks + end)
+        };
+        for (chain, Range { end, .. }) in spans(&self.chains).enumerate() {
+            for (k, border) in border.iter_mut().enumerate() {
+                let (unknowns, couplings) = filled(chain, k, end);
+                let bottom = self.bottom[couplings].as_flattened();
+                *border -= dot(bottom, x[unknowns].as_flattened());
             }
         }
         self.solve_corner(border);
-        interleave_chains(&self.chains, |k, [first, count], from| {
-            if from == 0 {
-                handed[k] = Column::zeros();
-            }
-            let b = first + count - 1 - from;
-            let mut y = Column::from(blocks[b]);
-            subtract_product(&self.upper[b], &handed[k], &mut y);
-            let right = &self.right[b * m..b * m + self.filled[b]];
-            for (x, right) in border.iter().zip(right) {
-                for i in 0..N {
-                    y[i] -= x * right[i];
+        for (chain, Range { end, .. }) in spans(&self.chains).enumerate() {
+            for (k, border) in border.iter().enumerate() {
+                let (unknowns, couplings) = filled(chain, k, end);
+                let right = self.right[couplings].as_flattened();
+                for (x, right) in x[unknowns].as_flattened_mut().iter_mut().zip(right) {
+                    *x -= border * right;
                 }
             }
-            blocks[b] = y.into();
-            handed[k] = y;
-            from + 1 < count
-        });
+        }
+        for [one, other] in self.pairs() {
+            // the last block has no next one
+            let (mut first, mut second) = ([0.0; N], [0.0; N]);
+            let common = one.len().min(other.len());
+            for i in 0..common {
+                self.substitute(one.end - 1 - i, x, &mut first);
+                self.substitute(other.end - 1 - i, x, &mut second);
+            }
+            for b in one.rev().skip(common) {
+                self.substitute(b, x, &mut first);
+            }
+            for b in other.rev().skip(common) {
+                self.substitute(b, x, &mut second);
+            }
+        }
     }
 
-    #[inline]
+    /// Solves for block `b` without the border and the next block; `handed` is what the block before hands on,
+    /// and becomes what this one does.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn reduce(&self, b: usize, x: &mut [[f64; N]], handed: &mut [f64; N]) {
+        let mut right = x[b];
+        subtract(&mut right, handed);
+        *handed = product(&self.lower[b], &right);
+        x[b] = product(&self.diagonal[b], &right);
+    }
+
+    /// Completes the solution for block `b` with that of the next one, `next`, which becomes that of this one.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn substitute(&self, b: usize, x: &mut [[f64; N]], next: &mut [f64; N]) {
+        let mut solution = x[b];
+        subtract(&mut solution, &product(&self.upper[b], next));
+        x[b] = solution;
+        *next = solution;
+    }
+
+    /// Iterates over the ranges of blocks of the chains in pairs; an odd chain is paired with an empty range.
+    /// Each block depends on its neighbour in its own chain, so that a single chain leaves most of a
+    /// processor's pipeline idle.
+    fn pairs(&self) -> impl Iterator<Item = [Range<usize>; 2]> + '_ {
+        let mut spans = self.spans();
+        std::iter::from_fn(move || Some([spans.next()?, spans.next().unwrap_or(0..0)]))
+    }
+
+    /// Iterates over the ranges of blocks of the chains.
+    pub(super) fn spans(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        spans(&self.chains)
+    }
+
+    /// Iterates over the leading border unknowns whose coupling with block `b` of a chain the factorisation
+    /// fills in.
+    pub(super) fn filled(&self, chain: usize, b: usize) -> Range<usize> {
+        let filled = &self.filled[chain * self.border..(chain + 1) * self.border];
+        0..filled.iter().take_while(|&&first| first <= b).count()
+    }
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
     pub(super) fn solve_corner<T: MatrixEntry>(&self, x: &mut [T]) {
         let m = self.border;
         for k in 0..m {
@@ -423,13 +527,49 @@ impl<const N: usize> Blocks<N> {
     }
 }
 
+/// Elimination of all blocks of a matrix from its border, compiled for each set of instructions.
+struct EliminateBorder<'a, const N: usize>(&'a mut Blocks<N>);
+
+impl<const N: usize> WithSimd for EliminateBorder<'_, N> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.0.eliminate_border();
+    }
+}
+
+/// Solution with a factorised matrix, compiled for each set of instructions.
+struct Solve<'a, const N: usize>(&'a Blocks<N>, &'a mut [f64]);
+
+impl<const N: usize> WithSimd for Solve<'_, N> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.0.solve_inlined(self.1);
+    }
+}
+
 /// Iterates over chains of the given lengths in pairs, alternating between a block of one chain and a block
 /// of the other. Each block depends on the one before it in its own chain, so that a single chain leaves most
 /// of a processor's pipeline idle.
 ///
 /// `step` receives the chain's index in the pair (0 or 1), its first block and length, and the number of its
 /// blocks already processed; it returns whether blocks remain.
-#[inline]
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
 fn interleave_chains(chains: &[usize], mut step: impl FnMut(usize, [usize; 2], usize) -> bool) {
     let mut first = 0;
     for pair in chains.chunks(2) {
@@ -451,10 +591,44 @@ fn interleave_chains(chains: &[usize], mut step: impl FnMut(usize, [usize; 2], u
     }
 }
 
-/// Returns the section of a vector of unknowns that belongs to block `b`.
-#[inline]
-fn column<const N: usize>(blocks: &[f64], b: usize) -> Column<N> {
-    Column::from_column_slice(&blocks[b * N..(b + 1) * N])
+/// Iterates over the ranges of blocks of chains with the given numbers of blocks.
+fn spans(chains: &[usize]) -> impl Iterator<Item = Range<usize>> + '_ {
+    chains.iter().scan(0, |end, &count| {
+        let start = *end;
+        *end += count;
+        Some(start..*end)
+    })
+}
+
+/// Subtracts the vector `x` from `y`.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+fn subtract<const N: usize>(y: &mut [f64; N], x: &[f64; N]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y -= x;
+    }
+}
+
+/// Returns the product of two vectors, summed in four parts side by side whatever the processor.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (fours, rest) = a.as_chunks::<4>();
+    let (others, other_rest) = b.as_chunks::<4>();
+    let mut sums = [0.0; 4];
+    for (a, b) in fours.iter().zip(others) {
+        for lane in 0..4 {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    let rest = rest.iter().zip(other_rest).map(|(a, b)| a * b);
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest.sum::<f64>()
 }
 
 #[cfg(test)]
@@ -547,7 +721,7 @@ mod tests {
     #[test]
     fn a_singular_block_is_named() {
         let mut a = example(0, &[0, 0]);
-        a.diagonal_mut(0).set_column(2, &Column::<6>::zeros());
+        a.diagonal_mut(0).set_column(2, &nalgebra::Vector6::zeros());
         let (upper, _) = a.coupling_mut(0);
         upper.fill(0.0);
         assert_eq!(a.factorize(), Err(SingularPivot { unknown: 2 }));

@@ -4,11 +4,12 @@
 //! The matrix factor is read once for several columns, and the dependent operations along a chain in one
 //! column overlap with those of the other columns. Lanes are independent: a column has the same bits whatever
 //! columns are solved with it.
-use super::block::{Column, MatrixBlock};
+use super::block::MatrixBlock;
 use super::blocks::Blocks;
 use super::bordered::Bordered;
 use super::entry::Lanes;
 use pulp::Simd;
+use std::ops::Range;
 
 /// Unknowns of one block, in all lanes.
 type Part<const N: usize> = [Lanes; N];
@@ -46,18 +47,19 @@ fn product<const N: usize, S: Simd>(simd: S, a: &MatrixBlock<N>, x: &Part<N>) ->
     y
 }
 
-/// Iterates over the first `reach` border columns (or, transposed, border rows) of the matrix at block `b`.
+/// Iterates over the first `reach` border columns (or, transposed, border rows) of the matrix at block `b` of
+/// `blocks`.
 #[expect(
     clippy::inline_always,
     reason = "compiled for each set of instructions"
 )]
 #[inline(always)]
 fn touching<const N: usize>(
-    all: &[Column<N>],
-    (b, border): (usize, usize),
+    all: &[[f64; N]],
+    (b, blocks): (usize, usize),
     reach: usize,
 ) -> impl Iterator<Item = &[f64; N]> {
-    all[b * border..][..reach].iter().map(|one| &one.data.0[0])
+    all.iter().skip(b).step_by(blocks).take(reach)
 }
 
 #[expect(
@@ -72,34 +74,34 @@ impl<const N: usize> Blocks<N> {
     )]
     #[inline(always)]
     pub fn solve_lanes<S: Simd>(&self, simd: S, x: &mut [Lanes]) {
-        let m = self.border;
+        let m = self.diagonal.len();
         let (blocks, border) = x.split_at_mut(self.diagonal.len() * N);
         let (blocks, _) = blocks.as_chunks_mut::<N>();
-        for [first, count] in self.spans() {
+        for (chain, Range { start, end }) in self.spans().enumerate() {
             let mut carried = [Lanes::default(); N];
-            for b in first..first + count {
+            for b in start..end {
                 let mut right = blocks[b];
                 for (right, carried) in right.iter_mut().zip(carried) {
                     *right -= carried;
                 }
                 let y = product(simd, &self.diagonal[b], &right);
                 blocks[b] = y;
-                let rows = touching(&self.bottom, (b, m), self.filled[b]);
+                let rows = touching(&self.bottom, (b, m), self.filled(chain, b).len());
                 for (x, row) in border.iter_mut().zip(rows) {
                     for (y, a) in y.iter().zip(row) {
                         x.subtract_scaled(simd, y, *a);
                     }
                 }
-                carried = product(simd, &self.lower[b], &y);
+                carried = product(simd, &self.lower[b], &right);
             }
         }
         self.solve_corner(border);
-        for [first, count] in self.spans() {
+        for (chain, Range { start, end }) in self.spans().enumerate() {
             let mut next = [Lanes::default(); N];
-            for b in (first..first + count).rev() {
+            for b in (start..end).rev() {
                 let mut y = blocks[b];
                 subtract_product(simd, &self.upper[b], &next, &mut y);
-                let columns = touching(&self.right, (b, m), self.filled[b]);
+                let columns = touching(&self.right, (b, m), self.filled(chain, b).len());
                 for (x, column) in border.iter().zip(columns) {
                     for (y, a) in y.iter_mut().zip(column) {
                         y.subtract_scaled(simd, x, *a);
@@ -119,21 +121,21 @@ impl<const N: usize> Blocks<N> {
     )]
     #[inline(always)]
     pub fn subtract_product_lanes<S: Simd>(&self, simd: S, x: &[Lanes], y: &mut [Lanes]) {
-        let m = self.border;
+        let m = self.diagonal.len();
         let base = self.diagonal.len() * N;
         let (blocks, edge) = x.split_at(base);
         let (blocks, _) = blocks.as_chunks::<N>();
         let (out, out_edge) = y.split_at_mut(base);
         let (out, _) = out.as_chunks_mut::<N>();
-        for [first, count] in self.spans() {
-            for b in first..first + count {
+        for Range { start, end } in self.spans() {
+            for b in start..end {
                 let mut y = out[b];
                 let x = &blocks[b];
                 subtract_product(simd, &self.diagonal[b], x, &mut y);
-                if b + 1 < first + count {
+                if b + 1 < end {
                     subtract_product(simd, &self.upper[b], &blocks[b + 1], &mut y);
                 }
-                if b > first {
+                if b > start {
                     subtract_product(simd, &self.lower[b - 1], &blocks[b - 1], &mut y);
                 }
                 let columns = touching(&self.right, (b, m), self.touches[b]);
@@ -153,18 +155,9 @@ impl<const N: usize> Blocks<N> {
         }
         for (k, x) in edge.iter().enumerate() {
             for (row, y) in out_edge.iter_mut().enumerate() {
-                y.subtract_scaled(simd, x, self.corner[k * m + row]);
+                y.subtract_scaled(simd, x, self.corner[k * self.border + row]);
             }
         }
-    }
-
-    /// Iterates over the chains of the matrix, each as the index of its first block and its number of blocks.
-    fn spans(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
-        self.chains.iter().scan(0, |first, &count| {
-            let span = [*first, count];
-            *first += count;
-            Some(span)
-        })
     }
 }
 

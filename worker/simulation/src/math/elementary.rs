@@ -15,11 +15,16 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
 /// A single loop without branches, which compilers vectorise: the angle is reduced by the nearest multiple of
 /// a quarter turn, in two pieces (Cody and Waite), and the polynomials of fdlibm's kernels are evaluated. If
 /// any angle exceeds 1e4 rad, all are computed one by one.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
 pub fn sin_cos_all(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
     let n = angles.len();
     let (sines, cosines) = (&mut sines[..n], &mut cosines[..n]);
-    // not a number fails the comparison too
-    if !angles.iter().all(|x| x.abs() < FAR) {
+    // not a number fails the comparison too; all are compared, so that this loop is vectorised as well
+    if !angles.iter().fold(true, |near, x| near & (x.abs() < FAR)) {
         for i in 0..n {
             (sines[i], cosines[i]) = sin_cos(angles[i]);
         }
@@ -92,18 +97,6 @@ pub fn tanh(x: f64) -> f64 {
 #[inline]
 pub fn powf(base: f64, exponent: f64) -> f64 {
     libm::pow(base, exponent)
-}
-
-/// Returns `x^exponent` for the contact law's penetration `x`; the usual exponent 3/2 takes one square root
-/// instead of a power.
-#[inline]
-pub fn power_law(x: f64, exponent: f64) -> f64 {
-    #[expect(clippy::float_cmp, reason = "selects the exact special case")]
-    if exponent == 1.5 {
-        x * x.sqrt()
-    } else {
-        powf(x, exponent)
-    }
 }
 
 #[cfg(test)]

@@ -2,5 +2,7 @@
 //! Independent of the machine model.
 pub mod elementary;
 pub mod harmonics;
+pub mod real;
 pub mod rotation;
 pub mod spline;
+pub mod vector;

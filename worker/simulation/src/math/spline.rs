@@ -122,6 +122,22 @@ impl Splines {
         }
     }
 
+    /// Returns the abscissa `x` in grid intervals from the first point, without regard to the grid's ends.
+    #[inline]
+    pub(crate) fn in_steps(&self, x: f64) -> f64 {
+        (x - self.start) * self.per_step
+    }
+
+    /// Returns the number of grid intervals per unit of the abscissa.
+    pub(crate) const fn per_step(&self) -> f64 {
+        self.per_step
+    }
+
+    /// Returns the index of the last point of the grid.
+    pub(crate) fn last(&self) -> usize {
+        self.points().saturating_sub(1)
+    }
+
     /// Returns value and first two derivatives of the spline with index `curve` at a grid position.
     #[inline]
     pub fn jet(&self, place: &SplinePosition, curve: usize) -> ValueAndDerivatives {

@@ -7,6 +7,7 @@
 //! grad d`, with contact force `f`. A cylinder touches along its length: the law is integrated with three
 //! Gauss points, whose weights divide the cylinder's coefficients.
 use crate::math::elementary::{atan2, sin_cos};
+use crate::math::real::Real;
 use crate::math::spline::sum::WeightedSplines;
 use crate::math::spline::{SplinePosition, Splines};
 use crate::model::description::Arc;
@@ -60,43 +61,35 @@ pub struct Deflection<'a> {
 /// Largest deflection of the head beyond the rigid arc that contact detection allows for \[m\].
 const LARGEST_BULGE: f64 = 0.01;
 
-/// Direction of a cylinder's centre seen from the arc's centre; its angle takes one arc tangent and serves
-/// all of the cylinder's Gauss points.
-#[derive(Clone, Copy, Debug)]
-pub struct Bearing {
-    toward: V2,
-    angle: f64,
-}
-
-/// Returns whether the angle between two vectors is below 0.06 rad.
-#[inline]
-fn near(a: &V2, b: &V2) -> bool {
-    let (along, across) = (a.dot(b), a.x * b.y - a.y * b.x);
-    across.abs() < 0.06 * along
-}
-
-impl Bearing {
-    /// Returns the vector from the arc's centre to the cylinder's centre \[m\].
-    pub const fn toward(&self) -> V2 {
-        self.toward
-    }
-
-    /// Returns the arc angle of the cylinder's centre, in the beam frame \[rad\]; 0 for a circular surface.
-    pub const fn angle(&self) -> f64 {
-        self.angle
-    }
+/// Returns `turned` where the angle between two vectors is below 0.06 rad, otherwise not a number.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+pub(crate) fn is_near<T: Real>(a: [T; 2], b: [T; 2], turned: T) -> T {
+    let (along, across) = (a[0] * b[0] + a[1] * b[1], a[0] * b[1] - a[1] * b[0]);
+    let nan = turned.constant(f64::NAN);
+    across
+        .at_least(-across)
+        .select_less(along * 0.06, turned, nan)
 }
 
 /// Returns the small angle from vector `a` to vector `b` \[rad\] by the series of the arc tangent; Gauss
 /// points of one cylinder lie within a few hundredths of a radian, where the first omitted term is below
 /// 1e-17.
-#[inline]
-pub(crate) fn small_angle(a: [f64; 2], b: [f64; 2]) -> f64 {
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+pub(crate) fn small_angle<T: Real>(a: [T; 2], b: [T; 2]) -> T {
     let t = (a[0] * b[1] - a[1] * b[0]) / (a[0] * b[0] + a[1] * b[1]);
-    let u = t * t;
-    t * (1.0
-        - u * (1.0 / 3.0
-            - u * (0.2 - u * (1.0 / 7.0 - u * (1.0 / 9.0 - u * (1.0 / 11.0 - u / 13.0))))))
+    let u = -(t * t);
+    let series = u * (1.0 / 13.0) + 1.0 / 11.0;
+    let series = (u * series + 1.0 / 9.0) * u + 1.0 / 7.0;
+    let series = (u * series + 0.2) * u + 1.0 / 3.0;
+    t * (u * series + 1.0)
 }
 
 /// Second derivatives of the penetration of a contact point.
@@ -130,38 +123,13 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Returns whether the surface deviates from a circle, so that arc angles are needed.
-    pub(crate) const fn is_noncircular(&self) -> bool {
-        self.bend.is_some() || self.profile.is_some()
-    }
-
     /// Returns the number of modes that deflect the arc.
     pub fn modes(&self) -> usize {
         self.bend.map_or(0, |bend| bend.shapes.curves())
     }
 
-    /// Returns the direction, from the arc's centre, of a cylinder of half length `half` centred at `g`, or
-    /// `None` if the cylinder cannot touch; computed from that of a neighbouring cylinder, if given and near,
-    /// which saves the arc tangent.
-    #[inline]
-    pub fn bearing(&self, before: Option<&Bearing>, g: &V2, half: f64) -> Option<Bearing> {
-        let reach = self.reach + half;
-        let w = g - self.center;
-        if w.norm_squared() >= reach * reach {
-            return None;
-        }
-        let angle = match before {
-            _ if !self.is_noncircular() => 0.0,
-            Some(before) if near(&before.toward, &w) => {
-                before.angle + small_angle(before.toward.into(), w.into())
-            }
-            _ => self.arc_angle(&w),
-        };
-        Some(Bearing { toward: w, angle })
-    }
-
     /// Returns the arc angle of a direction from the arc's centre, in the beam frame, in [0, 2 pi).
-    fn arc_angle(&self, direction: &V2) -> f64 {
+    pub(crate) fn arc_angle(&self, direction: &V2) -> f64 {
         let turn = std::f64::consts::TAU;
         let angle = atan2(direction.y, direction.x) - self.beam[0];
         angle - turn * (angle / turn).floor()

@@ -1,8 +1,8 @@
 //! Generalised forces, inertia forces and energies of a machine, and the powers for its energy balance.
 //!
 //! The equations of motion are `M(q) a = Q(q, v, t)`; this module computes `Q` and `M a`.
+use crate::element::bushing::{PLANE_COEFFICIENTS, PRELOAD_INDEX};
 use crate::element::impact::DerivativeVariable;
-use crate::element::plane::{PLANE_COEFFICIENTS, PRELOAD_INDEX};
 use crate::linear::MatrixEntry;
 use crate::math::elementary::sin_cos;
 use crate::math::spline::sum::WeightedSplines;
@@ -190,9 +190,8 @@ impl Machine {
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
             let (blocks, border) = force.split_at_mut(self.layout.beam());
             let state = &mut scratch.chains[k];
-            state
-                .points
-                .replace_forces_by_derivatives(&at.ropes.contact, by);
+            let law = &at.ropes.contact;
+            state.points.replace_forces_by_derivatives(law, by);
             chain.add_evaluated_contact(&surface, state, blocks, border);
         }
     }

@@ -1,7 +1,7 @@
 //! Equations of motion of a machine with the ropes and the drive of one individual.
 use crate::drive::{Drive, DriveState};
+use crate::element::bushing::PLANE_COEFFICIENTS;
 use crate::element::impact::DerivativeVariable;
-use crate::element::plane::PLANE_COEFFICIENTS;
 use crate::linear::{Bordered, MatrixEntry};
 use crate::math::elementary::sin_cos;
 use crate::model::extension::Extensions;
@@ -90,7 +90,7 @@ impl<'a> RopeMachine<'a> {
             let first = back.contact.iter().position(|&force| force > 0.0);
             let joint = first.unwrap_or(self.machine.layout.back);
             // the joint's force on its outer cylinder points back along the free rope
-            let force = back.joints[joint].force;
+            let force = back.joint_force(joint);
             push[0] += force.x;
             push[1] += force.y;
         }
@@ -195,7 +195,7 @@ impl<'a> RopeMachine<'a> {
     pub(crate) fn joint_units(&self, units: &mut [[f64; PLANE_COEFFICIENTS]]) {
         units.fill([0.0; PLANE_COEFFICIENTS]);
         for (chain, state) in self.machine.chains.iter().zip(&self.scratch.chains) {
-            chain.add_plane_units(state, units);
+            chain.add_plane_units(&self.ropes.joint, state, units);
         }
     }
 
@@ -291,13 +291,20 @@ impl Equations for RopeMachine<'_> {
 
     fn tangent(&self, at: LoadedState<'_>, shift: StateShift, matrix: &mut Bordered) {
         let instant = self.instant(at.state());
-        self.machine.tangent(&instant, shift, &self.scratch, matrix);
+        let scratch = &self.scratch;
+        self.machine
+            .tangent(&instant, shift, scratch, (None, matrix));
     }
 
-    fn tangents(&self, at: LoadedState<'_>, shift: StateShift, matrices: [&mut Bordered; 2]) {
+    fn tangents(
+        &self,
+        at: LoadedState<'_>,
+        shift: StateShift,
+        [stiffness, matrix]: [&mut Bordered; 2],
+    ) {
         let instant = self.instant(at.state());
-        self.machine
-            .tangents(&instant, shift, &self.scratch, matrices);
+        let both = (Some(stiffness), matrix);
+        self.machine.tangent(&instant, shift, &self.scratch, both);
     }
 
     fn add_velocity_inertia_tangent(

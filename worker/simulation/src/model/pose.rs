@@ -4,8 +4,12 @@
 //! `R_WB = Rz(psi) Ry(theta) Rx(phi)`, axis `e = R_WB e_x`. Angular velocity `w = phi' e + theta' c + psi' z
 //! = E eta'` with `c = Rz e_y`. The angles are singular only where the axis points out of the machine's plane
 //! (|theta| = 90 deg), which has its own verdict.
-use crate::math::elementary::sin_cos;
+use crate::element::plane::PlaneRod;
+use crate::math::elementary::{sin_cos, sin_cos_all};
+use crate::math::real::{Vector, WIDEST};
 use nalgebra::{Matrix3, Vector2, Vector3};
+use pulp::{Arch, Simd, WithSimd};
+use std::ops::Range;
 
 type V2 = Vector2<f64>;
 type V3 = Vector3<f64>;
@@ -162,6 +166,178 @@ impl PlanePose {
     }
 }
 
+/// Poses and velocities of the cylinders of a chain in the plane, one array per quantity, so that several
+/// cylinders are processed side by side in SIMD lanes. Arrays are padded with zeros beyond the last cylinder.
+#[derive(Clone, Debug, Default)]
+pub struct PlanePoses {
+    count: usize,
+    /// Position of the centres \[m\]; the field `velocity` holds their velocities [m/s].
+    place: [Vec<f64>; 2],
+    velocity: [Vec<f64>; 2],
+    /// Directions of the axes: cosines and sines of their angles.
+    axis: [Vec<f64>; 2],
+    /// Angles of the axes from +x \[rad\]; the field `rate` holds their rates [rad/s].
+    angle: Vec<f64>,
+    rate: Vec<f64>,
+}
+
+impl PlanePoses {
+    /// Allocates the poses of `count` cylinders.
+    pub(crate) fn new(count: usize) -> Self {
+        // a joint reads the cylinders of its own lane and of the next one
+        let zeros = || vec![0.0; count.next_multiple_of(WIDEST) + WIDEST];
+        Self {
+            count,
+            place: [zeros(), zeros()],
+            velocity: [zeros(), zeros()],
+            axis: [zeros(), zeros()],
+            angle: zeros(),
+            rate: zeros(),
+        }
+    }
+
+    /// Returns the number of cylinders.
+    pub const fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Returns whether there are no cylinders.
+    pub const fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// Computes the poses from the coordinates `q` of the cylinders and their rates `v`, three numbers each.
+    pub(crate) fn fill(&mut self, q: &[f64], v: &[f64]) {
+        Arch::new().dispatch(FillPoses { poses: self, q, v });
+    }
+
+    /// Returns the pose of cylinder `j`.
+    #[inline]
+    pub fn get(&self, j: usize) -> PlanePose {
+        let at = |[x, y]: &[Vec<f64>; 2]| V2::new(x[j], y[j]);
+        PlanePose {
+            p: at(&self.place),
+            v: at(&self.velocity),
+            axis: at(&self.axis),
+            angle: self.angle[j],
+            rate: self.rate[j],
+        }
+    }
+
+    /// Iterates over the poses of all cylinders.
+    pub fn iter(&self) -> impl Iterator<Item = PlanePose> + '_ {
+        (0..self.count).map(|j| self.get(j))
+    }
+
+    /// Returns the cylinders from the first to the last whose centre is less than `reach` away from `center`
+    /// \[m\].
+    pub(crate) fn within(&self, reach: f64, center: V2) -> Range<usize> {
+        let [x, y] = self.place.each_ref().map(|array| &array[..self.count]);
+        let near =
+            |(x, y): (&f64, &f64)| (x - center.x).powi(2) + (y - center.y).powi(2) < reach * reach;
+        let mut all = x.iter().zip(y);
+        let first = all.position(near).unwrap_or(0);
+        let end = x
+            .iter()
+            .zip(y)
+            .rposition(near)
+            .map_or(first, |last| last + 1);
+        first..end
+    }
+
+    /// Returns cylinder `j` as a rod of a joint.
+    pub(crate) fn rod(&self, j: usize) -> PlaneRod<f64> {
+        let at = |[x, y]: &[Vec<f64>; 2]| [x[j], y[j]];
+        PlaneRod {
+            place: at(&self.place),
+            velocity: at(&self.velocity),
+            axis: at(&self.axis),
+            angle: self.angle[j],
+            rate: self.rate[j],
+        }
+    }
+
+    /// Returns the cylinders from number `first` on, in `vectors` vectors of SIMD lanes, as rods of joints.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    pub(crate) fn rods<S: Simd>(&self, simd: S, first: usize, vectors: usize) -> PlaneRods<'_, S> {
+        let [px, py] = &self.place;
+        let [vx, vy] = &self.velocity;
+        let [cosine, sine] = &self.axis;
+        PlaneRods {
+            simd,
+            arrays: [px, py, vx, vy, cosine, sine, &self.angle, &self.rate]
+                .map(|array| &S::as_simd_f64s(&array[first..]).0[..vectors]),
+        }
+    }
+}
+
+/// Cylinders as rods of joints, in SIMD lanes.
+pub(crate) struct PlaneRods<'a, S: Simd> {
+    simd: S,
+    arrays: [&'a [S::f64s]; 8],
+}
+
+impl<S: Simd> PlaneRods<'_, S> {
+    /// Returns the `k`-th vector of rods.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    pub(crate) fn get(&self, k: usize) -> PlaneRod<Vector<S>> {
+        let [px, py, vx, vy, cosine, sine, angle, rate] =
+            self.arrays.map(|array| Vector::new(self.simd, array[k]));
+        PlaneRod {
+            place: [px, py],
+            velocity: [vx, vy],
+            axis: [cosine, sine],
+            angle,
+            rate,
+        }
+    }
+}
+
+/// Arguments of [`PlanePoses::fill`], compiled for each set of instructions.
+struct FillPoses<'a> {
+    poses: &'a mut PlanePoses,
+    q: &'a [f64],
+    v: &'a [f64],
+}
+
+impl WithSimd for FillPoses<'_> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { poses, q, v } = self;
+        let n = poses.count;
+        let PlanePoses {
+            place: [px, py],
+            velocity: [vx, vy],
+            axis: [cosine, sine],
+            angle,
+            rate,
+            ..
+        } = poses;
+        for (from, [x, y, turn]) in [(q, [px, py, angle]), (v, [vx, vy, rate])] {
+            let (from, _) = from.as_chunks::<3>();
+            let all = x[..n].iter_mut().zip(&mut y[..n]).zip(&mut turn[..n]);
+            for (((x, y), turn), from) in all.zip(from) {
+                [*x, *y, *turn] = *from;
+            }
+        }
+        sin_cos_all(&poses.angle[..n], &mut sine[..n], &mut cosine[..n]);
+    }
+}
+
 /// Kinematic quantities of a cylinder that contact in the machine's plane requires; its axis depends on its
 /// last `A` coordinates, the angles.
 pub(crate) trait InPlane<const A: usize> {
@@ -169,8 +345,6 @@ pub(crate) trait InPlane<const A: usize> {
     fn center(&self) -> V2;
     /// Returns the velocity of the centre [m/s].
     fn velocity(&self) -> V2;
-    /// Returns the projection of the axis onto the plane.
-    fn axis(&self) -> V2;
     fn axis_by(&self) -> [V2; A];
     /// Returns the second derivative of the axis with respect to the angles `a` and `b`.
     fn axis_by_twice(&self, a: usize, b: usize) -> V2;
@@ -187,10 +361,6 @@ impl InPlane<2> for Pose {
 
     fn velocity(&self) -> V2 {
         self.v.xy()
-    }
-
-    fn axis(&self) -> V2 {
-        self.R.column(0).xy()
     }
 
     fn axis_by(&self) -> [V2; 2] {
@@ -219,11 +389,6 @@ impl InPlane<1> for PlanePose {
     #[inline]
     fn velocity(&self) -> V2 {
         self.v
-    }
-
-    #[inline]
-    fn axis(&self) -> V2 {
-        self.axis
     }
 
     #[inline]

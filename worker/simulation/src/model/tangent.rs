@@ -21,56 +21,39 @@ use crate::state::StateShift;
     reason = "one file per term of the equations"
 )]
 impl Machine {
-    /// Computes `mass M - damping D - K` into `matrix` at a state whose loads and poses are in `scratch`.
+    /// Computes `mass M - damping D - K` into `matrix` at a state whose loads and poses are in `scratch` and, if
+    /// a second matrix is given, `-K` into that.
     pub(super) fn tangent(
         &self,
         at: &Instant<'_>,
         shift: StateShift,
         scratch: &Scratch,
-        matrix: &mut Bordered,
+        (mut stiffness, matrix): (Option<&mut Bordered>, &mut Bordered),
     ) {
-        let damping = shift.damping;
-        matrix.clear();
-        self.inertia_blocks(at.q, shift.mass, matrix);
-        self.rigid_tangent(at, damping, matrix);
-        for (k, chain) in self.chains.iter().enumerate() {
-            let state = &scratch.chains[k];
-            chain.add_joint_tangent(&self.joints(k, at), state, damping, matrix);
-            self.end_tangents(k, at, scratch, &mut [(damping, matrix)]);
-            let surface = self.surface(k, at.q, at.v, &scratch.deflection);
-            chain.add_contact_tangent(&surface, &at.ropes.contact, state, damping, matrix);
-        }
-        self.extensions.add_tangent(at, damping, matrix);
-    }
-
-    /// Computes `-K` into `stiffness` and `mass M - damping D - K` into `matrix`, in a single pass for chains
-    /// that move in the plane.
-    pub(super) fn tangents(
-        &self,
-        at: &Instant<'_>,
-        shift: StateShift,
-        scratch: &Scratch,
-        [stiffness, matrix]: [&mut Bordered; 2],
-    ) {
-        stiffness.clear();
-        matrix.clear();
         let gamma = shift.damping;
+        matrix.clear();
+        if let Some(stiffness) = &mut stiffness {
+            stiffness.clear();
+        }
         for (k, chain) in self.chains.iter().enumerate() {
             let state = &scratch.chains[k];
             let joints = self.joints(k, at);
-            if !chain.add_joint_stiffness_and_tangent(&joints, state, gamma, stiffness, matrix) {
-                self.tangent(at, StateShift::NONE, scratch, stiffness);
-                self.tangent(at, shift, scratch, matrix);
-                return;
-            }
+            let both = (stiffness.as_deref_mut(), &mut *matrix);
+            chain.add_joint_tangent(&joints, state, gamma, both);
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
-            let on = (&surface, &at.ropes.contact);
-            chain.add_contact_stiffness_and_tangent(on, state, gamma, [stiffness, matrix]);
-            let both = &mut [(0.0, &mut *stiffness), (gamma, &mut *matrix)];
-            self.end_tangents(k, at, scratch, both);
+            let both = (stiffness.as_deref_mut(), &mut *matrix);
+            chain.add_contact_tangent((&surface, &at.ropes.contact), state, gamma, both);
+            if let Some(stiffness) = stiffness.as_deref_mut() {
+                let both = &mut [(0.0, stiffness), (gamma, &mut *matrix)];
+                self.end_tangents(k, at, scratch, both);
+            } else {
+                self.end_tangents(k, at, scratch, &mut [(gamma, &mut *matrix)]);
+            }
         }
-        for (StateShift { mass, damping }, matrix) in
-            [(StateShift::NONE, stiffness), (shift, matrix)]
+        for (StateShift { mass, damping }, matrix) in stiffness
+            .map(|stiffness| (StateShift::NONE, stiffness))
+            .into_iter()
+            .chain([(shift, matrix)])
         {
             self.inertia_blocks(at.q, mass, matrix);
             self.rigid_tangent(at, damping, matrix);

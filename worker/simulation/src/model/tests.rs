@@ -59,7 +59,7 @@ fn assert_tangent(machine: &Machine) {
             mass: mu,
             damping: gamma,
         };
-        machine.tangent(&at, shift, &scratch, &mut matrix);
+        machine.tangent(&at, shift, &scratch, (None, &mut matrix));
         for i in free(machine) {
             let column = matrix.product(&unit(layout.len(), i));
             let numeric = difference(machine, &at, i, gamma);

@@ -6,6 +6,7 @@ use super::perturbed::PerturbedModel;
 use super::plan::ColumnMethod;
 use super::source::{Joints, ROPES, Source};
 use crate::element::impact::DerivativeVariable;
+use crate::element::law::ForceLaw;
 use crate::integrator::dense::interpolate;
 use crate::model::description::RopeLaw;
 use crate::model::extension::SampleState;
@@ -68,7 +69,7 @@ fn by_coefficient<'a>(
         | Coefficient::Cb56 => {
             let ropes = machine.ropes(&coefficient.unit(law));
             let unit = PerturbedModel::new(machine, ropes, settings.drive(machine));
-            let coefficients = unit.inner().plane_coefficients();
+            let coefficients = unit.inner().coefficients();
             let which = coefficients.iter().position(|x| *x != 0.0);
             Source::Joints(Box::new(Joints {
                 unit,

@@ -1,6 +1,6 @@
 //! Linearisation of the equations of one solved stage of a time step.
 use super::source::add;
-use crate::element::plane::PLANE_COEFFICIENTS;
+use crate::element::bushing::PLANE_COEFFICIENTS;
 use crate::integrator::stepper::Stages;
 use crate::linear::{Bordered, SingularPivot};
 use crate::model::{RopeMachine, Scratch};

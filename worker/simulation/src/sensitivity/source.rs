@@ -7,8 +7,8 @@
 use super::differences::Difference;
 use super::perturbed::PerturbedModel;
 use crate::effect::Place;
+use crate::element::bushing::PLANE_COEFFICIENTS;
 use crate::element::impact::DerivativeVariable;
-use crate::element::plane::PLANE_COEFFICIENTS;
 use crate::model::description::{Arc, Head};
 use crate::model::extension::Extensions;
 use crate::model::forces::Terms;

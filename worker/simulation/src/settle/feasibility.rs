@@ -1,6 +1,7 @@
 //! Overload criteria that follow from the rope tension alone, whatever the shape of the ropes.
 use super::guess::rigid_position;
 use crate::drive::DriveState;
+use crate::element::law::ForceLaw as _;
 use crate::math::elementary::sin_cos;
 use crate::model::kinematics::DoesNotClose;
 use crate::model::{Machine, Ropes};
@@ -66,7 +67,7 @@ pub fn overload(
     let line = (0..2)
         .map(|rope| tension[rope] * pitch / [d.back_arc, d.front_arc][rope].radius)
         .fold(0.0, f64::max);
-    let carried = ropes.contact.force(limits.penetration, 0.0).force / line;
+    let carried = ropes.contact.response([limits.penetration], [0.0]).force[0] / line;
     if carried < 1.0 {
         return Some((Failure::RopeThroughHead, carried.max(0.0)));
     }

@@ -11,12 +11,12 @@ use std::process::Command;
 /// Digest and work counters of the reference run, the same on every machine and in every build. A change of
 /// the laws, of a tolerance or of the order of a summation changes this text: copy the new one from the
 /// test's message, and state in the changelog why results change.
-const REFERENCE: &str = "digest 9ab65d941d9699d2 Statistics { steps: 694, error_rejections: 0, \
+const REFERENCE: &str = "digest 348b85ae4dd6ba0a Statistics { steps: 694, error_rejections: 0, \
     newton_rejections: 20, newton_iterations: 7633, force_evaluations: 7652, jacobians: 490, \
     factorizations: 490 }";
 
 /// Digest of the reference run's derivatives; to be updated like `REFERENCE`.
-const COLUMNS: &str = "columns e4fa8267de26a81f";
+const COLUMNS: &str = "columns c9116a8d55aee947";
 
 /// Digest of the modal reduction of a small head; to be updated like `REFERENCE`.
 const HEAD: &str = "head a8ea7ade1a755e0d";

@@ -4,9 +4,9 @@
 //! A law depends only on a joint's extension and its rate, not on whether the cylinders move in the plane or
 //! in space.
 use super::parts::{Chain, Joints};
+use super::plane::on_coordinates;
 use super::state::ChainState;
 use crate::element::bushing::{AxialTension, LinkLoad};
-use crate::element::plane::PlaneLoad;
 use crate::model::extension::LineForceValue;
 
 #[expect(
@@ -55,16 +55,12 @@ impl Chain {
                 return;
             };
             if self.in_plane(joint) {
-                let [i, j] = self.plane_markers(joint, &state.plane);
-                let mut load = PlaneLoad::default();
-                load.add_pull((&i, &j), &pull);
-                let at = &mut force[(self.first + joint - 1) * 3..][..6];
-                at[0] -= load.force.x;
-                at[1] -= load.force.y;
-                at[2] += load.torque_j;
-                at[3] += load.force.x;
-                at[4] += load.force.y;
-                at[5] += load.torque_i;
+                let at = self.plane_geometry(joint, state);
+                let load = at.load([pull.force, 0.0, 0.0]);
+                let rows = force[(self.first + joint - 1) * 3..].iter_mut();
+                for (force, own) in rows.zip(on_coordinates(&load)) {
+                    *force += own;
+                }
             } else if let Some(([i, j], law)) = self.link(joint, joints, state) {
                 let mut load = LinkLoad::none();
                 law.add_pull((&i, &j), &pull, &mut load);
@@ -98,8 +94,8 @@ impl Chain {
     /// Returns the extension \[m\] of a joint between two cylinders and its rate [m/s].
     fn extension(&self, joint: usize, joints: &Joints<'_>, state: &ChainState) -> Option<[f64; 2]> {
         if self.in_plane(joint) {
-            let [i, j] = self.plane_markers(joint, &state.plane);
-            return Some(joints.inner.plane_extension(&i, &j));
+            let at = self.plane_geometry(joint, state);
+            return Some([at.deformation[0], at.rate[0]]);
         }
         let ([i, j], law) = self.link(joint, joints, state)?;
         Some(law.extension(&i, &j))

@@ -1,13 +1,14 @@
 //! Contact forces between a chain (rope) and an arc, on the chain's cylinders and on the beam or head that
 //! carries the arc.
 use super::parts::Chain;
-use super::points::{CylinderContact, Points};
+use super::points::{CylinderContact, Cylinders, Points};
 use super::state::ChainState;
 use crate::element::impact::Impact;
+use crate::linear::BLOCK;
 use crate::model::contact::Surface;
 use crate::model::layout::MAX_MODES;
 use crate::model::layout::Motion;
-use crate::model::pose::InPlane;
+use crate::model::pose::{InPlane, Pose};
 
 #[expect(
     clippy::multiple_inherent_impl,
@@ -21,11 +22,11 @@ impl Chain {
         law: &Impact,
         state: &mut ChainState,
     ) {
-        let points = &mut state.points;
-        match self.motion {
-            Motion::Plane => points.evaluate(self, surface, law, state.plane.iter()),
-            Motion::Space => points.evaluate(self, surface, law, state.poses.iter()),
-        }
+        let cylinders = match self.motion {
+            Motion::Plane => Cylinders::Plane(&state.plane),
+            Motion::Space => Cylinders::Space(&state.poses),
+        };
+        state.points.evaluate(self, surface, law, cylinders);
     }
 
     /// Evaluates the contact and adds its forces on the cylinders and on the `border` coordinates, which are
@@ -52,20 +53,17 @@ impl Chain {
         force: &mut [f64],
         border: &mut [f64],
     ) {
-        if let Some(bend) = &surface.bend {
-            state.pressure.clear(bend.shapes);
-        }
         state.contact.fill(0.0);
-        let (points, contact, force) =
-            (&state.points, &mut state.contact, &mut force[self.range()]);
+        let points = &state.points;
+        let (contact, force) = (&mut state.contact, &mut force[self.range()]);
         let loads = match self.motion {
-            Motion::Plane => self.accumulate_contact_forces(points, &state.plane, contact, force),
-            Motion::Space => self.accumulate_contact_forces(points, &state.poses, contact, force),
+            Motion::Plane => points.add_plane_forces(contact, force),
+            Motion::Space => add_space_forces(points, &state.poses, contact, force),
         };
         let CylinderContact { beam, lost, .. } = loads;
         state.dissipated = lost;
-        if surface.bend.is_some() {
-            state.points.distribute_to_knots(&mut state.pressure);
+        if let Some(bend) = &surface.bend {
+            points.distribute_to_knots(bend.shapes, &mut state.pressure);
         }
         if let Some((on_beam, modal)) = border.split_first_mut() {
             *on_beam -= beam;
@@ -79,30 +77,28 @@ impl Chain {
             }
         }
     }
+}
 
-    /// Adds the forces of all contact points to the generalised forces of the cylinders; returns the reaction
-    /// on the beam, which carries the arc.
-    fn accumulate_contact_forces<const A: usize>(
-        &self,
-        points: &Points,
-        poses: &[impl InPlane<A>],
-        contact: &mut [f64],
-        force: &mut [f64],
-    ) -> CylinderContact {
-        let width = self.motion.width();
-        let mut all = CylinderContact::default();
-        for (k, &j) in points.cylinders().iter().enumerate() {
-            let sum = points.cylinder_contact(k);
-            all.lost += sum.lost;
-            all.beam += sum.beam;
-            contact[j] = sum.total;
-            let row = &mut force[j * width..(j + 1) * width];
-            row[0] += sum.push.x;
-            row[1] += sum.push.y;
-            for (k, arm) in poses[j].axis_by().iter().enumerate() {
-                row[width - A + k] += sum.bend.dot(arm);
-            }
+/// Adds the forces of all contact points to the generalised forces of cylinders in space; returns the sum of
+/// the loads.
+fn add_space_forces(
+    points: &Points,
+    poses: &[Pose],
+    contact: &mut [f64],
+    force: &mut [f64],
+) -> CylinderContact {
+    let mut all = CylinderContact::default();
+    for (k, j) in points.touching().enumerate() {
+        let sum = points.cylinder_contact(k);
+        all.lost += sum.lost;
+        all.beam += sum.beam;
+        contact[j] = sum.total;
+        let row = &mut force[j * BLOCK..(j + 1) * BLOCK];
+        row[0] += sum.push.x;
+        row[1] += sum.push.y;
+        for (k, arm) in InPlane::axis_by(&poses[j]).iter().enumerate() {
+            row[BLOCK - 2 + k] += sum.bend.dot(arm);
         }
-        all
     }
+    all
 }

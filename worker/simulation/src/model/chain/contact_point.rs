@@ -36,12 +36,12 @@ pub(super) struct Derivatives<const B: usize> {
 }
 
 impl<const B: usize> Derivatives<B> {
-    /// Computes the derivatives of penetration and force with respect to all coordinates. Rates change
-    /// `gamma` times as much as coordinates; `border` is the number of border coordinates included.
+    /// Computes the derivatives of penetration and force with respect to all coordinates, at constant rates;
+    /// `border` is the number of border coordinates included.
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
     pub(super) fn new<const A: usize>(
-        (surface, gamma, border): (&Surface<'_>, f64, usize),
+        (surface, border): (&Surface<'_>, usize),
         pose: &impl InPlane<A>,
         touch: &ContactPoint,
     ) -> Self {
@@ -52,7 +52,7 @@ impl<const B: usize> Derivatives<B> {
             law: at,
             ..
         } = touch;
-        let stiff = at.by_penetration + gamma * at.by_rate;
+        let ([[stiff]], [[damp]]) = (at.stiffness, at.damping);
         let (angle_by_point, angle_by_beam) = curvature.angle_by;
         let beam_rate = surface.beam[1];
         let angle_rate = angle_by_point.dot(velocity) + angle_by_beam * beam_rate;
@@ -68,7 +68,7 @@ impl<const B: usize> Derivatives<B> {
                 drift += rate * slope[k];
             }
             for k in modes {
-                force_by[k] = gradient[k] * stiff + slope[k] * (angle_rate * at.by_rate);
+                force_by[k] = gradient[k] * stiff + slope[k] * (angle_rate * damp);
             }
         }
         // rates of the gradient along the motion: H q'
@@ -77,7 +77,7 @@ impl<const B: usize> Derivatives<B> {
         let beam_gradient_rate =
             curvature.mixed.dot(velocity) + curvature.beam * beam_rate + angle_by_beam * drift;
         gradient[0] = touch.by_beam;
-        force_by[0] = touch.by_beam * stiff + beam_gradient_rate * at.by_rate;
+        force_by[0] = touch.by_beam * stiff + beam_gradient_rate * damp;
 
         let (arms, sweeps) = (pose.axis_by(), pose.sweep_by());
         let moved: [V2; OWN] = std::array::from_fn(|k| match k {
@@ -85,18 +85,30 @@ impl<const B: usize> Derivatives<B> {
             1 => V2::y(),
             k => arms.get(k - 2).map_or_else(V2::zeros, |arm| arm * *along),
         });
-        let by_place = touch.by_point * stiff + point_rate * at.by_rate;
+        let by_place = touch.by_point * stiff + point_rate * damp;
         Self {
             own: moved.map(|moved| touch.by_point.dot(&moved)),
             own_force: std::array::from_fn(|k| {
                 let turning = k.checked_sub(2).and_then(|a| sweeps.get(a));
                 let turning = turning.map_or(0.0, |sweep| along * touch.by_point.dot(sweep));
-                by_place.dot(&moved[k]) + at.by_rate * turning
+                by_place.dot(&moved[k]) + damp * turning
             }),
             moved,
             gradient,
             force_by,
             slope,
+        }
+    }
+
+    /// Adds `factor` times the derivatives of the penetration to those of the force, for coordinates whose
+    /// rates change with them.
+    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
+    #[inline(always)]
+    pub(super) fn add_rates(&mut self, factor: f64) {
+        let own = self.own_force.iter_mut().zip(&self.own);
+        let border = self.force_by.iter_mut().zip(&self.gradient);
+        for (by, gradient) in own.chain(border) {
+            *by += factor * gradient;
         }
     }
 }
@@ -128,17 +140,17 @@ pub(crate) fn for_each_loaded_point<const B: usize>(
     state: &ChainState,
     mut visit: impl FnMut(usize, &LoadedPoint<B>),
 ) {
-    let seen = (surface, 0.0, surface.modes() + 1);
+    let seen = (surface, surface.modes() + 1);
     let points = &state.points;
-    for (k, &j) in points.cylinders().iter().enumerate() {
+    for (k, j) in points.touching().enumerate() {
         for i in points.loaded_points(k) {
             let touch = points.contact_point((k, i), surface, law);
-            let point = Derivatives::<B>::new(seen, &state.plane[j], &touch);
+            let point = Derivatives::<B>::new(seen, &state.plane.get(j), &touch);
             let (angle_by_point, angle_by_beam) = touch.curvature.angle_by;
             let own = |of: &dyn Fn(usize) -> f64| std::array::from_fn(of);
-            let by_rate = touch.law.by_rate;
+            let by_rate = touch.law.damping[0][0];
             let reached = LoadedPoint {
-                force: touch.law.force,
+                force: touch.law.force[0],
                 angle: touch.angle,
                 by_law: points.by_law((k, i), law),
                 force_by: [

@@ -1,13 +1,14 @@
-//! Tangent of a chain's contact with an arc.
+//! Stiffness and damping of a chain's contact with an arc.
 //!
-//! For the force `Q = -f grad d` of one Gauss point, `-dQ = grad d (df)^T + f H dq` with `df = (f_d + gamma
-//! c) grad d + c H q'`: `f_d` and `c` are the law's derivatives with respect to penetration and rate, `H` the
-//! second derivatives of the penetration.
+//! For the force `Q = -f grad d` of one Gauss point, `-dQ = grad d (df)^T + f H dq` with `df = f_d grad d + c
+//! H q'` by the coordinates and `c grad d` by their rates: `f_d` and `c` are the law's derivatives with respect
+//! to penetration and rate, `H` the second derivatives of the penetration.
 //!
 //! The coordinates of a point are those of its cylinder that move it (`x`, `y` and the angles that turn the
 //! axis), then those of the border. With the derivatives `G` of the penetration and `F` of the force with
-//! respect to all of them, a point adds `G F^T` and the force times the second derivatives of the
-//! penetration.
+//! respect to all of them, a point adds `G F^T` and the force times the second derivatives of the penetration
+//! to the stiffness `K`, and `c G G^T` to the damping `D`. A matrix `K + gamma D` alone takes `F + gamma c G`
+//! in place of `F`, which saves the sums of `D`.
 use super::contact_point::{BORDER, Derivatives, FEW, OWN};
 use super::parts::Chain;
 use super::points::{ContactPoint, Points};
@@ -17,26 +18,26 @@ use crate::linear::Bordered;
 use crate::model::contact::Surface;
 use crate::model::layout::Motion;
 use crate::model::pose::InPlane;
+use pulp::{Arch, Simd, WithSimd};
 
 /// Accumulator for the contact tangent of one chain, with room for `B` border coordinates (beam angle,
 /// modes).
-pub(super) struct Tangent<'a, const B: usize> {
-    pub(super) chain: &'a Chain,
-    pub(super) surface: &'a Surface<'a>,
-    pub(super) law: &'a Impact,
-    pub(super) gamma: f64,
+struct Tangent<'a, const B: usize> {
+    chain: &'a Chain,
+    surface: &'a Surface<'a>,
+    law: &'a Impact,
     /// Number of border coordinates (beam angle, modes) included.
-    pub(super) border: usize,
-    pub(super) corner: [[f64; B]; B],
+    border: usize,
+    corner: [[f64; B]; B],
 }
 
 /// Tangent matrix of one cylinder's contact, summed over its contact points.
-pub(super) struct Sums<const B: usize> {
-    pub(super) own: [[f64; OWN]; OWN],
+struct Sums<const B: usize> {
+    own: [[f64; OWN]; OWN],
     /// Sums in the rows of the cylinder and the columns of the border.
-    pub(super) right: [[f64; B]; OWN],
+    right: [[f64; B]; OWN],
     /// Sums in the rows of the border and the columns of the cylinder, stored transposed.
-    pub(super) bottom: [[f64; B]; OWN],
+    bottom: [[f64; B]; OWN],
 }
 
 #[expect(
@@ -44,22 +45,20 @@ pub(super) struct Sums<const B: usize> {
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Adds the tangent of the chain's contact to the matrix: to the cylinders' blocks and to the border, if
-    /// there is one.
+    /// Adds `K + gamma D` of the chain's contact to the second matrix and, if there is one, `K` alone to the
+    /// first: to the cylinders' blocks and to the border, if there is one.
     pub(crate) fn add_contact_tangent(
         &self,
-        surface: &Surface<'_>,
-        law: &Impact,
+        on: (&Surface<'_>, &Impact),
         state: &ChainState,
         gamma: f64,
-        matrix: &mut Bordered,
+        matrices: (Option<&mut Bordered>, &mut Bordered),
     ) {
-        let border = matrix.border().min(surface.modes() + 1);
-        let on = (surface, law);
+        let border = matrices.1.border().min(on.0.modes() + 1);
         match border {
-            0..=1 => self.add_tangent_within::<1>(on, state, gamma, (matrix, border)),
-            2..=FEW => self.add_tangent_within::<FEW>(on, state, gamma, (matrix, border)),
-            _ => self.add_tangent_within::<BORDER>(on, state, gamma, (matrix, border)),
+            0..=1 => self.add_tangent_within::<1>(on, state, gamma, (matrices, border)),
+            2..=FEW => self.add_tangent_within::<FEW>(on, state, gamma, (matrices, border)),
+            _ => self.add_tangent_within::<BORDER>(on, state, gamma, (matrices, border)),
         }
     }
 
@@ -68,27 +67,60 @@ impl Chain {
         (surface, law): (&Surface<'_>, &Impact),
         state: &ChainState,
         gamma: f64,
-        (matrix, border): (&mut Bordered, usize),
+        (matrices, border): ((Option<&mut Bordered>, &mut Bordered), usize),
     ) {
-        let mut tangent = Tangent {
+        let tangent = Tangent::<B> {
             chain: self,
             surface,
             law,
-            gamma,
             border,
             corner: [[0.0; B]; B],
         };
-        let points = &state.points;
-        match self.motion {
-            Motion::Plane => tangent.add_cylinders(points, &state.plane, matrix),
-            Motion::Space => tangent.add_cylinders(points, &state.poses, matrix),
+        Arch::new().dispatch(AddTangent {
+            tangent,
+            gamma,
+            state,
+            matrices,
+        });
+    }
+}
+
+/// Evaluation of the contact tangent of a chain, compiled for each set of instructions.
+struct AddTangent<'a, 'm, const B: usize> {
+    tangent: Tangent<'a, B>,
+    gamma: f64,
+    state: &'a ChainState,
+    matrices: (Option<&'m mut Bordered>, &'m mut Bordered),
+}
+
+impl<const B: usize> WithSimd for AddTangent<'_, '_, B> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self {
+            tangent,
+            gamma,
+            state,
+            matrices,
+        } = self;
+        match tangent.chain.motion {
+            Motion::Plane => {
+                tangent.add_cylinders(gamma, &state.points, |j| state.plane.get(j), matrices);
+            }
+            Motion::Space => {
+                tangent.add_cylinders(gamma, &state.points, |j| state.poses[j], matrices);
+            }
         }
-        tangent.add_corner(matrix);
     }
 }
 
 impl<const B: usize> Sums<B> {
-    pub(super) const fn zero() -> Self {
+    const fn zero() -> Self {
         Self {
             own: [[0.0; OWN]; OWN],
             right: [[0.0; B]; OWN],
@@ -98,7 +130,7 @@ impl<const B: usize> Sums<B> {
 
     /// Adds the rate-dependent part of the tangent, which is symmetric: its border rows are taken from its
     /// border columns.
-    pub(super) fn add_damping(&mut self, damped: &Self) {
+    fn add_damping(&mut self, damped: &Self) {
         let pairs = [
             (self.own.as_flattened_mut(), damped.own.as_flattened()),
             (self.right.as_flattened_mut(), damped.right.as_flattened()),
@@ -113,28 +145,54 @@ impl<const B: usize> Sums<B> {
 }
 
 impl<const B: usize> Tangent<'_, B> {
-    fn add_cylinders<const A: usize>(
-        &mut self,
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn add_cylinders<const A: usize, P: InPlane<A>>(
+        mut self,
+        gamma: f64,
         points: &Points,
-        poses: &[impl InPlane<A>],
-        matrix: &mut Bordered,
+        pose: impl Fn(usize) -> P,
+        (mut stiffness, matrix): (Option<&mut Bordered>, &mut Bordered),
     ) {
-        for (k, &j) in points.cylinders().iter().enumerate() {
+        let mut corner = [[0.0; B]; B];
+        for (k, j) in points.touching().enumerate() {
             if points.loaded_points(k).next().is_none() {
                 continue;
             }
-            let mut sums = Sums::zero();
+            let pose = pose(j);
+            let block = self.chain.first + j;
+            let (mut sums, mut damped) = (Sums::zero(), Sums::zero());
             for i in points.loaded_points(k) {
                 let touch = points.contact_point((k, i), self.surface, self.law);
-                let seen = (self.surface, self.gamma, self.border);
-                let point = Derivatives::new(seen, &poses[j], &touch);
-                self.add_point(&point, &touch, &poses[j], &mut sums);
+                let mut point = Derivatives::new((self.surface, self.border), &pose, &touch);
+                let by_rate = gamma * touch.law.damping[0][0];
+                if stiffness.is_some() {
+                    add_damping::<A, B>(&point, by_rate, &mut damped, &mut corner[..self.border]);
+                } else {
+                    point.add_rates(by_rate);
+                }
+                self.add_point(&point, &touch, &pose, &mut sums);
             }
-            self.add_sums::<A>(self.chain.first + j, &sums, matrix);
+            if let Some(stiffness) = stiffness.as_deref_mut() {
+                self.add_sums::<A>(block, &sums, stiffness);
+                sums.add_damping(&damped);
+            }
+            self.add_sums::<A>(block, &sums, matrix);
         }
+        if let Some(stiffness) = stiffness {
+            self.add_corner(stiffness);
+            let rows = self.corner.as_flattened_mut().iter_mut();
+            for (entry, damped) in rows.zip(corner.as_flattened()) {
+                *entry += damped;
+            }
+        }
+        self.add_corner(matrix);
     }
 
-    pub(super) fn add_corner(&self, matrix: &mut Bordered) {
+    fn add_corner(&self, matrix: &mut Bordered) {
         for row in 0..self.border {
             for column in 0..self.border {
                 matrix.add_corner(row, column, self.corner[row][column]);
@@ -144,12 +202,7 @@ impl<const B: usize> Tangent<'_, B> {
 
     /// Adds the sums over one cylinder's contact points to the cylinder's block and to the border of the
     /// matrix.
-    pub(super) fn add_sums<const A: usize>(
-        &self,
-        block: usize,
-        sums: &Sums<B>,
-        matrix: &mut Bordered,
-    ) {
+    fn add_sums<const A: usize>(&self, block: usize, sums: &Sums<B>, matrix: &mut Bordered) {
         let rows: [usize; OWN] = std::array::from_fn(|k| {
             if k < 2 {
                 k
@@ -168,7 +221,7 @@ impl<const B: usize> Tangent<'_, B> {
     /// Adds the tangent of one contact point to the sums of its cylinder and to the part within the border.
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
-    pub(super) fn add_point<const A: usize>(
+    fn add_point<const A: usize>(
         &mut self,
         point: &Derivatives<B>,
         touch: &ContactPoint,
@@ -179,7 +232,7 @@ impl<const B: usize> Tangent<'_, B> {
         for a in 0..A {
             for b in 0..A {
                 let bend = pose.axis_by_twice(a, b) * touch.along;
-                sums.own[2 + a][2 + b] += touch.law.force * touch.by_point.dot(&bend);
+                sums.own[2 + a][2 + b] += touch.law.force[0] * touch.by_point.dot(&bend);
             }
         }
         self.add_border::<A>(point, touch, sums);
@@ -193,7 +246,7 @@ impl<const B: usize> Tangent<'_, B> {
         touch: &ContactPoint,
         sums: &mut Sums<B>,
     ) {
-        let (curvature, force) = (&touch.curvature, touch.law.force);
+        let (curvature, force) = (&touch.curvature, touch.law.force[0]);
         let (angle_by_point, angle_by_beam) = curvature.angle_by;
         let Derivatives {
             own,
@@ -237,11 +290,40 @@ fn add_own<const A: usize, const B: usize>(
     touch: &ContactPoint,
     sums: &mut Sums<B>,
 ) {
-    let bends = touch.curvature.point * touch.law.force;
+    let bends = touch.curvature.point * touch.law.force[0];
     for r in 0..2 + A {
         let bent = bends * point.moved[r];
         for c in 0..2 + A {
             sums.own[r][c] += point.own[r] * point.own_force[c] + bent.dot(&point.moved[c]);
+        }
+    }
+}
+
+/// Adds a contact point's rate-dependent tangent `c G G^T` to the sums of its cylinder (without the border's
+/// rows) and to the part of the matrix within the border.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+fn add_damping<const A: usize, const B: usize>(
+    point: &Derivatives<B>,
+    c: f64,
+    sums: &mut Sums<B>,
+    corner: &mut [[f64; B]],
+) {
+    for r in 0..2 + A {
+        let by = c * point.own[r];
+        for k in 0..2 + A {
+            sums.own[r][k] += by * point.own[k];
+        }
+        for (sum, gradient) in sums.right[r].iter_mut().zip(point.gradient) {
+            *sum += by * gradient;
+        }
+    }
+    for (row, by) in corner.iter_mut().zip(point.gradient) {
+        for (sum, gradient) in row.iter_mut().zip(point.gradient) {
+            *sum += c * by * gradient;
         }
     }
 }

@@ -2,6 +2,7 @@
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
 use crate::element::impact::Impact;
+use crate::element::law::ForceLaw;
 use nalgebra::Vector3;
 
 #[expect(
@@ -36,8 +37,8 @@ impl Chain {
     ) {
         for joint in 0..=self.count {
             if self.in_plane(joint) {
-                let [i, j] = self.plane_markers(joint, &state.plane);
-                *sum += joints.inner.plane_energy(&i, &j);
+                let at = self.plane_geometry(joint, state);
+                *sum += joints.inner.response(at.deformation, at.rate).energy;
             } else if let Some(([i, j], law)) = self.link(joint, joints, state) {
                 *sum += law.energy(&i, &j);
             }
@@ -52,7 +53,7 @@ impl Chain {
         for pose in &state.poses {
             *sum -= weight.dot(&pose.p);
         }
-        for pose in &state.plane {
+        for pose in state.plane.iter() {
             *sum -= weight.xy().dot(&pose.p);
         }
     }

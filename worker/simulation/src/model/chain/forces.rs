@@ -3,12 +3,10 @@ use super::parts::{Chain, Joints};
 use super::state::ChainState;
 use crate::element::bushing::LinkLoad;
 use crate::linear::BLOCK;
-use crate::math::elementary::sin_cos_all;
 use crate::model::layout::Motion;
-use crate::model::pose::{PlanePose, Pose};
-use nalgebra::{Vector2, Vector3};
+use crate::model::pose::Pose;
+use nalgebra::Vector3;
 
-type V2 = Vector2<f64>;
 type V3 = Vector3<f64>;
 
 #[expect(
@@ -24,17 +22,8 @@ impl Chain {
         for (pose, (q, v)) in state.poses.iter_mut().zip(cylinders()) {
             *pose = Pose::new(q, v);
         }
-        if state.plane.is_empty() {
-            return;
-        }
-        let [angles, sines, cosines] = &mut state.turns;
-        for (angle, (q, _)) in angles.iter_mut().zip(cylinders()) {
-            *angle = q[2];
-        }
-        sin_cos_all(angles, sines, cosines);
-        let axes = cosines.iter().zip(&*sines).map(|(&c, &s)| V2::new(c, s));
-        for ((pose, (q, v)), axis) in state.plane.iter_mut().zip(cylinders()).zip(axes) {
-            *pose = PlanePose::new(q, v, axis);
+        if !state.plane.is_empty() {
+            state.plane.fill(q, v);
         }
     }
 

@@ -16,10 +16,13 @@ impl Chain {
         let of = self.range();
         let (q, a, out) = (&q[of.clone()], &a[of.clone()], &mut out[of]);
         if self.motion == Motion::Plane {
-            for (a, out) in a.chunks_exact(3).zip(out.chunks_exact_mut(3)) {
-                out[0] -= a[0] * self.mass;
-                out[1] -= a[1] * self.mass;
-                out[2] -= a[2] * across;
+            let inertia = [self.mass, self.mass, across];
+            let (a, _) = a.as_chunks::<3>();
+            let (out, _) = out.as_chunks_mut::<3>();
+            for (a, out) in a.iter().zip(out) {
+                for k in 0..3 {
+                    out[k] -= a[k] * inertia[k];
+                }
             }
             return;
         }

@@ -2,18 +2,10 @@
 use super::parts::{Chain, EndJoint, Joints};
 use super::state::ChainState;
 use crate::element::bushing::{Bushing, LinkLoad, Marker};
-use crate::element::plane::PlaneMarker;
 use crate::math::elementary::sin_cos;
 use crate::model::layout::Motion;
 use crate::model::pose::{PlanePose, Pose};
 use nalgebra::{Matrix3, Vector2};
-
-/// Side of a joint: whether a cylinder is body I or body J of it.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Side {
-    I,
-    J,
-}
 
 #[expect(
     clippy::multiple_inherent_impl,
@@ -23,16 +15,6 @@ impl Chain {
     /// Returns whether a joint lies between two cylinders that move in the plane.
     pub(super) const fn in_plane(&self, joint: usize) -> bool {
         matches!(self.motion, Motion::Plane) && joint > 0 && joint < self.count
-    }
-
-    /// Returns the markers I and J of a joint between two cylinders in the plane.
-    #[inline]
-    pub(super) fn plane_markers(&self, joint: usize, poses: &[PlanePose]) -> [PlaneMarker; 2] {
-        let half = 0.5 * self.pitch;
-        [
-            plane_on_cylinder(&poses[joint], -half),
-            plane_on_cylinder(&poses[joint - 1], half),
-        ]
     }
 
     /// Computes the load of the joint at the chain's head end for the given coordinates and rates,
@@ -72,7 +54,7 @@ impl Chain {
     }
 
     /// Returns the markers I and J of a joint and its force law; `None` for a free end. Joints between
-    /// cylinders in the plane use `plane_markers` instead.
+    /// cylinders in the plane use `plane_joint` instead.
     pub(super) fn link<'a>(
         &self,
         joint: usize,
@@ -119,16 +101,5 @@ fn on_cylinder(pose: &Pose, along: f64) -> Marker {
         v: pose.v,
         w: pose.w,
         R: pose.R,
-    }
-}
-
-fn plane_on_cylinder(pose: &PlanePose, along: f64) -> PlaneMarker {
-    PlaneMarker {
-        p: pose.p,
-        rho: pose.axis * along,
-        v: pose.v,
-        w: pose.rate,
-        axis: pose.axis,
-        angle: pose.angle,
     }
 }

@@ -1,18 +1,148 @@
-//! Forces and tangent of the joints between cylinders that move in the plane.
+//! Joints between the cylinders of a chain in the plane: forces, and stiffness and damping by the coordinates.
 //!
-//! The two end joints use their spatial form in the plane too.
-use super::link::Side;
+//! The law is that of the bushing, to which the axial laws of effects add a tension. Without such laws the
+//! joints are evaluated side by side in SIMD lanes, otherwise one after the other; both have the same bits.
+//! The two end joints use the bushing in space.
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
-use crate::element::bushing::Bushing;
-use crate::element::plane::{PLANE_COEFFICIENTS, PlaneColumn};
+use crate::element::bushing::{Bushing, PLANE_COEFFICIENTS};
+use crate::element::law::{ForceLaw, Response};
+use crate::element::plane::{INDEPENDENT, PlaneJoint, PlaneLoad, PlaneTangent, Side};
 use crate::linear::{Blocks, MatrixBlock};
+use crate::math::real::{Vector, WIDEST};
+use crate::model::pose::PlanePoses;
+use nalgebra::Vector3;
+use pulp::{Arch, Simd, WithSimd};
+use std::ops::Range;
+
+/// Loads of the joints between the cylinders of a chain in the plane, one array per quantity, padded for SIMD
+/// lanes; the joint after cylinder `k` has index `k`.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PlaneLoads {
+    count: usize,
+    /// Forces on the cylinder behind the joint \[N\], and the torques on the cylinders behind and before it
+    /// about their centres [N m].
+    force: [Vec<f64>; 2],
+    torque: [Vec<f64>; 2],
+    /// Tensions \[N\]; the field `dissipated` holds the dissipated powers \[W\].
+    tension: Vec<f64>,
+    dissipated: Vec<f64>,
+}
+
+impl PlaneLoads {
+    /// Allocates the loads of `count` joints.
+    pub(super) fn new(count: usize) -> Self {
+        let zeros = || vec![0.0; count.next_multiple_of(WIDEST)];
+        Self {
+            count,
+            force: [zeros(), zeros()],
+            torque: [zeros(), zeros()],
+            tension: zeros(),
+            dissipated: zeros(),
+        }
+    }
+
+    /// Returns the power dissipated by all joints \[W\].
+    pub(super) fn dissipated(&self) -> f64 {
+        self.dissipated[..self.count].iter().sum()
+    }
+
+    /// Returns the tension in the joint after cylinder `k` \[N\]; `None` if there is no such joint.
+    pub(super) fn tension(&self, k: usize) -> Option<f64> {
+        self.tension[..self.count].get(k).copied()
+    }
+
+    /// Returns the force of the joint after cylinder `k` on the next cylinder \[N\]; `None` if there is no
+    /// such joint.
+    pub(super) fn force(&self, k: usize) -> Option<Vector3<f64>> {
+        let [x, y] = &self.force;
+        (k < self.count).then(|| Vector3::new(x[k], y[k], 0.0))
+    }
+}
+
+/// Evaluation of all joints between the cylinders of a chain, compiled for each set of instructions.
+struct Evaluate<'a> {
+    law: &'a Bushing,
+    half: f64,
+    poses: &'a PlanePoses,
+    loads: &'a mut PlaneLoads,
+}
+
+impl WithSimd for Evaluate<'_> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self {
+            law,
+            half,
+            poses,
+            loads,
+        } = self;
+        let vectors = loads.count.div_ceil(S::F64_LANES);
+        let [before, behind] = [0, 1].map(|first| poses.rods(simd, first, vectors));
+        let [x, y] = &mut loads.force;
+        let [torque_i, torque_j] = &mut loads.torque;
+        let out = [
+            x,
+            y,
+            torque_i,
+            torque_j,
+            &mut loads.tension,
+            &mut loads.dissipated,
+        ];
+        let [x, y, torque_i, torque_j, tension, dissipated] =
+            out.map(|array| &mut S::as_mut_simd_f64s(array).0[..vectors]);
+        for k in 0..vectors {
+            let joint = PlaneJoint::new(half, &behind.get(k), &before.get(k));
+            let answer: Response<Vector<S>, 3> = law.response(joint.deformation, joint.rate);
+            let load = joint.load(answer.force);
+            x[k] = load.force[0].lanes();
+            y[k] = load.force[1].lanes();
+            torque_i[k] = load.torque[0].lanes();
+            torque_j[k] = load.torque[1].lanes();
+            tension[k] = answer.force[0].lanes();
+            dissipated[k] = answer.dissipated.lanes();
+        }
+    }
+}
 
 #[expect(
     clippy::multiple_inherent_impl,
     reason = "one file per term of the equations"
 )]
 impl Chain {
+    /// Returns the joint between two cylinders in the plane, and the answer of its law together with the axial
+    /// laws of effects.
+    #[inline]
+    pub(super) fn plane_joint(
+        &self,
+        joint: usize,
+        joints: &Joints<'_>,
+        state: &ChainState,
+    ) -> (PlaneJoint<f64>, Response<f64, 3>) {
+        let at = self.plane_geometry(joint, state);
+        let mut answer = joints.inner.response(at.deformation, at.rate);
+        if let Some(further) = self.pull(joint, joints, state) {
+            answer.force[0] += further.force;
+            answer.stiffness[0][0] += further.by_extension;
+            answer.damping[0][0] += further.by_rate;
+            answer.dissipated += further.dissipated;
+        }
+        (at, answer)
+    }
+
+    /// Returns the joint between two cylinders in the plane.
+    #[inline]
+    pub(super) fn plane_geometry(&self, joint: usize, state: &ChainState) -> PlaneJoint<f64> {
+        let [i, j] = [state.plane.rod(joint), state.plane.rod(joint - 1)];
+        PlaneJoint::new(0.5 * self.pitch, &i, &j)
+    }
+
     /// Adds the forces of all joints on cylinders in the plane to the generalised forces; stores the joints'
     /// loads in `state`.
     pub(super) fn add_plane_joints(
@@ -22,37 +152,51 @@ impl Chain {
         force: &mut [f64],
     ) {
         self.add_plane_ends(joints, state, force);
-        let force = &mut force[self.range()];
-        // on the cylinder between two joints, in registers: what was stored a moment ago is slow to read
-        let mut carried = [force[0], force[1], force[2]];
-        for joint in 1..self.count {
-            let [i, j] = self.plane_markers(joint, &state.plane);
-            let mut load = joints.inner.plane_load(&i, &j);
-            if let Some(pull) = self.pull(joint, joints, state) {
-                load.add_pull((&i, &j), &pull);
+        if joints.axial.is_some() {
+            for joint in 1..self.count {
+                let (at, answer) = self.plane_joint(joint, joints, state);
+                let load = at.load(answer.force);
+                let loads = &mut state.plane_joints;
+                for k in 0..2 {
+                    loads.force[k][joint - 1] = load.force[k];
+                    loads.torque[k][joint - 1] = load.torque[k];
+                }
+                loads.tension[joint - 1] = answer.force[0];
+                loads.dissipated[joint - 1] = answer.dissipated;
             }
-            let at = &mut force[(joint - 1) * 3..][..6];
-            at[0] = carried[0] - load.force.x;
-            at[1] = carried[1] - load.force.y;
-            at[2] = carried[2] + load.torque_j;
-            carried[0] = at[3] + load.force.x;
-            carried[1] = at[4] + load.force.y;
-            carried[2] = at[5] + load.torque_i;
-            let kept = &mut state.joints[joint];
-            kept.force.x = load.force.x;
-            kept.force.y = load.force.y;
-            kept.torque_i.z = load.torque_i;
-            kept.torque_j.z = load.torque_j;
-            kept.axial = load.axial;
-            kept.dissipated = load.dissipated;
+        } else {
+            Arch::new().dispatch(Evaluate {
+                law: joints.inner,
+                half: 0.5 * self.pitch,
+                poses: &state.plane,
+                loads: &mut state.plane_joints,
+            });
         }
-        force[(self.count - 1) * 3..].copy_from_slice(&carried);
+        let loads = &state.plane_joints;
+        let n = loads.count;
+        let [x, y] = loads.force.each_ref().map(|array| &array[..n]);
+        let [torque_i, torque_j] = loads.torque.each_ref().map(|array| &array[..n]);
+        let (cylinders, _) = force[self.range()].as_chunks_mut::<3>();
+        let cylinders = &mut cylinders[..=n];
+        // of the cylinder between two joints, in registers: what was stored a moment ago is slow to read
+        let mut carried = cylinders[0];
+        for k in 0..n {
+            let next = cylinders[k + 1];
+            cylinders[k] = [
+                carried[0] - x[k],
+                carried[1] - y[k],
+                carried[2] + torque_j[k],
+            ];
+            carried = [next[0] + x[k], next[1] + y[k], next[2] + torque_i[k]];
+        }
+        cylinders[n] = carried;
     }
 
-    /// Adds, per coordinate, the forces of the joints between cylinders per unit of each joint coefficient,
-    /// as defined by [`Bushing::plane_units`]; does nothing for a chain in space.
+    /// Adds, per coordinate, the forces of the joints between cylinders per unit of each joint coefficient, in
+    /// the order of the law; does nothing for a chain in space.
     pub(crate) fn add_plane_units(
         &self,
+        law: &Bushing,
         state: &ChainState,
         units: &mut [[f64; PLANE_COEFFICIENTS]],
     ) {
@@ -60,11 +204,13 @@ impl Chain {
             return;
         };
         for joint in 1..self.count.min(state.plane.len()) {
-            let [i, j] = self.plane_markers(joint, &state.plane);
-            let own = Bushing::plane_units((&i, &j));
-            for (sum, own) in units[(joint - 1) * 3..].iter_mut().zip(own) {
-                for (sum, x) in sum.iter_mut().zip(own) {
-                    *sum += x;
+            let at = self.plane_geometry(joint, state);
+            let forces = law.by_coefficients(at.deformation, at.rate);
+            for (k, force) in forces.into_iter().enumerate() {
+                let load = at.load(force);
+                let own = on_coordinates(&load);
+                for (sum, own) in units[(joint - 1) * 3..].iter_mut().zip(own) {
+                    sum[k] += own;
                 }
             }
         }
@@ -95,66 +241,135 @@ impl Chain {
         }
     }
 
-    /// Subtracts the tangent of the joints between cylinders from the matrix.
+    /// Adds `K + gamma D` of the joints between cylinders to the last matrix and, if there are two, `K` alone
+    /// to the first.
     pub(super) fn add_plane_tangent(
         &self,
         joints: &Joints<'_>,
         state: &ChainState,
         gamma: f64,
-        matrix: &mut Blocks<3>,
+        (mut alone, matrix): (Option<&mut Blocks<3>>, &mut Blocks<3>),
     ) {
-        for joint in 1..self.count {
-            let [i, j] = self.plane_markers(joint, &state.plane);
-            let force = state.joints[joint].force.xy();
-            let further = self.pull(joint, joints, state);
-            let tangent = joints
-                .inner
-                .plane_tangent((&i, &j), &force, gamma, further.as_ref());
-            subtract_joint(matrix, self.first + joint, &tangent);
+        if joints.axial.is_none() {
+            Arch::new().dispatch(AddTangent {
+                law: joints.inner,
+                half: 0.5 * self.pitch,
+                poses: &state.plane,
+                joints: self.first + 1..self.first + self.count,
+                gamma,
+                matrices: (alone, matrix),
+            });
+            return;
         }
-    }
-
-    /// Subtracts the tangent of the joints between cylinders: without its rate-dependent part from the first
-    /// matrix, complete from the second.
-    pub(super) fn add_plane_stiffness_and_tangent(
-        &self,
-        joints: &Joints<'_>,
-        state: &ChainState,
-        gamma: f64,
-        [stiffness, matrix]: [&mut Blocks<3>; 2],
-    ) {
         for joint in 1..self.count {
-            let [i, j] = self.plane_markers(joint, &state.plane);
-            let force = state.joints[joint].force.xy();
-            let further = self.pull(joint, joints, state);
-            let (between, law) = ((&i, &j), joints.inner);
-            let [alone, whole] = law.plane_tangents(between, &force, gamma, further.as_ref());
-            subtract_joint(stiffness, self.first + joint, &alone);
-            subtract_joint(matrix, self.first + joint, &whole);
+            let (at, answer) = self.plane_joint(joint, joints, state);
+            let [stiffness, damping] = at.tangents(&answer);
+            if let Some(alone) = &mut alone {
+                add_joint(alone, self.first + joint, &stiffness);
+            }
+            add_joint(matrix, self.first + joint, &stiffness.plus(gamma, &damping));
         }
     }
 }
 
-/// Subtracts the tangent of the joint between `block` (I) and the block before it (J) from the matrix.
+/// Assembly of the tangent of all joints between the cylinders of a chain, compiled for each set of
+/// instructions.
+struct AddTangent<'a, 'm> {
+    law: &'a Bushing,
+    half: f64,
+    poses: &'a PlanePoses,
+    /// Matrix blocks of the cylinders behind the joints.
+    joints: Range<usize>,
+    gamma: f64,
+    matrices: (Option<&'m mut Blocks<3>>, &'m mut Blocks<3>),
+}
+
+impl WithSimd for AddTangent<'_, '_> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let (mut alone, matrix) = self.matrices;
+        let vectors = self.joints.len().div_ceil(S::F64_LANES);
+        let [before, behind] = [0, 1].map(|first| self.poses.rods(simd, first, vectors));
+        for k in 0..vectors {
+            let joint = PlaneJoint::new(self.half, &behind.get(k), &before.get(k));
+            let answer: Response<Vector<S>, 3> = self.law.response(joint.deformation, joint.rate);
+            let [stiffness, damping] = joint.tangents(&answer);
+            let blocks = self
+                .joints
+                .clone()
+                .skip(k * S::F64_LANES)
+                .take(S::F64_LANES);
+            if let Some(alone) = &mut alone {
+                add_joints(alone, blocks.clone(), &stiffness);
+            }
+            add_joints(matrix, blocks, &stiffness.plus(self.gamma, &damping));
+        }
+    }
+}
+
+/// Returns the generalised forces of a joint on the three coordinates of the cylinder before it, then on those
+/// of the cylinder behind it.
 #[inline]
-fn subtract_joint(matrix: &mut Blocks<3>, block: usize, [by_i, by_j]: &[[PlaneColumn; 3]; 2]) {
-    subtract(matrix.diagonal_mut(block - 1), by_j, Side::J);
+pub(super) const fn on_coordinates(load: &PlaneLoad<f64>) -> [f64; 6] {
+    let ([x, y], [torque_i, torque_j]) = (load.force, load.torque);
+    [-x, -y, torque_j, x, y, torque_i]
+}
+
+/// Adds the tangents of joints in SIMD lanes to the matrix, each as [`add_joint`] does.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+fn add_joints<S: Simd>(
+    matrix: &mut Blocks<3>,
+    blocks: impl Iterator<Item = usize>,
+    tangent: &PlaneTangent<Vector<S>>,
+) {
+    let mut entries = [[[0.0; WIDEST]; INDEPENDENT]; INDEPENDENT];
+    for (to, from) in entries
+        .as_flattened_mut()
+        .iter_mut()
+        .zip(tangent.0.as_flattened())
+    {
+        S::as_mut_simd_f64s(to).0[0] = from.lanes();
+    }
+    for (lane, block) in blocks.enumerate() {
+        let one = entries.map(|row| row.map(|entry| entry[lane]));
+        add_joint(matrix, block, &PlaneTangent(one));
+    }
+}
+
+/// Adds the tangent of the joint between `block` (I) and the block before it (J) to the matrix.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+fn add_joint(matrix: &mut Blocks<3>, block: usize, tangent: &PlaneTangent<f64>) {
+    add(matrix.diagonal_mut(block - 1), tangent, [Side::J, Side::J]);
     let (upper, lower) = matrix.coupling_mut(block - 1);
-    subtract(upper, by_i, Side::J);
-    subtract(lower, by_j, Side::I);
-    subtract(matrix.diagonal_mut(block), by_i, Side::I);
+    add(upper, tangent, [Side::J, Side::I]);
+    add(lower, tangent, [Side::I, Side::J]);
+    add(matrix.diagonal_mut(block), tangent, [Side::I, Side::I]);
 }
 
-/// Subtracts a joint's derivatives from a block, in the rows of the cylinder on one side of the joint.
-#[inline]
-fn subtract(block: &mut MatrixBlock<3>, columns: &[PlaneColumn; 3], side: Side) {
-    for (k, column) in columns.iter().enumerate() {
-        let (sign, torque) = match side {
-            Side::I => (1.0, column.torque_i),
-            Side::J => (-1.0, column.torque_j),
-        };
-        block[(0, k)] -= sign * column.force.x;
-        block[(1, k)] -= sign * column.force.y;
-        block[(2, k)] -= torque;
+/// Adds the part of a joint's tangent in the rows and the columns of two cylinders to a block.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+fn add(block: &mut MatrixBlock<3>, tangent: &PlaneTangent<f64>, [of, by]: [Side; 2]) {
+    for column in 0..3 {
+        for row in 0..3 {
+            block[(row, column)] += tangent.entry((of, row), (by, column));
+        }
     }
 }

@@ -1,55 +1,88 @@
-//! Contact points of a chain with its arc, stored as one array per quantity (structure of arrays), so that
-//! compilers vectorise the arithmetic over many points. The geometry of contact and its law are evaluated
-//! only here; forces, tangent and energy read the results.
+//! Contact points of a chain with its arc. The geometry of contact and its law are evaluated only here;
+//! forces, tangent and energy read the results.
+//!
+//! Neighbouring cylinders are evaluated side by side in SIMD lanes; what belongs to [`WIDEST`] of them is stored
+//! together (array of structures of arrays).
 use super::parts::Chain;
-use crate::element::impact::{DerivativeVariable, Impact, ImpactForce};
-use crate::math::spline::{SplinePosition, sum::KnotForces};
-use crate::model::contact::{Curvature, POINTS, Surface, small_angle};
-use crate::model::pose::InPlane;
+use crate::element::impact::{DerivativeVariable, Impact};
+use crate::element::law::{ForceLaw, Response};
+use crate::math::real::{Real as _, Vector, WIDEST};
+use crate::math::spline::sum::{FORCE_MOMENTS, KNOTS, KnotForces, LocalCubic, force_moments};
+use crate::math::spline::{SplinePosition, Splines};
+use crate::model::contact::{Curvature, POINTS, Surface, is_near, small_angle};
+use crate::model::pose::{InPlane, PlanePoses, Pose};
 use nalgebra::Vector2;
+use pulp::{Arch, Simd, WithSimd};
+use std::ops::Range;
 
 type V2 = Vector2<f64>;
 
-/// One value per contact point of a cylinder.
-type Each = [f64; POINTS];
+/// One value for each of some neighbouring cylinders.
+type Each = [f64; WIDEST];
 
 /// Contact points of the cylinders that may touch the arc, in one evaluation; buffers are allocated once.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Points {
-    /// Indices of the cylinders that may touch the arc, in ascending order.
-    cylinders: Vec<usize>,
+    /// Cylinders from the first to the last that may touch the arc.
+    touching: Range<usize>,
+    /// Way in which the height of the surface was computed.
+    height: Height,
     /// Position of each point along its cylinder's axis, from the centre \[m\]; the field `share` holds its
     /// share of the contact coefficients.
-    along: Each,
-    share: Each,
-    /// Position of each cylinder's centre relative to the arc's centre \[m\]; the field `place` holds that of
-    /// each contact point.
-    toward: [Vec<Each>; 2],
-    place: [Vec<Each>; 2],
-    /// Velocities of the contact points [m/s].
-    velocity: [Vec<Each>; 2],
-    /// Arc angle of each cylinder's centre in the beam frame \[rad\]; the field `angle` holds that of each
-    /// contact point. Both are 0 for a circular surface.
-    bearing: Vec<Each>,
-    angle: Vec<Each>,
-    /// Positions of the contact points on the grid of the arc's mode shapes; meaningless without modes.
-    on_grid: Vec<[SplinePosition; POINTS]>,
-    /// Height of the arc's deformed surface above the undeformed circle at each contact point \[m\]; `slope`
-    /// is its derivative with respect to the arc angle [m/rad], `rising` its rate [m/s].
-    height: Vec<Each>,
-    slope: Vec<Each>,
-    rising: Vec<Each>,
+    along: [f64; POINTS],
+    share: [f64; POINTS],
+    /// The cylinders of `touching`, [`WIDEST`] of them each; lanes beyond the last cylinder have no meaning.
+    groups: Vec<Group>,
+}
+
+/// Neighbouring cylinders with their contact points, one per lane.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(32))]
+struct Group {
+    /// Position of the cylinder's centre relative to the arc's centre \[m\], and velocity of that centre
+    /// [m/s]; `axis` holds the direction of the cylinder's axis and `sweep` its time derivative [1/s].
+    toward: [Each; 2],
+    velocity: [Each; 2],
+    axis: [Each; 2],
+    sweep: [Each; 2],
+    /// Arc angle of the cylinder's centre in the beam frame \[rad\]; 0 for a circular surface. Before it is
+    /// known, the angle from the cylinder before, not a number where that is too far away.
+    bearing: Each,
+    /// Left knot, on the grid of the arc's mode shapes, of the interval in which the cylinder's centre lies;
+    /// the field `on_grid` holds the centre's distance from that knot in intervals, and `knots` the mode
+    /// shapes' sums around it. Meaningless unless the height is [`Height::Local`].
+    left: Each,
+    on_grid: Each,
+    knots: [Each; KNOTS],
+    /// Arc angle of each contact point in the beam frame \[rad\]; 0 for a circular surface.
+    angle: [Each; POINTS],
+    /// Distance of each contact point from the knot `left` in grid intervals; within the grid.
+    place: [Each; POINTS],
+    /// Slope of the arc's deformed surface at each contact point: derivative of its height with respect to the
+    /// arc angle [m/rad].
+    slope: [Each; POINTS],
     /// Penetration of each contact point \[m\]; the field `rate` holds its rate [m/s].
-    depth: Vec<Each>,
-    rate: Vec<Each>,
+    depth: [Each; POINTS],
+    rate: [Each; POINTS],
     /// Derivatives of the penetration with respect to the contact point's position; the field `by_beam` holds
     /// those with respect to the beam angle.
-    by_point: [Vec<Each>; 2],
-    by_beam: Vec<Each>,
+    by_point: [[Each; 2]; POINTS],
+    by_beam: [Each; POINTS],
     /// Normal contact force at each point, never negative \[N\]; the field `lost` holds the power dissipated
     /// by the damping \[W\].
-    force: Vec<Each>,
-    lost: Vec<Each>,
+    force: [Each; POINTS],
+    lost: [Each; POINTS],
+    /// Sum of the contact forces on the cylinder \[N\], as numbers and as a vector; the field `bend` holds the
+    /// first moment of the vectors along the cylinder's axis [N m].
+    total: Each,
+    push: [Each; 2],
+    bend: [Each; 2],
+    /// Sums of the moment of the contact forces on the beam [N m] and of the power dissipated \[W\].
+    beam: Each,
+    loss: Each,
+    /// Moments of the forces on the grid of the arc's mode shapes; meaningless unless the height is
+    /// [`Height::Local`].
+    moments: [Each; FORCE_MOMENTS],
 }
 
 /// Contact load of one cylinder, summed over its contact points.
@@ -83,213 +116,176 @@ pub(super) struct ContactPoint {
     pub(super) curvature: Curvature,
     /// Position of the point on the grid of the arc's mode shapes; meaningless without modes.
     pub(super) on_grid: SplinePosition,
-    /// Contact force with its derivatives, multiplied by the point's share of the contact coefficients.
-    pub(super) law: ImpactForce,
+    /// Answer of the contact law, multiplied by the point's share of the contact coefficients.
+    pub(super) law: Response<f64, 1>,
+}
+
+/// Way in which the height of the arc's surface above the undeformed circle is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Height {
+    /// The surface is a circle.
+    Circular,
+    /// From the mode shapes around each cylinder's centre, and the profile.
+    Local,
+    /// From the mode shapes at each contact point, and the profile: on a grid finer than the cylinders, and
+    /// without modes.
+    AtPoints,
+}
+
+/// Poses of the cylinders of a chain, in the plane or in space.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Cylinders<'a> {
+    Plane(&'a PlanePoses),
+    Space(&'a [Pose]),
+}
+
+impl Height {
+    /// Chooses the way for a surface and for contact points of cylinders of half length `half`.
+    fn of(surface: &Surface<'_>, half: f64) -> Self {
+        let Some(bend) = &surface.bend else {
+            return if surface.profile.is_some() {
+                Self::AtPoints
+            } else {
+                Self::Circular
+            };
+        };
+        // a contact point is less than half a cylinder away from the centre; deeper than a tenth of the radius
+        // the rope is through the head, and its run ends
+        let intervals = half / (0.9 * surface.radius) * bend.shapes.per_step();
+        if intervals < 1.0 && bend.shapes.last() > 0 {
+            Self::Local
+        } else {
+            Self::AtPoints
+        }
+    }
+}
+
+impl Cylinders<'_> {
+    /// Returns the cylinders from the first to the last whose centre is less than `reach` away from `center`.
+    fn within(&self, reach: f64, center: V2) -> Range<usize> {
+        let poses = match self {
+            Self::Plane(poses) => return poses.within(reach, center),
+            Self::Space(poses) => poses,
+        };
+        let near = |pose: &Pose| (pose.center() - center).norm_squared() < reach * reach;
+        let first = poses.iter().position(near).unwrap_or(0);
+        let end = poses.iter().rposition(near).map_or(first, |last| last + 1);
+        first..end
+    }
 }
 
 impl Points {
     /// Allocates the contact points of a chain.
     pub(super) fn new(chain: &Chain) -> Self {
-        let zeros = || vec![[0.0; POINTS]; chain.count];
         let half = 0.5 * chain.pitch;
         Self {
-            cylinders: Vec::with_capacity(chain.count),
+            touching: 0..0,
+            height: Height::Circular,
             along: chain.contact_points.map(|(place, _)| place * half),
             share: chain.contact_points.map(|(_, share)| share),
-            toward: [zeros(), zeros()],
-            place: [zeros(), zeros()],
-            velocity: [zeros(), zeros()],
-            bearing: zeros(),
-            angle: zeros(),
-            on_grid: vec![[SplinePosition::default(); POINTS]; chain.count],
-            height: zeros(),
-            slope: zeros(),
-            rising: zeros(),
-            depth: zeros(),
-            rate: zeros(),
-            by_point: [zeros(), zeros()],
-            by_beam: zeros(),
-            force: zeros(),
-            lost: zeros(),
+            groups: vec![Group::default(); chain.count.div_ceil(WIDEST)],
         }
     }
 
-    /// Returns the indices of the cylinders that may touch the arc, in ascending order.
-    pub(super) fn cylinders(&self) -> &[usize] {
-        &self.cylinders
+    /// Returns the cylinders from the first to the last that may touch the arc.
+    pub(super) fn touching(&self) -> Range<usize> {
+        self.touching.clone()
     }
 
-    /// Collects the contact points of all cylinders that may touch the arc, and evaluates the contact law
-    /// there.
-    pub(super) fn evaluate<'a, const A: usize, P: InPlane<A> + 'a>(
+    /// Evaluates the contact law at the contact points of all cylinders that may touch the arc.
+    pub(super) fn evaluate(
         &mut self,
         chain: &Chain,
         surface: &Surface<'_>,
         law: &Impact,
-        poses: impl Iterator<Item = &'a P>,
+        cylinders: Cylinders<'_>,
     ) {
-        self.collect(chain, surface, poses);
-        if surface.is_noncircular() {
-            self.compute_angles();
-        }
-        self.compute_heights(surface);
-        self.compute_penetrations(surface);
-        let n = self.cylinders.len();
-        let (depth, rate) = (&self.depth[..n], &self.rate[..n]);
-        let (force, lost) = (&mut self.force[..n], &mut self.lost[..n]);
-        law.forces_batch(
-            [depth.as_flattened(), rate.as_flattened()],
-            [force.as_flattened_mut(), lost.as_flattened_mut()],
-        );
+        let half = 0.5 * chain.pitch;
+        self.height = Height::of(surface, half);
+        self.touching = cylinders.within(surface.reach + half, surface.center);
+        Arch::new().dispatch(Evaluate {
+            points: self,
+            surface,
+            law,
+            cylinders,
+        });
+    }
+
+    /// Returns the groups of the cylinders that may touch the arc.
+    fn groups(&self) -> &[Group] {
+        &self.groups[..self.touching.len().div_ceil(WIDEST)]
+    }
+
+    /// Returns the group of the `k`-th cylinder that may touch the arc, and its lane.
+    #[inline]
+    fn at(&self, k: usize) -> (&Group, usize) {
+        (&self.groups[k / WIDEST], k % WIDEST)
     }
 
     /// Replaces the contact forces of all points by their derivatives with respect to the coefficient `by` of
-    /// the contact law.
+    /// the contact law, and sums these as the forces are.
     pub(crate) fn replace_forces_by_derivatives(&mut self, law: &Impact, by: DerivativeVariable) {
-        let n = self.cylinders.len();
-        let force = self.force[..n].as_flattened_mut();
-        let at = self.depth[..n].as_flattened().iter();
-        for (force, (&depth, &rate)) in force.iter_mut().zip(at.zip(self.rate[..n].as_flattened()))
-        {
-            *force = law.derivative(depth, rate, by);
-        }
-    }
-
-    fn collect<'a, const A: usize, P: InPlane<A> + 'a>(
-        &mut self,
-        chain: &Chain,
-        surface: &Surface<'_>,
-        poses: impl Iterator<Item = &'a P>,
-    ) {
-        let half = 0.5 * chain.pitch;
-        self.cylinders.clear();
-        let mut before = None;
-        for (j, pose) in poses.enumerate() {
-            let center = pose.center();
-            let Some(bearing) = surface.bearing(before.as_ref(), &center, half) else {
-                continue;
-            };
-            let c = self.cylinders.len();
-            self.cylinders.push(j);
-            let (velocity, axis, sweep) = (pose.velocity(), pose.axis(), pose.sweep());
-            let toward = bearing.toward();
-            for k in 0..2 {
-                self.place[k][c] = self.along.map(|along| toward[k] + axis[k] * along);
-                self.velocity[k][c] = self.along.map(|along| velocity[k] + sweep[k] * along);
-                self.toward[k][c] = [toward[k]; POINTS];
+        let local = self.height == Height::Local;
+        let groups = self.touching.len().div_ceil(WIDEST);
+        for group in &mut self.groups[..groups] {
+            for i in 0..POINTS {
+                let at = group.depth[i].iter().zip(&group.rate[i]);
+                for (force, (&depth, &rate)) in group.force[i].iter_mut().zip(at) {
+                    *force = law.derivative(depth, rate, by);
+                }
             }
-            self.bearing[c] = [bearing.angle(); POINTS];
-            before = Some(bearing);
+            group.sum_forces(pulp::Scalar, [&self.along, &self.share], local);
         }
     }
 
-    /// Computes the arc angles of the contact points.
-    fn compute_angles(&mut self) {
-        let c = self.cylinders.len();
-        let [ax, ay] = self.toward.each_ref().map(|x| x[..c].as_flattened());
-        let [bx, by] = self.place.each_ref().map(|x| x[..c].as_flattened());
-        let bearing = self.bearing[..c].as_flattened();
-        let angle = self.angle[..c].as_flattened_mut();
-        for i in 0..bearing.len() {
-            let turned = small_angle([ax[i], ay[i]], [bx[i], by[i]]);
-            angle[i] = bearing[i] + turned;
-        }
-    }
-
-    /// Computes, at all contact points, height, slope and rate of the arc's deformed surface relative to the
-    /// undeformed circle.
-    fn compute_heights(&mut self, surface: &Surface<'_>) {
-        let c = self.cylinders.len();
-        let height = self.height[..c].as_flattened_mut();
-        let slope = self.slope[..c].as_flattened_mut();
-        let rising = self.rising[..c].as_flattened_mut();
-        let angle = self.angle[..c].as_flattened();
-        if let Some(bend) = &surface.bend {
-            let on_grid = self.on_grid[..c].as_flattened_mut();
-            for (place, &angle) in on_grid.iter_mut().zip(angle) {
-                *place = bend.shapes.place(angle);
-            }
-            bend.sum
-                .evaluate_all(bend.shapes, on_grid, [&mut *height, &mut *slope, rising]);
-        } else {
-            height.fill(0.0);
-            slope.fill(0.0);
-            rising.fill(0.0);
-        }
-        if let Some(profile) = surface.profile {
-            for ((height, slope), &angle) in height.iter_mut().zip(slope).zip(angle) {
-                let [raised, tilted, _] = profile.height(angle);
-                *height += raised;
-                *slope += tilted;
+    /// Adds the contact forces to the generalised forces of cylinders in the plane, three numbers each, and
+    /// stores each cylinder's contact force \[N\] in `contact`; returns the sum of the loads.
+    pub(super) fn add_plane_forces(
+        &self,
+        contact: &mut [f64],
+        force: &mut [f64],
+    ) -> CylinderContact {
+        let mut all = CylinderContact::default();
+        let touching = self.touching();
+        let (rows, _) = force.as_chunks_mut::<3>();
+        let rows = rows[touching.clone()].chunks_mut(WIDEST);
+        let contact = contact[touching].chunks_mut(WIDEST);
+        for ((group, rows), contact) in self.groups().iter().zip(rows).zip(contact) {
+            for (lane, (row, contact)) in rows.iter_mut().zip(contact).enumerate() {
+                *contact = group.total[lane];
+                row[0] += group.push[0][lane];
+                row[1] += group.push[1][lane];
+                row[2] += group.bend[1][lane] * group.axis[0][lane]
+                    - group.bend[0][lane] * group.axis[1][lane];
+                all.beam += group.beam[lane];
+                all.lost += group.loss[lane];
             }
         }
+        all
     }
 
-    /// Computes the penetrations of all contact points, with their rates and derivatives.
-    fn compute_penetrations(&mut self, surface: &Surface<'_>) {
-        let c = self.cylinders.len();
-        let n = c * POINTS;
-        let [x, y] = self.place.each_ref().map(|x| &x[..c].as_flattened()[..n]);
-        let [vx, vy] = self
-            .velocity
-            .each_ref()
-            .map(|v| &v[..c].as_flattened()[..n]);
-        let height = &self.height[..c].as_flattened()[..n];
-        let slope = &self.slope[..c].as_flattened()[..n];
-        let rising = &self.rising[..c].as_flattened()[..n];
-        let [by_x, by_y] = self.by_point.each_mut();
-        let by_x = &mut by_x[..c].as_flattened_mut()[..n];
-        let by_y = &mut by_y[..c].as_flattened_mut()[..n];
-        let depth = &mut self.depth[..c].as_flattened_mut()[..n];
-        let rate = &mut self.rate[..c].as_flattened_mut()[..n];
-        let by_beam = &mut self.by_beam[..c].as_flattened_mut()[..n];
-        let (cx, cy) = (surface.center_by_beam.x, surface.center_by_beam.y);
-        let (radius, turning) = (surface.radius, surface.beam[1]);
-        let reach = surface.reach * surface.reach;
-        for i in 0..n {
-            let square = x[i] * x[i] + y[i] * y[i];
-            let distance = square.sqrt();
-            let inverse = 1.0 / distance;
-            let (nx, ny) = (x[i] * inverse, y[i] * inverse);
-            let tilt = slope[i] * inverse;
-            let (bx, by) = (-ny * tilt - nx, nx * tilt - ny);
-            let beam = -(bx * cx + by * cy) - slope[i];
-            let inside = radius + height[i] - distance;
-            by_x[i] = bx;
-            by_y[i] = by;
-            by_beam[i] = beam;
-            rate[i] = rising[i] + (bx * vx[i] + by * vy[i]) + beam * turning;
-            depth[i] = if square < reach { inside } else { -1.0 };
-        }
-    }
-
-    /// Sums up the contact forces on the `k`-th cylinder of [`Self::cylinders`].
+    /// Returns the contact load of the `k`-th cylinder that may touch the arc.
     #[inline]
     pub(super) fn cylinder_contact(&self, k: usize) -> CylinderContact {
-        let (force, lost) = (&self.force[k], &self.lost[k]);
-        let [x, y] = [&self.by_point[0][k], &self.by_point[1][k]];
-        let beam = &self.by_beam[k];
-        let mut sum = CylinderContact::default();
-        for i in 0..POINTS {
-            let force = self.share[i] * force[i];
-            let push = V2::new(-force * x[i], -force * y[i]);
-            sum.total += force;
-            sum.push += push;
-            sum.bend += push * self.along[i];
-            sum.beam += force * beam[i];
-            sum.lost += self.share[i] * lost[i];
+        let (group, lane) = self.at(k);
+        CylinderContact {
+            total: group.total[lane],
+            push: V2::new(group.push[0][lane], group.push[1][lane]),
+            bend: V2::new(group.bend[0][lane], group.bend[1][lane]),
+            beam: group.beam[lane],
+            lost: group.loss[lane],
         }
-        sum
     }
 
-    /// Iterates over the contact points under load on the `k`-th cylinder of [`Self::cylinders`].
+    /// Iterates over the contact points under load on the `k`-th cylinder that may touch the arc.
     pub(super) fn loaded_points(&self, k: usize) -> impl Iterator<Item = usize> {
-        let pressed = move |&i: &usize| self.share[i] * self.force[k][i] != 0.0;
+        let (group, lane) = self.at(k);
+        let pressed = move |&i: &usize| self.share[i] * group.force[i][lane] != 0.0;
         (0..POINTS).filter(pressed)
     }
 
-    /// Returns contact point `i` of the `k`-th of [`Self::cylinders`]; surface and law must be those of the
-    /// last evaluation.
+    /// Returns contact point `i` of the `k`-th cylinder that may touch the arc; surface and law must be those
+    /// of the last evaluation.
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
     pub(super) fn contact_point(
@@ -298,83 +294,452 @@ impl Points {
         surface: &Surface<'_>,
         law: &Impact,
     ) -> ContactPoint {
-        let law = law.force(self.depth[k][i], self.rate[k][i]);
+        let (group, lane) = self.at(k);
+        let (along, share) = (self.along[i], self.share[i]);
+        let at = |of: &[Each; 2]| V2::new(of[0][lane], of[1][lane]);
+        let angle = group.angle[i][lane];
+        let on_grid = match &surface.bend {
+            Some(bend) => bend.shapes.place(angle),
+            None => SplinePosition::default(),
+        };
+        let toward = at(&group.toward) + at(&group.axis) * along;
+        let law = law.response([group.depth[i][lane]], [group.rate[i][lane]]);
         ContactPoint {
-            along: self.along[i],
-            velocity: V2::new(self.velocity[0][k][i], self.velocity[1][k][i]),
-            angle: self.angle[k][i],
-            by_point: V2::new(self.by_point[0][k][i], self.by_point[1][k][i]),
-            by_beam: self.by_beam[k][i],
-            curvature: self.curvature(k, i, surface),
-            on_grid: self.on_grid[k][i],
-            law: law.share(self.share[i]),
+            along,
+            velocity: at(&group.velocity) + at(&group.sweep) * along,
+            angle,
+            by_point: at(&group.by_point[i]),
+            by_beam: group.by_beam[i][lane],
+            curvature: surface.curvature(&toward, angle, &on_grid, group.slope[i][lane]),
+            on_grid,
+            law: Response {
+                force: [law.force[0] * share],
+                stiffness: [[law.stiffness[0][0] * share]],
+                damping: [[law.damping[0][0] * share]],
+                energy: law.energy * share,
+                dissipated: law.dissipated * share,
+            },
         }
     }
 
-    /// Returns the derivatives of the contact force at point `i` of the `k`-th of [`Self::cylinders`] with
-    /// respect to stiffness and damping of the law.
+    /// Returns the derivatives of the contact force at point `i` of the `k`-th cylinder that may touch the arc
+    /// with respect to stiffness and damping of the law.
     pub(super) fn by_law(&self, (k, i): (usize, usize), law: &Impact) -> [f64; 2] {
-        let by = law.force_by(self.depth[k][i], self.rate[k][i]);
-        by.map(|by| self.share[i] * by)
-    }
-
-    /// Returns the second derivatives of the penetration of point `i` on the `k`-th cylinder of
-    /// [`Self::cylinders`].
-    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
-    #[inline(always)]
-    fn curvature(&self, k: usize, i: usize, surface: &Surface<'_>) -> Curvature {
-        let toward = V2::new(self.place[0][k][i], self.place[1][k][i]);
-        let (angle, slope) = (self.angle[k][i], self.slope[k][i]);
-        surface.curvature(&toward, angle, &self.on_grid[k][i], slope)
+        let (group, lane) = self.at(k);
+        let by = law.by_coefficients([group.depth[i][lane]], [group.rate[i][lane]]);
+        by.map(|[by]| self.share[i] * by)
     }
 
     /// Adds the elastic energy of the contact at all points to `sum` \[J\].
     pub(super) fn add_energy(&self, sum: &mut f64, law: &Impact) {
-        for depths in &self.depth[..self.cylinders.len()] {
-            for (share, &depth) in self.share.iter().zip(depths) {
-                *sum += share * law.energy(depth);
+        for k in 0..self.touching.len() {
+            let (group, lane) = self.at(k);
+            for i in 0..POINTS {
+                let at = law.response([group.depth[i][lane]], [group.rate[i][lane]]);
+                *sum += self.share[i] * at.energy;
             }
         }
     }
 
     /// Returns the largest penetration among all contact points \[m\], at least 0.
     pub(super) fn deepest(&self) -> f64 {
-        let depths = self.depth[..self.cylinders.len()].as_flattened();
         let deeper = |deepest: f64, &depth: &f64| if depth > deepest { depth } else { deepest };
-        depths.iter().fold(0.0, deeper)
+        // lanes beyond the last cylinder repeat it
+        let depths = self
+            .groups()
+            .iter()
+            .flat_map(|group| group.depth.as_flattened());
+        depths.fold(0.0, deeper)
     }
 
     /// Distributes the contact forces to the knots (grid points) of the arc's mode shapes, into `pressure`.
-    pub(super) fn distribute_to_knots(&self, pressure: &mut KnotForces) {
-        for (k, places) in self.on_grid[..self.cylinders.len()].iter().enumerate() {
-            for (i, place) in places.iter().enumerate() {
-                let force = self.share[i] * self.force[k][i];
-                if force != 0.0 {
-                    pressure.add(place, force);
+    pub(super) fn distribute_to_knots(&self, shapes: &Splines, pressure: &mut KnotForces) {
+        pressure.clear(shapes);
+        if self.height == Height::Local {
+            let lanes = self
+                .groups()
+                .iter()
+                .flat_map(|group| (0..WIDEST).map(move |k| (group, k)));
+            for (group, lane) in lanes.take(self.touching.len()) {
+                if group.total[lane] != 0.0 {
+                    let moments = group.moments.each_ref().map(|moment| moment[lane]);
+                    pressure.add_moments(index(group.left[lane]), &moments);
                 }
+            }
+            return;
+        }
+        for k in 0..self.touching.len() {
+            let (group, lane) = self.at(k);
+            for i in self.loaded_points(k) {
+                let place = shapes.place(group.angle[i][lane]);
+                pressure.add(&place, self.share[i] * group.force[i][lane]);
             }
         }
     }
 
     /// Iterates over pairs of arc angle \[rad\] and contact force \[N\] of all contact points.
     pub(crate) fn forces(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        let points = self.angle.iter().zip(&self.force);
-        let each = points.take(self.cylinders.len());
-        each.flat_map(|(angle, force)| {
-            std::array::from_fn::<_, POINTS, _>(|i| (angle[i], self.share[i] * force[i]))
+        (0..self.touching.len()).flat_map(|k| {
+            let (group, lane) = self.at(k);
+            let point = |i: usize| (group.angle[i][lane], self.share[i] * group.force[i][lane]);
+            std::array::from_fn::<_, POINTS, _>(point)
         })
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a cast saturates, and a position before the grid belongs to its first interval"
+)]
+const fn index(place: f64) -> usize {
+    place as usize
+}
+
+/// Returns the `k`-th vector of lanes of a group.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+fn read<S: Simd>(simd: S, each: &Each, k: usize) -> Vector<S> {
+    Vector::new(simd, S::as_simd_f64s(each).0[k])
+}
+
+/// Stores the `k`-th vector of lanes of a group.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+fn write<S: Simd>(each: &mut Each, k: usize, vector: Vector<S>) {
+    S::as_mut_simd_f64s(each).0[k] = vector.lanes();
+}
+
+/// Evaluation of geometry and law at all contact points, compiled for each set of instructions.
+struct Evaluate<'a, 's> {
+    points: &'a mut Points,
+    surface: &'a Surface<'s>,
+    law: &'a Impact,
+    cylinders: Cylinders<'a>,
+}
+
+impl WithSimd for Evaluate<'_, '_> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self {
+            points,
+            surface,
+            law,
+            cylinders,
+        } = self;
+        let n = points.touching.len();
+        if n == 0 {
+            return;
+        }
+        let groups = &mut points.groups[..n.div_ceil(WIDEST)];
+        match cylinders {
+            Cylinders::Plane(poses) => {
+                place_plane(simd, groups, surface, poses, points.touching.start);
+            }
+            Cylinders::Space(poses) => {
+                place_space(groups, surface, &poses[points.touching.clone()]);
+            }
+        }
+        repeat_last(groups, n);
+        if points.height != Height::Circular {
+            find_bearings(simd, groups, surface);
+        }
+        if points.height == Height::Local {
+            find_on_grid(groups, surface);
+        }
+        let share = [&points.along, &points.share];
+        match points.height {
+            Height::Circular => evaluate::<S, CIRCULAR>(simd, groups, (surface, law), share),
+            Height::Local => evaluate::<S, LOCAL>(simd, groups, (surface, law), share),
+            Height::AtPoints => evaluate::<S, AT_POINTS>(simd, groups, (surface, law), share),
+        }
+    }
+}
+
+/// Copies the motion of cylinders in the plane relative to the arc's centre, from cylinder `first` on.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+fn place_plane<S: Simd>(
+    simd: S,
+    groups: &mut [Group],
+    surface: &Surface<'_>,
+    poses: &PlanePoses,
+    first: usize,
+) {
+    let vectors = WIDEST / S::F64_LANES;
+    let rods = poses.rods(simd, first, groups.len() * vectors);
+    for (g, group) in groups.iter_mut().enumerate() {
+        for k in 0..vectors {
+            let rod = rods.get(g * vectors + k);
+            let center = [surface.center.x, surface.center.y];
+            for d in 0..2 {
+                write(&mut group.toward[d], k, rod.place[d] - center[d]);
+                write(&mut group.velocity[d], k, rod.velocity[d]);
+                write(&mut group.axis[d], k, rod.axis[d]);
+            }
+            write(&mut group.sweep[0], k, -(rod.axis[1] * rod.rate));
+            write(&mut group.sweep[1], k, rod.axis[0] * rod.rate);
+        }
+    }
+}
+
+/// Copies the motion of cylinders in space relative to the arc's centre, projected onto the plane.
+fn place_space(groups: &mut [Group], surface: &Surface<'_>, poses: &[Pose]) {
+    for (group, poses) in groups.iter_mut().zip(poses.chunks(WIDEST)) {
+        for (lane, pose) in poses.iter().enumerate() {
+            let toward = pose.center() - surface.center;
+            let (velocity, axis, sweep) = (pose.velocity(), pose.axis(), pose.sweep());
+            for d in 0..2 {
+                group.toward[d][lane] = toward[d];
+                group.velocity[d][lane] = velocity[d];
+                group.axis[d][lane] = axis[d];
+                group.sweep[d][lane] = sweep[d];
+            }
+        }
+    }
+}
+
+/// Fills the lanes beyond the last of `n` cylinders with its motion, so that they compute with numbers too.
+#[inline]
+fn repeat_last(groups: &mut [Group], n: usize) {
+    let Some(group) = groups.last_mut() else {
+        return;
+    };
+    let last = (n - 1) % WIDEST;
+    let motion = [
+        &mut group.toward,
+        &mut group.velocity,
+        &mut group.axis,
+        &mut group.sweep,
+    ];
+    for each in motion.into_iter().flatten() {
+        let value = each[last];
+        each[last + 1..].fill(value);
+    }
+}
+
+/// Finds the arc angle of each cylinder's centre, from that of the cylinder before where that is near, which
+/// saves the arc tangent.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+fn find_bearings<S: Simd>(simd: S, groups: &mut [Group], surface: &Surface<'_>) {
+    let mut before = [f64::NAN; 2];
+    for group in &mut *groups {
+        let mut previous = group.toward;
+        for d in 0..2 {
+            previous[d].copy_within(..WIDEST - 1, 1);
+            previous[d][0] = before[d];
+            before[d] = group.toward[d][WIDEST - 1];
+        }
+        for k in 0..WIDEST / S::F64_LANES {
+            let from = previous.each_ref().map(|each| read(simd, each, k));
+            let to = group.toward.each_ref().map(|each| read(simd, each, k));
+            let turned = is_near(from, to, small_angle(from, to));
+            write(&mut group.bearing, k, turned);
+        }
+    }
+    let mut bearing = 0.0;
+    for group in groups {
+        for lane in 0..WIDEST {
+            let turned = group.bearing[lane];
+            bearing = if turned.is_nan() {
+                surface.arc_angle(&V2::new(group.toward[0][lane], group.toward[1][lane]))
+            } else {
+                bearing + turned
+            };
+            group.bearing[lane] = bearing;
+        }
+    }
+}
+
+/// Finds the grid interval of each cylinder's centre, and the sums of the mode shapes around it.
+#[inline]
+fn find_on_grid(groups: &mut [Group], surface: &Surface<'_>) {
+    let Some(bend) = &surface.bend else { return };
+    let last = bend.shapes.last() - 1;
+    for group in groups {
+        for lane in 0..WIDEST {
+            let at = bend.shapes.in_steps(group.bearing[lane]);
+            let left = index(at).min(last);
+            group.left[lane] = left as f64;
+            group.on_grid[lane] = at - left as f64;
+            for (each, value) in group.knots.iter_mut().zip(bend.sum.around(left)) {
+                each[lane] = value;
+            }
+        }
+    }
+}
+
+/// Values of the parameter `HEIGHT` of [`evaluate`].
+const CIRCULAR: u8 = 0;
+const LOCAL: u8 = 1;
+const AT_POINTS: u8 = 2;
+
+/// Evaluates geometry and law at the contact points of all cylinders, and sums the forces.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+fn evaluate<S: Simd, const HEIGHT: u8>(
+    simd: S,
+    groups: &mut [Group],
+    (surface, law): (&Surface<'_>, &Impact),
+    [along, share]: [&[f64; POINTS]; 2],
+) {
+    let zero = Vector::splat(simd, 0.0);
+    let turning = surface.beam[1];
+    let (cx, cy) = (surface.center_by_beam.x, surface.center_by_beam.y);
+    let reach = zero.constant(surface.reach * surface.reach);
+    let grid = surface.bend.as_ref().map(|bend| bend.shapes);
+    let (per_step, last) = grid.map_or((0.0, 0.0), |grid| (grid.per_step(), grid.last() as f64));
+    for group in groups {
+        for k in 0..WIDEST / S::F64_LANES {
+            let pair = |of: &[Each; 2]| of.each_ref().map(|each| read(simd, each, k));
+            let ([wx, wy], [vx, vy]) = (pair(&group.toward), pair(&group.velocity));
+            let ([ex, ey], [sx, sy]) = (pair(&group.axis), pair(&group.sweep));
+            let bearing = read(simd, &group.bearing, k);
+            let (left, on_grid) = (read(simd, &group.left, k), read(simd, &group.on_grid, k));
+            let sums = LocalCubic::new(group.knots.each_ref().map(|each| read(simd, each, k)));
+            for i in 0..POINTS {
+                let (x, y) = (wx + ex * along[i], wy + ey * along[i]);
+                let (mut turned, mut angle) = (zero, zero);
+                if HEIGHT != CIRCULAR {
+                    turned = small_angle([wx, wy], [x, y]);
+                    angle = bearing + turned;
+                }
+                let [mut height, mut slope, rising] = match HEIGHT {
+                    LOCAL => {
+                        let place = on_grid + turned * per_step;
+                        let (low, high) = (-left, -left + last);
+                        let inside = place.at_least(low).at_most(high);
+                        write(&mut group.place[i], k, inside);
+                        let [height, slope, rising] = sums.at(inside);
+                        // constant beyond the grid
+                        let slope = place.select_less(low, zero, slope * per_step);
+                        let slope = high.select_less(place, zero, slope);
+                        [height, slope, rising]
+                    }
+                    AT_POINTS => angle.each(|angle| {
+                        surface.bend.as_ref().map_or([0.0; 3], |bend| {
+                            let place = bend.shapes.place(angle);
+                            let (jet, rising) = bend.sum.at(bend.shapes, &place);
+                            [jet.value, jet.first, rising]
+                        })
+                    }),
+                    _ => [zero; 3],
+                };
+                if let Some(profile) = surface.profile.filter(|_| HEIGHT != CIRCULAR) {
+                    let [raised, tilted, _] = angle.each(|angle| profile.height(angle));
+                    height = height + raised;
+                    slope = slope + tilted;
+                }
+                let square = x * x + y * y;
+                let distance = square.sqrt();
+                let inverse = zero.constant(1.0) / distance;
+                let (nx, ny) = (x * inverse, y * inverse);
+                let tilt = slope * inverse;
+                let (bx, by) = (-(ny * tilt) - nx, nx * tilt - ny);
+                let beam = -(bx * cx + by * cy) - slope;
+                let inside = height + surface.radius - distance;
+                let (px, py) = (vx + sx * along[i], vy + sy * along[i]);
+                let rate = rising + (bx * px + by * py) + beam * turning;
+                let depth = square.select_less(reach, inside, zero.constant(-1.0));
+                let answer = law.response([depth], [rate]);
+                write(&mut group.angle[i], k, angle);
+                write(&mut group.slope[i], k, slope);
+                write(&mut group.depth[i], k, depth);
+                write(&mut group.rate[i], k, rate);
+                write(&mut group.by_point[i][0], k, bx);
+                write(&mut group.by_point[i][1], k, by);
+                write(&mut group.by_beam[i], k, beam);
+                write(&mut group.force[i], k, answer.force[0]);
+                write(&mut group.lost[i], k, answer.dissipated);
+            }
+        }
+        group.sum_forces(simd, [along, share], HEIGHT == LOCAL);
+    }
+}
+
+impl Group {
+    /// Sums the contact forces of each cylinder over its points and, where `local`, the moments of the forces
+    /// on the grid of the mode shapes.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn sum_forces<S: Simd>(&mut self, simd: S, [along, share]: [&[f64; POINTS]; 2], local: bool) {
+        let zero = Vector::splat(simd, 0.0);
+        for k in 0..WIDEST / S::F64_LANES {
+            let mut sums = [zero; 7];
+            let mut moments = [zero; FORCE_MOMENTS];
+            for i in 0..POINTS {
+                let force = read(simd, &self.force[i], k) * share[i];
+                let [x, y] = self.by_point[i]
+                    .each_ref()
+                    .map(|by| -(force * read(simd, by, k)));
+                let own = [
+                    force,
+                    x,
+                    y,
+                    x * along[i],
+                    y * along[i],
+                    force * read(simd, &self.by_beam[i], k),
+                    read(simd, &self.lost[i], k) * share[i],
+                ];
+                for (sum, own) in sums.iter_mut().zip(own) {
+                    *sum = *sum + own;
+                }
+                if local {
+                    let own = force_moments(read(simd, &self.place[i], k), force);
+                    for (sum, own) in moments.iter_mut().zip(own) {
+                        *sum = *sum + own;
+                    }
+                }
+            }
+            let [total, x, y, bend_x, bend_y, beam, loss] = sums;
+            write(&mut self.total, k, total);
+            write(&mut self.push[0], k, x);
+            write(&mut self.push[1], k, y);
+            write(&mut self.bend[0], k, bend_x);
+            write(&mut self.bend[1], k, bend_y);
+            write(&mut self.beam, k, beam);
+            write(&mut self.loss, k, loss);
+            if local {
+                for (each, moment) in self.moments.iter_mut().zip(moments) {
+                    write(each, k, moment);
+                }
+            }
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::elementary::sin_cos;
     use crate::math::spline::{Splines, sum::WeightedSplines};
     use crate::model::contact::Deflection;
     use crate::model::description::Arc;
     use crate::model::extension::profile::{Hollow, Profile};
-    use crate::model::pose::PlanePose;
 
     /// Contact point in a test, with all its derivatives.
     struct Seen {
@@ -433,19 +798,21 @@ mod tests {
                 };
                 let mut surface = Surface::new(&arc, [x[3], MOTION[3]], bent.then_some(bend));
                 surface.profile = worn.then_some(&profile);
-                let (s, c) = sin_cos(x[2]);
-                let pose = PlanePose::new(&x, &MOTION, V2::new(c, s));
                 let mut points = Points::new(&chain);
-                points.evaluate(&chain, &surface, &law, std::iter::once(&pose));
-                assert_eq!(points.cylinders(), [0]);
-                assert!(points.depth[0][i] > -0.5, "beyond the surface's reach");
+                let mut poses = PlanePoses::new(1);
+                poses.fill(&x[..3], &MOTION[..3]);
+                points.evaluate(&chain, &surface, &law, Cylinders::Plane(&poses));
+                assert_eq!(points.touching(), 0..1);
+                let (group, _) = points.at(0);
+                assert!(group.depth[i][0] > -0.5, "beyond the surface's reach");
+                let [by_x, by_y] = group.by_point[i];
                 Seen {
-                    depth: points.depth[0][i],
-                    rate: points.rate[0][i],
-                    angle: points.angle[0][i],
-                    by_point: V2::new(points.by_point[0][0][i], points.by_point[1][0][i]),
-                    by_beam: points.by_beam[0][i],
-                    curvature: points.curvature(0, i, &surface),
+                    depth: group.depth[i][0],
+                    rate: group.rate[i][0],
+                    angle: group.angle[i][0],
+                    by_point: V2::new(by_x[0], by_y[0]),
+                    by_beam: group.by_beam[i][0],
+                    curvature: points.contact_point((0, i), &surface, &law).curvature,
                 }
             };
             for i in 0..POINTS {

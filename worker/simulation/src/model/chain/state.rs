@@ -1,12 +1,13 @@
 //! Poses of a chain's cylinders and loads of its joints and contact at the last evaluation of its forces.
 use super::parts::Chain;
+use super::plane::PlaneLoads;
 use super::points::Points;
 use crate::element::bushing::LinkLoad;
 use crate::math::spline::sum::KnotForces;
 use crate::model::extension::axial::Memory;
 use crate::model::layout::Motion;
-use crate::model::pose::{PlanePose, Pose};
-use nalgebra::Vector2;
+use crate::model::pose::{PlanePoses, Pose};
+use nalgebra::Vector3;
 
 /// Poses of a chain's cylinders and loads of its joints and contact at the last evaluation of its forces;
 /// buffers are allocated once.
@@ -15,11 +16,12 @@ pub struct ChainState {
     /// Poses of the cylinders of a chain in space; empty for a chain in the plane.
     pub poses: Vec<Pose>,
     /// Poses of the cylinders of a chain in the plane; empty for a chain in space.
-    pub plane: Vec<PlanePose>,
-    /// Angles of the cylinders in the plane \[rad\], their sines and cosines.
-    pub(super) turns: [Vec<f64>; 3],
-    /// Loads of all joints of the chain, one more than it has cylinders; zero for a free end.
+    pub plane: PlanePoses,
+    /// Loads of all joints of the chain, one more than it has cylinders; zero for a free end, and for the
+    /// joints between cylinders in the plane, whose loads are in `plane_joints`.
     pub joints: Vec<LinkLoad>,
+    /// Loads of the joints between cylinders of a chain in the plane; empty for a chain in space.
+    pub(super) plane_joints: PlaneLoads,
     /// Contact force of each cylinder \[N\].
     pub contact: Vec<f64>,
     /// Contact points of the chain at the last evaluation.
@@ -44,9 +46,9 @@ impl ChainState {
         };
         Self {
             poses: vec![Pose::new(&[0.0; 6], &[0.0; 6]); poses],
-            plane: vec![PlanePose::new(&[0.0; 3], &[0.0; 3], Vector2::x()); plane],
-            turns: std::array::from_fn(|_| vec![0.0; plane]),
+            plane: PlanePoses::new(plane),
             joints: vec![LinkLoad::none(); chain.count + 1],
+            plane_joints: PlaneLoads::new(plane.saturating_sub(1)),
             contact: vec![0.0; chain.count],
             points: Points::new(chain),
             pressure: KnotForces::default(),
@@ -58,19 +60,32 @@ impl ChainState {
 
     /// Returns the pose of cylinder `j` in space.
     pub fn pose(&self, j: usize) -> Pose {
-        self.plane
-            .get(j)
-            .map_or_else(|| self.poses[j], PlanePose::in_space)
+        if self.plane.is_empty() {
+            self.poses[j]
+        } else {
+            self.plane.get(j).in_space()
+        }
     }
 
     /// Returns the power dissipated by the joints and the contact of the chain \[W\].
     pub fn losses(&self) -> f64 {
         let joints = self.joints.iter().map(|load| load.dissipated);
-        joints.sum::<f64>() + self.dissipated
+        joints.sum::<f64>() + self.plane_joints.dissipated() + self.dissipated
     }
 
     /// Returns the tension in a joint of the chain \[N\], negative under compression.
     pub fn tension(&self, joint: usize) -> f64 {
-        -self.joints[joint].axial
+        let between = joint
+            .checked_sub(1)
+            .and_then(|k| self.plane_joints.tension(k));
+        between.unwrap_or_else(|| -self.joints[joint].axial)
+    }
+
+    /// Returns the force of a joint on the cylinder (or head) behind it \[N\].
+    pub fn joint_force(&self, joint: usize) -> Vector3<f64> {
+        let between = joint
+            .checked_sub(1)
+            .and_then(|k| self.plane_joints.force(k));
+        between.unwrap_or_else(|| self.joints[joint].force)
     }
 }

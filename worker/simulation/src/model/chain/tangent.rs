@@ -3,10 +3,10 @@
 //! A joint between two cylinders couples their two matrix blocks. An end joint couples a cylinder with the
 //! body that holds the end: the derivatives within the cylinder's own block are added here, the remaining
 //! ones are returned for the holding body.
-use super::link::Side;
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
 use crate::element::bushing::LinkTangent;
+use crate::element::plane::Side;
 use crate::linear::{BLOCK, Blocks, Bordered, MatrixBlock};
 use crate::model::pose::Pose;
 use nalgebra::{Matrix3, Vector3};
@@ -51,42 +51,43 @@ pub(crate) struct EndTangent {
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Adds the tangent of the joints between two cylinders to the matrix.
+    /// Adds `K + gamma D` of the joints between two cylinders to the second matrix and, if there is one, `K`
+    /// alone to the first.
     pub(crate) fn add_joint_tangent(
         &self,
         joints: &Joints<'_>,
         state: &ChainState,
         gamma: f64,
-        matrix: &mut Bordered,
+        (stiffness, matrix): (Option<&mut Bordered>, &mut Bordered),
     ) {
-        match matrix {
-            Bordered::Plane(matrix) => {
-                self.add_plane_tangent(joints, state, gamma, matrix);
+        match (stiffness, matrix) {
+            (Some(Bordered::Plane(stiffness)), Bordered::Plane(matrix)) => {
+                self.add_plane_tangent(joints, state, gamma, (Some(stiffness), matrix));
             }
-            Bordered::Space(matrix) => {
-                self.add_torque_geometric_stiffness(state, matrix);
-                for joint in 1..self.count {
-                    self.add_inner_tangent(joint, joints, state, gamma, matrix);
+            (_, Bordered::Plane(matrix)) => {
+                self.add_plane_tangent(joints, state, gamma, (None, matrix));
+            }
+            (stiffness, Bordered::Space(matrix)) => {
+                if let Some(Bordered::Space(stiffness)) = stiffness {
+                    self.add_space_tangent(joints, state, 0.0, stiffness);
                 }
+                self.add_space_tangent(joints, state, gamma, matrix);
             }
         }
     }
 
-    /// Adds the tangent of the joints between two cylinders: without its rate-dependent part to the first
-    /// matrix, complete to the second. Returns whether this was done, which requires a chain in the plane.
-    pub(crate) fn add_joint_stiffness_and_tangent(
+    /// Adds the tangent of the joints between two cylinders in space to the matrix.
+    fn add_space_tangent(
         &self,
         joints: &Joints<'_>,
         state: &ChainState,
         gamma: f64,
-        stiffness: &mut Bordered,
-        matrix: &mut Bordered,
-    ) -> bool {
-        let (Bordered::Plane(stiffness), Bordered::Plane(matrix)) = (stiffness, matrix) else {
-            return false;
-        };
-        self.add_plane_stiffness_and_tangent(joints, state, gamma, [stiffness, matrix]);
-        true
+        matrix: &mut Blocks<BLOCK>,
+    ) {
+        self.add_torque_geometric_stiffness(state, matrix);
+        for joint in 1..self.count {
+            self.add_inner_tangent(joint, joints, state, gamma, matrix);
+        }
     }
 
     /// Returns the derivatives of the loads of the two end joints, at base and head; `None` for a free end.
