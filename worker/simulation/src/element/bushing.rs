@@ -13,7 +13,7 @@
 //! kept: preloads in shear and bending need a preferred direction across the rope, which has none, and a
 //! torque would turn cylinders out of the plane of a single rope, where nothing holds them (two ropes of
 //! opposite lay balance it).
-use super::law::{ForceLaw, Response};
+use super::law::{ForceLaw, LawResponse};
 use super::plane::DEFORMATIONS;
 use crate::math::real::Real;
 use crate::math::rotation::{inverse_left_jacobian, rotation_vector, skew};
@@ -366,7 +366,7 @@ impl ForceLaw<DEFORMATIONS, PLANE_COEFFICIENTS> for Bushing {
         reason = "compiled for each set of instructions"
     )]
     #[inline(always)]
-    fn response<T: Real>(&self, x: [T; 3], rate: [T; 3]) -> Response<T, 3> {
+    fn response<T: Real>(&self, x: [T; 3], rate: [T; 3]) -> LawResponse<T, 3> {
         let [k1, k2, k5, c1, c2, c5, preload] = self.coefficients();
         let zero = x[0].constant(0.0);
         let diagonal = |[a, b, c]: [f64; 3]| {
@@ -378,7 +378,7 @@ impl ForceLaw<DEFORMATIONS, PLANE_COEFFICIENTS> for Bushing {
         };
         let viscous = [rate[0] * c1, rate[1] * c2, rate[2] * c5];
         let elastic = [x[0] * k1, x[1] * k2, x[2] * k5];
-        Response {
+        LawResponse {
             force: [
                 elastic[0] + viscous[0] + preload,
                 elastic[1] + viscous[1],

@@ -2,7 +2,7 @@
 //! reaction, power balance, independence of the frame, equal bits in SIMD lanes.
 use super::bushing::{AxialTension, Bushing, LinkLoad, Marker};
 use super::impact::Impact;
-use super::law::{ForceLaw, Response};
+use super::law::{ForceLaw, LawResponse};
 use super::plane::{PlaneJoint, PlaneRod, Side};
 use crate::math::real::{Vector, WIDEST};
 use nalgebra::{Matrix3, Rotation3, Vector3};
@@ -349,7 +349,7 @@ fn law<L: ForceLaw<N, C>, const N: usize, const C: usize>(
 
 /// Lists all numbers of a law's answer.
 fn flat<T: Copy, B, const N: usize, const C: usize>(
-    at: &Response<T, N>,
+    at: &LawResponse<T, N>,
     by: &[[T; N]; C],
     bits: impl Fn(T) -> B,
 ) -> Vec<B> {

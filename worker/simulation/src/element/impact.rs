@@ -5,7 +5,7 @@
 //! paper's Eq. 4 has no `max(0, ..)` and would pull a rope that leaves its arc fast; the `IMPACT` function of
 //! the program used for the paper cuts the force off in the same way, and the power balance accounts for the
 //! energy lost by it.
-use super::law::{ForceLaw, Response};
+use super::law::{ForceLaw, LawResponse};
 use crate::math::elementary::powf;
 use crate::math::real::Real;
 
@@ -123,14 +123,14 @@ impl ForceLaw<1, 2> for Impact {
         reason = "compiled for each set of instructions"
     )]
     #[inline(always)]
-    fn response<T: Real>(&self, [depth]: [T; 1], [rate]: [T; 1]) -> Response<T, 1> {
+    fn response<T: Real>(&self, [depth]: [T; 1], [rate]: [T; 1]) -> LawResponse<T, 1> {
         let at = self.state(depth, rate);
         let zero = depth.constant(0.0);
         let pressed = |value: T, torn: T| zero.select_less(at.sum, value, torn);
         let spring = at.power * self.stiffness;
         let damper = at.step * rate * self.damping;
         let by_depth = at.slope * self.stiffness + at.step_slope * rate * self.damping;
-        Response {
+        LawResponse {
             force: [pressed(at.sum, zero)],
             stiffness: [[pressed(by_depth, zero)]],
             damping: [[pressed(at.step * self.damping, zero)]],

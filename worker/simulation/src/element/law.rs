@@ -9,7 +9,7 @@ use crate::math::real::Real;
 
 /// Answer of a force law with `N` deformations, for single numbers or for several elements in SIMD lanes.
 #[derive(Clone, Copy, Debug)]
-pub struct Response<T, const N: usize> {
+pub struct LawResponse<T, const N: usize> {
     /// Forces that resist the deformations, each in the unit of energy per unit of its deformation.
     pub force: [T; N],
     /// Derivatives of each force (row) with respect to each deformation.
@@ -37,7 +37,7 @@ pub trait ForceLaw<const N: usize, const C: usize>: Copy {
     /// Returns forces, derivatives, energy and power at deformations and their rates.
     ///
     /// Implementations are inlined, and what a caller leaves unused is not computed.
-    fn response<T: Real>(&self, deformation: [T; N], rate: [T; N]) -> Response<T, N>;
+    fn response<T: Real>(&self, deformation: [T; N], rate: [T; N]) -> LawResponse<T, N>;
 
     /// Returns the derivatives of the forces with respect to each coefficient.
     fn by_coefficients<T: Real>(&self, deformation: [T; N], rate: [T; N]) -> [[T; N]; C];

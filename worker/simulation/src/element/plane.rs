@@ -3,7 +3,7 @@
 //! The deformations are extension and shear, along and across the axis of rod J, and the turn of rod I
 //! relative to J. A [`ForceLaw`](super::law::ForceLaw) of these three answers with forces; this module returns
 //! the forces on the rods, and the stiffness and damping by their coordinates.
-use super::law::Response;
+use super::law::LawResponse;
 use crate::math::real::Real;
 use std::f64::consts::TAU;
 
@@ -121,7 +121,7 @@ impl<T: Real> PlaneJoint<T> {
     /// Returns the joint's stiffness and its damping by the coordinates of both rods, under the response of its
     /// law.
     #[inline(always)]
-    pub fn tangents(&self, law: &Response<T, DEFORMATIONS>) -> [PlaneTangent<T>; 2] {
+    pub fn tangents(&self, law: &LawResponse<T, DEFORMATIONS>) -> [PlaneTangent<T>; 2] {
         let ([ex, ey], [cosine, sine]) = (self.axis, self.turned);
         let (half, spin) = (self.half, self.spin);
         let [extension, shear, _] = self.deformation;

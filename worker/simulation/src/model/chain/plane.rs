@@ -4,61 +4,15 @@
 //! joints are evaluated side by side in SIMD lanes, otherwise one after the other; both have the same bits.
 //! The two end joints use the bushing in space.
 use super::parts::{Chain, Joints};
-use super::state::ChainState;
+use super::state::{ChainState, PlaneLoads};
 use crate::element::bushing::{Bushing, PLANE_COEFFICIENTS};
-use crate::element::law::{ForceLaw, Response};
+use crate::element::law::{ForceLaw, LawResponse};
 use crate::element::plane::{INDEPENDENT, PlaneJoint, PlaneLoad, PlaneTangent, Side};
 use crate::linear::{Blocks, MatrixBlock};
 use crate::math::real::{Vector, WIDEST};
 use crate::model::pose::PlanePoses;
-use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
-
-/// Loads of the joints between the cylinders of a chain in the plane, one array per quantity, padded for SIMD
-/// lanes; the joint after cylinder `k` has index `k`.
-#[derive(Clone, Debug, Default)]
-pub(super) struct PlaneLoads {
-    count: usize,
-    /// Forces on the cylinder behind the joint \[N\], and the torques on the cylinders behind and before it
-    /// about their centres [N m].
-    force: [Vec<f64>; 2],
-    torque: [Vec<f64>; 2],
-    /// Tensions \[N\]; the field `dissipated` holds the dissipated powers \[W\].
-    tension: Vec<f64>,
-    dissipated: Vec<f64>,
-}
-
-impl PlaneLoads {
-    /// Allocates the loads of `count` joints.
-    pub(super) fn new(count: usize) -> Self {
-        let zeros = || vec![0.0; count.next_multiple_of(WIDEST)];
-        Self {
-            count,
-            force: [zeros(), zeros()],
-            torque: [zeros(), zeros()],
-            tension: zeros(),
-            dissipated: zeros(),
-        }
-    }
-
-    /// Returns the power dissipated by all joints \[W\].
-    pub(super) fn dissipated(&self) -> f64 {
-        self.dissipated[..self.count].iter().sum()
-    }
-
-    /// Returns the tension in the joint after cylinder `k` \[N\]; `None` if there is no such joint.
-    pub(super) fn tension(&self, k: usize) -> Option<f64> {
-        self.tension[..self.count].get(k).copied()
-    }
-
-    /// Returns the force of the joint after cylinder `k` on the next cylinder \[N\]; `None` if there is no
-    /// such joint.
-    pub(super) fn force(&self, k: usize) -> Option<Vector3<f64>> {
-        let [x, y] = &self.force;
-        (k < self.count).then(|| Vector3::new(x[k], y[k], 0.0))
-    }
-}
 
 /// Evaluation of all joints between the cylinders of a chain, compiled for each set of instructions.
 struct Evaluate<'a> {
@@ -99,7 +53,7 @@ impl WithSimd for Evaluate<'_> {
             out.map(|array| &mut S::as_mut_simd_f64s(array).0[..vectors]);
         for k in 0..vectors {
             let joint = PlaneJoint::new(half, &behind.get(k), &before.get(k));
-            let answer: Response<Vector<S>, 3> = law.response(joint.deformation, joint.rate);
+            let answer: LawResponse<Vector<S>, 3> = law.response(joint.deformation, joint.rate);
             let load = joint.load(answer.force);
             x[k] = load.force[0].lanes();
             y[k] = load.force[1].lanes();
@@ -124,7 +78,7 @@ impl Chain {
         joint: usize,
         joints: &Joints<'_>,
         state: &ChainState,
-    ) -> (PlaneJoint<f64>, Response<f64, 3>) {
+    ) -> (PlaneJoint<f64>, LawResponse<f64, 3>) {
         let at = self.plane_geometry(joint, state);
         let mut answer = joints.inner.response(at.deformation, at.rate);
         if let Some(further) = self.pull(joint, joints, state) {
@@ -298,7 +252,8 @@ impl WithSimd for AddTangent<'_, '_> {
         let [before, behind] = [0, 1].map(|first| self.poses.rods(simd, first, vectors));
         for k in 0..vectors {
             let joint = PlaneJoint::new(self.half, &behind.get(k), &before.get(k));
-            let answer: Response<Vector<S>, 3> = self.law.response(joint.deformation, joint.rate);
+            let answer: LawResponse<Vector<S>, 3> =
+                self.law.response(joint.deformation, joint.rate);
             let [stiffness, damping] = joint.tangents(&answer);
             let blocks = self
                 .joints

@@ -5,7 +5,7 @@
 //! together (array of structures of arrays).
 use super::parts::Chain;
 use crate::element::impact::{DerivativeVariable, Impact};
-use crate::element::law::{ForceLaw, Response};
+use crate::element::law::{ForceLaw, LawResponse};
 use crate::math::real::{Real as _, Vector, WIDEST};
 use crate::math::spline::sum::{FORCE_MOMENTS, KNOTS, KnotForces, LocalCubic, force_moments};
 use crate::math::spline::{SplinePosition, Splines};
@@ -117,7 +117,7 @@ pub(super) struct ContactPoint {
     /// Position of the point on the grid of the arc's mode shapes; meaningless without modes.
     pub(super) on_grid: SplinePosition,
     /// Answer of the contact law, multiplied by the point's share of the contact coefficients.
-    pub(super) law: Response<f64, 1>,
+    pub(super) law: LawResponse<f64, 1>,
 }
 
 /// Way in which the height of the arc's surface above the undeformed circle is computed.
@@ -312,7 +312,7 @@ impl Points {
             by_beam: group.by_beam[i][lane],
             curvature: surface.curvature(&toward, angle, &on_grid, group.slope[i][lane]),
             on_grid,
-            law: Response {
+            law: LawResponse {
                 force: [law.force[0] * share],
                 stiffness: [[law.stiffness[0][0] * share]],
                 damping: [[law.damping[0][0] * share]],

@@ -1,8 +1,8 @@
 //! Poses of a chain's cylinders and loads of its joints and contact at the last evaluation of its forces.
 use super::parts::Chain;
-use super::plane::PlaneLoads;
 use super::points::Points;
 use crate::element::bushing::LinkLoad;
+use crate::math::real::WIDEST;
 use crate::math::spline::sum::KnotForces;
 use crate::model::extension::axial::Memory;
 use crate::model::layout::Motion;
@@ -87,5 +87,50 @@ impl ChainState {
             .checked_sub(1)
             .and_then(|k| self.plane_joints.force(k));
         between.unwrap_or_else(|| self.joints[joint].force)
+    }
+}
+
+/// Loads of the joints between the cylinders of a chain in the plane, one array per quantity, padded for SIMD
+/// lanes; the joint after cylinder `k` has index `k`.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PlaneLoads {
+    pub(super) count: usize,
+    /// Forces on the cylinder behind the joint \[N\], and the torques on the cylinders behind and before it
+    /// about their centres [N m].
+    pub(super) force: [Vec<f64>; 2],
+    pub(super) torque: [Vec<f64>; 2],
+    /// Tensions \[N\]; the field `dissipated` holds the dissipated powers \[W\].
+    pub(super) tension: Vec<f64>,
+    pub(super) dissipated: Vec<f64>,
+}
+
+impl PlaneLoads {
+    /// Allocates the loads of `count` joints.
+    pub(super) fn new(count: usize) -> Self {
+        let zeros = || vec![0.0; count.next_multiple_of(WIDEST)];
+        Self {
+            count,
+            force: [zeros(), zeros()],
+            torque: [zeros(), zeros()],
+            tension: zeros(),
+            dissipated: zeros(),
+        }
+    }
+
+    /// Returns the power dissipated by all joints \[W\].
+    pub(super) fn dissipated(&self) -> f64 {
+        self.dissipated[..self.count].iter().sum()
+    }
+
+    /// Returns the tension in the joint after cylinder `k` \[N\]; `None` if there is no such joint.
+    pub(super) fn tension(&self, k: usize) -> Option<f64> {
+        self.tension[..self.count].get(k).copied()
+    }
+
+    /// Returns the force of the joint after cylinder `k` on the next cylinder \[N\]; `None` if there is no
+    /// such joint.
+    pub(super) fn force(&self, k: usize) -> Option<Vector3<f64>> {
+        let [x, y] = &self.force;
+        (k < self.count).then(|| Vector3::new(x[k], y[k], 0.0))
     }
 }
