@@ -403,18 +403,18 @@ impl<const N: usize> Blocks<N> {
         let (x, border) = x.split_at_mut(blocks * N);
         let (x, _) = x.as_chunks_mut::<N>();
         for [one, other] in self.pairs() {
-            let (mut first, mut second) = ([0.0; N], [0.0; N]);
-            let common = one.len().min(other.len());
-            for i in 0..common {
-                self.reduce(one.start + i, x, &mut first);
-                self.reduce(other.start + i, x, &mut second);
-            }
-            for b in one.skip(common) {
-                self.reduce(b, x, &mut first);
-            }
-            for b in other.skip(common) {
-                self.reduce(b, x, &mut second);
-            }
+            let (x, y) = x[one.start..].split_at_mut(one.len());
+            let factors = |of: Range<usize>| (&self.diagonal[of.clone()], &self.lower[of]);
+            let [one, other] = [(one, x), (other.clone(), &mut y[..other.len()])].map(|(of, x)| {
+                let (inverses, couplings) = factors(of);
+                inverses.iter().zip(couplings).zip(x)
+            });
+            alternate(one, other, |((inverse, coupling), x), handed| {
+                let mut right = *x;
+                subtract(&mut right, handed);
+                *handed = product(coupling, &right);
+                *x = product(inverse, &right);
+            });
         }
         let filled = |chain: usize, k: usize, end: usize| {
             let first = self.filled[chain * m + k];
@@ -438,52 +438,18 @@ impl<const N: usize> Blocks<N> {
             }
         }
         for [one, other] in self.pairs() {
+            let (x, y) = x[one.start..].split_at_mut(one.len());
+            let [one, other] = [(one, x), (other.clone(), &mut y[..other.len()])]
+                .map(|(of, x)| self.upper[of].iter().zip(x).rev());
             // the last block has no next one
-            let (mut first, mut second) = ([0.0; N], [0.0; N]);
-            let common = one.len().min(other.len());
-            for i in 0..common {
-                self.substitute(one.end - 1 - i, x, &mut first);
-                self.substitute(other.end - 1 - i, x, &mut second);
-            }
-            for b in one.rev().skip(common) {
-                self.substitute(b, x, &mut first);
-            }
-            for b in other.rev().skip(common) {
-                self.substitute(b, x, &mut second);
-            }
+            alternate(one, other, |(coupling, x), next| {
+                subtract(x, &product(coupling, next));
+                *next = *x;
+            });
         }
     }
 
-    /// Solves for block `b` without the border and the next block; `handed` is what the block before hands on,
-    /// and becomes what this one does.
-    #[expect(
-        clippy::inline_always,
-        reason = "compiled for each set of instructions"
-    )]
-    #[inline(always)]
-    fn reduce(&self, b: usize, x: &mut [[f64; N]], handed: &mut [f64; N]) {
-        let mut right = x[b];
-        subtract(&mut right, handed);
-        *handed = product(&self.lower[b], &right);
-        x[b] = product(&self.diagonal[b], &right);
-    }
-
-    /// Completes the solution for block `b` with that of the next one, `next`, which becomes that of this one.
-    #[expect(
-        clippy::inline_always,
-        reason = "compiled for each set of instructions"
-    )]
-    #[inline(always)]
-    fn substitute(&self, b: usize, x: &mut [[f64; N]], next: &mut [f64; N]) {
-        let mut solution = x[b];
-        subtract(&mut solution, &product(&self.upper[b], next));
-        x[b] = solution;
-        *next = solution;
-    }
-
     /// Iterates over the ranges of blocks of the chains in pairs; an odd chain is paired with an empty range.
-    /// Each block depends on its neighbour in its own chain, so that a single chain leaves most of a
-    /// processor's pipeline idle.
     fn pairs(&self) -> impl Iterator<Item = [Range<usize>; 2]> + '_ {
         let mut spans = self.spans();
         std::iter::from_fn(move || Some([spans.next()?, spans.next().unwrap_or(0..0)]))
@@ -598,6 +564,33 @@ fn spans(chains: &[usize]) -> impl Iterator<Item = Range<usize>> + '_ {
         *end += count;
         Some(start..*end)
     })
+}
+
+/// Applies `step` to the blocks of two chains, alternating between them. Each step receives what the step
+/// before in the same chain left, zeros at first: a single chain of such steps leaves most of a processor's
+/// pipeline idle.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+fn alternate<I: ExactSizeIterator, const N: usize>(
+    mut one: I,
+    mut other: I,
+    step: impl Fn(I::Item, &mut [f64; N]),
+) {
+    let (mut first, mut second) = ([0.0; N], [0.0; N]);
+    let common = one.len().min(other.len());
+    for (a, b) in one.by_ref().take(common).zip(other.by_ref().take(common)) {
+        step(a, &mut first);
+        step(b, &mut second);
+    }
+    for a in one {
+        step(a, &mut first);
+    }
+    for b in other {
+        step(b, &mut second);
+    }
 }
 
 /// Subtracts the vector `x` from `y`.

@@ -108,12 +108,17 @@ impl<const B: usize> WithSimd for AddTangent<'_, '_, B> {
             state,
             matrices,
         } = self;
-        match tangent.chain.motion {
-            Motion::Plane => {
-                tangent.add_cylinders(gamma, &state.points, |j| state.plane.get(j), matrices);
+        let points = &state.points;
+        let plane = |j: usize| state.plane.get(j);
+        let space = |j: usize| state.poses[j];
+        match (tangent.chain.motion, matrices) {
+            (Motion::Plane, (None, matrix)) => tangent.add_sum(gamma, points, plane, matrix),
+            (Motion::Space, (None, matrix)) => tangent.add_sum(gamma, points, space, matrix),
+            (Motion::Plane, (Some(stiffness), matrix)) => {
+                tangent.add_both(gamma, points, plane, [stiffness, matrix]);
             }
-            Motion::Space => {
-                tangent.add_cylinders(gamma, &state.points, |j| state.poses[j], matrices);
+            (Motion::Space, (Some(stiffness), matrix)) => {
+                tangent.add_both(gamma, points, space, [stiffness, matrix]);
             }
         }
     }
@@ -145,17 +150,48 @@ impl<const B: usize> Sums<B> {
 }
 
 impl<const B: usize> Tangent<'_, B> {
+    /// Adds `K + gamma D` to the matrix.
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
     )]
     #[inline(always)]
-    fn add_cylinders<const A: usize, P: InPlane<A>>(
+    fn add_sum<const A: usize, P: InPlane<A>>(
         mut self,
         gamma: f64,
         points: &Points,
         pose: impl Fn(usize) -> P,
-        (mut stiffness, matrix): (Option<&mut Bordered>, &mut Bordered),
+        matrix: &mut Bordered,
+    ) {
+        for (k, j) in points.touching().enumerate() {
+            if points.loaded_points(k).next().is_none() {
+                continue;
+            }
+            let pose = pose(j);
+            let mut sums = Sums::zero();
+            for i in points.loaded_points(k) {
+                let touch = points.contact_point((k, i), self.surface, self.law);
+                let mut point = Derivatives::new((self.surface, self.border), &pose, &touch);
+                point.add_rates(gamma * touch.law.damping[0][0]);
+                self.add_point(&point, &touch, &pose, &mut sums);
+            }
+            self.add_sums::<A>(self.chain.first + j, &sums, matrix);
+        }
+        self.add_corner(matrix);
+    }
+
+    /// Adds `K` to the first matrix and `K + gamma D` to the second.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn add_both<const A: usize, P: InPlane<A>>(
+        mut self,
+        gamma: f64,
+        points: &Points,
+        pose: impl Fn(usize) -> P,
+        [stiffness, matrix]: [&mut Bordered; 2],
     ) {
         let mut corner = [[0.0; B]; B];
         for (k, j) in points.touching().enumerate() {
@@ -163,31 +199,23 @@ impl<const B: usize> Tangent<'_, B> {
                 continue;
             }
             let pose = pose(j);
-            let block = self.chain.first + j;
             let (mut sums, mut damped) = (Sums::zero(), Sums::zero());
             for i in points.loaded_points(k) {
                 let touch = points.contact_point((k, i), self.surface, self.law);
-                let mut point = Derivatives::new((self.surface, self.border), &pose, &touch);
+                let point = Derivatives::new((self.surface, self.border), &pose, &touch);
                 let by_rate = gamma * touch.law.damping[0][0];
-                if stiffness.is_some() {
-                    add_damping::<A, B>(&point, by_rate, &mut damped, &mut corner[..self.border]);
-                } else {
-                    point.add_rates(by_rate);
-                }
+                add_damping::<A, B>(&point, by_rate, &mut damped, &mut corner[..self.border]);
                 self.add_point(&point, &touch, &pose, &mut sums);
             }
-            if let Some(stiffness) = stiffness.as_deref_mut() {
-                self.add_sums::<A>(block, &sums, stiffness);
-                sums.add_damping(&damped);
-            }
+            let block = self.chain.first + j;
+            self.add_sums::<A>(block, &sums, stiffness);
+            sums.add_damping(&damped);
             self.add_sums::<A>(block, &sums, matrix);
         }
-        if let Some(stiffness) = stiffness {
-            self.add_corner(stiffness);
-            let rows = self.corner.as_flattened_mut().iter_mut();
-            for (entry, damped) in rows.zip(corner.as_flattened()) {
-                *entry += damped;
-            }
+        self.add_corner(stiffness);
+        let rows = self.corner.as_flattened_mut().iter_mut();
+        for (entry, damped) in rows.zip(corner.as_flattened()) {
+            *entry += damped;
         }
         self.add_corner(matrix);
     }

@@ -45,6 +45,8 @@ struct Group {
     velocity: [Each; 2],
     axis: [Each; 2],
     sweep: [Each; 2],
+    /// Position of the centre of the cylinder before; not a number for the first one.
+    before: [Each; 2],
     /// Arc angle of the cylinder's centre in the beam frame \[rad\]; 0 for a circular surface. Before it is
     /// known, the angle from the cylinder before, not a number where that is too far away.
     bearing: Each,
@@ -64,9 +66,9 @@ struct Group {
     /// Penetration of each contact point \[m\]; the field `rate` holds its rate [m/s].
     depth: [Each; POINTS],
     rate: [Each; POINTS],
-    /// Derivatives of the penetration with respect to the contact point's position; the field `by_beam` holds
-    /// those with respect to the beam angle.
-    by_point: [[Each; 2]; POINTS],
+    /// Derivatives of the penetration with respect to the contact point's position, negative; the field
+    /// `by_beam` holds those with respect to the beam angle.
+    outward: [[Each; 2]; POINTS],
     by_beam: [Each; POINTS],
     /// Normal contact force at each point, never negative \[N\]; the field `lost` holds the power dissipated
     /// by the damping \[W\].
@@ -308,7 +310,7 @@ impl Points {
             along,
             velocity: at(&group.velocity) + at(&group.sweep) * along,
             angle,
-            by_point: at(&group.by_point[i]),
+            by_point: -at(&group.outward[i]),
             by_beam: group.by_beam[i][lane],
             curvature: surface.curvature(&toward, angle, &on_grid, group.slope[i][lane]),
             on_grid,
@@ -541,16 +543,18 @@ fn repeat_last(groups: &mut [Group], n: usize) {
 )]
 #[inline(always)]
 fn find_bearings<S: Simd>(simd: S, groups: &mut [Group], surface: &Surface<'_>) {
-    let mut before = [f64::NAN; 2];
+    let mut last = [f64::NAN; 2];
     for group in &mut *groups {
-        let mut previous = group.toward;
         for d in 0..2 {
-            previous[d].copy_within(..WIDEST - 1, 1);
-            previous[d][0] = before[d];
-            before[d] = group.toward[d][WIDEST - 1];
+            let [a, b, c, end] = group.toward[d];
+            group.before[d] = [last[d], a, b, c];
+            last[d] = end;
         }
+    }
+    // in a loop of its own: a vector of numbers that were stored a moment ago one by one is slow to read
+    for group in &mut *groups {
         for k in 0..WIDEST / S::F64_LANES {
-            let from = previous.each_ref().map(|each| read(simd, each, k));
+            let from = group.before.each_ref().map(|each| read(simd, each, k));
             let to = group.toward.each_ref().map(|each| read(simd, each, k));
             let turned = is_near(from, to, small_angle(from, to));
             write(&mut group.bearing, k, turned);
@@ -605,7 +609,7 @@ fn evaluate<S: Simd, const HEIGHT: u8>(
     (surface, law): (&Surface<'_>, &Impact),
     [along, share]: [&[f64; POINTS]; 2],
 ) {
-    let zero = Vector::splat(simd, 0.0);
+    let (zero, one) = (Vector::splat(simd, 0.0), Vector::splat(simd, 1.0));
     let turning = surface.beam[1];
     let (cx, cy) = (surface.center_by_beam.x, surface.center_by_beam.y);
     let reach = zero.constant(surface.reach * surface.reach);
@@ -618,59 +622,81 @@ fn evaluate<S: Simd, const HEIGHT: u8>(
             let ([ex, ey], [sx, sy]) = (pair(&group.axis), pair(&group.sweep));
             let bearing = read(simd, &group.bearing, k);
             let (left, on_grid) = (read(simd, &group.left, k), read(simd, &group.on_grid, k));
-            let sums = LocalCubic::new(group.knots.each_ref().map(|each| read(simd, each, k)));
-            for i in 0..POINTS {
-                let (x, y) = (wx + ex * along[i], wy + ey * along[i]);
-                let (mut turned, mut angle) = (zero, zero);
-                if HEIGHT != CIRCULAR {
-                    turned = small_angle([wx, wy], [x, y]);
-                    angle = bearing + turned;
+            // each stage for all points of a cylinder: the points do not wait for each other
+            let places = along.map(|along| [wx + ex * along, wy + ey * along]);
+            let mut turned = [zero; POINTS];
+            let mut surfaces = [[zero; 3]; POINTS];
+            for (i, place) in places.into_iter().enumerate() {
+                if HEIGHT == CIRCULAR {
+                    write(&mut group.angle[i], k, zero);
+                    continue;
                 }
-                let [mut height, mut slope, rising] = match HEIGHT {
-                    LOCAL => {
-                        let place = on_grid + turned * per_step;
-                        let (low, high) = (-left, -left + last);
-                        let inside = place.at_least(low).at_most(high);
-                        write(&mut group.place[i], k, inside);
-                        let [height, slope, rising] = sums.at(inside);
-                        // constant beyond the grid
-                        let slope = place.select_less(low, zero, slope * per_step);
-                        let slope = high.select_less(place, zero, slope);
-                        [height, slope, rising]
-                    }
-                    AT_POINTS => angle.each(|angle| {
-                        surface.bend.as_ref().map_or([0.0; 3], |bend| {
-                            let place = bend.shapes.place(angle);
-                            let (jet, rising) = bend.sum.at(bend.shapes, &place);
-                            [jet.value, jet.first, rising]
-                        })
-                    }),
-                    _ => [zero; 3],
-                };
-                if let Some(profile) = surface.profile.filter(|_| HEIGHT != CIRCULAR) {
-                    let [raised, tilted, _] = angle.each(|angle| profile.height(angle));
-                    height = height + raised;
-                    slope = slope + tilted;
+                // a point in the centre of its cylinder does not turn
+                if along[i] != 0.0 {
+                    turned[i] = small_angle([wx, wy], place);
                 }
+                write(&mut group.angle[i], k, bearing + turned[i]);
+            }
+            if HEIGHT == LOCAL {
+                let sums = LocalCubic::new(group.knots.each_ref().map(|each| read(simd, each, k)));
+                let (low, high) = (-left, -left + last);
+                for i in 0..POINTS {
+                    let place = on_grid + turned[i] * per_step;
+                    let inside = place.at_least(low).at_most(high);
+                    write(&mut group.place[i], k, inside);
+                    let [height, slope, rising] = sums.at(inside);
+                    // constant beyond the grid
+                    let slope = place.select_less(low, zero, slope * per_step);
+                    let slope = high.select_less(place, zero, slope);
+                    surfaces[i] = [height, slope, rising];
+                }
+            }
+            if HEIGHT == AT_POINTS
+                && let Some(bend) = &surface.bend
+            {
+                surfaces = turned.map(|turned| {
+                    (bearing + turned).each(|angle| {
+                        let place = bend.shapes.place(angle);
+                        let (jet, rising) = bend.sum.at(bend.shapes, &place);
+                        [jet.value, jet.first, rising]
+                    })
+                });
+            }
+            if let Some(profile) = surface.profile.filter(|_| HEIGHT != CIRCULAR) {
+                for (surface, turned) in surfaces.iter_mut().zip(turned) {
+                    let [raised, tilted, _] =
+                        (bearing + turned).each(|angle| profile.height(angle));
+                    surface[0] = surface[0] + raised;
+                    surface[1] = surface[1] + tilted;
+                }
+            }
+            let distances = places.map(|[x, y]| {
                 let square = x * x + y * y;
-                let distance = square.sqrt();
-                let inverse = zero.constant(1.0) / distance;
+                [square, square.sqrt()]
+            });
+            let mut reached = [[zero; 2]; POINTS];
+            for i in 0..POINTS {
+                let ([x, y], [square, distance]) = (places[i], distances[i]);
+                let [height, slope, rising] = surfaces[i];
+                let inverse = one / distance;
                 let (nx, ny) = (x * inverse, y * inverse);
                 let tilt = slope * inverse;
-                let (bx, by) = (-(ny * tilt) - nx, nx * tilt - ny);
-                let beam = -(bx * cx + by * cy) - slope;
+                let (ox, oy) = (nx + ny * tilt, ny - nx * tilt);
+                let beam = ox * cx + oy * cy - slope;
                 let inside = height + surface.radius - distance;
                 let (px, py) = (vx + sx * along[i], vy + sy * along[i]);
-                let rate = rising + (bx * px + by * py) + beam * turning;
-                let depth = square.select_less(reach, inside, zero.constant(-1.0));
-                let answer = law.response([depth], [rate]);
-                write(&mut group.angle[i], k, angle);
+                let rate = rising - (ox * px + oy * py) + beam * turning;
+                let depth = square.select_less(reach, inside, -one);
                 write(&mut group.slope[i], k, slope);
                 write(&mut group.depth[i], k, depth);
                 write(&mut group.rate[i], k, rate);
-                write(&mut group.by_point[i][0], k, bx);
-                write(&mut group.by_point[i][1], k, by);
+                write(&mut group.outward[i][0], k, ox);
+                write(&mut group.outward[i][1], k, oy);
                 write(&mut group.by_beam[i], k, beam);
+                reached[i] = [depth, rate];
+            }
+            let answers = reached.map(|[depth, rate]| law.response([depth], [rate]));
+            for (i, answer) in answers.into_iter().enumerate() {
                 write(&mut group.force[i], k, answer.force[0]);
                 write(&mut group.lost[i], k, answer.dissipated);
             }
@@ -694,9 +720,9 @@ impl Group {
             let mut moments = [zero; FORCE_MOMENTS];
             for i in 0..POINTS {
                 let force = read(simd, &self.force[i], k) * share[i];
-                let [x, y] = self.by_point[i]
+                let [x, y] = self.outward[i]
                     .each_ref()
-                    .map(|by| -(force * read(simd, by, k)));
+                    .map(|outward| force * read(simd, outward, k));
                 let own = [
                     force,
                     x,
@@ -805,12 +831,12 @@ mod tests {
                 assert_eq!(points.touching(), 0..1);
                 let (group, _) = points.at(0);
                 assert!(group.depth[i][0] > -0.5, "beyond the surface's reach");
-                let [by_x, by_y] = group.by_point[i];
+                let [x, y] = group.outward[i];
                 Seen {
                     depth: group.depth[i][0],
                     rate: group.rate[i][0],
                     angle: group.angle[i][0],
-                    by_point: V2::new(by_x[0], by_y[0]),
+                    by_point: V2::new(-x[0], -y[0]),
                     by_beam: group.by_beam[i][0],
                     curvature: points.contact_point((0, i), &surface, &law).curvature,
                 }
