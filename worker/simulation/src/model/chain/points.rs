@@ -613,63 +613,14 @@ fn evaluate<S: Simd, const HEIGHT: u8>(
     let turning = surface.beam[1];
     let (cx, cy) = (surface.center_by_beam.x, surface.center_by_beam.y);
     let reach = zero.constant(surface.reach * surface.reach);
-    let grid = surface.bend.as_ref().map(|bend| bend.shapes);
-    let (per_step, last) = grid.map_or((0.0, 0.0), |grid| (grid.per_step(), grid.last() as f64));
     for group in groups {
         for k in 0..WIDEST / S::F64_LANES {
             let pair = |of: &[Each; 2]| of.each_ref().map(|each| read(simd, each, k));
             let ([wx, wy], [vx, vy]) = (pair(&group.toward), pair(&group.velocity));
             let ([ex, ey], [sx, sy]) = (pair(&group.axis), pair(&group.sweep));
-            let bearing = read(simd, &group.bearing, k);
-            let (left, on_grid) = (read(simd, &group.left, k), read(simd, &group.on_grid, k));
             // each stage for all points of a cylinder: the points do not wait for each other
             let places = along.map(|along| [wx + ex * along, wy + ey * along]);
-            let mut turned = [zero; POINTS];
-            let mut surfaces = [[zero; 3]; POINTS];
-            for (i, place) in places.into_iter().enumerate() {
-                if HEIGHT == CIRCULAR {
-                    write(&mut group.angle[i], k, zero);
-                    continue;
-                }
-                // a point in the centre of its cylinder does not turn
-                if along[i] != 0.0 {
-                    turned[i] = small_angle([wx, wy], place);
-                }
-                write(&mut group.angle[i], k, bearing + turned[i]);
-            }
-            if HEIGHT == LOCAL {
-                let sums = LocalCubic::new(group.knots.each_ref().map(|each| read(simd, each, k)));
-                let (low, high) = (-left, -left + last);
-                for i in 0..POINTS {
-                    let place = on_grid + turned[i] * per_step;
-                    let inside = place.at_least(low).at_most(high);
-                    write(&mut group.place[i], k, inside);
-                    let [height, slope, rising] = sums.at(inside);
-                    // constant beyond the grid
-                    let slope = place.select_less(low, zero, slope * per_step);
-                    let slope = high.select_less(place, zero, slope);
-                    surfaces[i] = [height, slope, rising];
-                }
-            }
-            if HEIGHT == AT_POINTS
-                && let Some(bend) = &surface.bend
-            {
-                surfaces = turned.map(|turned| {
-                    (bearing + turned).each(|angle| {
-                        let place = bend.shapes.place(angle);
-                        let (jet, rising) = bend.sum.at(bend.shapes, &place);
-                        [jet.value, jet.first, rising]
-                    })
-                });
-            }
-            if let Some(profile) = surface.profile.filter(|_| HEIGHT != CIRCULAR) {
-                for (surface, turned) in surfaces.iter_mut().zip(turned) {
-                    let [raised, tilted, _] =
-                        (bearing + turned).each(|angle| profile.height(angle));
-                    surface[0] = surface[0] + raised;
-                    surface[1] = surface[1] + tilted;
-                }
-            }
+            let surfaces = group.find_heights::<S, HEIGHT>(simd, k, surface, (along, places));
             let distances = places.map(|[x, y]| {
                 let square = x * x + y * y;
                 [square, square.sqrt()]
@@ -706,6 +657,73 @@ fn evaluate<S: Simd, const HEIGHT: u8>(
 }
 
 impl Group {
+    /// Finds the arc angles of contact points at the given positions from the arc's centre, and returns height,
+    /// slope and rate of the arc's deformed surface there, relative to the undeformed circle.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn find_heights<S: Simd, const HEIGHT: u8>(
+        &mut self,
+        simd: S,
+        k: usize,
+        surface: &Surface<'_>,
+        (along, places): (&[f64; POINTS], [[Vector<S>; 2]; POINTS]),
+    ) -> [[Vector<S>; 3]; POINTS] {
+        let zero = Vector::splat(simd, 0.0);
+        let mut surfaces = [[zero; 3]; POINTS];
+        if HEIGHT == CIRCULAR {
+            for angle in &mut self.angle {
+                write(angle, k, zero);
+            }
+            return surfaces;
+        }
+        let center = self.toward.each_ref().map(|each| read(simd, each, k));
+        let bearing = read(simd, &self.bearing, k);
+        let mut turned = [zero; POINTS];
+        for (i, place) in places.into_iter().enumerate() {
+            // a point in the centre of its cylinder does not turn
+            if along[i] != 0.0 {
+                turned[i] = small_angle(center, place);
+            }
+            write(&mut self.angle[i], k, bearing + turned[i]);
+        }
+        if let Some(bend) = &surface.bend {
+            let shapes = bend.shapes;
+            if HEIGHT == LOCAL {
+                let (left, on_grid) = (read(simd, &self.left, k), read(simd, &self.on_grid, k));
+                let sums = LocalCubic::new(self.knots.each_ref().map(|each| read(simd, each, k)));
+                let (low, high) = (-left, -left + shapes.last() as f64);
+                for i in 0..POINTS {
+                    let place = on_grid + turned[i] * shapes.per_step();
+                    let inside = place.at_least(low).at_most(high);
+                    write(&mut self.place[i], k, inside);
+                    let [height, slope, rising] = sums.at(inside);
+                    // constant beyond the grid
+                    let slope = place.select_less(low, zero, slope * shapes.per_step());
+                    let slope = high.select_less(place, zero, slope);
+                    surfaces[i] = [height, slope, rising];
+                }
+            } else {
+                surfaces = turned.map(|turned| {
+                    (bearing + turned).each(|angle| {
+                        let (jet, rising) = bend.sum.at(shapes, &shapes.place(angle));
+                        [jet.value, jet.first, rising]
+                    })
+                });
+            }
+        }
+        if let Some(profile) = surface.profile {
+            for (surface, turned) in surfaces.iter_mut().zip(turned) {
+                let [raised, tilted, _] = (bearing + turned).each(|angle| profile.height(angle));
+                surface[0] = surface[0] + raised;
+                surface[1] = surface[1] + tilted;
+            }
+        }
+        surfaces
+    }
+
     /// Sums the contact forces of each cylinder over its points and, where `local`, the moments of the forces
     /// on the grid of the mode shapes.
     #[expect(
