@@ -139,6 +139,7 @@ async fn over_memory(faults: FaultInjection) -> (String, dispatch::runtime::RunS
             slot_memory_mib: 0,
             idle_timeout: None,
             embedded: true,
+            status: std::sync::Arc::default(),
         };
         workers.push(tokio::spawn(session::run(
             hub.worker(WorkerId(id)),

@@ -161,7 +161,7 @@ impl Drop for Site {
         for host in hosts.flatten() {
             let host = host.file_name().into_string().unwrap();
             if host.len() == 1 {
-                drop(self.horsehead(&["workers", "down", "--ssh", &host]));
+                drop(self.horsehead(&["workers", "down", "--all", "--ssh", &host]));
             }
         }
     }

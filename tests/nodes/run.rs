@@ -122,6 +122,8 @@ async fn workers_come_up_are_listed_drained_thrown_out_and_ended_without_a_resta
     let in_time = tokio::time::timeout(Duration::from_mins(2), all).await;
     assert!(in_time.is_ok(), "{seen} of {jobs} results");
 
+    let status = fs::read_to_string(site.at("c", name).join("status")).unwrap();
+    assert_eq!(status, "admitted\n");
     let logs = site.horsehead(&["workers", "logs", name, "--tls", "keys"]);
     assert!(
         String::from_utf8_lossy(&logs.stdout).contains("connected to"),
@@ -139,7 +141,14 @@ async fn workers_come_up_are_listed_drained_thrown_out_and_ended_without_a_resta
     }
     // by its process, whatever it does: the one that was thrown out dials in vain
     let process = site.process("b", "worker-02");
+    // one that a run launched is that run's, unless all are meant
+    let owner = site.at("b", "worker-02").join("owner");
+    assert_eq!(fs::read_to_string(&owner).unwrap(), "\n");
+    fs::write(&owner, "another run\n").unwrap();
     let down = site.horsehead(&["workers", "down", "--ssh", "b"]);
+    assert!(down.status.success(), "{}", errors(&down));
+    assert!(runs(&process));
+    let down = site.horsehead(&["workers", "down", "--all", "--ssh", "b"]);
     assert!(down.status.success(), "{}", errors(&down));
     assert!(!runs(&process));
 

@@ -49,6 +49,9 @@ pub struct Cli {
     /// counts as crashed
     #[arg(long, value_name = "MIB", env = "HORSEHEAD_SLOT_MEMORY", default_value_t = SLOT_MEMORY_MIB)]
     pub slot_memory: u64,
+    /// File in which the worker states whether it takes part in a run, replaced at each change
+    #[arg(long, value_name = "FILE")]
+    pub status: Option<PathBuf>,
     /// Belong to the process that started this worker: end with that process and with its run
     #[arg(long, hide = true)]
     pub embedded: bool,

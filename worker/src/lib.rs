@@ -6,7 +6,8 @@
 //!
 //! A [`session`] owns the connection, the queue and the outbox; [`pool`] manages the slots; each slot
 //! computes in a process of its own ([`slot`]), so that a job that crashes or never returns affects nothing
-//! else. A worker keeps no files and makes no scheduling decisions. [`program`] wraps all of that in a
+//! else. A worker keeps no files except, if asked to, one that states its [`status`]; it makes no scheduling
+//! decisions. [`program`] wraps all of that in a
 //! command line.
 pub mod cli;
 pub mod external;
@@ -19,6 +20,7 @@ pub mod pumping_unit;
 pub mod session;
 pub mod simulator;
 pub mod slot;
+pub mod status;
 mod stream;
 mod test_hook;
 

@@ -5,6 +5,7 @@ use crate::{
     session::{self, Ending, SessionOptions},
     simulator::{Simulators, described},
     slot,
+    status::{Status, StatusFile},
 };
 use anyhow::Context;
 use clap::Parser;
@@ -21,6 +22,7 @@ use std::{
     future::Future,
     io::{self, IsTerminal, Read},
     process::ExitCode,
+    sync::Arc,
     thread,
     time::{Duration, Instant, SystemTime, UNIX_EPOCH},
 };
@@ -89,6 +91,8 @@ fn serve(cli: &Cli, simulators: Simulators) -> anyhow::Result<ExitCode> {
             .name("digest".to_owned())
             .spawn(move || described(simulators)),
     );
+    let status = Arc::new(StatusFile::new(cli.status.clone()));
+    status.set(Status::Connecting(""));
     let cores = || thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let options = SessionOptions {
         simulators,
@@ -98,11 +102,12 @@ fn serve(cli: &Cli, simulators: Simulators) -> anyhow::Result<ExitCode> {
         slot_memory_mib: cli.slot_memory,
         idle_timeout: cli.idle_timeout.map(Duration::from_secs),
         embedded: cli.embedded,
+        status: Arc::clone(&status),
     };
     let keys = match (&cli.tls, locator.protocol) {
         (Some(folder), Protocol::Quic) => match Keys::read(folder, KeyRole::Worker) {
             Ok(keys) => Some(keys),
-            Err(error) => return Ok(refused(&error)),
+            Err(error) => return Ok(refused(&status, &error)),
         },
         (None, _) | (_, Protocol::Tcp) => None,
     };
@@ -113,19 +118,27 @@ fn serve(cli: &Cli, simulators: Simulators) -> anyhow::Result<ExitCode> {
         .context("the runtime did not start")?;
     let ending = runtime.block_on(work(locator, keys, options));
     runtime.shutdown_timeout(Duration::from_millis(200));
+    if let Err(error) = &ending {
+        status.set(Status::Ended(&format!("{error:#}")));
+    }
     Ok(match ending? {
-        Ending::Refused(reason) => refused(&reason),
-        Ending::Unlinked => ExitCode::FAILURE,
+        Ending::Refused(reason) => refused(&status, &reason),
+        Ending::Unlinked => {
+            status.set(Status::Ended("the connection to the coordinator is closed"));
+            ExitCode::FAILURE
+        }
         ending @ (Ending::Asked | Ending::RunOver | Ending::Idle) => {
             tracing::info!("ended normally: {ending:?}");
+            status.set(Status::Ended("it was asked to end, or had no work"));
             ExitCode::SUCCESS
         }
     })
 }
 
-/// Logs why this worker cannot take part until its setup is changed, and returns exit status 3.
-fn refused(reason: &dyn std::fmt::Display) -> ExitCode {
+/// States why this worker cannot take part until its setup is changed, and returns exit status 3.
+fn refused(status: &StatusFile, reason: &dyn std::fmt::Display) -> ExitCode {
     tracing::error!("refused: {reason}");
+    status.set(Status::Ended(&format!("refused: {reason}")));
     ExitCode::from(3)
 }
 
@@ -136,7 +149,7 @@ async fn work(
 ) -> anyhow::Result<Ending> {
     let mut asked = asked_to_end(options.embedded)?;
     let began = Instant::now();
-    let patience = options.idle_timeout;
+    let (patience, status) = (options.idle_timeout, Arc::clone(&options.status));
     let mut said: Option<Instant> = None;
     let link = loop {
         // in a task of its own: opening may hold its thread for seconds, and a signal must not wait
@@ -149,6 +162,7 @@ async fn work(
                 Err(error) if error.is_retryable() => {
                     if said.is_none_or(|said| said.elapsed() > COMPLAINT) {
                         tracing::warn!("{error}; trying again until it answers");
+                        status.set(Status::Connecting(&error.to_string()));
                         said = Some(Instant::now());
                     }
                     tokio::time::sleep(Duration::from_millis(500)).await;
@@ -165,6 +179,9 @@ async fn work(
             () = idle_timeout(began, patience) => return Ok(Ending::Idle),
         }
     };
+    status.set(Status::Connecting(
+        "the coordinator answers, and has not admitted it yet",
+    ));
     tracing::info!(
         "connected to {locator}; {} simulations at a time",
         options.slots

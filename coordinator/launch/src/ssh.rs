@@ -157,11 +157,24 @@ fn owner_suffix(order: &WorkerOptions) -> String {
     format!("-{}", hash.chars().take(8).collect::<String>())
 }
 
-/// Plans the end of workers on hosts: with options given, the workers launched by their owner
-/// ([`WorkerOptions::owner`]) for the same coordinator; without options, all workers.
-pub fn down(hosts: &[Host], order: Option<&WorkerOptions>) -> LaunchPlan {
-    let owner = order.map_or("", |order| order.owner.as_str());
-    let mark = order.map(owner_suffix).unwrap_or_default();
+/// Selection of the workers on a host that are ended.
+#[derive(Clone, Copy, Debug)]
+pub enum EndedWorkers<'a> {
+    /// All workers on the host, whatever launched them.
+    All,
+    /// The workers that were launched without an owner, by `horsehead workers up`.
+    Unowned,
+    /// The workers launched by the owner of these options ([`WorkerOptions::owner`]) for the same coordinator.
+    OwnedBy(&'a WorkerOptions),
+}
+
+/// Plans the end of workers on hosts.
+pub fn down(hosts: &[Host], which: EndedWorkers<'_>) -> LaunchPlan {
+    let (mark, owner) = match which {
+        EndedWorkers::All => (String::new(), None),
+        EndedWorkers::Unowned => (String::new(), Some("")),
+        EndedWorkers::OwnedBy(options) => (owner_suffix(options), Some(options.owner.as_str())),
+    };
     let parts = hosts.iter().map(|host| PlanPart {
         place: host.to_string(),
         success_message: "its workers have ended".to_owned(),

@@ -1,7 +1,7 @@
 //! Options of a session, and the ways in which it may end.
-use crate::simulator::Simulators;
+use crate::{simulator::Simulators, status::StatusFile};
 use protocol::id::WorkerId;
-use std::{path::PathBuf, time::Duration};
+use std::{path::PathBuf, sync::Arc, time::Duration};
 
 /// Options of a worker's session with its coordinator.
 #[derive(Clone, Debug)]
@@ -20,6 +20,8 @@ pub struct SessionOptions {
     pub idle_timeout: Option<Duration>,
     /// Whether the worker belongs to one coordinator and ends with its run.
     pub embedded: bool,
+    /// File that states whether the worker takes part in a run.
+    pub status: Arc<StatusFile>,
 }
 
 /// Reason why a worker's session ended.

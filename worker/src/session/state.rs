@@ -7,6 +7,7 @@ use super::{
 use crate::{
     outbox::Outbox,
     pool::{CaseBytes, Freed, Pool, Task},
+    status::Status,
 };
 use link::{LinkError, WorkerEnd};
 use protocol::{
@@ -135,6 +136,7 @@ impl State {
         }
         if !again {
             tracing::info!(%run, "admitted");
+            self.options.status.set(Status::Admitted);
             if let Err(error) = link.announce_presence(run).await {
                 // the heartbeat alone will do
                 tracing::warn!(%error, "cannot declare the worker's presence on the bus");

@@ -112,7 +112,7 @@ pub(super) fn start(order: &WorkerOptions, folder: &str, programs: &[Program]) -
 folder=$home/{folder}
 mkdir -p "$folder"
 chmod 700 "$folder"
-set -- "$worker" {arguments}{tls}
+set -- "$worker" {arguments}{tls} --status "$folder/status"
 {RUNNING}owner={owner}
 if [ -n "$process" ]; then
   if [ "$(cat "$folder/command")" = "$*" ]; then
@@ -126,6 +126,7 @@ if [ -n "$process" ]; then
 fi
 {END}echo "$*" > "$folder/command"
 echo "$owner" > "$folder/owner"
+rm -f "$folder/status"
 cd /
 setsid nohup "$@" > "$folder/log" 2>&1 < /dev/null &
 echo $! > "$folder/process"
@@ -135,15 +136,21 @@ echo $! > "$folder/process"
     )
 }
 
-/// Returns a script that waits until the worker's log reports admission or the worker has ended; the process
-/// may be missing during the first second.
+/// Returns a script that waits until the worker states that the coordinator has admitted it, or has ended; the
+/// process may be missing during the first second. On failure it says what the worker states, or else the last
+/// line of its log.
 pub(super) fn watch(folder: &str, wait_s: u64) -> String {
     format!(
         r#"{HOME}folder=$home/{folder}
 waited=0
-while ! grep -q 'admitted run=' "$folder/log"; do
+while :; do
+  status=$(cat "$folder/status" 2>/dev/null || true)
+  case "$status" in
+  admitted) exit 0 ;;
+  ended*) waited={wait_s} ;;
+  esac
   {running}  if [ "$waited" -ge {wait_s} ] || {{ [ -z "$process" ] && [ "$waited" -ge 2 ]; }}; then
-    tail -n 1 "$folder/log" >&2
+    if [ -n "$status" ]; then echo "$status" >&2; else tail -n 1 "$folder/log" >&2; fi
     exit 13
   fi
   sleep 1
@@ -154,17 +161,18 @@ done
     )
 }
 
-/// Returns a script that ends the workers in those folders whose names end with `mark`, if launched by
-/// `owner`; all workers if both are empty.
-pub(super) fn end(mark: &str, owner: &str) -> String {
-    let owner = line(&[owner.to_owned()]);
+/// Returns a script that ends the workers in those folders whose names end with `mark`: those launched by
+/// `owner` (empty for workers that no run owns), or all of them.
+pub(super) fn end(mark: &str, owner: Option<&str>) -> String {
+    let others = owner.map_or_else(String::new, |owner| {
+        let owner = line(&[owner.to_owned()]);
+        format!(
+            "if [ \"$(cat \"$folder/owner\" 2>/dev/null || true)\" != {owner} ]; then\n  continue\nfi\n"
+        )
+    });
     format!(
-        r#"{HOME}owner={owner}
-for folder in "$home"/worker-*{mark}/; do
-if [ -n "$owner" ] && [ "$(cat "$folder/owner" 2>/dev/null || true)" != "$owner" ]; then
-  continue
-fi
-{RUNNING}{END}done
+        r#"{HOME}for folder in "$home"/worker-*{mark}/; do
+{others}{RUNNING}{END}done
 "#
     )
 }

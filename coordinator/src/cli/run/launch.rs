@@ -12,7 +12,7 @@ use dispatch::runtime::locate::worker_program;
 use launch::{
     Host, LaunchPlan, Program, WorkerOptions,
     execute::{LaunchError, execute_plan},
-    ssh,
+    ssh::{self, EndedWorkers},
 };
 use link::{
     keys::authority::{Authority, Validity},
@@ -112,7 +112,7 @@ impl Launch {
         self.cancelled.store(true, Ordering::Relaxed);
         let is_launching = |launching: &JoinHandle<()>| !launching.is_finished();
         let launching = self.launching.take().filter(is_launching);
-        let down = ssh::down(&self.hosts, Some(&self.options));
+        let down = ssh::down(&self.hosts, EndedWorkers::OwnedBy(&self.options));
         // whoever waits for a worker to take part goes on once its process has ended
         let mut ended = execute(&down);
         if let Some(launching) = launching {

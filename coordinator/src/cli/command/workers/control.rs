@@ -10,7 +10,7 @@ use dispatch::runtime::control::{
     self, SOCKET,
     messages::{ControlRequest, WorkerPhase, WorkerReport},
 };
-use launch::ssh;
+use launch::ssh::{self, EndedWorkers};
 use report::table::{Row, Table, text};
 use serde::Serialize;
 use std::{
@@ -36,10 +36,12 @@ Examples:
   horsehead workers down worker-03
   horsehead workers down --now
   horsehead workers down --ssh node1,node2
+  horsehead workers down --ssh node1,node2 --all
 
 Through the run, workers finish their jobs and end, all of them if none is named. With --ssh or
---hosts their processes are ended at once, whether a run goes on or not; what they hold is given
-to others.";
+--hosts the processes that `workers up` launched there are ended at once, whether a run goes on or
+not; what they hold is given to others. Workers of a run that was started with --ssh end with that
+run, or with --all.";
 
 /// Argument that selects a run.
 #[derive(Debug, Args)]
@@ -80,6 +82,9 @@ pub(super) struct DownArguments {
     /// Return at once the jobs that the workers hold.
     #[arg(long, env = "HORSEHEAD_NOW")]
     now: bool,
+    /// With --ssh or --hosts: end all workers there, not only those launched by `workers up`.
+    #[arg(long, conflicts_with = "names")]
+    all: bool,
     #[command(flatten)]
     run: RunChoice,
     #[command(flatten)]
@@ -119,7 +124,12 @@ pub(super) fn drain(arguments: &DrainArguments) -> anyhow::Result<()> {
 pub(super) fn down(arguments: &DownArguments) -> anyhow::Result<()> {
     let hosts = arguments.hosts.read()?;
     if !hosts.is_empty() {
-        return execute(&ssh::down(&hosts, None));
+        let which = if arguments.all {
+            EndedWorkers::All
+        } else {
+            EndedWorkers::Unowned
+        };
+        return execute(&ssh::down(&hosts, which));
     }
     let question = ControlRequest::Drain {
         names: arguments.names.clone(),
