@@ -80,12 +80,13 @@ fn a_killed_coordinator_leaves_no_process_behind() {
     for _ in 0..20 {
         lines.next().unwrap().unwrap();
     }
-    let workers = children(process.pid());
-    let slots: Vec<_> = workers
-        .iter()
-        .flat_map(|worker| children(*worker))
-        .collect();
-    assert_eq!((workers.len(), slots.len()), (2, 2));
+    let (mut workers, mut slots) = (Vec::new(), Vec::new());
+    // on a busy machine one worker computes before the other has begun
+    wait_until("two workers have a slot each", LIMIT, || {
+        workers = children(process.pid());
+        slots = workers.iter().flat_map(|pid| children(*pid)).collect();
+        (workers.len(), slots.len()) == (2, 2)
+    });
     process.signal(Signal::KILL);
     wait_until("all are gone", LIMIT, || {
         workers.iter().chain(&slots).all(|pid| !is_alive(*pid))
