@@ -4,6 +4,10 @@
 //! The machine is the chain of the pumping unit: 72 cylinders of which the last 50 couple to seven unknowns of
 //! the border (beam and modes), and 114 of which the last 70 couple to the beam. Poses are given, contact is left
 //! out. The verdict is in `docs/measurements.md`.
+#![expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
 use criterion::{Criterion, criterion_group, criterion_main};
 use pulp::{Arch, Simd, WithSimd};
 use simulation::element::law::ForceLaw;
@@ -182,7 +186,7 @@ impl Single {
             Arch::new().dispatch(Joints {
                 machine: self,
                 start,
-                joints: count - 1,
+                count: count - 1,
             });
             let [fx, fy, ti, tj] = &self.loads;
             for k in 0..count - 1 {
@@ -202,7 +206,7 @@ impl Single {
 struct Joints<'a> {
     machine: &'a mut Single,
     start: usize,
-    joints: usize,
+    count: usize,
 }
 
 impl WithSimd for Joints<'_> {
@@ -210,7 +214,7 @@ impl WithSimd for Joints<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let vectors = self.joints.div_ceil(S::F64_LANES);
+        let vectors = self.count.div_ceil(S::F64_LANES);
         let Single {
             arrays, law, loads, ..
         } = self.machine;

@@ -207,7 +207,7 @@ impl KnotForces {
     }
 
     /// Distributes the forces around the interval with the given left knot to the knots near it: the adjoint
-    /// of [`WeightedSplines::local`].
+    /// of [`LocalCubic`].
     #[inline]
     pub fn add_moments(&mut self, left: usize, moments: &ForceMoments<f64>) {
         let &[constant, first, second, third, behind, before] = moments;
