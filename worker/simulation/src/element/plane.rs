@@ -190,6 +190,15 @@ impl<T: Real> PlaneTangent<T> {
     }
 }
 
+impl PlaneLoad<f64> {
+    /// Returns the generalised forces of the joint on x, y and angle of rod J, then on those of rod I.
+    #[inline]
+    pub const fn on_coordinates(&self) -> [f64; 6] {
+        let ([x, y], [torque_i, torque_j]) = (self.force, self.torque);
+        [-x, -y, torque_j, x, y, torque_i]
+    }
+}
+
 impl PlaneTangent<f64> {
     /// Returns the entry in the row of coordinate `row` of one rod and the column of coordinate `column` of a
     /// rod; coordinates are x, y and angle.

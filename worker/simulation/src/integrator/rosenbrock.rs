@@ -10,6 +10,7 @@ use super::dense::interpolate;
 use super::newton::NotConverged;
 use super::stepper::{StepResult, Stepper, TimeStep};
 use crate::linear::Bordered;
+use crate::math::vector::add_scaled;
 use crate::system::{Equations, Powers, State, StateRef, StateShift, System};
 
 const STAGES: usize = 6;
@@ -157,9 +158,9 @@ impl Rosenbrock {
         to.v.copy_from_slice(&from.v);
         to.a.copy_from_slice(&from.a);
         for (&weight, increment) in ARGUMENT[i].iter().zip(&self.increments) {
-            add(&mut to.q, weight, &increment.q);
-            add(&mut to.v, weight, &increment.v);
-            add(&mut to.a, weight, &increment.a);
+            add_scaled(&mut to.q, weight, &increment.q);
+            add_scaled(&mut to.v, weight, &increment.v);
+            add_scaled(&mut to.a, weight, &increment.a);
         }
     }
 
@@ -175,14 +176,14 @@ impl Rosenbrock {
         self.rates.copy_from_slice(&to.v);
         self.inertial.copy_from_slice(&to.a);
         for (&weight, increment) in RIGHT[i].iter().zip(&self.increments) {
-            add(&mut self.rates, weight / h, &increment.q);
-            add(&mut self.inertial, weight / h, &increment.v);
+            add_scaled(&mut self.rates, weight / h, &increment.q);
+            add_scaled(&mut self.inertial, weight / h, &increment.v);
         }
         // S w = g (R + h_i R_t + M z) + K p with p, z the sums above; the unknowns are q and v
         let t = from.t + NODES[i] * h;
         let at = StateRef { t, ..to.motion() };
         system.residual(at, &to.a, &mut self.right);
-        add(&mut self.right, BY_TIME[i] * h, &self.by_time);
+        add_scaled(&mut self.right, BY_TIME[i] * h, &self.by_time);
         for inertial in &mut self.inertial {
             *inertial = -*inertial;
         }
@@ -205,12 +206,6 @@ impl Rosenbrock {
     }
 }
 
-fn add(to: &mut [f64], weight: f64, x: &[f64]) {
-    for (to, x) in to.iter_mut().zip(x) {
-        *to += weight * x;
-    }
-}
-
 impl<E: Equations> Stepper<E> for Rosenbrock {
     fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> StepResult {
         self.linearize(system, from, h)?;
@@ -219,9 +214,9 @@ impl<E: Equations> Stepper<E> for Rosenbrock {
             self.solve(i, system, (from, to), h);
         }
         let last = &self.increments[STAGES - 1];
-        add(&mut to.q, 1.0, &last.q);
-        add(&mut to.v, 1.0, &last.v);
-        add(&mut to.a, 1.0, &last.a);
+        add_scaled(&mut to.q, 1.0, &last.q);
+        add_scaled(&mut to.v, 1.0, &last.v);
+        add_scaled(&mut to.a, 1.0, &last.a);
         to.t = from.t + h;
         // work by Simpson's rule on the dense output
         interpolate(from, to, from.t + 0.5 * h, &mut self.middle);

@@ -7,6 +7,7 @@
 //! Every chain is eliminated from its free end towards its anchored end, so a border column fills in only
 //! from the first block that couples to it, or to a border column behind it. Cost O(blocks).
 use super::block::{MatrixBlock, invert, product};
+use super::chains::{alternate, interleave_chains, spans};
 use super::entry::MatrixEntry;
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
@@ -460,11 +461,11 @@ impl<const N: usize> Blocks<N> {
         spans(&self.chains)
     }
 
-    /// Iterates over the leading border unknowns whose coupling with block `b` of a chain the factorisation
+    /// Returns the number of leading border unknowns whose coupling with block `b` of a chain the factorisation
     /// fills in.
-    pub(super) fn filled(&self, chain: usize, b: usize) -> Range<usize> {
+    pub(super) fn filled(&self, chain: usize, b: usize) -> usize {
         let filled = &self.filled[chain * self.border..(chain + 1) * self.border];
-        0..filled.iter().take_while(|&&first| first <= b).count()
+        filled.iter().take_while(|&&first| first <= b).count()
     }
 
     #[expect(
@@ -525,74 +526,6 @@ impl<const N: usize> WithSimd for Solve<'_, N> {
     }
 }
 
-/// Iterates over chains of the given lengths in pairs, alternating between a block of one chain and a block
-/// of the other. Each block depends on the one before it in its own chain, so that a single chain leaves most
-/// of a processor's pipeline idle.
-///
-/// `step` receives the chain's index in the pair (0 or 1), its first block and length, and the number of its
-/// blocks already processed; it returns whether blocks remain.
-#[expect(
-    clippy::inline_always,
-    reason = "compiled for each set of instructions"
-)]
-#[inline(always)]
-fn interleave_chains(chains: &[usize], mut step: impl FnMut(usize, [usize; 2], usize) -> bool) {
-    let mut first = 0;
-    for pair in chains.chunks(2) {
-        let mut at = [[0; 2]; 2];
-        for (at, &count) in at.iter_mut().zip(pair) {
-            *at = [first, count];
-            first += count;
-        }
-        let mut more = at.map(|[_, count]| count > 0);
-        let mut done = 0;
-        while more[0] || more[1] {
-            for k in 0..2 {
-                if more[k] {
-                    more[k] = step(k, at[k], done);
-                }
-            }
-            done += 1;
-        }
-    }
-}
-
-/// Iterates over the ranges of blocks of chains with the given numbers of blocks.
-fn spans(chains: &[usize]) -> impl Iterator<Item = Range<usize>> + '_ {
-    chains.iter().scan(0, |end, &count| {
-        let start = *end;
-        *end += count;
-        Some(start..*end)
-    })
-}
-
-/// Applies `step` to the blocks of two chains, alternating between them. Each step receives what the step
-/// before in the same chain left, zeros at first: a single chain of such steps leaves most of a processor's
-/// pipeline idle.
-#[expect(
-    clippy::inline_always,
-    reason = "compiled for each set of instructions"
-)]
-#[inline(always)]
-fn alternate<I: ExactSizeIterator, const N: usize>(
-    mut one: I,
-    mut other: I,
-    step: impl Fn(I::Item, &mut [f64; N]),
-) {
-    let (mut first, mut second) = ([0.0; N], [0.0; N]);
-    let common = one.len().min(other.len());
-    for (a, b) in one.by_ref().take(common).zip(other.by_ref().take(common)) {
-        step(a, &mut first);
-        step(b, &mut second);
-    }
-    for a in one {
-        step(a, &mut first);
-    }
-    for b in other {
-        step(b, &mut second);
-    }
-}
-
 /// Subtracts the vector `x` from `y`.
 #[expect(
     clippy::inline_always,
@@ -625,98 +558,4 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Returns a well-conditioned matrix without symmetry, with nonzeros wherever the structure allows.
-    fn example(lead: usize, touch_from: &[usize]) -> Blocks<6> {
-        let chains = [4, 7];
-        let mut a = Blocks::<6>::new(&chains, [lead, 3]);
-        let mut seed = 1_u64;
-        let mut next = || {
-            seed = seed
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            ((seed >> 33) as f64 / f64::from(u32::MAX)) - 0.25
-        };
-        let mut first = 0;
-        for (chain, &count) in chains.iter().enumerate() {
-            for b in first..first + count {
-                *a.diagonal_mut(b) =
-                    MatrixBlock::<6>::from_fn(|i, j| next() + if i == j { 4.0 } else { 0.0 });
-                if b + 1 < first + count {
-                    let (upper, lower) = a.coupling_mut(b);
-                    *upper = MatrixBlock::<6>::from_fn(|_, _| next());
-                    *lower = MatrixBlock::<6>::from_fn(|_, _| next());
-                }
-                if b >= first + touch_from[chain] {
-                    for k in 0..3 {
-                        for i in 0..6 {
-                            a.add_right(b, i, k, next());
-                            a.add_bottom(b, k, i, next());
-                        }
-                    }
-                }
-            }
-            first += count;
-        }
-        for i in 0..3 {
-            for j in 0..3 {
-                a.add_corner(i, j, next() + if i == j { 5.0 } else { 0.0 });
-            }
-        }
-        // a body that both chains hang on, in the lead of the border
-        let base = a.len() - 3 - lead;
-        for k in base..base + lead {
-            a.add(k, k, 4.0);
-            a.add(k, a.len() - 1, next());
-            for first in [0, chains[0]] {
-                for i in 6 * first..6 * first + 6 {
-                    a.add(k, i, next());
-                    a.add(i, k, next());
-                }
-            }
-        }
-        a
-    }
-
-    #[test]
-    fn solution_reproduces_the_right_hand_side() {
-        for touch_from in [[0, 0], [2, 5], [4, 6], [4, 7]] {
-            for lead in [0, 2] {
-                let a = example(lead, &touch_from);
-                let x: Vec<f64> = (0..a.len()).map(|i| 1.0 + 0.37 * (i % 11) as f64).collect();
-                let mut y = vec![0.0; a.len()];
-                a.multiply(&x, &mut y);
-                let mut factors = a.clone();
-                factors.factorize().unwrap();
-                factors.solve(&mut y);
-                let worst = x
-                    .iter()
-                    .zip(&y)
-                    .map(|(a, b)| (a - b).abs())
-                    .fold(0.0, f64::max);
-                assert!(worst < 1e-11, "{lead} {touch_from:?}: {worst}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_used_matrix_can_be_assembled_again() {
-        let mut used = example(2, &[0, 2]);
-        used.factorize().unwrap();
-        used.clear();
-        let mut zeros = vec![0.0; used.len()];
-        used.multiply(&vec![1.0; used.len()], &mut zeros);
-        assert!(zeros.iter().all(|&x| x == 0.0));
-    }
-
-    #[test]
-    fn a_singular_block_is_named() {
-        let mut a = example(0, &[0, 0]);
-        a.diagonal_mut(0).set_column(2, &nalgebra::Vector6::zeros());
-        let (upper, _) = a.coupling_mut(0);
-        upper.fill(0.0);
-        assert_eq!(a.factorize(), Err(SingularPivot { unknown: 2 }));
-    }
-}
+mod tests;

@@ -86,7 +86,7 @@ impl<const N: usize> Blocks<N> {
                 }
                 let y = product(simd, &self.diagonal[b], &right);
                 blocks[b] = y;
-                let rows = touching(&self.bottom, (b, m), self.filled(chain, b).len());
+                let rows = touching(&self.bottom, (b, m), self.filled(chain, b));
                 for (x, row) in border.iter_mut().zip(rows) {
                     for (y, a) in y.iter().zip(row) {
                         x.subtract_scaled(simd, y, *a);
@@ -101,7 +101,7 @@ impl<const N: usize> Blocks<N> {
             for b in (start..end).rev() {
                 let mut y = blocks[b];
                 subtract_product(simd, &self.upper[b], &next, &mut y);
-                let columns = touching(&self.right, (b, m), self.filled(chain, b).len());
+                let columns = touching(&self.right, (b, m), self.filled(chain, b));
                 for (x, column) in border.iter().zip(columns) {
                     for (y, a) in y.iter_mut().zip(column) {
                         y.subtract_scaled(simd, x, *a);

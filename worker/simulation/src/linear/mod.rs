@@ -3,6 +3,7 @@
 mod block;
 mod blocks;
 mod bordered;
+mod chains;
 mod entry;
 mod lanes;
 

@@ -1,8 +1,8 @@
 //! Linearisation of the equations of one solved stage of a time step.
-use super::source::add;
 use crate::element::bushing::PLANE_COEFFICIENTS;
 use crate::integrator::stepper::Stages;
 use crate::linear::{Bordered, SingularPivot};
+use crate::math::vector::add_scaled;
 use crate::model::{RopeMachine, Scratch};
 use crate::system::{Equations, State, StateShift, System};
 
@@ -69,9 +69,9 @@ impl Linearized {
             state.v.copy_from_slice(v);
             state.a.copy_from_slice(a);
             for (weight, (v, _)) in stages.tableau.rows[i].iter().zip(stages.rates) {
-                add(&mut state.q, h * weight, v);
+                add_scaled(&mut state.q, h * weight, v);
             }
-            add(&mut state.q, c, v);
+            add_scaled(&mut state.q, c, v);
         } else {
             self.state.clone_from(to);
         }

@@ -9,6 +9,7 @@ use super::perturbed::PerturbedModel;
 use crate::effect::Place;
 use crate::element::bushing::PLANE_COEFFICIENTS;
 use crate::element::impact::DerivativeVariable;
+use crate::math::vector::add_scaled;
 use crate::model::description::{Arc, Head};
 use crate::model::extension::Extensions;
 use crate::model::forces::Terms;
@@ -166,11 +167,11 @@ impl Source<'_> {
                 let scratch = &mut individual.scratch;
                 if difference.own != 0.0 {
                     own.residual(scratch, state, asked, one);
-                    add(sum, difference.own, one);
+                    add_scaled(sum, difference.own, one);
                 }
                 for (side, weight) in sides.iter_mut().zip(difference.weights) {
                     side.residual(scratch, state, asked, one);
-                    add(sum, weight, one);
+                    add_scaled(sum, weight, one);
                 }
                 if let Some(factor) = raised {
                     individual.contact_by(
@@ -178,16 +179,10 @@ impl Source<'_> {
                         (DerivativeVariable::Penetration, [false, true]),
                         one,
                     );
-                    add(sum, *factor, one);
+                    add_scaled(sum, *factor, one);
                 }
             }
             Self::Nothing => sum.fill(0.0),
         }
-    }
-}
-
-pub(super) fn add(to: &mut [f64], weight: f64, x: &[f64]) {
-    for (to, x) in to.iter_mut().zip(x) {
-        *to += weight * x;
     }
 }

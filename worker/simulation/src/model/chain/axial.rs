@@ -4,7 +4,6 @@
 //! A law depends only on a joint's extension and its rate, not on whether the cylinders move in the plane or
 //! in space.
 use super::parts::{Chain, Joints};
-use super::plane::on_coordinates;
 use super::state::ChainState;
 use crate::element::bushing::{AxialTension, LinkLoad};
 use crate::model::extension::LineForceValue;
@@ -23,11 +22,9 @@ impl Chain {
         joints: &Joints<'_>,
         state: &ChainState,
     ) -> Option<(LineForceValue, [f64; 2])> {
-        let laws = joints.axial.filter(|_| joint > 0 && joint < self.count)?;
+        joints.axial.filter(|_| joint > 0 && joint < self.count)?;
         let at = self.extension(joint, joints, state)?;
-        let [extension, rate] = at;
-        let memories = state.memory.chunks_exact(laws.len()).nth(joint);
-        Some((laws.pull(extension, rate, memories.unwrap_or(&[])), at))
+        Some((axial_force(joint, joints, state, at)?, at))
     }
 
     /// Returns the additional tension of the axial effect laws at a joint, with its derivatives and its
@@ -40,12 +37,7 @@ impl Chain {
         state: &ChainState,
     ) -> Option<AxialTension> {
         let (along, [_, rate]) = self.axial_effect(joint, joints, state)?;
-        Some(AxialTension {
-            force: along.spring + along.non_conservative,
-            dissipated: along.non_conservative * rate,
-            by_extension: along.by_place,
-            by_rate: along.by_rate,
-        })
+        Some(tension(along, rate))
     }
 
     /// Adds the forces of the axial effect laws on the cylinders to `force`, without the joints' own forces.
@@ -58,7 +50,7 @@ impl Chain {
                 let at = self.plane_geometry(joint, state);
                 let load = at.load([pull.force, 0.0, 0.0]);
                 let rows = force[(self.first + joint - 1) * 3..].iter_mut();
-                for (force, own) in rows.zip(on_coordinates(&load)) {
+                for (force, own) in rows.zip(load.on_coordinates()) {
                     *force += own;
                 }
             } else if let Some(([i, j], law)) = self.link(joint, joints, state) {
@@ -99,5 +91,40 @@ impl Chain {
         }
         let ([i, j], law) = self.link(joint, joints, state)?;
         Some(law.extension(&i, &j))
+    }
+}
+
+/// Returns the additional tension of the axial effect laws at a joint between two cylinders with the given
+/// extension \[m\] and its rate [m/s]; `None` for a rope without such laws.
+#[inline]
+pub(super) fn pull_at(
+    joint: usize,
+    joints: &Joints<'_>,
+    state: &ChainState,
+    at: [f64; 2],
+) -> Option<AxialTension> {
+    Some(tension(axial_force(joint, joints, state, at)?, at[1]))
+}
+
+/// Evaluates the axial effect laws of the rope at a joint between two cylinders.
+#[inline]
+fn axial_force(
+    joint: usize,
+    joints: &Joints<'_>,
+    state: &ChainState,
+    [extension, rate]: [f64; 2],
+) -> Option<LineForceValue> {
+    let laws = joints.axial?;
+    let memories = state.memory.chunks_exact(laws.len()).nth(joint);
+    Some(laws.pull(extension, rate, memories.unwrap_or(&[])))
+}
+
+/// Returns the tension of axial effect laws at a rate of extension [m/s].
+fn tension(along: LineForceValue, rate: f64) -> AxialTension {
+    AxialTension {
+        force: along.spring + along.non_conservative,
+        dissipated: along.non_conservative * rate,
+        by_extension: along.by_place,
+        by_rate: along.by_rate,
     }
 }

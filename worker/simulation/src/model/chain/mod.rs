@@ -6,6 +6,7 @@
 //! nearer to the chain's base, I the one nearer to its head.
 mod axial;
 mod contact;
+mod contact_group;
 pub(crate) mod contact_point;
 mod contact_tangent;
 mod energy;

@@ -3,11 +3,12 @@
 //! The law is that of the bushing, to which the axial laws of effects add a tension. Without such laws the
 //! joints are evaluated side by side in SIMD lanes, otherwise one after the other; both have the same bits.
 //! The two end joints use the bushing in space.
+use super::axial::pull_at;
 use super::parts::{Chain, Joints};
 use super::state::{ChainState, PlaneLoads};
 use crate::element::bushing::{Bushing, PLANE_COEFFICIENTS};
 use crate::element::law::{ForceLaw, LawResponse};
-use crate::element::plane::{INDEPENDENT, PlaneJoint, PlaneLoad, PlaneTangent, Side};
+use crate::element::plane::{INDEPENDENT, PlaneJoint, PlaneTangent, Side};
 use crate::linear::{Blocks, MatrixBlock};
 use crate::math::real::{Vector, WIDEST};
 use crate::model::pose::PlanePoses;
@@ -81,7 +82,8 @@ impl Chain {
     ) -> (PlaneJoint<f64>, LawResponse<f64, 3>) {
         let at = self.plane_geometry(joint, state);
         let mut answer = joints.inner.response(at.deformation, at.rate);
-        if let Some(further) = self.pull(joint, joints, state) {
+        let stretched = [at.deformation[0], at.rate[0]];
+        if let Some(further) = pull_at(joint, joints, state, stretched) {
             answer.force[0] += further.force;
             answer.stiffness[0][0] += further.by_extension;
             answer.damping[0][0] += further.by_rate;
@@ -161,8 +163,7 @@ impl Chain {
             let at = self.plane_geometry(joint, state);
             let forces = law.by_coefficients(at.deformation, at.rate);
             for (k, force) in forces.into_iter().enumerate() {
-                let load = at.load(force);
-                let own = on_coordinates(&load);
+                let own = at.load(force).on_coordinates();
                 for (sum, own) in units[(joint - 1) * 3..].iter_mut().zip(own) {
                     sum[k] += own;
                 }
@@ -266,14 +267,6 @@ impl WithSimd for AddTangent<'_, '_> {
             add_joints(matrix, blocks, &stiffness.plus(self.gamma, &damping));
         }
     }
-}
-
-/// Returns the generalised forces of a joint on the three coordinates of the cylinder before it, then on those
-/// of the cylinder behind it.
-#[inline]
-pub(super) const fn on_coordinates(load: &PlaneLoad<f64>) -> [f64; 6] {
-    let ([x, y], [torque_i, torque_j]) = (load.force, load.torque);
-    [-x, -y, torque_j, x, y, torque_i]
 }
 
 /// Adds the tangents of joints in SIMD lanes to the matrix, each as [`add_joint`] does.

@@ -9,10 +9,10 @@ use super::differences::Difference;
 use super::linearized::Linearized;
 use super::perturbed::PerturbedModel;
 use super::plan::{ColumnMethod, DerivativePlan};
-use super::source::add;
 use crate::integrator::method::Method;
 use crate::integrator::stepper::Stages;
 use crate::linear::Lanes;
+use crate::math::vector::add_scaled;
 use crate::model::description::RopeLaw;
 use crate::model::{Machine, RopeMachine, Scratch};
 use crate::observe::{Gradient, TorqueBy};
@@ -191,11 +191,11 @@ impl Observe for SensitivityObserver<'_, '_> {
             let mut add_series = |side: &PerturbedModel<'_>, step: f64, share: f64| {
                 let mut curves = self.readings.clone();
                 for (curve, column) in curves.iter_mut().zip(&active.curves.gauge) {
-                    add(curve, step, column);
+                    add_scaled(curve, step, column);
                 }
                 side.machine.extensions.read_series(spacing, &mut curves);
                 for (sum, curve) in sum.iter_mut().zip(&curves) {
-                    add(sum, share, curve);
+                    add_scaled(sum, share, curve);
                 }
             };
             let Difference {
