@@ -83,7 +83,7 @@ pub(super) struct DownArguments {
     #[arg(long, env = "HORSEHEAD_NOW")]
     now: bool,
     /// With --ssh or --hosts: end all workers there, not only those launched by `workers up`.
-    #[arg(long, conflicts_with = "names")]
+    #[arg(long, conflicts_with = "names", env = "HORSEHEAD_ALL")]
     all: bool,
     #[command(flatten)]
     run: RunChoice,
