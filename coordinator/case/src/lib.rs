@@ -14,6 +14,7 @@ pub mod effect;
 mod effect_text;
 pub mod error;
 pub mod file;
+mod fitted_conditions;
 mod gene_file;
 pub mod general;
 pub mod kind;

@@ -1,6 +1,7 @@
 //! Summary that `horsehead case check` prints of a valid case.
 use super::{loaded::Loaded, note::Note};
 use discrepancy::record::{Record, Recorded};
+use protocol::case::WeightedCondition;
 use std::fmt::Write as _;
 
 /// Summary of a case.
@@ -123,9 +124,16 @@ pub fn text(loaded: &Loaded) -> String {
     let terms = case.objective.terms.iter();
     let terms = terms.map(|term| format!("{} (weight {})", term.channel, term.weight));
     let terms: Vec<String> = terms.collect();
-    let conditions = case.objective.conditions();
-    let conditions = conditions.filter_map(|at| case.conditions.get(at));
-    let conditions: Vec<&str> = conditions.map(|condition| &*condition.name).collect();
+    let named = |one: WeightedCondition| {
+        let name = &case.conditions.get(one.condition)?.name;
+        Some(if one.weight.total_cmp(&1.0).is_eq() {
+            name.clone()
+        } else {
+            format!("{} x {name}", one.weight)
+        })
+    };
+    let conditions = case.objective.weighted_conditions();
+    let conditions: Vec<String> = conditions.filter_map(named).collect();
     let conditions = conditions.join(" + ");
     if terms.is_empty() {
         text.push_str("objective   none: the case is simulated only");

@@ -4,7 +4,7 @@
 use discrepancy::identify::UnknownEstimate;
 use discrepancy::validation::gap::Gap;
 use dispatch::account::JobCost;
-use protocol::case::{Case, Channel, ChannelRecord};
+use protocol::case::{Case, Channel, ChannelRecord, WeightedCondition};
 use protocol::event::Spent;
 use protocol::job::{Curves, Evaluation, Verdict};
 
@@ -205,17 +205,17 @@ impl Calibration {
     }
 
     /// Returns the verdict on a parameter set's simulations under the calibrated conditions, and the
-    /// objective summed over these conditions; `None` if one of them has no result.
+    /// objective summed over these conditions with their weights; `None` if one of them has no result.
     pub fn objective(&self, of: impl Fn(&ConditionResult) -> &Run) -> Option<(Verdict, f64)> {
         let mut whole = (Verdict::Complete, 0.0);
-        for condition in self.case.objective.conditions() {
+        for WeightedCondition { condition, weight } in self.case.objective.weighted_conditions() {
             let mut results = self.conditions.iter();
             let result = results.find(|result| result.condition == condition)?;
             let evaluation = &of(result).evaluation;
             if evaluation.verdict != Verdict::Complete {
                 return Some((evaluation.verdict, evaluation.fitness));
             }
-            whole.1 += evaluation.fitness;
+            whole.1 += weight * evaluation.fitness;
         }
         Some(whole)
     }

@@ -16,7 +16,7 @@ pub use channel::{Abscissa, Channel, ChannelRecord};
 pub use condition::Condition;
 pub use effect::{EffectSetting, merged};
 pub use model::{ModelSettings, Reproducibility};
-pub use objective::{Objective, Offset, Term};
+pub use objective::{Objective, Offset, Term, WeightedCondition};
 pub use unknown::{HeldRatios, Prior, Scale, Shift, Tie, Unknown, Valley};
 
 use serde::{Deserialize, Serialize};

@@ -6,11 +6,20 @@ use serde::{Deserialize, Serialize};
 pub struct Objective {
     /// Index of the calibrated condition; the first one if several are calibrated.
     pub condition: usize,
-    /// Indices of further calibrated conditions: an individual is simulated under each, and the weighted sums
-    /// are added.
-    pub others: Vec<usize>,
+    /// Further calibrated conditions: an individual is simulated under each, and their sums of errors, times
+    /// their weights, are added to that of the first.
+    pub others: Vec<WeightedCondition>,
     /// Weighted channels of the objective, the same under every calibrated condition.
     pub terms: Vec<Term>,
+}
+
+/// Calibrated condition with the weight of its errors in the objective.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WeightedCondition {
+    /// Index of the condition in the case.
+    pub condition: usize,
+    /// Factor on the errors under this condition, relative to those under the first one.
+    pub weight: f64,
 }
 
 /// Term of an objective: a channel with the weight of its mean squared error.
@@ -36,7 +45,17 @@ pub enum Offset {
 impl Objective {
     /// Returns the indices of the calibrated conditions, beginning with [`Self::condition`].
     pub fn conditions(&self) -> impl Iterator<Item = usize> {
-        std::iter::once(self.condition).chain(self.others.iter().copied())
+        self.weighted_conditions().map(|one| one.condition)
+    }
+
+    /// Returns the calibrated conditions with their weights, beginning with [`Self::condition`], whose weight
+    /// is 1.
+    pub fn weighted_conditions(&self) -> impl Iterator<Item = WeightedCondition> {
+        let first = WeightedCondition {
+            condition: self.condition,
+            weight: 1.0,
+        };
+        std::iter::once(first).chain(self.others.iter().copied())
     }
 
     /// Returns whether a condition takes part in the objective.

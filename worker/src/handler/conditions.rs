@@ -1,11 +1,12 @@
 //! Joins the scores of one individual under several conditions.
 use protocol::{
     case::Objective,
-    job::{Derivative, Evaluation, Failure, SimulateSpec, Verdict},
+    job::{Derivative, Evaluation, Failure, SimulateSpec, Verdict, to_single_precision},
 };
 
-/// Scores an individual under every calibrated condition in order, and joins the scores: fitness is summed,
-/// residuals and their derivatives are concatenated. A failure under one condition fails the whole
+/// Scores an individual under every calibrated condition in order, and joins the scores: fitness is summed
+/// with the weights of the conditions, residuals and their derivatives are concatenated, times the roots of
+/// the weights. A failure under one condition fails the whole
 /// individual, is graded by that failure, and skips the remaining conditions.
 ///
 /// # Errors
@@ -16,15 +17,36 @@ pub(super) fn scored(
     score: impl Fn(&SimulateSpec) -> Result<Evaluation, Failure>,
 ) -> Result<Evaluation, Failure> {
     let mut whole = score(spec)?;
-    for condition in &objective.others {
+    for other in &objective.others {
         if whole.verdict != Verdict::Complete {
             break;
         }
         let mut own = spec.clone();
-        own.individual.condition = *condition;
-        whole = joined(whole, score(&own)?);
+        own.individual.condition = other.condition;
+        whole = joined(whole, weighted(score(&own)?, other.weight));
     }
     Ok(whole)
+}
+
+/// Multiplies the errors of a complete evaluation by the weight of its condition: its fitness by the weight,
+/// its residual and their derivatives by the root, so that the squared norm of the residual stays the fitness.
+fn weighted(mut evaluation: Evaluation, weight: f64) -> Evaluation {
+    if evaluation.verdict != Verdict::Complete {
+        return evaluation;
+    }
+    let root = weight.sqrt();
+    evaluation.fitness *= weight;
+    for value in &mut evaluation.residual {
+        *value *= root;
+    }
+    for column in &mut evaluation.columns {
+        if let Derivative::Curves { curves, .. } = column {
+            for curve in curves {
+                *curve = to_single_precision(curve.iter().map(|x| f64::from(*x) * root));
+            }
+        }
+    }
+    evaluation
 }
 
 /// Joins the evaluations of an individual so far with that under the next condition; the evaluations so far
@@ -81,7 +103,7 @@ fn flatten(curves: Vec<Vec<f32>>) -> Vec<f32> {
 mod tests {
     use super::*;
     use protocol::{
-        case::Term,
+        case::{Term, WeightedCondition},
         job::{Counters, Identifier, Individual, Per, Reached, Reply},
     };
 
@@ -108,10 +130,13 @@ mod tests {
         }
     }
 
-    fn over(others: Vec<usize>) -> (Objective, SimulateSpec) {
+    fn over(others: &[(usize, f64)]) -> (Objective, SimulateSpec) {
         let objective = Objective {
             condition: 1,
-            others,
+            others: others
+                .iter()
+                .map(|&(condition, weight)| WeightedCondition { condition, weight })
+                .collect(),
             terms: vec![Term {
                 channel: "force".to_owned(),
                 weight: 1.0,
@@ -126,8 +151,8 @@ mod tests {
     }
 
     #[test]
-    fn conditions_are_added_up_in_their_order() {
-        let (objective, spec) = over(vec![0, 2]);
+    fn conditions_are_added_up_in_their_order_with_their_weights() {
+        let (objective, spec) = over(&[(0, 1.0), (2, 0.25)]);
         let missing = || Derivative::Missing {
             reason: "at rest".to_owned(),
         };
@@ -143,18 +168,21 @@ mod tests {
                         NOTHING,
                     ],
                 ),
-                _ => evaluation(4.0, vec![NOTHING, NOTHING, column([0.0; 2]), NOTHING]),
+                _ => evaluation(
+                    4.0,
+                    vec![column([8.0, 0.0]), NOTHING, column([0.0; 2]), NOTHING],
+                ),
             })
         };
         let whole = scored(&objective, &spec, score).unwrap();
-        assert_eq!((whole.fitness, whole.counters.steps), (7.0, 30));
-        assert_eq!(whole.residual, [1.0, 1.0, 2.0, 2.0, 4.0, 4.0]);
+        assert_eq!((whole.fitness, whole.counters.steps), (4.0, 30));
+        assert_eq!(whole.residual, [1.0, 1.0, 2.0, 2.0, 2.0, 2.0]);
         let curve = |values: &[f32]| Derivative::Curves {
             per: Per::Decade,
             curves: vec![values.to_vec()],
         };
         let expected = [
-            curve(&[1.0, 2.0, 3.0, 4.0, 0.0, 0.0]),
+            curve(&[1.0, 2.0, 3.0, 4.0, 4.0, 0.0]),
             curve(&[0.0, 0.0, 5.0, 6.0, 0.0, 0.0]),
             missing(),
             NOTHING,
@@ -164,7 +192,7 @@ mod tests {
 
     #[test]
     fn what_fails_under_one_condition_fails_and_goes_no_further() {
-        let (objective, spec) = over(vec![0, 2]);
+        let (objective, spec) = over(&[(0, 1.0), (2, 0.25)]);
         let failed = Verdict::Failed {
             kind: Identifier::parse("diverged").unwrap(),
             reached: Reached::TimeFraction(0.5),

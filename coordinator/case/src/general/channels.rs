@@ -3,6 +3,7 @@ use super::{
     super::{
         document::{Document, DocumentStep, nearest},
         error::CaseError,
+        fitted_conditions::FittedConditions,
         names,
         spread::mean_and_spread,
     },
@@ -42,8 +43,8 @@ pub(super) struct RecordSources<'a> {
     pub(super) folder: &'a Path,
     /// Folder whose records replace those of the case, if given.
     pub(super) replacement_folder: Option<&'a Path>,
-    /// Names of the conditions used in the calibration, whose records must exist.
-    pub(super) calibrated: &'a [String],
+    /// Conditions used in the calibration, whose records must exist.
+    pub(super) calibrated: Option<&'a FittedConditions>,
     /// Default for the treatment of a sensor's zero (free or fixed offset), for channels that do not state
     /// one.
     pub(super) offset: Offset,
@@ -62,7 +63,9 @@ impl RecordSources<'_> {
     /// Returns whether the folder of `--measured` lacks a record that may be missing, because its condition
     /// is not used in the calibration.
     fn may_omit(&self, named: &Path, condition: &str) -> bool {
-        let needed = self.calibrated.iter().any(|name| name == condition);
+        let needed = self
+            .calibrated
+            .is_some_and(|fitted| fitted.names(condition));
         self.replacement_folder.is_some() && !needed && !self.of(named).exists()
     }
 }

@@ -1,5 +1,7 @@
 //! Serde types of `case.toml` in its general form.
-use super::super::{effect::CaseEffect, loaded::Records, prior::PriorEntry};
+use super::super::{
+    effect::CaseEffect, fitted_conditions::FittedConditions, loaded::Records, prior::PriorEntry,
+};
 use protocol::case::{Offset, Scale, Tie, Valley};
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -164,26 +166,9 @@ pub(super) struct RowsEntry {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ObjectiveEntry {
-    pub(super) condition: OneOrMany,
+    pub(super) condition: FittedConditions,
     pub(super) terms: Vec<TermEntry>,
     pub(super) offset: Offset,
-}
-
-/// List of names, which may be written as a single name.
-#[derive(Debug, Deserialize)]
-#[serde(untagged, expecting = "a name, or a list of names")]
-pub(super) enum OneOrMany {
-    One(String),
-    Several(Vec<String>),
-}
-
-impl OneOrMany {
-    pub(super) fn all(&self) -> &[String] {
-        match self {
-            Self::One(name) => std::slice::from_ref(name),
-            Self::Several(names) => names,
-        }
-    }
 }
 
 /// Term of the objective: a channel and its weight.

@@ -40,18 +40,13 @@ pub(super) fn read(
         };
     };
     let names: Vec<&str> = conditions.iter().map(|it| it.name.as_str()).collect();
-    let fitted = conditions_of(document, entry.condition.all(), conditions, &names)?;
-    let Some((&condition, others)) = fitted.split_first() else {
-        return Err(document.field(
-            &[
-                DocumentStep::Key("objective"),
-                DocumentStep::Key("condition"),
-            ],
-            "[]",
-            "at least one condition",
-            "write condition = \"NAME\", or a list of names",
-        ));
-    };
+    let stated = conditions.iter().map(|it| (&*it.name, it.held_out));
+    let (condition, others) = entry
+        .condition
+        .resolve(document, &stated.collect::<Vec<_>>())?;
+    let fitted: Vec<usize> = std::iter::once(condition)
+        .chain(others.iter().map(|other| other.condition))
+        .collect();
     if entry.terms.is_empty() {
         return Err(document.field(
             &[DocumentStep::Key("objective"), DocumentStep::Key("terms")],
@@ -74,43 +69,9 @@ pub(super) fn read(
     });
     Ok(Objective {
         condition,
-        others: others.to_vec(),
+        others,
         terms: terms.collect(),
     })
-}
-
-/// Returns the indices of the conditions that the objective names; refuses duplicates and held-out
-/// conditions.
-fn conditions_of(
-    document: &Document,
-    wanted: &[String],
-    conditions: &[ConditionEntry],
-    names: &[&str],
-) -> Result<Vec<usize>, CaseError> {
-    let way = [
-        DocumentStep::Key("objective"),
-        DocumentStep::Key("condition"),
-    ];
-    let mut found = Vec::new();
-    for name in wanted {
-        let at = names.iter().position(|own| own == name);
-        let at = at.ok_or_else(|| unknown(document, &way, name, "condition", names))?;
-        if found.contains(&at) {
-            let once = "each condition once";
-            let help = "remove the repeated name; use the weights of the terms to weight channels";
-            return Err(document.field(&way, format!("\"{name}\""), once, help));
-        }
-        if conditions[at].held_out {
-            return Err(document.field(
-                &way,
-                format!("\"{name}\""),
-                "conditions that take part in fits",
-                "remove held_out from that condition, or the condition from the objective",
-            ));
-        }
-        found.push(at);
-    }
-    Ok(found)
 }
 
 /// Checks that each condition of the objective has a measured record of at least one of the objective's

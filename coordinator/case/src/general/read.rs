@@ -36,7 +36,7 @@ pub fn read(source: &RecordFolder<'_>) -> Result<Loaded, CaseError> {
     let place = RecordSources {
         folder,
         replacement_folder: measured,
-        calibrated: objective.map_or(&[], |entry| entry.condition.all()),
+        calibrated: objective.map(|entry| &entry.condition),
         offset: objective.map_or(Offset::Free, |entry| entry.offset),
     };
     let read = channels::read(document, &file.channels, &file.conditions, &place)?;

@@ -159,12 +159,12 @@ impl Conditions<'_> {
     }
 
     /// Returns a note if the folder of `--measured DIR` lacks the record of a condition; the condition then
-    /// has no record and keeps the case's card. The record of the objective's condition is required.
+    /// has no record and keeps the case's card. The records of the objective's conditions are required.
     fn not_repeated(&self, entry: &ConditionEntry) -> Option<Note> {
         let measured = self.source.measured?;
         let record = self.place(entry.record_file.as_ref()?);
         let objective = self.file.objective.as_ref();
-        let needed = objective.is_some_and(|objective| objective.condition == entry.name);
+        let needed = objective.is_some_and(|objective| objective.condition.names(&entry.name));
         (!needed && !record.exists()).then(|| Note {
             path: measured.to_owned(),
             text: format!(

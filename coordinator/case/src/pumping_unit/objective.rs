@@ -1,8 +1,8 @@
-//! Reading of the objective that a calibration minimises: a condition and weighted gauges.
+//! Reading of the objective that a calibration minimises: conditions and weighted gauges.
 use super::record::RecordFacts;
 use super::schema::{ConditionEntry, GaugeWeight, ObjectiveEntry};
 use crate::{
-    document::{Document, DocumentStep, nearest},
+    document::{Document, DocumentStep},
     error::CaseError,
     note::Note,
     table::clip,
@@ -10,7 +10,7 @@ use crate::{
 use protocol::case::{Channel, Objective, Term};
 use protocol::pumping_unit::Sensor;
 
-/// Reads the objective, with its condition by index. A case without gauge records needs none, because it is
+/// Reads the objective, with its conditions by index. A case without gauge records needs none, because it is
 /// only simulated.
 ///
 /// # Errors
@@ -40,39 +40,36 @@ pub(super) fn read(
             )),
         };
     };
-    let names = conditions.iter().map(|condition| condition.name.as_str());
-    let list: Vec<&str> = names.clone().collect();
-    let way = |key| [DocumentStep::Key("objective"), DocumentStep::Key(key)];
-    let Some(condition) = names.clone().position(|name| name == entry.condition) else {
-        return Err(document.field(
-            &way("condition"),
-            format!("\"{}\"", entry.condition),
-            format!("the name of a condition: {}", list.join(", ")),
-            &nearest(&entry.condition, names)
-                .map_or("name one of the conditions".to_owned(), |near| {
-                    format!("did you mean `{near}`?")
-                }),
-        ));
-    };
-    let bare = |entry: &ConditionEntry| entry.record_file.is_none();
-    if recorded.is_some() && conditions.get(condition).is_some_and(bare) {
-        return Err(document.field(
-            &way("condition"),
-            format!("\"{}\"", entry.condition),
-            "a condition with a record_file",
-            "there is nothing to compare with: add record_file to the condition, or take another",
-        ));
-    }
-    check_gauges(document, &entry.gauges)?;
-    Ok(Objective {
+    let names = conditions.iter().map(|own| (own.name.as_str(), false));
+    let (condition, others) = entry
+        .condition
+        .resolve(document, &names.collect::<Vec<_>>())?;
+    let objective = Objective {
         condition,
-        others: Vec::new(),
+        others,
         terms: entry
             .gauges
             .iter()
             .map(|part| term(part.gauge, part.weight))
             .collect(),
-    })
+    };
+    let bare = objective
+        .conditions()
+        .filter_map(|at| conditions.get(at))
+        .find(|own| own.record_file.is_none());
+    if let (Some(_), Some(bare)) = (recorded, bare) {
+        return Err(document.field(
+            &[
+                DocumentStep::Key("objective"),
+                DocumentStep::Key("condition"),
+            ],
+            format!("\"{}\"", bare.name),
+            "a condition with a record_file",
+            "there is nothing to compare with: add record_file to the condition, or take another",
+        ));
+    }
+    check_gauges(document, &entry.gauges)?;
+    Ok(objective)
 }
 
 /// Returns the channels with the treatment of the sensor's zero (free or fixed offset) that the objective
@@ -87,8 +84,9 @@ pub(super) fn with_offset(
         .map(move |own| Channel { offset, ..own })
 }
 
-/// Restricts the objective to the gauges that its condition's record contains, provided the others are
-/// optional. Returns a note on the restriction; `None` if the record contains all of them.
+/// Restricts the objective to the gauges that the records of its conditions contain, provided the others are
+/// optional: a gauge that one of several records lacks counts under the other conditions, one that all lack is
+/// dropped. Returns notes on the restriction.
 ///
 /// # Errors
 /// Returns an error for a record that lacks a required gauge, or all gauges of the objective.
@@ -96,69 +94,98 @@ pub(super) fn restrict_to_recorded(
     document: &Document,
     entry: Option<&ObjectiveEntry>,
     objective: &mut Objective,
-    (channels, facts): (&[Channel], &[Option<RecordFacts>]),
-) -> Result<Option<Note>, CaseError> {
+    (names, channels, facts): (&[&str], &[Channel], &[Option<RecordFacts>]),
+) -> Result<Vec<Note>, CaseError> {
     let note = |text: String| Note {
         path: document.path.clone(),
         text,
     };
-    if entry.is_none() {
+    let Some(entry) = entry else {
         let text =
             "no [objective]: the case is simulated only; a calibration needs one, and a record";
-        return Ok(Some(note(text.to_owned())));
+        return Ok(vec![note(text.to_owned())]);
+    };
+    let mut notes = Vec::new();
+    let mut found_anywhere = vec![false; objective.terms.len()];
+    for condition in objective.conditions() {
+        let own = channels.iter().filter(|own| own.condition == condition);
+        let recorded: Vec<&str> = own
+            .filter(|own| own.record.is_some())
+            .map(|own| &*own.name)
+            .collect();
+        if recorded.is_empty() {
+            // simulated only: there is no record to lack a gauge
+            return Ok(notes);
+        }
+        let terms = objective.terms.iter();
+        let there: Vec<bool> = terms
+            .map(|term| recorded.contains(&&*term.channel))
+            .collect();
+        let kept = there.contains(&true);
+        let lost = there
+            .iter()
+            .zip(&entry.gauges)
+            .position(|(there, gauge)| !there && (!kept || !gauge.optional));
+        if let Some(at) = lost {
+            let facts = facts.get(condition).and_then(Option::as_ref);
+            let unused = facts.map_or(&[][..], |facts| &facts.unused);
+            return Err(missing_gauge(document, (entry, at), &recorded, unused));
+        }
+        let missing = objective.terms.iter().zip(&there);
+        let missing = missing.filter(|(_, there)| !**there);
+        let missing: Vec<&str> = missing.map(|(term, _)| &*term.channel).collect();
+        if !missing.is_empty() {
+            let kept = objective.terms.iter().zip(&there);
+            let kept = kept.filter(|(_, there)| **there);
+            let kept: Vec<&str> = kept.map(|(term, _)| &*term.channel).collect();
+            let (missing, kept) = (missing.join(", "), kept.join(", "));
+            notes.push(note(if objective.others.is_empty() {
+                format!("the record lacks {missing}: the objective is taken over {kept}")
+            } else {
+                let name = names.get(condition).copied().unwrap_or_default();
+                format!(
+                    "the record of condition `{name}` lacks {missing}: it is compared over {kept}"
+                )
+            }));
+        }
+        for (found, there) in found_anywhere.iter_mut().zip(there) {
+            *found |= there;
+        }
     }
-    let own = facts.get(objective.condition).and_then(Option::as_ref);
-    let unused = own.map_or(&[][..], |facts| &facts.unused);
-    let own = channels
-        .iter()
-        .filter(|own| own.condition == objective.condition);
-    let recorded: Vec<&Channel> = own.filter(|own| own.record.is_some()).collect();
-    let there = |term: &Term| recorded.iter().any(|own| own.name == term.channel);
-    let gauges = entry.iter().flat_map(|entry| &entry.gauges);
-    let gauges: Vec<&GaugeWeight> = gauges.collect();
-    let kept = objective.terms.iter().any(there);
-    let needed = |at: usize| !kept || gauges.get(at).is_some_and(|gauge| !gauge.optional);
-    let mut terms = objective.terms.iter().enumerate();
-    let lost = terms.find(|(at, term)| !there(term) && needed(*at));
-    if recorded.is_empty() || objective.terms.iter().all(there) {
-        return Ok(None);
-    }
-    let names = |all: &mut dyn Iterator<Item = &str>| all.collect::<Vec<_>>().join(", ");
-    let found = names(&mut recorded.iter().map(|own| &*own.name));
-    if let Some((at, _)) = lost {
-        let gauge = gauges.get(at).map_or(0, |gauge| gauge.gauge);
-        let step = |key| {
-            [
-                DocumentStep::Key("objective"),
-                DocumentStep::Key("gauges"),
-                DocumentStep::Index(at),
-                DocumentStep::Key(key),
-            ]
-        };
-        return Err(document.field(
-            &step("gauge"),
-            gauge,
-            format!("a gauge that the record has: {found}"),
-            &format!(
-                "name its column stress_{gauge}_mpa{}; or say that the objective may do without it: \
-                 {{ gauge = {gauge}, weight = 1.0, optional = true }}",
-                if unused.is_empty() {
-                    String::new()
-                } else {
-                    format!(" (not used there: {})", clip(&unused.join(", "), 120))
-                }
-            ),
-        ));
-    }
-    let (kept, lost): (Vec<Term>, Vec<Term>) = std::mem::take(&mut objective.terms)
-        .into_iter()
-        .partition(there);
-    objective.terms = kept;
-    Ok(Some(note(format!(
-        "the record lacks {}: the objective is taken over {}",
-        names(&mut lost.iter().map(|term| &*term.channel)),
-        names(&mut objective.terms.iter().map(|term| &*term.channel)),
-    ))))
+    let mut found = found_anywhere.into_iter();
+    objective.terms.retain(|_| found.next().unwrap_or(true));
+    Ok(notes)
+}
+
+/// Builds the error for a gauge of the objective, the `at`-th of its entry, that a record lacks; `recorded` are
+/// the channels that the record has, `unused` its columns that are not read.
+fn missing_gauge(
+    document: &Document,
+    (entry, at): (&ObjectiveEntry, usize),
+    recorded: &[&str],
+    unused: &[String],
+) -> CaseError {
+    let gauge = entry.gauges.get(at).map_or(0, |gauge| gauge.gauge);
+    let way = [
+        DocumentStep::Key("objective"),
+        DocumentStep::Key("gauges"),
+        DocumentStep::Index(at),
+        DocumentStep::Key("gauge"),
+    ];
+    let unused = if unused.is_empty() {
+        String::new()
+    } else {
+        format!(" (not used there: {})", clip(&unused.join(", "), 120))
+    };
+    document.field(
+        &way,
+        gauge,
+        format!("a gauge that the record has: {}", recorded.join(", ")),
+        &format!(
+            "name its column stress_{gauge}_mpa{unused}; or say that the objective may do without it: \
+             {{ gauge = {gauge}, weight = 1.0, optional = true }}"
+        ),
+    )
 }
 
 fn term(gauge: u8, weight: f64) -> Term {

@@ -76,7 +76,8 @@ pub(super) fn resolve(source: &RecordFolder<'_>) -> Result<Resolved, CaseError> 
         cycles.extend(read.cycles.map(Record::held_out_last));
         notes.extend(read.notes);
     }
-    let recorded = (&channels[..], &facts[..]);
+    let names: Vec<&str> = file.conditions.iter().map(|own| &*own.name).collect();
+    let recorded = (&names[..], &channels[..], &facts[..]);
     notes.extend(objective::restrict_to_recorded(
         document,
         stated,

@@ -1,7 +1,9 @@
 //! Schema of `case.toml`: keys and their types. Allowed values are checked where the data that they concern
 //! are read.
 use super::recommended::Recommended;
-use crate::{effect::CaseEffect, loaded::Records, prior::PriorEntry};
+use crate::{
+    effect::CaseEffect, fitted_conditions::FittedConditions, loaded::Records, prior::PriorEntry,
+};
 use protocol::{
     case::Offset,
     pumping_unit::{
@@ -171,11 +173,11 @@ const fn no_smoothing() -> Smoothing {
     Smoothing::None
 }
 
-/// Objective of a calibration: a working condition and weighted gauges.
+/// Objective of a calibration: working conditions and weighted gauges.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ObjectiveEntry {
-    pub(super) condition: String,
+    pub(super) condition: FittedConditions,
     pub(super) gauges: Vec<GaugeWeight>,
     pub(super) offset: Offset,
 }

@@ -522,6 +522,62 @@ pub(super) const FAULTS: &[Spoilt] = &[
         ],
     ),
     (
+        "a condition twice in the objective",
+        |c| {
+            c.replace(
+                TOML,
+                "condition = \"5rpm\"",
+                "condition = [\"5rpm\", \"5rpm\"]",
+            )
+        },
+        &[
+            "case.toml",
+            "`objective.condition` = \"5rpm\"",
+            "each condition once",
+        ],
+    ),
+    (
+        "a weight of the first condition",
+        |c| {
+            let weighted = "condition = [{ name = \"5rpm\", weight = 2.0 }, \"4rpm\"]";
+            c.replace(TOML, "condition = \"5rpm\"", weighted);
+        },
+        &["case.toml", "without a weight", "relative to the first"],
+    ),
+    (
+        "a condition without weight in the objective",
+        |c| {
+            let weighted = "condition = [\"5rpm\", { name = \"4rpm\", weight = 0.0 }]";
+            c.replace(TOML, "condition = \"5rpm\"", weighted);
+        },
+        &[
+            "case.toml",
+            "`objective.condition[1].weight` = 0",
+            "above 0",
+        ],
+    ),
+    (
+        "no condition in the objective",
+        |c| c.replace(TOML, "condition = \"5rpm\"", "condition = []"),
+        &["case.toml", "`objective.condition` = []", "at least one"],
+    ),
+    (
+        "a second condition of the objective without a record",
+        |c| {
+            c.replace(
+                TOML,
+                "condition = \"5rpm\"",
+                "condition = [\"5rpm\", \"4rpm\"]",
+            );
+            c.replace(TOML, "record_file = \"measured/test_4rpm.csv.gz\"", "");
+        },
+        &[
+            "case.toml",
+            "`objective.condition` = \"4rpm\"",
+            "a condition with a record_file",
+        ],
+    ),
+    (
         "gauge twice",
         |c| c.replace(TOML, "{ gauge = 3,", "{ gauge = 1,"),
         &["case.toml", "`objective.gauges[1].gauge` = 1", "each once"],

@@ -117,6 +117,43 @@ fn another_test_of_the_same_machine_replaces_the_records() {
     assert_eq!(replaced.conditions[1], plain.conditions[1]);
 }
 
+/// Checks that an objective may sum several conditions with weights, and that a gauge may be missing from the
+/// record of one of them.
+#[test]
+fn an_objective_may_sum_several_conditions_with_weights() {
+    let copy = Copy::new();
+    let both = "condition = [\"5rpm\", { name = \"4rpm\", weight = 0.5 }]";
+    copy.replace(TOML, "condition = \"5rpm\"", both);
+    let load = || case::load_with_notes(copy.folder.path(), &Overrides::default());
+    let loaded = load().unwrap();
+    let weights = loaded.case.objective.weighted_conditions();
+    let weights: Vec<(usize, f64)> = weights.map(|one| (one.condition, one.weight)).collect();
+    assert_eq!(weights, [(0, 1.0), (1, 0.5)]);
+    let summary = case::check(copy.folder.path(), &Overrides::default());
+    let summary = summary.unwrap().text;
+    assert!(
+        summary.contains("objective   5rpm + 0.5 x 4rpm: "),
+        "{summary}"
+    );
+
+    let record = "measured/test_4rpm.csv.gz";
+    copy.lines(record, |_, line| {
+        Some(line.replace("stress_3_mpa", "other"))
+    });
+    let error = load().unwrap_err().to_string();
+    assert!(error.contains("`objective.gauges[1].gauge` = 3"), "{error}");
+    copy.replace(
+        TOML,
+        "{ gauge = 3, weight = 1.0 }",
+        "{ gauge = 3, weight = 1.0, optional = true }",
+    );
+    let loaded = load().unwrap();
+    assert_eq!(loaded.case.objective.terms.len(), 2);
+    let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+    let lacks = "the record of condition `4rpm` lacks stress_3: it is compared over stress_1";
+    assert!(notes.iter().any(|note| note.contains(lacks)), "{notes:?}");
+}
+
 /// Checks that a case with load cards alone can be simulated, and that operations that need a record name the
 /// missing field.
 #[test]

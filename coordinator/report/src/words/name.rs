@@ -1,6 +1,6 @@
 //! Display names, and lists of names for sentences.
 use crate::number::squared;
-use protocol::case::{Abscissa, Case};
+use protocol::case::{Abscissa, Case, WeightedCondition};
 
 /// Returns the name of the condition with an index in the case; the index as text if the case lacks that
 /// condition.
@@ -10,10 +10,18 @@ pub fn condition_name(case: &Case, condition: usize) -> String {
         .map_or_else(|| format!("#{condition}"), |found| found.name.clone())
 }
 
-/// Names the calibrated conditions, as `condition 5rpm` or `conditions 5rpm and 4rpm`.
+/// Names the calibrated conditions, as `condition 5rpm` or `conditions 5rpm and 4rpm (weight 0.5)`.
 pub(crate) fn calibrated(case: &Case) -> String {
-    let conditions = case.objective.conditions();
-    let names: Vec<String> = conditions.map(|at| condition_name(case, at)).collect();
+    let named = |one: WeightedCondition| {
+        let name = condition_name(case, one.condition);
+        if one.weight.total_cmp(&1.0).is_eq() {
+            name
+        } else {
+            format!("{name} (weight {})", one.weight)
+        }
+    };
+    let conditions = case.objective.weighted_conditions();
+    let names: Vec<String> = conditions.map(named).collect();
     let noun = if names.len() == 1 {
         "condition"
     } else {

@@ -17,6 +17,7 @@ use crate::cli::{
 use dispatch::account;
 use dispatch::journal;
 use protocol::{
+    case::WeightedCondition,
     event::WorkerAccount,
     job::{Counters, Evaluation, Verdict},
 };
@@ -133,18 +134,19 @@ fn result_object<'a>(
     }
 }
 
-/// Sums the objective of each parameter set (recommended, optimised) over the calibrated conditions; null if
+/// Sums the objective of each parameter set (recommended, optimised) over the calibrated conditions with their
+/// weights; null if
 /// the simulation of a condition failed.
 fn total_objective(run: &Run, found: &Found) -> RecommendedAndOptimised<Option<f64>> {
     let objective = &run.case.objective;
     let of = |which: usize| -> Option<f64> {
-        let fitness = |condition: usize| {
+        let fitness = |one: WeightedCondition| {
             let mut compared = found.compared.iter();
-            let own = compared.find(|own| own.condition == condition)?;
+            let own = compared.find(|own| own.condition == one.condition)?;
             let evaluation = own.individuals.get(which)?.evaluation.as_ref()?;
-            (evaluation.verdict == Verdict::Complete).then_some(evaluation.fitness)
+            (evaluation.verdict == Verdict::Complete).then_some(one.weight * evaluation.fitness)
         };
-        objective.conditions().map(fitness).sum()
+        objective.weighted_conditions().map(fitness).sum()
     };
     RecommendedAndOptimised {
         recommended: of(0),
