@@ -1,6 +1,7 @@
 //! Handle of an open run, used by the caller that submits jobs.
 use super::{
     control::Control,
+    divide,
     engine::{Engine, Request, RunSummary},
     error::DispatchError,
     listen::{addresses, admissible, allow_connections, keys},
@@ -30,6 +31,9 @@ use tokio::{
 pub struct Dispatch {
     requests: UnboundedSender<Request>,
     completed: UnboundedReceiver<Result<Completed, DispatchError>>,
+    /// Submitted jobs with derivatives that wait for the next call of [`Self::next`], when all jobs that can be
+    /// computed at the same time are known.
+    divisible: Vec<(JobId, Job)>,
     snapshot: Arc<Mutex<Snapshot>>,
     engine: JoinHandle<RunSummary>,
     listening: Vec<Locator>,
@@ -123,6 +127,7 @@ impl Dispatch {
         Self {
             requests,
             completed,
+            divisible: Vec::new(),
             snapshot,
             engine,
             listening,
@@ -141,12 +146,17 @@ impl Dispatch {
         self.listening.iter().map(ToString::to_string).collect()
     }
 
-    /// Submits a job; each id may be submitted once per process. A result that the journal already holds is
-    /// delivered at once.
+    /// Submits a job; each id may be submitted once per process and is below 2^63. A result that the journal already
+    /// holds is delivered at once. A job with derivatives is sent to workers by the next call of [`Self::next`], in
+    /// parts where slots would be idle.
     ///
     /// # Errors
     /// [`DispatchError::Closed`] once the run has been stopped.
     pub fn submit(&mut self, id: JobId, job: Job) -> Result<(), DispatchError> {
+        if divide::is_divisible(&job) {
+            self.divisible.push((id, job));
+            return Ok(());
+        }
         let asked = Request::Submit {
             id,
             job: Box::new(job),
@@ -159,6 +169,11 @@ impl Dispatch {
     /// # Errors
     /// The reason why the run cannot go on; afterwards only [`Self::close`] is useful.
     pub async fn next(&mut self) -> Result<Completed, DispatchError> {
+        if !self.divisible.is_empty() {
+            let jobs = std::mem::take(&mut self.divisible);
+            let asked = self.requests.send(Request::SubmitDivisible(jobs));
+            asked.map_err(|_| DispatchError::Closed)?;
+        }
         self.completed
             .recv()
             .await

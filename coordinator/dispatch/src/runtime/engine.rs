@@ -5,6 +5,7 @@ use super::{
         PendingRequest,
         messages::{ControlReply, ControlRequest},
     },
+    divide::{self, DividedJobs, PartResult},
     error::DispatchError,
     local::{LocalEvent, LocalWorkers},
     parts::Parts,
@@ -17,9 +18,9 @@ use crate::{
 };
 use link::{CoordinatorEnd, LinkEvent};
 use protocol::{
-    event::Event,
+    event::{Event, Finished},
     id::{JobId, RunId, WorkerId},
-    job::Job,
+    job::{Job, Outcome},
     key::Lane,
     message::{FromWorker, ToWorker},
     wire::{self, FrameKind, WireError},
@@ -51,6 +52,8 @@ pub(super) enum Request {
         id: JobId,
         job: Box<Job>,
     },
+    /// Jobs with derivatives, submitted together, which may be divided into parts.
+    SubmitDivisible(Vec<(JobId, Job)>),
     /// Request that arrived on the control socket.
     Control(PendingRequest),
 }
@@ -80,6 +83,7 @@ struct Pause {
 pub(super) struct Engine<L> {
     run: RunId,
     core: Core,
+    divided: DividedJobs,
     journal: Journal,
     said: UnboundedReceiver<WriterReport>,
     link: L,
@@ -122,6 +126,7 @@ impl<L: CoordinatorEnd> Engine<L> {
         Self {
             run,
             core,
+            divided: DividedJobs::default(),
             journal,
             said,
             link,
@@ -147,6 +152,7 @@ impl<L: CoordinatorEnd> Engine<L> {
             tokio::select! {
                 request = requests.recv() => match request {
                     Some(Request::Submit { id, job }) => self.submit(id, *job),
+                    Some(Request::SubmitDivisible(jobs)) => self.submit_divisible(jobs),
                     Some(Request::Control((question, to))) => {
                         let reply = self.ask(&question);
                         // who asked may not wait any more
@@ -211,8 +217,38 @@ impl<L: CoordinatorEnd> Engine<L> {
     }
 
     fn submit(&mut self, id: JobId, job: Job) {
+        if self.is_new(id, &job) {
+            self.handle(Input::Submit { id, job });
+        }
+    }
+
+    /// Submits jobs with derivatives, divided into as many parts as there are idle slots for them.
+    fn submit_divisible(&mut self, jobs: Vec<(JobId, Job)>) {
+        let new = jobs.into_iter().filter(|(id, job)| self.is_new(*id, job));
+        let new: Vec<(JobId, Job)> = new.collect();
+        let (count, idle) = (new.len(), self.core.idle_slots());
+        for (id, job) in new {
+            let columns = match &job {
+                Job::Simulate(spec) => spec.columns.len(),
+                Job::Own { .. } | Job::Describe | Job::Nothing { .. } => 0,
+            };
+            let work = job.work_hash();
+            let parts = self
+                .divided
+                .divide(id, job, divide::part_count(columns, count, idle));
+            if parts.len() > 1 {
+                self.record(Event::Asked { job: id, work });
+            }
+            for (id, job) in parts {
+                self.handle(Input::Submit { id, job });
+            }
+        }
+    }
+
+    /// Returns whether a submitted job has no result in the journal; if it has one, delivers that.
+    fn is_new(&mut self, id: JobId, job: &Job) -> bool {
         match self.journal.recall(id) {
-            Ok(None) => self.handle(Input::Submit { id, job }),
+            Ok(None) => return true,
             Ok(Some(finished)) if finished.work == job.work_hash() => {
                 self.replayed += 1;
                 self.give(Ok(Completed {
@@ -225,11 +261,15 @@ impl<L: CoordinatorEnd> Engine<L> {
             Ok(Some(_)) => self.give(Err(DispatchError::JobDiffers { job: id })),
             Err(error) => self.give(Err(error.into())),
         }
+        false
     }
 
     /// Answers a request from the control socket, draining workers as requested.
     fn ask(&mut self, question: &ControlRequest) -> ControlReply {
-        let crew = self.core.worker_statuses(self.begun.elapsed());
+        let mut crew = self.core.worker_statuses(self.begun.elapsed());
+        for (job, _) in crew.iter_mut().flat_map(|worker| &mut worker.jobs) {
+            *job = self.divided.submitted_id(*job);
+        }
         let (drains, reply) =
             worker_control::answer(question, crew, |worker| self.link.owner(worker));
         for (worker, how) in drains {
@@ -264,7 +304,10 @@ impl<L: CoordinatorEnd> Engine<L> {
 
     fn appended(&mut self, appended: WriterReport) {
         match appended {
-            WriterReport::Stored(jobs) => self.handle(Input::Stored { jobs }),
+            WriterReport::Stored(jobs) => {
+                let jobs = self.divided.stored(jobs);
+                self.handle(Input::Stored { jobs });
+            }
             WriterReport::Paused(why) => {
                 self.handle(Input::Writable(false));
                 tracing::error!(
@@ -310,18 +353,55 @@ impl<L: CoordinatorEnd> Engine<L> {
         for command in self.core.handle(input, self.begun.elapsed()) {
             match command {
                 Command::Send { to, message } => self.send(to, &message),
+                Command::Store(finished) if divide::is_part(finished.job()) => {
+                    self.finish_part(*finished);
+                }
                 Command::Store(finished) => self.record(Event::Finished(finished)),
+                // the whole job was recorded
+                Command::Record(Event::Asked { job, .. }) if divide::is_part(job) => {}
                 Command::Record(event) => self.record(event),
                 Command::Deliver(completed) => {
                     if let Some(workers) = &self.workers {
                         workers.note_result();
                     }
-                    self.give(Ok(completed));
+                    if divide::is_part(completed.id) {
+                        self.deliver_part(&completed);
+                    } else {
+                        self.give(Ok(completed));
+                    }
                 }
                 Command::Notice(notice) if notice.is_routine() => tracing::info!("{notice}"),
                 Command::Notice(notice) => tracing::warn!("{notice}"),
                 Command::Stop(stop) => self.give(Err(stop.into())),
             }
+        }
+    }
+
+    /// Takes the result of a part of a divided job; once the job is complete, records and delivers its result.
+    fn finish_part(&mut self, result: Finished) {
+        let part = result.job();
+        match self.divided.finish(result) {
+            PartResult::Awaited => {}
+            PartResult::Joined(whole) => {
+                self.give(Ok(Completed {
+                    id: whole.job(),
+                    cost: whole.cost,
+                    outcome: whole.outcome.clone(),
+                    replayed: false,
+                }));
+                self.record(Event::Finished(whole));
+            }
+            PartResult::Discarded => self.handle(Input::Stored { jobs: vec![part] }),
+        }
+    }
+
+    /// Delivers the failure of a part that is not stored as that of its job; results that are stored are handled
+    /// with their storing.
+    fn deliver_part(&mut self, part: &Completed) {
+        let not_stored =
+            matches!(&part.outcome, Outcome::Failed(failure) if divide::is_not_stored(failure));
+        if let Some(failed) = not_stored.then(|| self.divided.fail(part)).flatten() {
+            self.give(Ok(failed));
         }
     }
 

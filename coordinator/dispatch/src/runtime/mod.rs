@@ -5,6 +5,7 @@
 mod bench;
 pub mod control;
 mod dispatch;
+mod divide;
 mod engine;
 mod error;
 mod listen;
@@ -21,6 +22,7 @@ pub use bench::{
     SleepingJobsResult, bench, connect, keep_silent, processor_time, sleep_through,
 };
 pub use dispatch::Dispatch;
+pub(crate) use divide::part_count;
 pub use engine::RunSummary;
 pub use error::DispatchError;
 pub use options::{DispatchOptions, PAUSE_LIMIT};

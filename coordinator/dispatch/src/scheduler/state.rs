@@ -193,6 +193,13 @@ impl Core {
         self.finished.contains(job) || self.storing.contains_key(&job)
     }
 
+    /// Returns the number of slots that would stay idle if every job without a result ran now.
+    pub fn idle_slots(&self) -> usize {
+        let ready = self.members.values().filter(|member| member.takes_jobs());
+        let slots: usize = ready.map(Member::slots).sum();
+        slots.saturating_sub(self.jobs.len())
+    }
+
     /// Returns the number of accepted results not yet stored.
     pub fn unstored(&self) -> usize {
         self.storing.len()

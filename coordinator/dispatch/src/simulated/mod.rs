@@ -8,7 +8,7 @@ mod source;
 mod worker;
 
 pub use event::Fault;
-pub use source::{Generations, JobSource, SimulatedSearch, job};
+pub use source::{Generations, JobSource, SimulatedDerivatives, SimulatedSearch, job};
 pub use worker::{Running, SimulatedWorker, cost, outcome};
 
 use crate::scheduler::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, StopReason};
@@ -261,7 +261,7 @@ impl Cluster {
     }
 
     fn submit(&mut self, source: &mut dyn JobSource) {
-        for (id, job) in source.ask() {
+        for (id, job) in source.ask(self.core.idle_slots()) {
             self.tell_core(Input::Submit { id: JobId(id), job });
         }
     }

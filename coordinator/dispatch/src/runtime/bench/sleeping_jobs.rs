@@ -47,9 +47,10 @@ pub async fn sleep_through(
         sleep(Duration::from_millis(5)).await;
     }
     let (begun, processor, before) = (Instant::now(), processor_time(), dispatch.snapshot());
-    let mut results = 0;
+    let (mut results, mut open) = (0, 0_usize);
     while !source.is_done() {
-        for (id, job) in source.ask() {
+        for (id, job) in source.ask(slots.saturating_sub(open)) {
+            open += 1;
             let delay = takes(id).as_millis();
             dispatch.submit(
                 JobId(id),
@@ -58,6 +59,7 @@ pub async fn sleep_through(
         }
         let done = dispatch.next().await?;
         results += 1;
+        open -= 1;
         source.tell(done.id.0, &done.outcome);
     }
     let slept = SleepingJobsResult {
