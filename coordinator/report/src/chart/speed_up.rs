@@ -2,26 +2,30 @@
 use super::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
 use super::panel::Panel;
 use super::scale::AxisScale;
-use crate::color::{BLUE, Color, GREEN, GREY, PURPLE, VERMILLION};
+use crate::color::{BLUE, Color, GREEN, GREY, INK, PURPLE, VERMILLION};
 use crate::document::Figure;
 use std::collections::BTreeMap;
-use study::scaling::ScalingRow;
+use study::scaling::{ScalingRow, SlotMode};
 
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 210.0;
 const TOP: f64 = 16.0;
 const HEIGHT: f64 = 280.0;
 const FOOT: f64 = 52.0;
-const COLORS: [Color; 4] = [BLUE, VERMILLION, GREEN, PURPLE];
+const COLORS: [Color; 5] = [BLUE, VERMILLION, GREEN, PURPLE, INK];
+
+/// Curves of a figure by search and method.
+type Curves = BTreeMap<(String, SlotMode), Vec<(f64, f64)>>;
 
 /// Draws the speed-up of searches over the number of slots.
 pub(crate) fn speed_up(rows: &[ScalingRow]) -> Figure {
-    let mut curves: BTreeMap<String, Vec<(f64, f64)>> = BTreeMap::new();
+    let mut curves = Curves::new();
     for row in rows {
-        let name = format!("{} {}, {}", row.preset, row.population, row.how.as_str());
-        let curve = curves.entry(name).or_default();
+        let curve = curves.entry((row.search(), row.how)).or_default();
         curve.push((row.slots as f64, row.speed_up));
     }
+    let mut searches: Vec<String> = curves.keys().map(|(search, _)| search.clone()).collect();
+    searches.dedup();
     let panel = Panel {
         left: LEFT,
         top: TOP,
@@ -39,26 +43,38 @@ pub(crate) fn speed_up(rows: &[ScalingRow]) -> Figure {
             panel.at((high, high)),
             Pen::new(GREY, 1.0),
         );
-        for (index, (name, curve)) in curves.iter_mut().enumerate() {
+        for (index, ((search, how), curve)) in curves.iter_mut().enumerate() {
             curve.sort_by(|a, b| a.0.total_cmp(&b.0));
-            draw(canvas, &panel, (index, name), curve);
+            let of = searches.iter().position(|own| own == search);
+            let color = COLORS[of.unwrap_or(0) % COLORS.len()];
+            let name = format!("{search}, {}", how.as_str());
+            draw(canvas, &panel, (curve, *how), color);
+            let beside = (panel.right() + 12.0, TOP + 10.0 + 13.5 * index as f64);
+            canvas.text(beside, &name, TextStyle::new(9.5, color));
         }
         panel.left_axis(canvas, true, "speed-up");
         panel.lower_axis(canvas, true, "slots");
     });
     Figure {
         name: "speed_up".to_owned(),
-        caption: format!("{title}; the dashed line is what it would be if no slot were ever idle."),
+        caption: format!(
+            "{title}; the dashed line is what it would be if no slot were ever idle. Projections are dashed."
+        ),
         svg,
     }
 }
 
-fn draw(canvas: &mut Canvas, panel: &Panel, (index, name): (usize, &str), curve: &[(f64, f64)]) {
-    let color = COLORS[index % COLORS.len()];
-    panel.curve(canvas, curve, Pen::new(color, 1.4));
+/// Draws the curve of a search in one color, dashed if it was projected.
+fn draw(canvas: &mut Canvas, panel: &Panel, (curve, how): (&[(f64, f64)], SlotMode), color: Color) {
+    let pen = Pen::new(color, 1.4);
+    if how == SlotMode::Projected {
+        for pair in curve.windows(2) {
+            canvas.dashed(panel.at(pair[0]), panel.at(pair[1]), pen);
+        }
+    } else {
+        panel.curve(canvas, curve, pen);
+    }
     for point in curve {
         canvas.dot(panel.at(*point), 3.0, color);
     }
-    let beside = (panel.right() + 12.0, TOP + 12.0 + 16.0 * index as f64);
-    canvas.text(beside, name, TextStyle::new(10.5, color));
 }

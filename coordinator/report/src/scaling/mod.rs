@@ -53,21 +53,20 @@ fn rows(scaled: &ScalingResult) -> Section {
     }
 }
 
-/// Builds the rows of a scaling table, grouped by how jobs ran: computed, replaced by sleeping, or simulated
-/// on a simulated clock.
+/// Builds the rows of a scaling table, grouped by how jobs ran: computed here or on remote workers, replaced by
+/// sleeping, or simulated on a simulated clock.
 fn grouped(scaled: &ScalingResult, cells: impl Fn(&ScalingRow) -> Vec<String>) -> Vec<Cells> {
     let groups = [
         (SlotMode::Computed, "computed: the case, on this machine"),
+        (SlotMode::Remote, "remote: the case, on other workers"),
         (SlotMode::Slept, "slept: sessions over TCP on this machine"),
         (SlotMode::Projected, "projected: on a simulated clock"),
     ];
     let mut rows = Vec::new();
     for (how, title) in groups {
         let of = scaled.rows.iter().filter(|row| row.how == how);
-        let own = of.map(|row| {
-            let label = format!("{} {}", row.preset, row.population);
-            Cells::new(label, [vec![count(row.slots)], cells(row)].concat())
-        });
+        let own =
+            of.map(|row| Cells::new(row.search(), [vec![count(row.slots)], cells(row)].concat()));
         let own: Vec<Cells> = own.collect();
         if !own.is_empty() {
             rows.push(Cells::group(title));
@@ -149,6 +148,10 @@ fn assumptions(scaled: &ScalingResult) -> Section {
                         .unwrap_or(f64::NAN)
                 )
             ),
+        ),
+        Fact::new(
+            "a simulation with derivatives",
+            format!("{} plain ones", fixed(own.derivatives_over_plain, 1)),
         ),
         Fact::new(
             "coordinator, a result over TCP",

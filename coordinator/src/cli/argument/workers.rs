@@ -1,6 +1,9 @@
 //! Worker arguments: worker processes on this machine, and workers of other machines that connect over the
 //! network.
-use super::{listening::RemoteAccess, nodes::HostsChoice};
+use super::{
+    listening::RemoteAccess,
+    nodes::{HostsChoice, LaunchChoice},
+};
 use clap::{
     Args,
     builder::{RangedU64ValueParser, TypedValueParser},
@@ -11,20 +14,29 @@ use std::time::Duration;
 /// Arguments that select the workers of a run.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct WorkersChoice {
-    #[command(flatten)]
-    pub(crate) door: RemoteAccess,
     /// Worker processes to start on this machine; 0 for none [default: one per core].
     #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
     workers: Option<usize>,
+    #[command(flatten)]
+    pub(crate) remote: RemoteChoice,
+    /// How long the run waits where its disk is full before it ends with what it has, in minutes [default: 10].
+    #[arg(long, value_name = "MINUTES", env = "HORSEHEAD_PAUSE_LIMIT", value_parser = clap::value_parser!(u32).range(0..=100_000))]
+    pause_limit: Option<u32>,
+}
+
+/// Arguments that let workers of other machines take part, and that launch such workers for the time of a run.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct RemoteChoice {
+    #[command(flatten)]
+    pub(crate) door: RemoteAccess,
     #[command(flatten)]
     pub(crate) hosts: HostsChoice,
     /// Name or address under which the ssh hosts reach this machine [default: the one from which the first of
     /// them says that we come].
     #[arg(long, value_name = "ADDRESS", env = "HORSEHEAD_ADVERTISE")]
     pub(crate) advertise: Option<String>,
-    /// How long the run waits where its disk is full before it ends with what it has, in minutes [default: 10].
-    #[arg(long, value_name = "MINUTES", env = "HORSEHEAD_PAUSE_LIMIT", value_parser = clap::value_parser!(u32).range(0..=100_000))]
-    pause_limit: Option<u32>,
+    #[command(flatten)]
+    pub(crate) launch: LaunchChoice,
 }
 
 impl WorkersChoice {
@@ -38,7 +50,9 @@ impl WorkersChoice {
         let minutes = |minutes: u32| Duration::from_secs(60 * u64::from(minutes));
         self.pause_limit.map_or(PAUSE_LIMIT, minutes)
     }
+}
 
+impl RemoteChoice {
     /// Returns whether the arguments let workers on other machines take part.
     pub(crate) const fn has_others(&self) -> bool {
         self.door.listen.is_some() || !self.hosts.is_empty()

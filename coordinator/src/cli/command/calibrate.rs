@@ -110,7 +110,7 @@ const PLANNED_REMOTE_WORKERS: usize = 40;
 
 /// Returns the number of workers for which the run's default settings are chosen.
 fn planned_workers(workers: &WorkersChoice) -> usize {
-    if workers.has_others() {
+    if workers.remote.has_others() {
         workers.local().max(PLANNED_REMOTE_WORKERS)
     } else {
         workers.local()

@@ -5,7 +5,7 @@
 //! address and keys for its workers.
 use super::folder::KEYS;
 use crate::cli::{
-    argument::{listening::RemoteAccess, workers::WorkersChoice},
+    argument::{listening::RemoteAccess, workers::RemoteChoice},
     output::{problem::Problem, terminal},
 };
 use dispatch::runtime::locate::worker_program;
@@ -43,6 +43,8 @@ const IDLE_S: u64 = 600;
 pub(crate) struct Launch {
     hosts: Vec<Host>,
     options: WorkerOptions,
+    /// Worker programs, by the processors of the hosts.
+    programs: Vec<Program>,
     /// Listening address and keys of the run, through which the launched workers connect.
     pub(crate) endpoint: RemoteAccess,
     /// Flag that stops the launching: once set, no further step of the plan begins.
@@ -54,7 +56,7 @@ pub(crate) struct Launch {
 impl Launch {
     /// Determines the listening address and creates the keys for workers on other hosts, before the run
     /// starts to listen; returns `None` if no host is named.
-    pub(crate) fn prepare(workers: &WorkersChoice, run: &Path) -> anyhow::Result<Option<Self>> {
+    pub(crate) fn prepare(workers: &RemoteChoice, run: &Path) -> anyhow::Result<Option<Self>> {
         let hosts = workers.hosts.read()?;
         let Some(first) = hosts.first() else {
             return Ok(None);
@@ -77,13 +79,14 @@ impl Launch {
             tls: door.tls.as_deref().map(std::path::absolute).transpose()?,
             connect,
             idle_timeout: Some(IDLE_S),
-            slots: None,
-            prologue: String::new(),
+            slots: workers.launch.slots,
+            prologue: workers.launch.prologue()?,
             owner: owner(run)?,
         };
         Ok(Some(Self {
             hosts,
             options: order,
+            programs: programs(&workers.launch.worker_program)?,
             endpoint: door,
             cancelled: Arc::default(),
             launching: None,
@@ -93,7 +96,7 @@ impl Launch {
     /// Launches the workers on a separate thread, concurrently with the run; a host that fails is reported
     /// and not waited for.
     pub(crate) fn up(&mut self) -> anyhow::Result<()> {
-        let plan = ssh::up(&self.options, &self.hosts, &programs(&[])?, WAIT_S);
+        let plan = ssh::up(&self.options, &self.hosts, &self.programs, WAIT_S);
         let plan = plan?;
         let cancelled = Arc::clone(&self.cancelled);
         let launching = thread::Builder::new()

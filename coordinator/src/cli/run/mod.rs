@@ -12,6 +12,7 @@ pub(super) mod manifest;
 pub(super) mod opened;
 pub(super) mod orthogonal;
 pub(super) mod scaling;
+pub(super) mod scaling_remote;
 pub(super) mod searches;
 pub(super) mod session;
 pub(super) mod sweep_file;

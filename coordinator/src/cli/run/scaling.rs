@@ -2,7 +2,6 @@
 //! another, and each is stored in the run folder as soon as it is complete.
 use super::{
     bus::{self, Bus, Options},
-    folder::RunFolder,
     manifest::RunIdentity,
     opened::Run,
 };
@@ -14,21 +13,29 @@ use anyhow::Context as _;
 use dispatch::account;
 use dispatch::journal;
 use dispatch::runtime::{self, BenchPlan, BenchWorkers, processor_time, sleep_through};
-use dispatch::simulated::SimulatedSearch as JobSource;
-use protocol::{case::Case, event::Spent};
+use dispatch::simulated::{SimulatedDerivatives, SimulatedSearch as JobSource};
+use protocol::{
+    case::Case,
+    event::Spent,
+    id::JobId,
+    job::{Column, Individual, Job, Reply, SimulateSpec},
+};
 use search::{
     space::Space,
     strategy::{SearchPlan, Settings, Strategy, build, preset},
 };
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::{
+    cell::RefCell,
+    collections::BTreeMap,
     fs,
+    rc::Rc,
     time::{Duration, Instant},
 };
 use study::scaling::{
     Overheads, ScalingResult, ScalingRow, Shares, SlotMode, SyntheticObjective, project,
 };
-use study::{Evaluator as _, ProgressView, Search, Stop, Sweep, Watch, score_all};
+use study::{Evaluator, ProgressView, Search, Stop, Sweep, Watch, score_all};
 use support::quantile;
 
 /// Benchmark of the coordinator's cost per result: number of sessions, number of jobs, and bytes per result
@@ -39,18 +46,28 @@ const BENCH_PLAN: (usize, u64, u32) = (16, 4000, 300);
 const MIN_EVALUATIONS_PER_SLOT: u64 = 8;
 /// Maximum number of warm-up rounds before all workers must have joined.
 const MAX_WARM_UP_ROUNDS: u32 = 200;
+/// Minimum number of simulations of each kind from which the cost of derivatives is measured.
+const DERIVATIVE_SAMPLES: u64 = 3;
+/// Number of the first job that measures the cost of derivatives, above the numbers that jobs get by their
+/// content.
+const DERIVATIVE_JOBS: u64 = 1 << 48;
+
+/// Search to measure: the name of a preset, and the number of individuals per generation if that is chosen.
+pub(crate) type Searched<'a> = (&'a str, Option<u64>);
 
 /// Settings of a scaling measurement that determine its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ScalingSettings {
     /// Names of the search presets to measure.
     pub(crate) presets: Vec<String>,
-    /// Population sizes to measure (individuals per generation).
+    /// Population sizes to measure (individuals per generation); each preset's own if empty.
     pub(crate) populations: Vec<u64>,
     /// Evaluations per search on workers of this machine; also the minimum for a search on sleeping sessions.
     pub(crate) evaluations: u64,
     /// Numbers of simulating worker processes to measure.
     pub(crate) crews: Vec<u64>,
+    /// Numbers of remote workers to measure.
+    pub(crate) nodes: Vec<u64>,
     /// Numbers of sleeping sessions (workers that sleep instead of simulating) to measure.
     pub(crate) sleeping: Vec<u64>,
     /// Mean sleeping time per job \[s\].
@@ -72,11 +89,19 @@ impl RunIdentity for ScalingSettings {
             };
             format!(" --{name} {all}")
         };
+        let some = |name: &str, all: &[u64]| {
+            if all.is_empty() {
+                String::new()
+            } else {
+                list(name, all)
+            }
+        };
         [
             format!(" --presets {}", self.presets.join(",")),
-            list("populations", &self.populations),
+            some("populations", &self.populations),
             format!(" --evaluations {}", self.evaluations),
             list("crews", &self.crews),
+            some("nodes", &self.nodes),
             list("sleeping", &self.sleeping),
             format!(" --sleep {}", self.sleep_s),
             list("projected", &self.projected),
@@ -87,134 +112,165 @@ impl RunIdentity for ScalingSettings {
 
 /// Row of the scaling table with the simulation times that were measured for it.
 #[derive(Serialize, Deserialize)]
-struct Measured {
-    row: ScalingRow,
+pub(crate) struct Measured {
+    pub(super) row: ScalingRow,
     /// Mean computing time of a simulation \[s\].
     simulation_s: f64,
     /// Quantiles of the computing time of a simulation at 0, 5 .. 100 % \[s\].
     simulation_quantiles_s: Vec<f64>,
+    /// Computing time of a simulation with derivatives over that of a plain one.
+    derivatives_over_plain: f64,
+}
+
+impl Measured {
+    /// Combines a row with the computing times of its simulations \[s\], in any order.
+    pub(super) fn new(row: ScalingRow, mut times: Vec<f64>, derivatives_over_plain: f64) -> Self {
+        times.sort_by(f64::total_cmp);
+        let quantiles = (0..=100)
+            .step_by(5)
+            .filter_map(|at| quantile::of(&times, at));
+        Self {
+            row,
+            simulation_s: times.iter().sum::<f64>() / times.len().max(1) as f64,
+            simulation_quantiles_s: quantiles.collect(),
+            derivatives_over_plain,
+        }
+    }
 }
 
 impl ScalingSettings {
-    /// Returns the settings of the search with preset `name` and size `population`, for the given number of
-    /// worker slots.
+    /// Returns the settings of a search for the given number of worker slots.
     ///
     /// # Errors
-    /// If the preset has no population setting, or the population is not allowed.
+    /// If the population is not allowed.
     pub(crate) fn settings(
-        (name, population): (&str, u64),
+        (name, population): Searched<'_>,
         space: &Space,
         slots: u64,
     ) -> anyhow::Result<Settings> {
         let preset = preset(name).context("the catalogue has lost a preset")?;
         let workers = usize::try_from(slots)?;
         let mut chosen = (preset.settings)(&SearchPlan { space, workers });
-        let set = preset.set(&mut chosen, "population", &population.to_string());
-        set.map_err(|error| settings::refuse(preset, error))?;
+        if let Some(population) = population {
+            let set = preset.set(&mut chosen, "population", &population.to_string());
+            set.map_err(|error| settings::refuse(preset, error))?;
+        }
         Ok(chosen)
     }
 
-    /// Returns every combination of preset and population size to measure.
-    pub(crate) fn searches(&self) -> impl Iterator<Item = (&str, u64)> {
-        let each = self.presets.iter();
-        each.flat_map(|name| {
-            self.populations
-                .iter()
-                .map(move |own| (name.as_str(), *own))
-        })
-    }
-}
-
-/// Measures every row of the scaling table that is not yet stored in the run folder.
-///
-/// # Errors
-/// If the settings are invalid, if no worker remains, or the user stops; stored rows are kept.
-pub(crate) async fn scale(
-    run: &Run<ScalingSettings>,
-    watch: &mut dyn Watch<ProgressView>,
-    stop: &mut Stop,
-) -> anyhow::Result<ScalingResult> {
-    let (settings, space) = (&run.manifest.settings, run.manifest.space(&run.case)?);
-    let mut scale = ScalingRun {
-        run,
-        space: &space,
-        folder: &run.folder,
-    };
-    let mut rows = Vec::new();
-    let mut alone: Option<Measured> = None;
-    for search in settings.searches() {
-        for slots in settings.crews.iter().copied() {
-            let name = file(SlotMode::Computed, search, slots);
-            let make = async |scale: &mut ScalingRun<'_>| {
-                scale.measure_computing(search, slots, watch, stop).await
-            };
-            let measured = scale.load_or_compute(&name, make).await?;
-            rows.push(measured.row.clone());
-            if alone.as_ref().is_none_or(|least| slots < least.row.slots) {
-                alone = Some(measured);
+    /// Returns every combination of preset and population size to measure; a preset without population is
+    /// measured once.
+    pub(crate) fn searches(&self) -> Vec<Searched<'_>> {
+        let sizes = |name: &str| -> Vec<Option<u64>> {
+            let settable = preset(name).map(|preset| preset.settable());
+            let mut settable = settable.into_iter().flatten();
+            if self.populations.is_empty() || !settable.any(|one| one.key == "population") {
+                return vec![None];
             }
-        }
+            self.populations.iter().copied().map(Some).collect()
+        };
+        let each = self.presets.iter().map(String::as_str);
+        each.flat_map(|name| sizes(name).into_iter().map(move |size| (name, size)))
+            .collect()
     }
-    let alone =
-        alone.context("no number of worker processes was given: name at least one with --crews")?;
-    let make = async |scale: &mut ScalingRun<'_>| scale.overheads(&alone).await;
-    let overheads = scale.load_or_compute("overheads.json", make).await?;
-    for search in settings.searches() {
-        for slots in settings.sleeping.iter().copied() {
-            let make = async |scale: &mut ScalingRun<'_>| {
-                scale.measure_sleeping(search, slots, &overheads).await
-            };
-            rows.push(
-                scale
-                    .load_or_compute(&file(SlotMode::Slept, search, slots), make)
-                    .await?,
-            );
-        }
-        for slots in settings.projected.iter().copied() {
-            let make = async |scale: &mut ScalingRun<'_>| {
-                let strategy = scale.strategy(search, slots)?;
-                Ok(project(search, strategy, scale.space, slots, &overheads))
-            };
-            rows.push(
-                scale
-                    .load_or_compute(&file(SlotMode::Projected, search, slots), make)
-                    .await?,
-            );
-        }
-    }
-    Ok(ScalingResult::new(overheads, rows))
 }
 
 /// Returns the name of the file that stores a row of the scaling table; without its extension it is the name
 /// of the row's journal folder.
-fn file(how: SlotMode, (preset, population): (&str, u64), slots: u64) -> String {
-    format!("{}-{preset}-{population}-{slots}.json", how.as_str())
+pub(super) fn file(how: SlotMode, (preset, population): Searched<'_>, slots: u64) -> String {
+    let population = population.map_or_else(String::new, |size| format!("-{size}"));
+    format!("{}-{preset}{population}-{slots}.json", how.as_str())
 }
 
-struct ScalingRun<'a> {
-    run: &'a Run<ScalingSettings>,
+/// Scaling measurement of a run.
+pub(crate) struct ScalingRun<'a> {
+    pub(super) run: &'a Run<ScalingSettings>,
     space: &'a Space,
-    folder: &'a RunFolder,
+}
+
+impl<'a> ScalingRun<'a> {
+    /// Creates the measurement of a run, whose case is searched in `space`.
+    pub(crate) const fn new(run: &'a Run<ScalingSettings>, space: &'a Space) -> Self {
+        Self { run, space }
+    }
 }
 
 impl ScalingRun<'_> {
+    /// Measures every search on the workers of this machine, as far as its rows are not stored in the run folder.
+    ///
+    /// # Errors
+    /// If the settings are invalid, if no worker remains, or the user stops; stored rows are kept.
+    pub(crate) async fn measure_local(
+        &mut self,
+        watch: &mut dyn Watch<ProgressView>,
+        stop: &mut Stop,
+    ) -> anyhow::Result<Vec<Measured>> {
+        let settings = &self.run.manifest.settings;
+        let mut measured = Vec::new();
+        for search in settings.searches() {
+            for slots in settings.crews.iter().copied() {
+                let name = file(SlotMode::Computed, search, slots);
+                let make = async |scale: &mut Self| {
+                    scale.measure_computing(search, slots, watch, stop).await
+                };
+                measured.push(self.load_or_compute(&name, make).await?);
+            }
+        }
+        Ok(measured)
+    }
+
+    /// Adds the rows of sleeping and of projected slots to the rows that were measured.
+    ///
+    /// # Errors
+    /// As [`Self::measure_local`]; if nothing was measured.
+    pub(crate) async fn complete(
+        &mut self,
+        measured: Vec<Measured>,
+    ) -> anyhow::Result<ScalingResult> {
+        let settings = &self.run.manifest.settings;
+        // the first of those with the fewest slots
+        let alone = measured.iter().min_by_key(|one| one.row.slots);
+        let alone = alone.context("nothing was measured")?;
+        let make = async |scale: &mut Self| scale.overheads(alone).await;
+        let overheads = self.load_or_compute("overheads.json", make).await?;
+        let mut rows: Vec<ScalingRow> = measured.into_iter().map(|one| one.row).collect();
+        for search in settings.searches() {
+            for slots in settings.sleeping.iter().copied() {
+                let make = async |scale: &mut Self| {
+                    scale.measure_sleeping(search, slots, &overheads).await
+                };
+                let name = file(SlotMode::Slept, search, slots);
+                rows.push(self.load_or_compute(&name, make).await?);
+            }
+            for slots in settings.projected.iter().copied() {
+                let make = async |scale: &mut Self| {
+                    let strategy = scale.strategy(search, slots)?;
+                    Ok(project(search, strategy, scale.space, slots, &overheads))
+                };
+                let name = file(SlotMode::Projected, search, slots);
+                rows.push(self.load_or_compute(&name, make).await?);
+            }
+        }
+        Ok(ScalingResult::new(overheads, rows))
+    }
+
     /// Returns a measurement stored in the run folder under `name`, or makes and stores it. Wall times must
     /// be measured without interruption: an incomplete measurement is repeated from its beginning.
-    async fn load_or_compute<T: Serialize + DeserializeOwned>(
+    pub(super) async fn load_or_compute<T: Serialize + DeserializeOwned>(
         &mut self,
         name: &str,
         make: impl AsyncFnOnce(&mut Self) -> anyhow::Result<T>,
     ) -> anyhow::Result<T> {
-        if self.folder.file(name).exists() {
-            return self.folder.read_json(name);
+        if self.run.folder.file(name).exists() {
+            return self.run.folder.read_json(name);
         }
         terminal::tell(&format!("measuring {}", name.trim_end_matches(".json")));
         let made = make(self).await?;
-        self.folder.write_json(name, &made)?;
+        self.run.folder.write_json(name, &made)?;
         Ok(made)
     }
 
-    fn strategy(&self, search: (&str, u64), slots: u64) -> anyhow::Result<Box<dyn Strategy>> {
+    fn strategy(&self, search: Searched<'_>, slots: u64) -> anyhow::Result<Box<dyn Strategy>> {
         let settings = ScalingSettings::settings(search, self.space, slots)?;
         Ok(build(&settings, self.space, self.run.manifest.seed)?)
     }
@@ -222,13 +278,14 @@ impl ScalingRun<'_> {
     /// Measures a search of the case on `slots` simulating worker processes.
     async fn measure_computing(
         &self,
-        search: (&str, u64),
+        search: Searched<'_>,
         slots: u64,
         watch: &mut dyn Watch<ProgressView>,
         stop: &mut Stop,
     ) -> anyhow::Result<Measured> {
         let case = &self.run.case;
         let journal = self
+            .run
             .folder
             .file(&file(SlotMode::Computed, search, slots))
             .with_extension("");
@@ -245,47 +302,110 @@ impl ScalingRun<'_> {
             settings: String::new(),
         };
         let mut bus = Bus::open(options, case).await?;
-        // starting programs and fetching the case is over before the clock starts
         for round in 0..MAX_WARM_UP_ROUNDS {
-            let near = (0..2 * slots).map(|index| {
-                let offset = 1e-6 * (f64::from(round) * 2.0 * slots as f64 + index as f64);
-                self.space.values(&vec![offset; self.space.dimension()])
-            });
-            let near: Vec<_> = near.collect();
-            score_all(&mut bus, case, &near, watch, stop).await?;
+            self.warm_up(&mut bus, (round, slots), watch, stop).await?;
             if bus.workers_status().workers.len() >= count {
                 break;
             }
         }
+        let derivatives_over_plain = self.derivatives_over_plain(&mut bus, slots).await?;
+        let row = self
+            .time_search(&mut bus, (SlotMode::Computed, search, slots), watch, stop)
+            .await?;
+        bus.close().await?;
+        let (_, costs) = account::read_with_costs(&journal.join(journal::FILE))?;
+        let times = costs.values().map(|cost| cost.wall_s).collect();
+        Ok(Measured::new(row, times, derivatives_over_plain))
+    }
+
+    /// Evaluates two individuals for each slot near the start, so that starting programs and fetching the case
+    /// is over before the clock starts; each round has other individuals.
+    pub(super) async fn warm_up<E: Evaluator>(
+        &self,
+        evaluator: &mut E,
+        (round, slots): (u32, u64),
+        watch: &mut dyn Watch<ProgressView>,
+        stop: &mut Stop,
+    ) -> anyhow::Result<()> {
+        let near = (0..2 * slots).map(|index| self.near(u64::from(round) * 2 * slots + index));
+        let near: Vec<_> = near.collect();
+        score_all(evaluator, &self.run.case, &near, watch, stop).await?;
+        Ok(())
+    }
+
+    /// Returns the `index`-th of a series of individuals close to the start.
+    fn near(&self, index: u64) -> Vec<f64> {
+        let offset = 1e-6 * index as f64;
+        self.space.values(&vec![offset; self.space.dimension()])
+    }
+
+    /// Measures the computing time of a simulation with the derivatives by all unknowns, over that of a plain
+    /// one. There are as many jobs as slots, so that none is divided.
+    pub(super) async fn derivatives_over_plain<E: Evaluator>(
+        &self,
+        evaluator: &mut E,
+        slots: u64,
+    ) -> anyhow::Result<f64> {
+        let case = &self.run.case;
+        let moving = case.unknowns.iter().filter(|it| !it.fixed && !it.is_off());
+        let columns: Vec<Column> = moving.map(|it| Column::new(it.name.clone())).collect();
+        let count = slots.max(DERIVATIVE_SAMPLES);
+        let mut times = [0.0; 2];
+        for (kind, columns) in [Vec::new(), columns].into_iter().enumerate() {
+            for index in 0..count {
+                let individual = Individual::new(case.objective.condition, self.near(index));
+                let reply = Reply::Score {
+                    with_residual: true,
+                    whole: true,
+                };
+                let job = Job::Simulate(SimulateSpec {
+                    columns: columns.clone(),
+                    ..SimulateSpec::new(individual, reply)
+                });
+                let id = DERIVATIVE_JOBS + kind as u64 * count + index;
+                evaluator.submit(JobId(id), job)?;
+            }
+            for _ in 0..count {
+                times[kind] += evaluator.next().await?.cost.wall_s();
+            }
+        }
+        let [plain, derived] = times;
+        Ok(if plain > 0.0 {
+            (derived / plain).max(1.0)
+        } else {
+            1.0
+        })
+    }
+
+    /// Runs a search on an evaluator and returns its row of the scaling table.
+    pub(super) async fn time_search<E: Evaluator>(
+        &self,
+        evaluator: &mut E,
+        (how, search, slots): (SlotMode, Searched<'_>, u64),
+        watch: &mut dyn Watch<ProgressView>,
+        stop: &mut Stop,
+    ) -> anyhow::Result<ScalingRow> {
         let list = [Search {
             settings: ScalingSettings::settings(search, self.space, slots)?,
             seed: self.run.manifest.seed,
             evaluations: Some(self.run.manifest.settings.evaluations),
         }];
-        let (before, begun, processor) =
-            (bus.workers_status().spent, Instant::now(), processor_time());
-        let mut sweep = Sweep::new(case, self.space);
-        let found = sweep.run(&mut bus, &list, watch, stop).await?;
-        let (wall, after) = (begun.elapsed(), bus.workers_status().spent);
+        let (before, begun, processor) = (
+            evaluator.workers_status().spent,
+            Instant::now(),
+            processor_time(),
+        );
+        let mut sweep = Sweep::new(&self.run.case, self.space);
+        let found = sweep.run(evaluator, &list, watch, stop).await?;
+        let (wall, after) = (begun.elapsed(), evaluator.workers_status().spent);
         let processor = processor_time().saturating_sub(processor);
-        bus.close().await?;
         let evaluations = found.first().map_or(0, |found| found.evaluations);
-        let (_, costs) = account::read_with_costs(&journal.join(journal::FILE))?;
-        let mut times: Vec<f64> = costs.values().map(|cost| cost.wall_s).collect();
-        times.sort_by(f64::total_cmp);
-        let quantiles = (0..=100)
-            .step_by(5)
-            .filter_map(|at| quantile::of(&times, at));
-        Ok(Measured {
-            row: row(
-                (SlotMode::Computed, search, slots),
-                evaluations,
-                (wall, processor),
-                [before, after],
-            ),
-            simulation_s: times.iter().sum::<f64>() / times.len().max(1) as f64,
-            simulation_quantiles_s: quantiles.collect(),
-        })
+        Ok(row(
+            (how, search, slots),
+            evaluations,
+            (wall, processor),
+            [before, after],
+        ))
     }
 
     /// Measures the coordinator's cost per empty job and the round-trip time of a job, and combines them with
@@ -308,6 +428,7 @@ impl ScalingRun<'_> {
             simulation_quantiles_s: alone.simulation_quantiles_s.clone(),
             coordinator_us: result.coordinator_cpu_us_per_job,
             round_trip_ms: result.rtt_median_ms,
+            derivatives_over_plain: alone.derivatives_over_plain,
         })
     }
 
@@ -315,7 +436,7 @@ impl ScalingRun<'_> {
     /// times.
     async fn measure_sleeping(
         &self,
-        search: (&str, u64),
+        search: Searched<'_>,
         slots: u64,
         overheads: &Overheads,
     ) -> anyhow::Result<ScalingRow> {
@@ -324,13 +445,22 @@ impl ScalingRun<'_> {
             sleep_s,
             ..
         } = self.run.manifest.settings;
+        let factors = Rc::new(RefCell::new(BTreeMap::new()));
         let takes = |id: u64| {
             let uneven = overheads.sample_duration_s(id) / overheads.simulation_s;
-            Duration::try_from_secs_f64(sleep_s * uneven).unwrap_or_default()
+            let factor = factors.borrow().get(&id).copied().unwrap_or(1.0);
+            Duration::try_from_secs_f64(sleep_s * uneven * factor).unwrap_or_default()
         };
         let stand = SyntheticObjective(self.space);
         let tell = |genes: &[f64]| stand.evaluate(genes);
+        let residual = |genes: &[f64]| stand.residual(genes);
         let mut source = JobSource::new(self.strategy(search, slots)?, &tell);
+        source.derivatives = Some(SimulatedDerivatives {
+            residual: &residual,
+            columns: self.space.dimension(),
+            cost: overheads.derivatives_over_plain,
+            factors: Rc::clone(&factors),
+        });
         source.limit = evaluations.max(MIN_EVALUATIONS_PER_SLOT * slots);
         let scratch = tempfile::tempdir()?;
         let options = empty_run(scratch.path())?;
@@ -371,7 +501,7 @@ fn empty_run(folder: &std::path::Path) -> anyhow::Result<runtime::DispatchOption
 /// Builds a row of the scaling table from measured values; `(wall, processor)` are the wall time and the
 /// coordinator's processor time of the search.
 fn row(
-    (how, (preset, population), slots): (SlotMode, (&str, u64), u64),
+    (how, (preset, population), slots): (SlotMode, Searched<'_>, u64),
     evaluations: u64,
     (wall, processor): (Duration, Duration),
     [before, after]: [Spent; 2],

@@ -39,10 +39,10 @@ impl Session {
         run: &Run<S>,
         work: impl AsyncFnOnce(&mut Bus, &mut Stop) -> anyhow::Result<T>,
     ) -> anyhow::Result<T> {
-        let mut launch = Launch::prepare(&self.workers, run.folder.path())?;
+        let mut launch = Launch::prepare(&self.workers.remote, run.folder.path())?;
         let door = launch
             .as_ref()
-            .map_or(&self.workers.door, |launch| &launch.endpoint)
+            .map_or(&self.workers.remote.door, |launch| &launch.endpoint)
             .clone();
         let done = bus::block_on(async {
             let mut stop = interrupt::listen();

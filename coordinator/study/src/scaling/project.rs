@@ -1,53 +1,109 @@
 //! Projection of a search to more slots than are available: the real scheduler and the real strategy on a
 //! simulated clock.
 use super::row::{Overheads, ScalingRow, Shares, SlotMode};
-use dispatch::simulated::{Cluster, ClusterSetting, SimulatedSearch};
-use protocol::event::Spent;
+use dispatch::simulated::{Cluster, ClusterSetting, SimulatedDerivatives, SimulatedSearch};
+use protocol::{
+    event::Spent,
+    job::{Derivative, Per, to_single_precision},
+};
 use search::{
     space::Space,
-    strategy::{EvaluationResult, Strategy},
+    strategy::{EvaluationResult, Residual, Strategy},
 };
-use std::time::Duration;
+use std::{cell::RefCell, collections::BTreeMap, rc::Rc, time::Duration};
 
 /// Upper limit of the simulated time of a projected search, longer than any search takes.
 const LIMIT: Duration = Duration::from_hours(24 * 365);
+/// Largest number of workers of one coordinator (measured: `docs/measurements.md`); more slots are slots of the
+/// same workers.
+pub(super) const MAX_WORKERS: u64 = 1000;
+/// One in this many workers of a projection is half as fast as the others.
+pub(super) const SLOW_ONE_IN: u64 = 10;
 
-/// Synthetic objective in place of the simulation of a case: squared distance from a point in the search
-/// space, in normalised coordinates.
+/// Synthetic objective in place of the simulation of a case: sum of squares with one minimum in the search space, in
+/// normalised coordinates.
 pub struct SyntheticObjective<'a>(pub &'a Space);
 
 impl SyntheticObjective<'_> {
     /// Computes the synthetic objective of an individual, given by the values of its unknowns.
     pub fn evaluate(&self, genes: &[f64]) -> EvaluationResult {
-        let point = self.0.point(genes);
-        let squares = point.iter().map(|x| (x - 0.3) * (x - 0.3));
         EvaluationResult {
-            fitness: squares.sum(),
+            fitness: self.differences(genes).map(|x| x * x).sum(),
             complete: true,
         }
     }
+
+    /// Computes the residual whose squared norm is the synthetic objective, one value per axis of the space, with
+    /// its derivatives by the unknowns.
+    ///
+    /// The residual is bent (a cubic term), so that a descent takes several steps as on a real case.
+    pub fn residual(&self, genes: &[f64]) -> Residual {
+        let values: Vec<f64> = self.differences(genes).collect();
+        let point = self.0.point(genes);
+        let axes = self.0.axes().iter().enumerate();
+        let derivatives = axes.map(|(axis, own)| {
+            let x = point[axis] - 0.3;
+            let slope = 1.0 + 3.0 * BEND * x * x;
+            let per = Per::Unit(own.unknown.unit.clone());
+            let terms = search::derivative::terms(self.0, axis, &point, genes);
+            let factor = terms.first().map_or(1.0, |term| term.factor(&per));
+            let mut curve = vec![0.0; values.len()];
+            curve[axis] = slope / factor;
+            let curves = vec![to_single_precision(curve)];
+            (own.unknown.name.clone(), Derivative::Curves { per, curves })
+        });
+        Residual {
+            derivatives: derivatives.collect(),
+            values,
+        }
+    }
+
+    fn differences(&self, genes: &[f64]) -> impl Iterator<Item = f64> {
+        let point = self.0.point(genes);
+        point.into_iter().map(|x| {
+            let x = x - 0.3;
+            x + BEND * x * x * x
+        })
+    }
 }
+
+/// Coefficient of the cubic term of the synthetic residual.
+const BEND: f64 = 0.5;
 
 /// Runs a search on a simulated cluster of `slots` slots (parallel jobs) and returns its scaling result;
 /// `name` and `population` of the search are only copied into the result.
 pub fn project(
-    (name, population): (&str, u64),
+    (name, population): (&str, Option<u64>),
     strategy: Box<dyn Strategy>,
     space: &Space,
     slots: u64,
     overheads: &Overheads,
 ) -> ScalingRow {
     let seconds = |s: f64| Duration::try_from_secs_f64(s).unwrap_or_default();
+    let slots_per_worker = slots.div_ceil(MAX_WORKERS).max(1);
     let mut cluster = Cluster::new(ClusterSetting {
+        slots: usize::try_from(slots_per_worker).unwrap_or(usize::MAX),
+        slow_one_in: SLOW_ONE_IN,
         handling: seconds(overheads.coordinator_us * 1e-6),
         delay: seconds(overheads.round_trip_ms * 1e-3),
-        ..ClusterSetting::even(slots)
+        ..ClusterSetting::even(slots.div_ceil(slots_per_worker))
     });
-    let times = overheads.clone();
-    cluster.job_durations = Some(Box::new(move |job| seconds(times.sample_duration_s(job))));
+    let factors = Rc::new(RefCell::new(BTreeMap::new()));
+    let (times, own) = (overheads.clone(), Rc::clone(&factors));
+    cluster.job_durations = Some(Box::new(move |job| {
+        let factor = own.borrow().get(&job).copied().unwrap_or(1.0);
+        seconds(factor * times.sample_duration_s(job))
+    }));
     let stand = SyntheticObjective(space);
     let tell = |genes: &[f64]| stand.evaluate(genes);
+    let residual = |genes: &[f64]| stand.residual(genes);
     let mut source = SimulatedSearch::new(strategy, &tell);
+    source.derivatives = Some(SimulatedDerivatives {
+        residual: &residual,
+        columns: space.dimension(),
+        cost: overheads.derivatives_over_plain,
+        factors,
+    });
     cluster.run(&mut source, LIMIT);
     let spent = cluster.core.snapshot(cluster.now).spent;
     let evaluations = source.strategy.archive().entries().len() as u64;
@@ -84,15 +140,18 @@ mod tests {
             workers: usize::try_from(slots).unwrap(),
         };
         let mut settings = (preset.settings)(&plan);
-        preset.set(&mut settings, "generations", "20").unwrap();
+        if name != "least-squares" {
+            preset.set(&mut settings, "generations", "20").unwrap();
+        }
         let overheads = Overheads {
             simulation_s: 1.0,
             simulation_quantiles_s: vec![0.5, 1.0, 1.5],
             coordinator_us,
             round_trip_ms: 1.0,
+            derivatives_over_plain: 6.0,
         };
         let strategy = build(&settings, &space, 1).unwrap();
-        project((name, 80), strategy, &space, slots, &overheads)
+        project((name, None), strategy, &space, slots, &overheads)
     }
 
     #[test]
@@ -112,5 +171,43 @@ mod tests {
         let rate = slow.evaluations as f64 / slow.wall_s;
         assert!(rate < 2.05 && slow.shares.useful < 0.1, "{slow:?}");
         assert!(slow.coordinator_share > 0.95, "{slow:?}");
+    }
+    /// Checks the derivatives of the synthetic residual against differences.
+    #[test]
+    fn synthetic_derivatives_are_those_of_the_residual() {
+        let space = SPHERE.space();
+        let stand = SyntheticObjective(&space);
+        let x = [0.4, -0.2, 1.1, 0.7];
+        let found = stand.residual(&space.values(&x));
+        let squares: f64 = found.values.iter().map(|r| r * r).sum();
+        let fitness = stand.evaluate(&space.values(&x)).fitness;
+        assert!((squares / fitness - 1.0).abs() < 1e-12);
+        for axis in 0..4 {
+            let at = |step: f64| {
+                let mut x = x;
+                x[axis] += step;
+                stand.residual(&space.values(&x)).values[axis]
+            };
+            let difference = (at(1e-6) - at(-1e-6)) / 2e-6;
+            let values = space.values(&x);
+            let terms = search::derivative::terms(&space, axis, &x, &values);
+            let mut sum = [0.0; 4];
+            let by = &found.derivatives[&format!("x{axis}")];
+            terms[0].add(by, (0, None), &mut sum).unwrap();
+            assert!(
+                (sum[axis] / difference - 1.0).abs() < 1e-6,
+                "{axis}: {sum:?}"
+            );
+        }
+    }
+
+    /// Checks that descents use slots that their few jobs would leave idle, with the same evaluations.
+    #[test]
+    fn descents_on_many_slots_divide_their_derivatives() {
+        let few = projected("least-squares", 4, 100.0);
+        let many = projected("least-squares", 80, 100.0);
+        assert_eq!(few.evaluations, many.evaluations);
+        assert!(many.useful_s > 1.2 * few.useful_s, "{many:?} {few:?}");
+        assert!(few.wall_s > 5.0 * many.wall_s, "{many:?} {few:?}");
     }
 }

@@ -1,4 +1,5 @@
 //! Scaling result of one search on one number of slots (parallel jobs): speed, and use of slot time.
+use super::project::{MAX_WORKERS, SLOW_ONE_IN};
 use protocol::event::Spent;
 use search::random::{Phase, Streams};
 use serde::{Deserialize, Serialize};
@@ -9,6 +10,8 @@ use serde::{Deserialize, Serialize};
 pub enum SlotMode {
     /// Measured: workers of this machine simulated the case.
     Computed,
+    /// Measured: workers of other machines, or started by hand, simulated the case.
+    Remote,
     /// Measured over TCP on loopback, with simulated workers in another process that sleep instead of
     /// computing; everything else is real.
     Slept,
@@ -21,6 +24,7 @@ impl SlotMode {
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Computed => "computed",
+            Self::Remote => "remote",
             Self::Slept => "slept",
             Self::Projected => "projected",
         }
@@ -69,8 +73,8 @@ pub struct ScalingRow {
     pub how: SlotMode,
     /// Name of the settings preset with which the search was run.
     pub preset: String,
-    /// Number of individuals per generation.
-    pub population: u64,
+    /// Number of individuals per generation, if it was chosen for the measurement.
+    pub population: Option<u64>,
     /// Number of slots (parallel jobs) of the search.
     pub slots: u64,
     /// Number of evaluations of the search.
@@ -93,6 +97,16 @@ pub struct ScalingRow {
     pub efficiency: f64,
 }
 
+impl ScalingRow {
+    /// Names the search: its preset, with the population if that was chosen.
+    pub fn search(&self) -> String {
+        match self.population {
+            Some(population) => format!("{} {population}", self.preset),
+            None => self.preset.clone(),
+        }
+    }
+}
+
 /// Measured simulation times and overheads, the inputs of a projection.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Overheads {
@@ -105,6 +119,8 @@ pub struct Overheads {
     pub coordinator_us: f64,
     /// Median round-trip time of an empty job over TCP on loopback \[ms\].
     pub round_trip_ms: f64,
+    /// Computing time of a simulation with derivatives by all unknowns over that of a plain one.
+    pub derivatives_over_plain: f64,
 }
 
 impl Overheads {
@@ -169,8 +185,16 @@ impl ScalingResult {
                 "A message takes up to {:.2} ms, the round trip of loopback; a real network adds its own.",
                 overheads.round_trip_ms
             ),
-            "Workers have one slot each, are equally fast, have joined and have the case; none fails.".to_owned(),
-            "Sleeping and projected searches minimise the squared distance from a point in the case's box: their \
+            format!(
+                "A simulation with the derivatives that a descent needs takes {:.1} times as long as a plain one; where \
+                 slots would be idle, several compute parts of its columns.",
+                overheads.derivatives_over_plain
+            ),
+            format!(
+                "One coordinator has at most {MAX_WORKERS} workers: more slots are further slots of these. One worker in \
+                 {SLOW_ONE_IN} is half as fast; all have joined and have the case; none fails."
+            ),
+            "Sleeping and projected searches minimise a sum of squares with one minimum in the case's box: their \
              individuals are not those of the case."
                 .to_owned(),
         ];
@@ -190,7 +214,7 @@ mod tests {
         ScalingRow {
             how: SlotMode::Computed,
             preset: "paper".to_owned(),
-            population: 80,
+            population: Some(80),
             slots,
             evaluations: 100,
             wall_s,
@@ -212,6 +236,7 @@ mod tests {
             simulation_quantiles_s: vec![0.05, 0.15],
             coordinator_us: 100.0,
             round_trip_ms: 0.2,
+            derivatives_over_plain: 6.0,
         };
         let scaled = ScalingResult::new(
             overheads.clone(),
@@ -254,6 +279,7 @@ mod tests {
             simulation_quantiles_s: vec![0.0, 0.0, 0.5, 4.0],
             coordinator_us: 100.0,
             round_trip_ms: 0.2,
+            derivatives_over_plain: 6.0,
         };
         let times: Vec<f64> = (0..9000)
             .map(|job| overheads.sample_duration_s(job))

@@ -4,7 +4,7 @@ use crate::cli::{
     argument::{
         case::{CaseChoice, LoadedCase},
         output::OutputChoice,
-        workers::cores,
+        workers::{RemoteChoice, cores},
     },
     output::{
         problem::{EXIT_CODES, Problem},
@@ -17,7 +17,8 @@ use crate::cli::{
         interrupt,
         manifest::{Manifest, RunIdentity as _},
         opened::Run,
-        scaling::{ScalingSettings, scale},
+        scaling::{ScalingRun, ScalingSettings},
+        scaling_remote,
     },
 };
 use ::report::{scaling as report, text};
@@ -34,36 +35,43 @@ use study::scaling::ScalingResult;
 Examples:
   horsehead sweep scaling cases/cyjs10-5-37hb
   horsehead sweep scaling cases/cyjs10-5-37hb --presets paper,paper-batch,window --populations 40,80
+  horsehead sweep scaling cases/cyjs10-5-37hb --ssh node1,node2,node3,node4 --nodes 1,2,4
+  horsehead sweep scaling cases/cyjs10-5-37hb --listen quic/0.0.0.0:7447 --tls keys --nodes 8
   horsehead sweep scaling cases/cyjs10-5-37hb --sleeping 0 --projected 80 --output json
 
-Workers of this machine simulate the case; sessions of one other process sleep, over TCP; slots
-of which there are not so many are projected, by the coordinator's own state machine on a
-simulated clock, from what was measured. What the projection takes for granted stands in the
-result.
+Workers of this machine and remote ones simulate the case; sessions of one other process sleep,
+over TCP; slots of which there are not so many are projected, by the coordinator's own state
+machine on a simulated clock, from what was measured. What the projection takes for granted
+stands in the result.
 
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
     #[command(flatten)]
     choice: CaseChoice,
-    /// Presets of `horsehead calibrate` to search with; each must have a population.
+    /// Presets of `horsehead calibrate` to search with.
     #[arg(
         long,
         value_name = "NAME,..",
         value_delimiter = ',',
-        default_value = "paper,window",
+        default_value = "paper,window,quick,least-squares,hybrid",
         env = "HORSEHEAD_PRESETS",
         value_parser = PossibleValuesParser::new(CATALOGUE.iter().map(|preset| preset.name))
     )]
     presets: Vec<String>,
-    /// Population sizes: individuals per generation.
-    #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "80", env = "HORSEHEAD_POPULATIONS", value_parser = clap::value_parser!(u64).range(4..=100_000))]
+    /// Population sizes, for presets that have one [default: that of each preset].
+    #[arg(long, value_name = "N,..", value_delimiter = ',', env = "HORSEHEAD_POPULATIONS", value_parser = clap::value_parser!(u64).range(4..=100_000))]
     populations: Vec<u64>,
     /// Evaluations of each search on workers of this machine, and of a sleeping one; of that at least 8 a slot.
     #[arg(long, value_name = "N", default_value_t = 160, env = "HORSEHEAD_EVALUATIONS", value_parser = clap::value_parser!(u64).range(4..=1_000_000))]
     evaluations: u64,
-    /// Worker processes of this machine that simulate [default: 1 and one per core].
-    #[arg(long, value_name = "N,..", value_delimiter = ',', env = "HORSEHEAD_CREWS", value_parser = clap::value_parser!(u64).range(1..=1024))]
+    /// Worker processes of this machine that simulate; 0 for none [default: 1 and one per core].
+    #[arg(long, value_name = "N,..", value_delimiter = ',', env = "HORSEHEAD_CREWS", value_parser = clap::value_parser!(u64).range(0..=1024))]
     crews: Vec<u64>,
+    /// Numbers of remote workers to measure with [default: one for each host of --ssh or --hosts].
+    #[arg(long, value_name = "N,..", value_delimiter = ',', env = "HORSEHEAD_NODES", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    nodes: Vec<u64>,
+    #[command(flatten)]
+    remote: RemoteChoice,
     /// Numbers of sleeping sessions; 0 for none.
     #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "64,512", env = "HORSEHEAD_SLEEPING", value_parser = clap::value_parser!(u64).range(0..=990))]
     sleeping: Vec<u64>,
@@ -99,6 +107,34 @@ fn counts(all: &[u64]) -> Vec<u64> {
     counts
 }
 
+/// Returns the numbers of remote workers to measure with; none if no remote workers are admitted.
+fn nodes(arguments: &Arguments) -> Result<Vec<u64>, Problem> {
+    let hosts = arguments.remote.hosts.read()?.len() as u64;
+    let nodes = counts(&arguments.nodes);
+    let refuse = |message: String, remedy: &str| {
+        Err(Problem {
+            message,
+            remedy: remedy.to_owned(),
+        })
+    };
+    match (arguments.remote.has_others(), nodes.last()) {
+        (false, Some(_)) => refuse(
+            "--nodes counts remote workers, and none can connect".to_owned(),
+            "name hosts with --ssh, or an address with --listen",
+        ),
+        (true, Some(most)) if hosts > 0 && *most > hosts => refuse(
+            format!("--nodes {most}: there are {hosts} hosts"),
+            "name more hosts with --ssh or --hosts",
+        ),
+        (true, None) if hosts == 0 => refuse(
+            "it is not known how many workers will connect".to_owned(),
+            "say how many to wait for with --nodes N",
+        ),
+        (true, None) => Ok(vec![hosts]),
+        (_, Some(_) | None) => Ok(nodes),
+    }
+}
+
 fn begin(arguments: &Arguments) -> anyhow::Result<Run<ScalingSettings>> {
     let LoadedCase {
         case,
@@ -116,19 +152,23 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<ScalingSettings>> {
         populations: counts(&arguments.populations),
         evaluations: arguments.evaluations,
         crews: counts(&crews),
+        nodes: nodes(arguments)?,
         sleeping: counts(&arguments.sleeping),
         sleep_s: arguments.sleep,
         projected: counts(&arguments.projected),
     };
+    if settings.crews.is_empty() && settings.nodes.is_empty() {
+        return Err(Problem {
+            message: "there is nothing to measure on".to_owned(),
+            remedy: "name numbers of worker processes with --crews, or remote workers with --ssh or --listen"
+                .to_owned(),
+        }
+        .into());
+    }
     // every search can be made before anything runs
     let space = Space::new(&case.unknowns)?;
     for search in settings.searches() {
-        ScalingSettings::settings(search, &space, 1).map_err(|error| Problem {
-            message: error.to_string(),
-            remedy:
-                "choose presets that have a population, as paper, paper-batch, window and l-shade"
-                    .to_owned(),
-        })?;
+        ScalingSettings::settings(search, &space, 1)?;
     }
     let path = if let Some(path) = &arguments.run {
         path.clone()
@@ -155,13 +195,23 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let scaled = bus::block_on(async {
         let mut stop = interrupt::listen();
         let mut display = Display::counting("searches done", run.case.objective_unit());
-        let scaled = scale(&run, &mut display, &mut stop).await;
+        let space = run.manifest.space(&run.case)?;
+        let mut scale = ScalingRun::new(&run, &space);
+        let scaled = async {
+            let mut measured = scale.measure_local(&mut display, &mut stop).await?;
+            let remote = &arguments.remote;
+            measured.extend(
+                scaling_remote::measure(&mut scale, remote, &mut display, &mut stop).await?,
+            );
+            scale.complete(measured).await
+        };
+        let scaled = scaled.await;
         display.clear();
         scaled
     });
     let scaled = scaled.inspect_err(|_| {
         let path = run.folder.path().display();
-        let command = run.resume_command();
+        let command = &run.manifest.command;
         terminal::tell(&format!(
             "the rows finished so far are kept in {path}; to resume:\n  {command}"
         ));

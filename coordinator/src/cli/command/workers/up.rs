@@ -1,6 +1,6 @@
 //! `workers up` and `workers logs`: builds a launch plan from the arguments, and prints or executes it.
 use crate::cli::{
-    argument::nodes::HostsChoice,
+    argument::nodes::{HostsChoice, LaunchChoice},
     output::terminal,
     run::launch::{execute, programs},
 };
@@ -11,7 +11,7 @@ use link::{
     locator::{Locator, Protocol},
 };
 use std::{
-    env, fs,
+    env,
     path::{Path, PathBuf},
     process::Command,
 };
@@ -57,9 +57,6 @@ pub(super) struct Arguments {
     /// Print what would be done, as a script, and do nothing.
     #[arg(long, env = "HORSEHEAD_DRY_RUN")]
     dry_run: bool,
-    /// Simulations at a time on each [default: one per hardware thread, or `cpu` of a pod].
-    #[arg(long, value_name = "N", env = "HORSEHEAD_SLOTS", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    slots: Option<u16>,
     /// Time without work after which workers end; 0 for never.
     #[arg(
         long,
@@ -76,17 +73,8 @@ pub(super) struct Arguments {
         default_value_t = 20
     )]
     wait: u64,
-    /// Worker program for hosts of another kind, with ARCH as `uname -m` says; may be repeated.
-    #[arg(
-        long,
-        value_name = "ARCH=PATH",
-        env = "HORSEHEAD_WORKER_PROGRAM",
-        value_delimiter = ','
-    )]
-    worker_program: Vec<String>,
-    /// File of shell lines to run before the worker, as `module load gcc`.
-    #[arg(long, value_name = "FILE", env = "HORSEHEAD_PROLOGUE")]
-    prologue: Option<PathBuf>,
+    #[command(flatten)]
+    launch: LaunchChoice,
     /// Further argument of sbatch, as `--sbatch-arg=--account=physics`; may be repeated.
     #[arg(long, value_name = "ARG", env = "HORSEHEAD_SBATCH_ARG")]
     sbatch_arg: Vec<String>,
@@ -129,20 +117,14 @@ fn plan(arguments: &Arguments) -> Result<LaunchPlan, Problem> {
         connect: arguments.connect.clone(),
         tls,
         idle_timeout: Some(arguments.idle_timeout).filter(|seconds| *seconds > 0),
-        slots: arguments.slots,
-        prologue: match &arguments.prologue {
-            Some(file) => fs::read_to_string(file).map_err(|error| Problem {
-                message: format!("--prologue {}: {error}", file.display()),
-                remedy: "name a file of shell lines".to_owned(),
-            })?,
-            None => String::new(),
-        },
+        slots: arguments.launch.slots,
+        prologue: arguments.launch.prologue()?,
         owner: String::new(),
     };
     if let Some(options) = &arguments.k8s {
         return k8s::up(&order, options, shared_key_folder(&order)?.as_deref());
     }
-    let programs = programs(&arguments.worker_program)?;
+    let programs = programs(&arguments.launch.worker_program)?;
     let own = programs.first().ok_or_else(|| Problem {
         message: "there is no worker program".to_owned(),
         remedy: "name one with --worker-program ARCH=PATH".to_owned(),
