@@ -1,6 +1,7 @@
 //! Tests of the shipped pumping unit: its case, converted as a worker converts it.
 #![expect(clippy::unwrap_used, reason = "helpers of tests")]
 mod columns;
+mod conditions;
 mod effect;
 mod gene;
 mod rounding;

@@ -1,7 +1,7 @@
 //! Summary that `horsehead case check` prints of a valid case.
 use super::{loaded::Loaded, note::Note};
 use discrepancy::record::{Record, Recorded};
-use protocol::case::WeightedCondition;
+use protocol::case::{Case, WeightedCondition};
 use std::fmt::Write as _;
 
 /// Summary of a case.
@@ -124,6 +124,20 @@ pub fn text(loaded: &Loaded) -> String {
     let terms = case.objective.terms.iter();
     let terms = terms.map(|term| format!("{} (weight {})", term.channel, term.weight));
     let terms: Vec<String> = terms.collect();
+    let conditions = calibrated_conditions(case);
+    if terms.is_empty() {
+        text.push_str("objective   none: the case is simulated only");
+    } else {
+        let _infallible = write!(text, "objective   {conditions}: {}", terms.join(", "));
+    }
+    for note in &loaded.notes {
+        let _infallible = write!(text, "\nnote: {note}");
+    }
+    text
+}
+
+/// Names the calibrated conditions of a case with their weights, as `5rpm + 0.5 x 4rpm`.
+pub(crate) fn calibrated_conditions(case: &Case) -> String {
     let named = |one: WeightedCondition| {
         let name = &case.conditions.get(one.condition)?.name;
         Some(if one.weight.total_cmp(&1.0).is_eq() {
@@ -134,14 +148,5 @@ pub fn text(loaded: &Loaded) -> String {
     };
     let conditions = case.objective.weighted_conditions();
     let conditions: Vec<String> = conditions.filter_map(named).collect();
-    let conditions = conditions.join(" + ");
-    if terms.is_empty() {
-        text.push_str("objective   none: the case is simulated only");
-    } else {
-        let _infallible = write!(text, "objective   {conditions}: {}", terms.join(", "));
-    }
-    for note in &loaded.notes {
-        let _infallible = write!(text, "\nnote: {note}");
-    }
-    text
+    conditions.join(" + ")
 }

@@ -9,7 +9,7 @@ use crate::{
     error::CaseError,
     note::Note,
     source::{Overrides, RecordFolder, document},
-    summary::CaseSummary,
+    summary::{CaseSummary, calibrated_conditions},
 };
 use protocol::{
     case::{Case, Term, Unknown},
@@ -41,7 +41,7 @@ pub struct KeyFigures {
     pub effects: Vec<CaseEffect>,
     /// Key figures of each working condition.
     pub conditions: Vec<ConditionFigures>,
-    /// Name of the calibrated condition, and the terms of its objective.
+    /// Calibrated conditions with their weights, and the terms of their objective.
     pub objective: (String, Vec<Term>),
     /// Remarks on the case that are not errors.
     pub notes: Vec<Note>,
@@ -113,7 +113,6 @@ fn of(source: &RecordFolder<'_>) -> Result<KeyFigures, CaseError> {
     } = read(source)?;
     let case = loaded.case;
     let rope = |count: usize| (count as f64 * machine.ropes.cylinder_length_m, count);
-    let calibrated = case.conditions.get(case.objective.condition);
     Ok(KeyFigures {
         envelope,
         back_rope: rope(machine.ropes.back_cylinders),
@@ -135,12 +134,7 @@ fn of(source: &RecordFolder<'_>) -> Result<KeyFigures, CaseError> {
         }),
         head_mass_kg: machine.modal_head.mass_kg,
         conditions: conditions(&case, &machine, facts),
-        objective: (
-            calibrated
-                .map(|condition| condition.name.clone())
-                .unwrap_or_default(),
-            case.objective.terms.clone(),
-        ),
+        objective: (calibrated_conditions(&case), case.objective.terms.clone()),
         notes: loaded.notes,
         effects: loaded.effects,
         genes: case.unknowns,

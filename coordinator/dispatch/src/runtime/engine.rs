@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     journal::{Journal, WriterReport},
-    scheduler::{Command, Completed, Core, Input, Snapshot},
+    scheduler::{Command, Completed, ConnectedWorker, Core, Input, Snapshot},
 };
 use link::{CoordinatorEnd, LinkEvent};
 use protocol::{
@@ -270,8 +270,13 @@ impl<L: CoordinatorEnd> Engine<L> {
         for (job, _) in crew.iter_mut().flat_map(|worker| &mut worker.jobs) {
             *job = self.divided.submitted_id(*job);
         }
+        let own_host = rustix::system::uname();
+        let is_local = |worker: &ConnectedWorker| {
+            worker.host == own_host.nodename().to_string_lossy()
+                && (self.workers.as_ref()).is_some_and(|own| own.has_started(worker.process))
+        };
         let (drains, reply) =
-            worker_control::answer(question, crew, |worker| self.link.owner(worker));
+            worker_control::answer(question, crew, |worker| self.link.owner(worker), is_local);
         for (worker, how) in drains {
             self.handle(Input::Drain { worker, how });
         }

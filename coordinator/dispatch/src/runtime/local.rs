@@ -9,6 +9,7 @@
 use super::error::DispatchError;
 use link::locator::Locator;
 use std::{
+    collections::BTreeSet,
     io::{self, BufRead, BufReader, Read, Write},
     os::unix::process::{CommandExt, ExitStatusExt},
     path::PathBuf,
@@ -59,6 +60,8 @@ pub(super) struct LocalWorkers {
     events: UnboundedReceiver<LocalEvent>,
     /// Number of results of the run from any worker.
     results: Arc<AtomicU64>,
+    /// Ids of all processes that were started.
+    started: Arc<Mutex<BTreeSet<u32>>>,
     end: Option<mpsc::Sender<()>>,
     thread: Option<thread::JoinHandle<()>>,
 }
@@ -76,7 +79,9 @@ impl LocalWorkers {
         let program = Program {
             path,
             connect: connect.to_string(),
+            started: Arc::default(),
         };
+        let started = Arc::clone(&program.started);
         let results = Arc::new(AtomicU64::new(0));
         let progress = Arc::clone(&results);
         let tend = move || {
@@ -114,6 +119,7 @@ impl LocalWorkers {
             Ok(Ok(())) => Ok(Self {
                 events,
                 results,
+                started,
                 end: Some(end),
                 thread: Some(thread),
             }),
@@ -125,6 +131,12 @@ impl LocalWorkers {
     /// Counts a result of the run; results show that restarting local workers is worthwhile.
     pub(super) fn note_result(&self) {
         self.results.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Returns whether a process of this machine is one of the local workers.
+    pub(super) fn has_started(&self, process: u32) -> bool {
+        let started = self.started.lock().unwrap_or_else(PoisonError::into_inner);
+        started.contains(&process)
     }
 
     /// Waits for the next event of a local worker. Cancel safe.
@@ -144,10 +156,12 @@ impl Drop for LocalWorkers {
     }
 }
 
-/// Path of the worker program, and the coordinator's address to which it connects.
+/// Worker program with the coordinator's address to which it connects, and the processes that it became.
 struct Program {
     path: PathBuf,
     connect: String,
+    /// Ids of all processes that were started.
+    started: Arc<Mutex<BTreeSet<u32>>>,
 }
 
 /// Standard error of a worker, forwarded line by line; the last line is kept.
@@ -221,6 +235,10 @@ impl LocalWorker {
             // out of reach of Ctrl-C, which is for the coordinator to handle
             .process_group(0)
             .spawn()?;
+        let started = &program.started;
+        let mut started = started.lock().unwrap_or_else(PoisonError::into_inner);
+        started.insert(child.id());
+        drop(started);
         let output = child.stderr.take();
         let said = WorkerOutput::listen(output.ok_or(io::ErrorKind::BrokenPipe)?)?;
         Ok(Self {

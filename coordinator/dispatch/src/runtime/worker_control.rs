@@ -8,10 +8,12 @@ pub(super) fn answer(
     question: &ControlRequest,
     crew: Vec<ConnectedWorker>,
     name: impl Fn(WorkerId) -> Option<String>,
+    is_local: impl Fn(&ConnectedWorker) -> bool,
 ) -> (Vec<(WorkerId, Drain)>, ControlReply) {
     let named = crew.into_iter().map(|hand| {
         let name = name(hand.id).unwrap_or_else(|| NO_CERTIFICATE.to_owned());
-        (hand.id, worker(hand, name))
+        let local = is_local(&hand);
+        (hand.id, worker(hand, name, local))
     });
     let all: Vec<(WorkerId, WorkerReport)> = named.collect();
     let (names, how) = match question {
@@ -56,12 +58,13 @@ pub(super) fn answer(
     )
 }
 
-fn worker(hand: ConnectedWorker, name: String) -> WorkerReport {
+fn worker(hand: ConnectedWorker, name: String, local: bool) -> WorkerReport {
     let present_s = hand.present.as_secs_f64();
     WorkerReport {
         name,
         id: hand.id.to_string(),
         host: hand.host,
+        local,
         slots: hand.slots,
         version: hand.build,
         state: match (hand.is_drained, hand.is_ready) {

@@ -10,6 +10,8 @@ pub struct ConnectedWorker {
     pub id: WorkerId,
     /// Host name of the worker.
     pub host: String,
+    /// Process id of the worker on its host.
+    pub process: u32,
     /// Number of jobs that the worker can run simultaneously.
     pub slots: u32,
     /// Version and build profile of the worker program.
@@ -42,6 +44,7 @@ impl Core {
             ConnectedWorker {
                 id: *id,
                 host: member.announcement.host.clone(),
+                process: member.announcement.pid,
                 slots: member.announcement.slots,
                 build: member.announcement.build.clone(),
                 is_ready: member.ready,

@@ -4,6 +4,7 @@
     clippy::unwrap_used,
     reason = "helpers of tests: a command that cannot be run or read has failed"
 )]
+mod conditions;
 mod evaluate;
 mod foreign_terms;
 mod identify;

@@ -21,7 +21,7 @@ fn slots_are_computed_slept_and_projected_and_rows_are_kept() {
         "--run",
         &run,
         "--presets",
-        "window",
+        "window,least-squares",
         "--populations",
         "8",
         "--evaluations",
@@ -45,15 +45,20 @@ fn slots_are_computed_slept_and_projected_and_rows_are_kept() {
         [
             ("computed", 1),
             ("computed", 2),
+            ("computed", 1),
+            ("computed", 2),
+            ("slept", 6),
+            ("projected", 80),
             ("slept", 6),
             ("projected", 80)
         ]
     );
     for row in rows(&object) {
-        assert_eq!(
-            (&row["preset"], &row["population"]),
-            (&"window".into(), &8.into())
-        );
+        let population = match row["preset"].as_str().unwrap() {
+            "window" => 8.into(),
+            _ => Value::Null,
+        };
+        assert_eq!(row["population"], population, "{row}");
         let shares = row["shares"].as_object().unwrap();
         assert_eq!(shares.len(), 6);
         let all: f64 = shares.values().map(number).sum();
@@ -66,11 +71,16 @@ fn slots_are_computed_slept_and_projected_and_rows_are_kept() {
         );
         assert!(number(&row["useful_s"]) > 0.0 && number(&row["coordinator_us_per_result"]) > 0.0);
     }
-    let slept = &rows(&object)[2];
+    let slept = &rows(&object)[4];
     assert_eq!(slept["evaluations"], 48, "8 for each slot");
     assert!(number(&slept["speed_up"]) > 2.0, "{slept}");
     let overheads = &object["overheads"];
-    for key in ["simulation_s", "coordinator_us", "round_trip_ms"] {
+    for key in [
+        "simulation_s",
+        "coordinator_us",
+        "round_trip_ms",
+        "derivatives_over_plain",
+    ] {
         assert!(number(&overheads[key]) > 0.0, "{overheads}");
     }
     let quantiles = overheads["simulation_quantiles_s"].as_array().unwrap();
@@ -80,7 +90,7 @@ fn slots_are_computed_slept_and_projected_and_rows_are_kept() {
             .windows(2)
             .all(|pair| number(&pair[0]) <= number(&pair[1]))
     );
-    assert_eq!(object["assumptions"].as_array().unwrap().len(), 6);
+    assert_eq!(object["assumptions"].as_array().unwrap().len(), 7);
     foreign_terms::check_folder(run.as_ref());
     let page = fs::read_to_string(rig.file("run/report.html")).unwrap();
     assert!(
@@ -97,19 +107,17 @@ fn slots_are_computed_slept_and_projected_and_rows_are_kept() {
 fn searches_that_cannot_be_scaled_are_refused() {
     let rig = Rig::new();
     let run = rig.path("run");
-    let refused = |preset: &str, said: &str| {
-        let error = rig.refused(&[
-            "sweep",
-            "scaling",
-            "CASE",
-            "--run",
-            &run,
-            "--presets",
-            preset,
-        ]);
+    let refused = |words: &[&str], said: &str| {
+        let command = ["sweep", "scaling", "CASE", "--run", &run];
+        let error = rig.refused(&[&command[..], words].concat());
         assert!(error.contains(said), "{error}");
         assert!(!rig.file("run").exists(), "nothing is begun");
     };
-    refused("random", "there is no setting `population`");
-    refused("papier", "possible values");
+    refused(&["--presets", "papier"], "possible values");
+    refused(&["--crews", "0"], "there is nothing to measure on");
+    refused(&["--nodes", "2"], "none can connect");
+    let listen = ["--listen", "tcp/127.0.0.1:0"];
+    refused(&listen, "how many to wait for with --nodes");
+    let hosts = ["--ssh", "a,b", "--nodes", "3"];
+    refused(&hosts, "there are 2 hosts");
 }

@@ -44,6 +44,9 @@ pub struct WorkerReport {
     pub id: String,
     /// Host name of the worker.
     pub host: String,
+    /// Whether the run started the worker on its own machine.
+    #[serde(default)]
+    pub local: bool,
     /// Number of slots of the worker, i.e. of simultaneous simulations.
     pub slots: u32,
     /// Version and build profile of the worker program.

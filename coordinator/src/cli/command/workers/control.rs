@@ -76,13 +76,14 @@ pub(super) struct DrainArguments {
 /// Arguments of `workers down`.
 #[derive(Debug, Args)]
 pub(super) struct DownArguments {
-    /// Workers, by name, host or id [default: all].
+    /// Workers, by name, host or id [default: all but those that the run started on its own machine].
     #[arg(value_name = "NAME", conflicts_with_all = ["ssh", "hosts"])]
     names: Vec<String>,
     /// Return at once the jobs that the workers hold.
     #[arg(long, env = "HORSEHEAD_NOW")]
     now: bool,
-    /// With --ssh or --hosts: end all workers there, not only those launched by `workers up`.
+    /// End all workers: also those that the run started on its own machine; with --ssh or --hosts, also
+    /// those there that were not launched by `workers up`.
     #[arg(long, conflicts_with = "names", env = "HORSEHEAD_ALL")]
     all: bool,
     #[command(flatten)]
@@ -131,12 +132,29 @@ pub(super) fn down(arguments: &DownArguments) -> anyhow::Result<()> {
         };
         return execute(&ssh::down(&hosts, which));
     }
+    let folder = arguments.run.folder()?;
+    let mut names = arguments.names.clone();
+    if names.is_empty() && !arguments.all {
+        let workers = ask(&folder, &ControlRequest::List)?;
+        let all = workers.len();
+        let remote = workers.into_iter().filter(|worker| !worker.local);
+        names = remote.map(|worker| worker.id).collect();
+        if names.is_empty() {
+            terminal::tell(&match all {
+                0 => "no worker takes part".to_owned(),
+                all => format!(
+                    "the run started its {all} workers itself and needs them; --all ends them too"
+                ),
+            });
+            return Ok(());
+        }
+    }
     let question = ControlRequest::Drain {
-        names: arguments.names.clone(),
+        names,
         now: arguments.now,
         end: true,
     };
-    let workers = ask(&arguments.run.folder()?, &question)?;
+    let workers = ask(&folder, &question)?;
     tell(&workers, arguments.now, "ends");
     Ok(())
 }
