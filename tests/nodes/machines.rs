@@ -67,10 +67,20 @@ fn configure(site: &Site) {
     fs::create_dir_all("/run/sshd").unwrap();
 }
 
-/// Starts a host: sshd in its own host name, mount and process namespaces.
+/// Starts a host: sshd in its own host name, mount and process namespaces, with 200 MB for its home.
 pub(super) fn host(site: &Site, namespaces: &Namespaces, port: u16) -> Process {
+    host_with_room(site, namespaces, port, 200)
+}
+
+/// Starts a host like [`host`] with a number of megabytes for its home.
+pub(super) fn host_with_room(
+    site: &Site,
+    namespaces: &Namespaces,
+    port: u16,
+    megabytes: u32,
+) -> Process {
     let script = format!(
-        "hostname node{port} && mount -t tmpfs -o size=200m none /root && \
+        "hostname node{port} && mount -t tmpfs -o size={megabytes}m none /root && \
          exec {SSHD} -D -e -f {} -p {port}",
         site.path("sshd_config").display()
     );
@@ -99,6 +109,14 @@ pub(super) fn on_head(site: &Site, namespaces: &Namespaces, words: &[&str]) -> O
         .current_dir(site.folder.path())
         .env("PATH", format!("{}:{path}", site.path("bin").display()));
     command.output().unwrap()
+}
+
+/// Runs a script on a host by ssh and returns its output.
+pub(super) fn on_host(site: &Site, namespaces: &Namespaces, port: u16, script: &str) -> String {
+    let mut command = namespaces.on_head(&site.path("bin/ssh"));
+    command.args(["-p", &port.to_string(), &format!("root@{NODE}"), script]);
+    let output = command.output().unwrap();
+    String::from_utf8_lossy(&output.stdout).trim().to_owned()
 }
 
 fn workers(site: &Site, namespaces: &Namespaces) -> Vec<Value> {

@@ -11,6 +11,7 @@ mod plans;
 mod refusals;
 mod resumed;
 mod run;
+mod spare;
 
 use serde_json::Value;
 use std::{

@@ -1,7 +1,7 @@
 //! Test of a run that launched its own workers over a real sshd, was killed, and is resumed by the same
 //! command.
 use super::{
-    machines::{host, network, on_head},
+    machines::{host, network, on_head, on_host},
     *,
 };
 use rustix::process::Signal;
@@ -42,14 +42,6 @@ fn digest(output: &Output) -> String {
     assert!(output.status.success(), "{}", errors(output));
     let object: Value = serde_json::from_slice(&output.stdout).unwrap();
     object["log_digest"].as_str().unwrap().to_owned()
-}
-
-/// Runs a script on a host by ssh and returns its output.
-fn on_host(site: &Site, namespaces: &Namespaces, port: u16, script: &str) -> String {
-    let mut command = namespaces.on_head(&site.path("bin/ssh"));
-    command.args(["-p", &port.to_string(), &format!("root@{NODE}"), script]);
-    let output = command.output().unwrap();
-    String::from_utf8_lossy(&output.stdout).trim().to_owned()
 }
 
 /// Returns the process ids of workers on a host.

@@ -8,7 +8,8 @@
 //! Between two standstills every motion is a [sum](sum::Sum) of exponentials; [`motion`] joins these pieces,
 //! so that no time integration is needed. Four effects ([`effect`]) and one unknown may be absent from the
 //! model. [`record`] generates synthetic measurements with noise; [`simulator`] connects the model to a
-//! worker. The crate depends on no search and reads no files.
+//! worker; [`case_folder`] writes a case with such measurements. The crate depends on no search and reads no files.
+pub mod case_folder;
 pub mod effect;
 pub mod motion;
 pub mod record;

@@ -1,7 +1,8 @@
 //! Tests of `identify`: all unknowns are identified, with intervals that contain the true values, where the
 //! model is complete, and a diagnosis is recommended first where it is not.
 use crate::foreign_terms;
-use crate::rig::{HIDDEN, Rig, number};
+use crate::rig::{Rig, number};
+use oscillator::case_folder::HIDDEN;
 use oscillator::simulate::Values;
 use serde_json::{Value, json};
 

@@ -15,6 +15,7 @@ mod scaling;
 mod started;
 mod swept;
 
+use oscillator::case_folder::{CROSSTALK, HIDDEN, NOISE_MM};
 use rig::{Rig, number};
 use search::strategy::CATALOGUE;
 use serde_json::Value;
@@ -123,7 +124,7 @@ fn ties_fixed_and_absent_unknowns_keep_their_values() {
     assert_eq!(value("left").to_bits(), value("right").to_bits());
     assert_eq!(value("armature").to_bits(), 0.4_f64.to_bits());
     assert_eq!(value("crosstalk").to_bits(), 0.0_f64.to_bits());
-    assert!((value("mass") / rig::HIDDEN.mass_kg - 1.0).abs() < 0.1);
+    assert!((value("mass") / HIDDEN.mass_kg - 1.0).abs() < 0.1);
 }
 
 /// Checks that the diagnosis names the hidden friction among five candidate effects and adds it to the case,
@@ -145,7 +146,7 @@ fn the_hidden_effect_is_named_and_added() {
     let from = ["--genes", &found, "--preset", "least-squares"];
     let object = rig.json(&[&["calibrate", "CASE", "--run", &after][..], &from].concat());
     let mse = number(&object["channels"]["displacement"]["optimised"]["mse"]);
-    assert!(mse < 2.0 * rig::NOISE_MM * rig::NOISE_MM, "{mse}");
+    assert!(mse < 2.0 * NOISE_MM * NOISE_MM, "{mse}");
 }
 
 /// Checks that an unknown that is absent at its start value is a candidate, too, and that its estimate
@@ -168,7 +169,7 @@ fn a_hidden_unknown_is_named_and_becomes_the_start() {
         .find(|one| one["name"].as_str() == Some("crosstalk"))
         .unwrap();
     let start = found["start"].as_float().unwrap();
-    assert!((start / rig::CROSSTALK - 1.0).abs() < 0.1, "{start}");
+    assert!((start / CROSSTALK - 1.0).abs() < 0.1, "{start}");
     foreign_terms::check_folder(run.as_ref());
 }
 

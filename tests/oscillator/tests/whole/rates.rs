@@ -1,11 +1,12 @@
 //! Error rates of the diagnosis for this model: synthetic records without a hidden effect and records with
 //! one, as repeated periods and as a single log with stated noise. The model runs in the test process.
-use crate::rig::{HIDDEN, Rig};
+use crate::rig::Rig;
 use case::{self, Overrides};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::laboratory::{Laboratory, Stage};
 use discrepancy::thresholds::Thresholds;
 use discrepancy::verdict::Verdict;
+use oscillator::case_folder::HIDDEN;
 use oscillator::{
     effect::{Effects, descriptors},
     simulate::Values,

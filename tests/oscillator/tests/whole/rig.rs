@@ -1,10 +1,9 @@
 //! Test folder with a copy of the case and its synthetic records, and helpers that run the program on them.
 use crate::foreign_terms;
 use oscillator::{
+    case_folder::{self, CROSSTALK, FRICTION_N, HIDDEN},
     effect::Effects,
-    record::Measurement,
-    settings::{Excitation, Order, RigSettings as Settings},
-    simulate::{Sensor, Values, run},
+    simulate::Values,
 };
 use serde_json::Value;
 use std::{
@@ -17,28 +16,8 @@ use std::{
 };
 use tempfile::TempDir;
 
-/// True values of the unknowns, with which the records are generated together with [`FRICTION_N`].
-pub(crate) const HIDDEN: Values = Values {
-    mass_kg: 2.13,
-    armature_kg: 0.4,
-    left_n_per_mm: 5.62,
-    right_n_per_mm: 5.62,
-    damping_n_s_per_m: 26.4,
-    lead_deg: 1.7,
-    crosstalk_mm_per_n: 0.0,
-};
-/// True dry friction in the records, absent from the case \[N\].
-const FRICTION_N: f64 = 2.4;
-/// True crosstalk of the force into the displacement reading, in the records of [`Rig::with_crosstalk`]
-/// [mm/N].
-pub(crate) const CROSSTALK: f64 = 4e-3;
-/// Standard deviation of the noise of the displacement \[mm\].
-pub(crate) const NOISE_MM: f64 = 0.02;
-/// Standard deviation of the noise of the force \[N\].
-const NOISE_N: f64 = 0.2;
-
-/// Temporary folder with the case, and the seed of the noise of its records.
-pub(crate) struct Rig(TempDir, u64);
+/// Temporary folder with the case.
+pub(crate) struct Rig(TempDir);
 
 impl Rig {
     /// Creates the case with records that contain dry friction, which the case lacks.
@@ -81,74 +60,9 @@ impl Rig {
     }
 
     pub(crate) fn hiding(values: &Values, effects: &Effects, noise: u64) -> Self {
-        let rig = Self(TempDir::new().unwrap(), noise);
-        fs::create_dir_all(rig.file("case/measured")).unwrap();
-        let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("case/case.toml");
-        fs::copy(shipped, rig.file("case/case.toml")).unwrap();
-        let order = |order, amplitude_n, phase_deg| Order {
-            order,
-            amplitude_n,
-            phase_deg,
-        };
-        let drive = [
-            order(1, 45.0, 0.0),
-            order(3, 12.0, 40.0),
-            order(5, 6.0, -70.0),
-        ];
-        let driven = |hz, orders: &[Order]| Excitation {
-            drive_hz: Some(hz),
-            drive: orders.to_vec(),
-            release_mm: 0.0,
-        };
-        let released = Excitation {
-            drive_hz: None,
-            drive: Vec::new(),
-            release_mm: 6.0,
-        };
-        let turn: Vec<f64> = (0..120).map(|at| 3.0 * f64::from(at)).collect();
-        let time: Vec<f64> = (0..150).map(|at| f64::from(at) / 200.0).collect();
-        rig.measure(
-            "steady_5hz",
-            &driven(5.0, &drive),
-            (values, effects),
-            ("phase_deg", &turn),
-        );
-        rig.measure(
-            "steady_7hz",
-            &driven(7.0, &drive[..2]),
-            (values, effects),
-            ("phase_deg", &turn),
-        );
-        rig.measure("release", &released, (values, effects), ("time_s", &time));
+        let rig = Self(TempDir::new().unwrap());
+        case_folder::write(&rig.file("case"), values, effects, noise).unwrap();
         rig
-    }
-
-    /// Simulates a condition and writes its record with noise.
-    fn measure(
-        &self,
-        name: &str,
-        by: &Excitation,
-        hidden: (&Values, &Effects),
-        places: (&str, &[f64]),
-    ) {
-        let sensors = [(Sensor::Displacement, places.1), (Sensor::Force, places.1)];
-        let stop = Settings { stop_mm: 40.0 };
-        let mut seen = run(&stop, by, hidden.0, hidden.1, &sensors);
-        assert_eq!(seen.failed, None);
-        let force = seen.curves.pop().unwrap();
-        let displacement = seen.curves.pop().unwrap();
-        let channels = [
-            ("displacement_mm", displacement, NOISE_MM),
-            ("force_n", force, NOISE_N),
-        ];
-        let measurement = Measurement {
-            places,
-            channels: &channels,
-            repeats: 8,
-        };
-        let condition: u64 = name.bytes().map(u64::from).sum();
-        let table = measurement.table(condition + 10_000 * self.1);
-        fs::write(self.file(&format!("case/measured/{name}.csv")), table).unwrap();
     }
 
     /// Returns the path of a file in the test folder.
