@@ -6,7 +6,11 @@ use super::{
 };
 use link::keys::authority::{Authority, Validity};
 use oscillator::{case_folder, effect::Effects};
-use std::time::{Duration, Instant, SystemTime};
+use serde_json::json;
+use std::{
+    collections::BTreeMap,
+    time::{Duration, Instant, SystemTime},
+};
 use tests::{
     namespace::{HEAD, NODE, Namespaces},
     process::{Process, worker_program},
@@ -109,18 +113,10 @@ fn every_command_on_four_hosts_gives_the_result_of_one_machine() {
 
     // the shipped worker is this machine's own here: the hosts have the named program
     let begun = Instant::now();
-    let passed = [
-        "--run",
-        "spare",
-        "--slots",
-        "2",
-        "--prologue",
-        prologue.to_str().unwrap(),
-        "--worker-program",
-        &program,
-        "--advertise",
-        HEAD,
-    ];
+    let words = format!(
+        "--run spare --slots 2 --prologue prologue --advertise {HEAD} --worker-program {program}"
+    );
+    let passed: Vec<&str> = words.split(' ').collect();
     let words = [&calibrate[..], &remote, &passed, &["--output", "json"]].concat();
     let output = on_head(&spare.site, &spare.namespaces, &words);
     let said = errors(&output);
@@ -168,30 +164,20 @@ fn every_command_on_four_hosts_gives_the_result_of_one_machine() {
     });
     assert_eq!((&here, here.len()), (&there, 5));
 
-    let scaling = [
-        "sweep",
-        "scaling",
-        "case",
-        "--presets",
-        "window,least-squares",
-        "--evaluations",
-        "60",
-        "--crews",
-        "0",
-        "--sleeping",
-        "0",
-        "--projected",
-        "80",
-        "--slots",
-        "2",
-        "--nodes",
-        "2,4",
-        "--ssh",
-        &all,
-        "--run",
-        "scaling",
-    ];
-    let object = spare.json(&scaling);
+    check_scaling(&spare, &all);
+    for port in HOSTS {
+        let script = "ls /proc/*/exe -l 2>/dev/null | grep -c horsehead/worker || true";
+        let left = on_host(&spare.site, &spare.namespaces, port, script);
+        assert_eq!(left, "0", "workers are left on {port}");
+    }
+}
+
+/// Measures the scaling of two searches on two and on four of the hosts.
+fn check_scaling(spare: &Spare, hosts: &str) {
+    let words = "sweep scaling case --presets window,least-squares --evaluations 60 --crews 0 \
+                 --sleeping 0 --projected 80 --slots 2 --nodes 2,4 --run scaling --ssh";
+    let words: Vec<&str> = words.split_whitespace().chain([hosts]).collect();
+    let object = spare.json(&words);
     let rows = object["rows"].as_array().unwrap();
     let rows = rows.iter().map(|row| {
         let [how, preset] = ["how", "preset"].map(|key| row[key].as_str().unwrap());
@@ -208,11 +194,6 @@ fn every_command_on_four_hosts_gives_the_result_of_one_machine() {
             ("projected", "least-squares", 80),
         ]
     );
-    for port in HOSTS {
-        let script = "ls /proc/*/exe -l 2>/dev/null | grep -c horsehead/worker || true";
-        let left = on_host(&spare.site, &spare.namespaces, port, script);
-        assert_eq!(left, "0", "workers are left on {port}");
-    }
 }
 
 /// Writes individuals beside the result of a calibration: as a table, and as requests to `evaluate`.
@@ -225,10 +206,9 @@ fn write_individuals(site: &Site, calibrated: &Value) {
         let factor = 1.0 + 0.01 * f64::from(at);
         let row = values.map(|value| (factor * value).to_string());
         table += &(row.join(",") + "\n");
-        let genes = unknowns.iter().zip(&row);
-        let genes = genes.map(|(name, value)| format!("\"{name}\": {value}"));
-        let genes = genes.collect::<Vec<_>>().join(", ");
-        requests += &format!("{{\"id\": {at}, \"genes\": {{{genes}}}}}\n");
+        let genes: BTreeMap<&str, f64> =
+            (unknowns.into_iter().zip(values.map(|value| factor * value))).collect();
+        requests += &(json!({"id": at, "genes": genes}).to_string() + "\n");
     }
     fs::write(site.path("individuals.csv"), table).unwrap();
     fs::write(site.path("requests"), requests).unwrap();
@@ -274,24 +254,16 @@ fn hosts_that_cannot_take_part_are_named_and_the_run_goes_on() {
     ];
     let alone = spare.json(&[&calibrate[..], &["--workers", "2", "--run", "alone"]].concat());
     let listen = format!("quic/{HEAD}:7447");
-    let remote = [
-        "--workers",
-        "0",
-        "--slots",
-        "1",
-        "--run",
-        "spare",
-        "--listen",
-        &listen,
-        "--tls",
-        "keys",
-        "--ssh",
-        &all,
-        "--prologue",
-        prologue.to_str().unwrap(),
-        "--output",
-        "json",
-    ];
+    let words = "--workers 0 --slots 1 --run spare --tls keys --output json --listen LISTEN --ssh HOSTS \
+                 --prologue prologue";
+    let remote: Vec<&str> = words
+        .split_whitespace()
+        .map(|word| match word {
+            "LISTEN" => listen.as_str(),
+            "HOSTS" => all.as_str(),
+            word => word,
+        })
+        .collect();
     let output = spare.run(&[&calibrate[..], &remote].concat());
     let said = errors(&output);
     assert!(output.status.success(), "{said}");

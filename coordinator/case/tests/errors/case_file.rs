@@ -528,7 +528,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 TOML,
                 "condition = \"5rpm\"",
                 "condition = [\"5rpm\", \"5rpm\"]",
-            )
+            );
         },
         &[
             "case.toml",

@@ -195,8 +195,9 @@ fn join(id: JobId, divided: DividedJob) -> Option<Finished> {
                 }
                 Outcome::Done(first)
             }
-            (Outcome::Done(_), failed @ Outcome::Failed(_)) => failed,
-            (failed @ Outcome::Failed(_), _) => failed,
+            (failed @ Outcome::Failed(_), _) | (Outcome::Done(_), failed @ Outcome::Failed(_)) => {
+                failed
+            }
         };
     }
     Some(Finished {
@@ -248,7 +249,9 @@ mod tests {
         };
         let column = |column: &Column| Derivative::Curves {
             per: Per::Decade,
-            curves: vec![vec![column.name[1..].parse::<f32>().unwrap()]],
+            curves: vec![vec![
+                column.name.trim_start_matches('x').parse::<f32>().unwrap(),
+            ]],
         };
         Outcome::Done(Answer::Scored(Evaluation {
             verdict: Verdict::Complete,

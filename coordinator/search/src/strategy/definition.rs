@@ -19,6 +19,9 @@ pub struct Preset {
     pub settings: fn(&SearchPlan<'_>) -> Settings,
     /// Groups of the preset's settings that can be set by name on the command line.
     pub groups: &'static [SettingGroup],
+    /// Largest number of slots of which the search keeps at least half busy, on the shipped case (projected:
+    /// `docs/measurements.md`, "Scaling").
+    pub slots: u64,
     /// Accuracy and properties that tests may demand of the preset.
     pub expectations: Expectations,
     /// Function that builds the search from the preset's settings: [`super::settings::build_as`] of its

@@ -48,6 +48,7 @@ pub const QUICK: Preset = Preset {
         part("scan_", "/parts/2/scan", scan::SETTINGS),
         part("descent_", "/parts/3/least_squares", levenberg::SETTINGS),
     ],
+    slots: 32,
     expectations: Expectations {
         one_basin: 1e-8,
         many_basins: 3.0,
@@ -72,6 +73,7 @@ pub const MEMETIC_AND_SCANS: Preset = Preset {
         part("fine_scan_", "/parts/3/scan", scan::SETTINGS),
         part("fine_refine_", "/parts/4/refine", refine::SETTINGS),
     ],
+    slots: 16,
     expectations: Expectations {
         one_basin: 1e-4,
         many_basins: 1.1,
@@ -91,6 +93,7 @@ pub const LEAST_SQUARES: Preset = Preset {
         part("scan_", "/parts/1/scan", scan::SETTINGS),
         part("descent_", "/parts/2/least_squares", levenberg::SETTINGS),
     ],
+    slots: 32,
     ..QUICK
 };
 
@@ -105,6 +108,7 @@ pub const DESCENT: Preset = Preset {
         table: levenberg::SETTINGS,
         excluded: &["starts", "apart", "heat", "keep"],
     }],
+    slots: 4,
     expectations: Expectations {
         // it stays in the basin that it begins in
         many_basins: 1e3,
@@ -128,6 +132,7 @@ pub const HYBRID: Preset = Preset {
             ..part("descent_", "/parts/2/least_squares", levenberg::SETTINGS)
         },
     ],
+    slots: 16,
     ..LEAST_SQUARES
 };
 

@@ -227,7 +227,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         ));
     }
     let found = session.work(&run, async |bus, stop| {
-        let mut display = Display::new(run.case.objective_unit());
+        let mut display = Display::new(run.case.objective_unit()).of_preset(&run.manifest.preset);
         display.resumed(bus.recorded());
         let found = calibrate(bus, &run, &mut display, stop).await;
         display.clear();

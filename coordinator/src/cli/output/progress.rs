@@ -3,6 +3,7 @@ use super::terminal;
 use discrepancy::laboratory::Stage;
 use indicatif::{ProgressBar, ProgressStyle};
 use protocol::event::Spent;
+use search::strategy::{CATALOGUE, Preset, preset};
 use std::{
     collections::VecDeque,
     io::{self, IsTerminal as _},
@@ -27,12 +28,33 @@ pub(crate) struct Display {
     /// Number of results in the journal from earlier sessions, which are read at once and not simulated
     /// again.
     recorded: u64,
+    /// Preset of the search, until the user has been told that there are more slots than it fills.
+    preset: Option<&'static Preset>,
 }
 
 impl Display {
     /// Creates the progress display of a calibration; the objective is in the square of `unit`.
     pub(crate) fn new(unit: Option<&str>) -> Self {
         Self::counting("generation or stage", unit)
+    }
+
+    /// Makes the display say once if more slots are connected than the preset with this name fills.
+    pub(crate) fn of_preset(self, name: &str) -> Self {
+        Self {
+            preset: preset(name),
+            ..self
+        }
+    }
+
+    /// Tells the user once that more slots are connected than the search fills.
+    fn tell_surplus(&mut self, crew: &WorkersSnapshot) {
+        let slots: u64 = crew.workers.iter().map(|own| u64::from(own.slots)).sum();
+        if let Some(preset) = self.preset
+            && let Some(note) = surplus(preset, slots)
+        {
+            self.preset = None;
+            terminal::tell(&note);
+        }
     }
 
     /// Creates a progress display that counts `counted`, such as searches, instead of the generations of one
@@ -52,6 +74,7 @@ impl Display {
             last: Instant::now(),
             generation: None,
             recorded: 0,
+            preset: None,
         }
     }
 
@@ -189,7 +212,9 @@ impl Watch<ProgressView> for Display {
         }
         self.last = now;
         self.generation = Some(view.generation);
-        let words = describe(view, (self.counted, &self.unit), &crew());
+        let crew = crew();
+        self.tell_surplus(&crew);
+        let words = describe(view, (self.counted, &self.unit), &crew);
         match &self.bar {
             Some(bar) => {
                 bar.set_length(view.expected);
@@ -199,6 +224,24 @@ impl Watch<ProgressView> for Display {
             None => terminal::tell(&format!("{}/{}  {words}", view.completed, view.expected)),
         }
     }
+}
+
+/// Returns a note if there are more slots than a preset fills, with the presets that fill more; `None` otherwise.
+fn surplus(preset: &Preset, slots: u64) -> Option<String> {
+    if slots <= preset.slots {
+        return None;
+    }
+    let wider = CATALOGUE.iter().filter(|other| other.slots > preset.slots);
+    let wider: Vec<&str> = wider.map(|other| other.name).collect();
+    let wider = if wider.is_empty() {
+        String::new()
+    } else {
+        format!("; {} fill more", wider.join(", "))
+    };
+    Some(format!(
+        "note: {slots} slots are connected, and a search with preset {} keeps at least half busy of at most {}{wider}",
+        preset.name, preset.slots
+    ))
 }
 
 /// Formats the progress line: generation or stage, best objective, failures, workers, rate, remaining time.
@@ -280,6 +323,19 @@ fn clock(time: Duration) -> String {
 mod tests {
     use super::*;
     use study::WorkerStatus;
+
+    #[test]
+    fn more_slots_than_a_preset_fills_are_noted_with_the_presets_that_fill_them() {
+        let paper = preset("paper").unwrap();
+        assert_eq!(surplus(paper, paper.slots), None);
+        let note = surplus(paper, paper.slots + 1).unwrap();
+        assert!(
+            note.contains("preset paper") && note.contains("window"),
+            "{note}"
+        );
+        let widest = CATALOGUE.iter().max_by_key(|preset| preset.slots).unwrap();
+        assert!(!surplus(widest, u64::MAX).unwrap().contains("fill more"));
+    }
 
     #[test]
     fn a_line_says_everything_that_is_known() {

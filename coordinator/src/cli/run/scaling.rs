@@ -162,7 +162,7 @@ impl ScalingSettings {
     /// measured once.
     pub(crate) fn searches(&self) -> Vec<Searched<'_>> {
         let sizes = |name: &str| -> Vec<Option<u64>> {
-            let settable = preset(name).map(|preset| preset.settable());
+            let settable = preset(name).map(search::strategy::Preset::settable);
             let mut settable = settable.into_iter().flatten();
             if self.populations.is_empty() || !settable.any(|one| one.key == "population") {
                 return vec![None];

@@ -1,6 +1,6 @@
 //! Projection of a search to more slots than are available: the real scheduler and the real strategy on a
 //! simulated clock.
-use super::row::{Overheads, ScalingRow, Shares, SlotMode};
+use super::row::{MAX_WORKERS, Overheads, SLOW_ONE_IN, ScalingRow, Shares, SlotMode};
 use dispatch::simulated::{Cluster, ClusterSetting, SimulatedDerivatives, SimulatedSearch};
 use protocol::{
     event::Spent,
@@ -14,12 +14,6 @@ use std::{cell::RefCell, collections::BTreeMap, rc::Rc, time::Duration};
 
 /// Upper limit of the simulated time of a projected search, longer than any search takes.
 const LIMIT: Duration = Duration::from_hours(24 * 365);
-/// Largest number of workers of one coordinator (measured: `docs/measurements.md`); more slots are slots of the
-/// same workers.
-pub(super) const MAX_WORKERS: u64 = 1000;
-/// One in this many workers of a projection is half as fast as the others.
-pub(super) const SLOW_ONE_IN: u64 = 10;
-
 /// Synthetic objective in place of the simulation of a case: sum of squares with one minimum in the search space, in
 /// normalised coordinates.
 pub struct SyntheticObjective<'a>(pub &'a Space);

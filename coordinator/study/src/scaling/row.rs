@@ -1,8 +1,13 @@
 //! Scaling result of one search on one number of slots (parallel jobs): speed, and use of slot time.
-use super::project::{MAX_WORKERS, SLOW_ONE_IN};
 use protocol::event::Spent;
 use search::random::{Phase, Streams};
 use serde::{Deserialize, Serialize};
+
+/// Largest number of workers of one coordinator (measured: `docs/measurements.md`); more slots are slots of the
+/// same workers.
+pub(super) const MAX_WORKERS: u64 = 1000;
+/// One in this many workers of a projection is half as fast as the others.
+pub(super) const SLOW_ONE_IN: u64 = 10;
 
 /// Method by which a scaling result was obtained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

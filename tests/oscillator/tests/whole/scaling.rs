@@ -14,27 +14,9 @@ fn rows(object: &Value) -> &[Value] {
 fn slots_are_computed_slept_and_projected_and_rows_are_kept() {
     let rig = Rig::new();
     let run = rig.path("run");
-    let words = [
-        "sweep",
-        "scaling",
-        "CASE",
-        "--run",
-        &run,
-        "--presets",
-        "window,least-squares",
-        "--populations",
-        "8",
-        "--evaluations",
-        "40",
-        "--crews",
-        "2,1",
-        "--sleeping",
-        "6",
-        "--sleep",
-        "0.05",
-        "--projected",
-        "80",
-    ];
+    let words = "sweep scaling CASE --presets window,least-squares --populations 8 --evaluations 40 \
+                 --crews 2,1 --sleeping 6 --sleep 0.05 --projected 80 --run";
+    let words: Vec<&str> = words.split_whitespace().chain([&*run]).collect();
     let object = rig.json(&words);
     let told: Vec<(&str, u64)> = rows(&object)
         .iter()

@@ -32,6 +32,7 @@ pub const PAPER: Preset = Preset {
     strategy: MemeticSettings::STRATEGY,
     settings: |_| Settings::of(&MemeticSettings::paper()),
     groups: &[SettingGroup::whole(SETTINGS)],
+    slots: 8,
     expectations: PROMISE,
     build: build_as::<MemeticSettings>,
 };
@@ -42,6 +43,7 @@ pub const PAPER_BATCH: Preset = Preset {
     name: "paper-batch",
     summary: "the paper's algorithm with the best of 40 + 40 climbing trials at once",
     settings: |_| Settings::of(&MemeticSettings::paper_batch()),
+    slots: 40,
     ..PAPER
 };
 

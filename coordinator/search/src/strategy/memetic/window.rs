@@ -75,6 +75,7 @@ pub const WINDOW: Preset = Preset {
             ],
         },
     ],
+    slots: 1000,
     expectations: PROMISE,
     build: build_as::<WindowSettings>,
 };
