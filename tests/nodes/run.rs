@@ -161,3 +161,32 @@ async fn workers_come_up_are_listed_drained_thrown_out_and_ended_without_a_resta
         errors(&nobody)
     );
 }
+
+/// Checks that workers which the run started on its own machine end only with `--all`.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn the_workers_of_the_run_itself_end_only_with_all() {
+    let site = Site::new(1);
+    let mut run = Dispatch::open(tests::options(&site.path("run"), None, 1))
+        .await
+        .unwrap();
+    run.submit(JobId(0), tests::job(0, 10)).unwrap();
+    run.next().await.unwrap();
+    let workers = site.list();
+    assert_eq!(
+        (workers.len(), &workers[0]["local"]),
+        (1, &true.into()),
+        "{workers:?}"
+    );
+    let down = site.horsehead(&["workers", "down", "--run", "run"]);
+    assert!(down.status.success(), "{}", errors(&down));
+    assert!(
+        errors(&down).contains("--all ends them too"),
+        "{}",
+        errors(&down)
+    );
+    assert_eq!(site.list()[0]["state"], "working");
+    let down = site.horsehead(&["workers", "down", "--all", "--run", "run"]);
+    assert!(down.status.success(), "{}", errors(&down));
+    assert!(errors(&down).contains(" ends"), "{}", errors(&down));
+    run.close().await.unwrap();
+}
