@@ -31,7 +31,7 @@ pub const CMA_ES: Preset = Preset {
     strategy: CmaEsSettings::STRATEGY,
     settings: |plan| Settings::of(&CmaEsSettings::for_dimension(plan.space.dimension())),
     groups: &[SettingGroup::whole(SETTINGS)],
-    slots: 8,
+    slots: 4,
     expectations: Expectations {
         one_basin: 1e-6,
         many_basins: 3.0,

@@ -30,7 +30,7 @@ pub const L_SHADE: Preset = Preset {
     strategy: LShadeSettings::STRATEGY,
     settings: |plan| Settings::of(&LShadeSettings::for_dimension(plan.space.dimension())),
     groups: &[SettingGroup::whole(SETTINGS)],
-    slots: 64,
+    slots: 4,
     expectations: Expectations {
         one_basin: 0.01,
         many_basins: 3.0,

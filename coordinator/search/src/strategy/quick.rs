@@ -48,7 +48,7 @@ pub const QUICK: Preset = Preset {
         part("scan_", "/parts/2/scan", scan::SETTINGS),
         part("descent_", "/parts/3/least_squares", levenberg::SETTINGS),
     ],
-    slots: 32,
+    slots: 4,
     expectations: Expectations {
         one_basin: 1e-8,
         many_basins: 3.0,
@@ -73,7 +73,7 @@ pub const MEMETIC_AND_SCANS: Preset = Preset {
         part("fine_scan_", "/parts/3/scan", scan::SETTINGS),
         part("fine_refine_", "/parts/4/refine", refine::SETTINGS),
     ],
-    slots: 16,
+    slots: 8,
     expectations: Expectations {
         one_basin: 1e-4,
         many_basins: 1.1,
@@ -93,7 +93,7 @@ pub const LEAST_SQUARES: Preset = Preset {
         part("scan_", "/parts/1/scan", scan::SETTINGS),
         part("descent_", "/parts/2/least_squares", levenberg::SETTINGS),
     ],
-    slots: 32,
+    slots: 4,
     ..QUICK
 };
 
@@ -108,7 +108,7 @@ pub const DESCENT: Preset = Preset {
         table: levenberg::SETTINGS,
         excluded: &["starts", "apart", "heat", "keep"],
     }],
-    slots: 4,
+    slots: 2,
     expectations: Expectations {
         // it stays in the basin that it begins in
         many_basins: 1e3,
@@ -132,7 +132,7 @@ pub const HYBRID: Preset = Preset {
             ..part("descent_", "/parts/2/least_squares", levenberg::SETTINGS)
         },
     ],
-    slots: 16,
+    slots: 4,
     ..LEAST_SQUARES
 };
 

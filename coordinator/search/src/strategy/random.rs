@@ -24,7 +24,7 @@ pub const RANDOM: Preset = Preset {
     strategy: RandomSettings::STRATEGY,
     settings: |_| Settings::of(&RandomSettings::thousand(Design::Chance)),
     groups: &[SettingGroup::whole(SETTINGS)],
-    slots: 500,
+    slots: 128,
     expectations: Expectations {
         one_basin: 1.5,
         many_basins: 3.0,

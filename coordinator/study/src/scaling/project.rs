@@ -201,7 +201,8 @@ mod tests {
         let few = projected("least-squares", 4, 100.0);
         let many = projected("least-squares", 80, 100.0);
         assert_eq!(few.evaluations, many.evaluations);
-        assert!(many.useful_s > 1.2 * few.useful_s, "{many:?} {few:?}");
-        assert!(few.wall_s > 5.0 * many.wall_s, "{many:?} {few:?}");
+        // parts repeat the simulation that they differentiate
+        assert!(many.useful_s > 1.05 * few.useful_s, "{many:?} {few:?}");
+        assert!(few.wall_s > 1.5 * many.wall_s, "{many:?} {few:?}");
     }
 }

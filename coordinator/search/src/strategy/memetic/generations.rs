@@ -43,7 +43,7 @@ pub const PAPER_BATCH: Preset = Preset {
     name: "paper-batch",
     summary: "the paper's algorithm with the best of 40 + 40 climbing trials at once",
     settings: |_| Settings::of(&MemeticSettings::paper_batch()),
-    slots: 40,
+    slots: 24,
     ..PAPER
 };
 

@@ -75,7 +75,7 @@ pub const WINDOW: Preset = Preset {
             ],
         },
     ],
-    slots: 1000,
+    slots: 32,
     expectations: PROMISE,
     build: build_as::<WindowSettings>,
 };
