@@ -70,7 +70,7 @@ impl Copy {
     /// Rewrites every line of a CSV file of the copied case by a function; line 1 is the header.
     pub(super) fn lines(&self, file: &str, rewrite: impl Fn(usize, &str) -> Option<String>) {
         let path = self.path(file);
-        let packed = file == RECORD;
+        let packed = Path::new(file).extension().is_some_and(|end| end == "gz");
         let mut text = String::new();
         if packed {
             let bytes = fs::read(&path).unwrap();
