@@ -150,7 +150,7 @@ fn an_objective_may_sum_several_conditions_with_weights() {
     let loaded = load().unwrap();
     assert_eq!(loaded.case.objective.terms.len(), 2);
     let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
-    let lacks = "the record of condition `4rpm` lacks stress_3: it is compared over stress_1";
+    let lacks = "the record of condition `4rpm` lacks gauge_3: it is compared over gauge_1";
     assert!(notes.iter().any(|note| note.contains(lacks)), "{notes:?}");
 }
 
