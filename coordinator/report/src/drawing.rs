@@ -17,6 +17,12 @@ pub trait ModelReport: Sync {
     /// names the parameter set it was run with.
     fn sections(&self, whose: &str, of: Option<&SimulationView<'_>>) -> Vec<Section>;
 
+    /// Returns the script that moves figures of the kind of model; empty if none moves. It adds functions to
+    /// `horsehead.parts`, which are called with each new part of a page.
+    fn script(&self) -> &'static str {
+        ""
+    }
+
     /// Returns the description of the abscissas' origin, such as " from bottom dead centre", appended to an
     /// abscissa's name in axis titles; empty where none is needed.
     fn zero(&self) -> &'static str;

@@ -22,6 +22,11 @@ pub fn of(case: &Case) -> &'static dyn ModelReport {
         .map_or(&GenericReport, |(_, drawing)| *drawing)
 }
 
+/// Returns the scripts of all kinds of model.
+pub(super) fn scripts() -> impl Iterator<Item = &'static str> {
+    ALL.iter().map(|(_, drawing)| drawing.script())
+}
+
 /// Returns the horizontal axis of figures over an abscissa of a case.
 pub(super) fn axis(case: &Case, abscissa: &Abscissa) -> ChartAxis {
     ChartAxis::of(abscissa, of(case).zero())

@@ -1,9 +1,10 @@
 //! Assembly and output of calibration and simulation reports with their data.
 use super::csv;
-use super::data::{Calibration, SingleRun};
-use super::document::{Report, Table, section_text};
+use super::data::{Calibration, ConditionResult, SingleRun};
+use super::document::{Report, Section, Table, section_text};
 use super::folder::{ReportError, stream, write_report};
 use super::{kind, section, table, words};
+use protocol::case::Case;
 use std::path::{Path, PathBuf};
 
 /// Builds the report of a calibration.
@@ -11,6 +12,21 @@ pub fn calibration(calibration: &Calibration) -> Report {
     let title = format!("Calibration of {}", calibration.case.name);
     let sections = section::calibration(calibration);
     Report::new(title, &calibration.origin.run, sections)
+}
+
+/// Builds the sections of a calibration that goes on, as far as there are data for them.
+pub fn running_calibration(calibration: &Calibration) -> Vec<Section> {
+    section::running_calibration(calibration)
+}
+
+/// Builds the blocks that show one individual of a calibration, number `number`, beside the recommended one: its
+/// values, and its measured and simulated curves.
+pub fn individual(
+    case: &Case,
+    (number, genes): (u64, &[f64]),
+    conditions: &[ConditionResult],
+) -> Section {
+    section::individual(case, (number, genes), conditions)
 }
 
 /// Renders the tables of a calibration's parameters and errors for a terminal; `styled` if it supports bold.

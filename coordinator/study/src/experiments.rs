@@ -53,6 +53,7 @@ pub struct StageView {
 
 impl View for StageView {
     type Reason = Stage;
+    type Entry = ();
 }
 
 /// Asks a worker for the effects that it can simulate.

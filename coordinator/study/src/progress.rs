@@ -29,6 +29,7 @@ pub struct ProgressView {
 
 impl View for ProgressView {
     type Reason = Proposal;
+    type Entry = LogEntry;
 }
 
 impl ProgressView {

@@ -5,6 +5,8 @@ use super::evaluator::WorkersSnapshot;
 pub trait View {
     /// Type of the reason for which the study requests a job, such as a stage.
     type Reason: ?Sized;
+    /// Type of the entry that the study makes for each result.
+    type Entry: ?Sized;
 }
 
 /// Observer of a study that reports its progress as `V`.
@@ -18,4 +20,10 @@ pub trait Watch<V: View> {
 
     /// Receives the number of a job and the reason for it, before the job is submitted.
     fn asked(&mut self, _id: u64, _reason: &V::Reason) {}
+
+    /// Receives the entry that the study makes for a result.
+    fn entered(&mut self, _entry: &V::Entry) {}
+
+    /// Receives notes about the case and its records.
+    fn noted(&mut self, _notes: &[String]) {}
 }

@@ -14,7 +14,8 @@ pub struct JobCost {
 }
 
 impl JobCost {
-    fn of(finished: &Finished) -> Self {
+    /// Returns the cost of a finished job.
+    pub fn of(finished: &Finished) -> Self {
         let simulated = finished.outcome.simulation();
         Self {
             wall_s: finished.cost.wall_s(),

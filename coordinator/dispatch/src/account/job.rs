@@ -27,13 +27,13 @@ pub struct JobUse {
 }
 
 /// Accumulator of the statistics of a run's jobs.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Jobs {
     kinds: BTreeMap<&'static str, Kind>,
     given_up: Vec<(u64, String)>,
 }
 
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Kind {
     times_us: Vec<u64>,
     cpu_us: u64,

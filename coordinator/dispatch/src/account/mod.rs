@@ -84,7 +84,7 @@ pub fn read_with_costs(path: &Path) -> Result<(RunAccount, Costs), JournalError>
 }
 
 /// Accumulator of a run's account, for callers that read the journal's events for other purposes too.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct AccountBuilder {
     account: RunAccount,
     rows: BTreeMap<(WorkerId, u32), WorkerAccount>,

@@ -3,10 +3,11 @@ use super::{error::JournalError, record::RECORD_HEADER};
 use protocol::{
     event::{Event, Finished},
     id::JobId,
-    wire,
+    wire::{self, WireError},
 };
 use std::{
     fs::File,
+    io,
     os::unix::fs::FileExt,
     path::{Path, PathBuf},
 };
@@ -49,29 +50,48 @@ impl Results {
         let Some(at) = self.index.find(job) else {
             return Ok(None);
         };
-        let failed = |source| JournalError::Io {
-            doing: "read",
-            path: self.path.clone(),
-            source,
-        };
-        let mut length = [0; 4];
-        // after the mark, before the checksum
-        self.file
-            .read_exact_at(&mut length, at - RECORD_HEADER as u64 + 4)
-            .map_err(failed)?;
-        let mut body = vec![0; (u32::from_le_bytes(length) as usize).min(wire::BODY_LIMIT)];
-        self.file.read_exact_at(&mut body, at).map_err(failed)?;
-        match wire::decode(&body)? {
-            Event::Finished(finished) => Ok(Some(*finished)),
-            Event::Begun { .. }
-            | Event::Opened { .. }
-            | Event::Joined { .. }
-            | Event::Left { .. }
-            | Event::Closed
-            | Event::Asked { .. }
-            | Event::Proved { .. }
-            | Event::Accounted(_) => Ok(None),
+        result_at(&self.file, at).map_err(|error| error.of(&self.path))
+    }
+}
+
+/// Error of reading one record, without the path of the journal.
+pub(super) enum RecordError {
+    Io(io::Error),
+    Wire(WireError),
+}
+
+impl RecordError {
+    /// Adds the path of the journal.
+    pub(super) fn of(self, path: &Path) -> JournalError {
+        match self {
+            Self::Io(source) => JournalError::Io {
+                doing: "read",
+                path: path.to_owned(),
+                source,
+            },
+            Self::Wire(error) => error.into(),
         }
+    }
+}
+
+/// Reads the result in the record whose body begins at an offset (bytes); `None` if it holds another event.
+pub(super) fn result_at(file: &File, at: u64) -> Result<Option<Finished>, RecordError> {
+    let mut length = [0; 4];
+    // after the mark, before the checksum
+    file.read_exact_at(&mut length, at - RECORD_HEADER as u64 + 4)
+        .map_err(RecordError::Io)?;
+    let mut body = vec![0; (u32::from_le_bytes(length) as usize).min(wire::BODY_LIMIT)];
+    file.read_exact_at(&mut body, at).map_err(RecordError::Io)?;
+    match wire::decode(&body).map_err(RecordError::Wire)? {
+        Event::Finished(finished) => Ok(Some(*finished)),
+        Event::Begun { .. }
+        | Event::Opened { .. }
+        | Event::Joined { .. }
+        | Event::Left { .. }
+        | Event::Closed
+        | Event::Asked { .. }
+        | Event::Proved { .. }
+        | Event::Accounted(_) => Ok(None),
     }
 }
 

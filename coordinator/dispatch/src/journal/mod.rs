@@ -13,6 +13,7 @@
 //! the events mean for a run.
 mod differences;
 mod error;
+mod follow;
 mod head;
 mod index;
 mod open;
@@ -26,6 +27,7 @@ mod tests;
 mod write;
 
 pub use error::JournalError;
+pub use follow::{Growth, JournalFollower};
 pub use open::{Journal, OpenedRun};
 pub use read::{Damage, JournalEntry, ReadReport, describe_damage, fold};
 pub use record::{FILE, HEAD, LOCK, MARK};

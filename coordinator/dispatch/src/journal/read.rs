@@ -88,6 +88,19 @@ pub struct ReadReport {
 /// in it was written by another version; damage is no error.
 pub fn fold(
     path: &Path,
+    apply: impl FnMut(JournalEntry, Event),
+) -> Result<ReadReport, JournalError> {
+    fold_from(path, 0, apply)
+}
+
+/// Calls `apply` for each readable event of a journal after the offset `from` (bytes), which is the end of a
+/// record. The reported damage lies after `from`, too; the reported end is `from` if nothing readable follows.
+///
+/// # Errors
+/// As [`fold`].
+pub(super) fn fold_from(
+    path: &Path,
+    from: u64,
     mut apply: impl FnMut(JournalEntry, Event),
 ) -> Result<ReadReport, JournalError> {
     let failed = |source| JournalError::Io {
@@ -99,11 +112,15 @@ pub fn fold(
     let length = file.metadata().map_err(failed)?.len();
     let mut reader = Reader {
         file: BufReader::with_capacity(1 << 16, file),
-        at: 0,
+        at: from,
         length,
         foreign: None,
     };
-    let mut report = ReadReport::default();
+    reader.file.seek(SeekFrom::Start(from)).map_err(failed)?;
+    let mut report = ReadReport {
+        end: from,
+        ..ReadReport::default()
+    };
     let mut lost_from = None;
     while reader.at < length {
         let at = reader.at;
@@ -131,7 +148,7 @@ pub fn fold(
         });
     }
     match reader.foreign {
-        Some(found) if report.records == 0 => Err(JournalError::Version {
+        Some(found) if report.end == 0 => Err(JournalError::Version {
             path: path.to_owned(),
             found,
         }),

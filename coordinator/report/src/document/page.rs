@@ -1,13 +1,17 @@
 //! HTML output: one self-contained, printable file without external resources.
-use super::block::{Block, Fact, Report};
+use super::block::{Block, Fact, Report, Section};
 use super::figure::Figure;
 use super::table::{Label, Row, Table};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-const STYLE: &str = include_str!("style.css");
+/// Style sheet of every page, for light and dark screens, phones and print.
+pub const STYLE: &str = include_str!("style.css");
 
-/// Renders a report as an HTML page.
-pub fn page(report: &Report) -> String {
+/// Script of every page: sorts and filters tables, and replaces sections in the pages of a dashboard.
+pub(crate) const SCRIPT: &str = include_str!("page.js");
+
+/// Renders a report as an HTML page with a script.
+pub fn page(report: &Report, script: &str) -> String {
     let (title, run) = (&report.title, &report.run);
     let page: Markup = html! {
         (DOCTYPE)
@@ -29,17 +33,23 @@ pub fn page(report: &Report) -> String {
                     }
                 }
                 main {
-                    @for section in &report.sections {
-                        section id=(section.id) {
-                            h2 { (section.title) }
-                            @for block in &section.blocks { (markup(block)) }
-                        }
-                    }
+                    @for section in &report.sections { (section_markup(section)) }
                 }
+                script { (PreEscaped("/*<![CDATA[*/\n")) (PreEscaped(script)) (PreEscaped("/*]]>*/")) }
             }
         }
     };
     page.into_string()
+}
+
+/// Renders a section as an HTML element.
+pub fn section_markup(section: &Section) -> Markup {
+    html! {
+        section id=(section.id) {
+            h2 { (section.title) }
+            @for block in &section.blocks { (markup(block)) }
+        }
+    }
 }
 
 fn markup(block: &Block) -> Markup {

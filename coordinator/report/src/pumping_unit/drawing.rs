@@ -48,6 +48,10 @@ impl ModelReport for PumpingUnitReport {
         }]
     }
 
+    fn script(&self) -> &'static str {
+        animation::PLAYER
+    }
+
     fn zero(&self) -> &'static str {
         revolution::ZERO
     }

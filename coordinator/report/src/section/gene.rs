@@ -4,7 +4,7 @@ use crate::chart::panel::Panel;
 use crate::chart::points::thinned;
 use crate::chart::scale::AxisScale;
 use crate::color::{AXIS, Color, GREY, INK, VERMILLION};
-use crate::data::Calibration;
+use crate::data::{Calibration, HistoryPoint};
 use crate::document::{Figure, Section, figures};
 use crate::number::{significant, unit};
 use crate::words::objective_heading;
@@ -32,10 +32,9 @@ const ELITE: usize = 100;
 const CLOUD: Color = Color(0x9a, 0xa3, 0xab);
 const FAILED: Color = Color(0xd8, 0xd8, 0xd4);
 
-/// Selects the individuals to draw, as indices into the evaluation log, worst first: the best ones and an
-/// even selection of the rest.
-fn selection(calibration: &Calibration) -> Vec<usize> {
-    let history = &calibration.history;
+/// Selects at most `most` individuals to show, as indices into the evaluation log, worst first: the `elite` best
+/// ones and an even selection of the rest.
+pub(super) fn selection(history: &[HistoryPoint], elite: usize, most: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..history.len()).collect();
     order.sort_by(|&a, &b| {
         let key = |index: usize| (!history[index].complete, history[index].fitness);
@@ -45,9 +44,9 @@ fn selection(calibration: &Calibration) -> Vec<usize> {
             .cmp(&failed_b)
             .then(fitness_a.total_cmp(&fitness_b))
     });
-    let (best, rest) = order.split_at(order.len().min(ELITE));
+    let (best, rest) = order.split_at(order.len().min(elite));
     let mut chosen = best.to_vec();
-    chosen.extend(thinned(rest, MOST - ELITE));
+    chosen.extend(thinned(rest, most - elite));
     chosen.reverse();
     chosen
 }
@@ -55,7 +54,7 @@ fn selection(calibration: &Calibration) -> Vec<usize> {
 /// Draws one small panel per gene: the objective of the individuals over the gene's value.
 pub fn genes(calibration: &Calibration) -> Figure {
     let genes = &calibration.case.unknowns;
-    let chosen = selection(calibration);
+    let chosen = selection(&calibration.history, ELITE, MOST);
     let complete = calibration.history.iter().filter(|point| point.complete);
     let fitness = AxisScale::logarithmic(complete.map(|point| point.fitness));
     let rows = genes.len().div_ceil(COLUMNS).max(1);

@@ -8,6 +8,7 @@ mod curves;
 mod derivative;
 mod gap;
 mod gene;
+mod individual;
 mod notes;
 pub(super) mod origin;
 mod parameters;
@@ -21,6 +22,7 @@ use super::kind;
 
 pub use derivative::derivatives;
 pub use gene::genes;
+pub(super) use individual::one as individual;
 pub(super) use parameters::calibration as parameters;
 pub use worker::{hosts, jobs, slot_time};
 
@@ -34,12 +36,31 @@ pub(super) fn calibration(all: &Calibration) -> Vec<Section> {
         curves::calibration(all),
         convergence::calibration(all),
         gene::calibration(all),
+        individual::calibration(all),
         worker::calibration(all),
         slowest::calibration(all),
     ];
     let own = kind::of(&all.case).sections("the optimised", all.optimum().as_ref());
     sections.extend(own);
     sections.extend([notes::calibration(all), origin::calibration(all)]);
+    sections
+}
+
+/// Builds the sections of a calibration that goes on, in page order: without those about its end.
+pub(super) fn running_calibration(all: &Calibration) -> Vec<Section> {
+    let mut sections = vec![
+        convergence::calibration(all),
+        agreement::calibration(all),
+        gap::calibration(all),
+        parameters::calibration(all),
+        gene::calibration(all),
+        individual::calibration(all),
+        curves::calibration(all),
+        slowest::calibration(all),
+    ];
+    let own = kind::of(&all.case).sections("the best", all.optimum().as_ref());
+    sections.extend(own);
+    sections.push(notes::calibration(all));
     sections
 }
 

@@ -9,6 +9,7 @@ mod bench;
 mod calibrate;
 mod case;
 mod completions;
+mod dashboard;
 mod diagnose;
 mod doctor;
 #[cfg(test)]
@@ -78,6 +79,7 @@ commands! {
     Diagnose: diagnose,
     Identify: identify,
     Head: head,
+    Dashboard: dashboard,
     Report: report,
     Explain: explain,
     Export: export,

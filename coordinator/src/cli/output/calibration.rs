@@ -14,7 +14,7 @@ use crate::cli::{
         tables,
     },
 };
-use dispatch::account;
+use dispatch::account::{self, JobCost};
 use dispatch::journal;
 use protocol::{
     case::WeightedCondition,
@@ -24,7 +24,7 @@ use protocol::{
 use report::{self, Calibration, ConditionResult, HistoryPoint, Individual, WorkerUse};
 use search::strategy::Finish;
 use std::collections::BTreeMap;
-use study::{self, Calibrated, Compared, ComparedCurves};
+use study::{self, Calibrated, Compared, ComparedCurves, LogEntry};
 
 /// Converts the comparison of the recommended and the optimised individual under one condition to the
 /// report's type; `None` unless exactly these two were compared.
@@ -39,7 +39,7 @@ pub(crate) fn condition_result(compared: &Compared) -> Option<ConditionResult> {
     })
 }
 
-fn report_run(curves: &ComparedCurves) -> report::Run {
+pub(crate) fn report_run(curves: &ComparedCurves) -> report::Run {
     let unscored = || Evaluation {
         verdict: curves.drawn.verdict,
         fitness: f64::NAN,
@@ -154,7 +154,8 @@ fn total_objective(run: &Run, found: &Found) -> RecommendedAndOptimised<Option<f
     }
 }
 
-fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Result<Calibration> {
+/// Builds the data of a finished calibration's report.
+pub(crate) fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Result<Calibration> {
     let case = &run.case;
     // what workers of earlier sessions did is in the journal alone
     let (account, costs) = account::read_with_costs(&run.folder.file(journal::FILE))?;
@@ -163,16 +164,9 @@ fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Result<Calibrat
     if !best.complete {
         notes.push("no individual completed its simulation".to_owned());
     }
-    let history = log.entries().map(|entry| HistoryPoint {
-        id: entry.id,
-        generation: entry.generation,
-        purpose: entry.purpose.as_str().to_owned(),
-        genes: entry.genes.clone(),
-        fitness: entry.fitness,
-        complete: entry.ending == study::EvaluationOutcome::Complete,
-        failure: entry.ending.failure(),
-        cost: costs.get(&entry.id).copied(),
-    });
+    let history = log
+        .entries()
+        .map(|entry| history_point(entry, costs.get(&entry.id).copied()));
     Ok(Calibration {
         case: case.clone(),
         origin: run.origin(log.digest())?,
@@ -199,7 +193,22 @@ fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Result<Calibrat
     })
 }
 
-fn worker_use(worker: &WorkerAccount) -> WorkerUse {
+/// Converts a log entry to the report's type; `cost` is that of its simulation, if known.
+pub(crate) fn history_point(entry: &LogEntry, cost: Option<JobCost>) -> HistoryPoint {
+    HistoryPoint {
+        id: entry.id,
+        generation: entry.generation,
+        purpose: entry.purpose.as_str().to_owned(),
+        genes: entry.genes.clone(),
+        fitness: entry.fitness,
+        complete: entry.ending == study::EvaluationOutcome::Complete,
+        failure: entry.ending.failure(),
+        cost,
+    }
+}
+
+/// Converts the account of a worker to the report's type.
+pub(crate) fn worker_use(worker: &WorkerAccount) -> WorkerUse {
     let seconds = |us: u64| us as f64 / 1e6;
     WorkerUse {
         name: worker.worker.to_string(),

@@ -26,7 +26,8 @@ pub(crate) struct DiagnosisOutput<'a> {
 }
 
 impl DiagnosisOutput<'_> {
-    fn subject(&self) -> anyhow::Result<report::DiagnosisInput<'_>> {
+    /// Builds the data of the diagnosis's report.
+    pub(crate) fn subject(&self) -> anyhow::Result<report::DiagnosisInput<'_>> {
         Ok(report::DiagnosisInput {
             case: &self.loaded.case,
             records: &self.loaded.cycles,

@@ -20,13 +20,7 @@ pub(crate) fn show(
     wall_s: f64,
     output: Output,
 ) -> anyhow::Result<()> {
-    let subject = report::IdentificationInput {
-        case: &run.case,
-        identified: &found.identified,
-        origin: run.origin(String::new())?,
-        notes: &found.notes,
-        wall_s,
-    };
+    let subject = subject(run, found, wall_s)?;
     let about = format!("Parameters of {}", run.folder.path().display());
     run.folder
         .write_genes(&run.case, &found.identified.genes, &about)?;
@@ -38,4 +32,19 @@ pub(crate) fn show(
     run.folder.write_json(RESULT, &object)?;
     let tables = || text(&report::report(&subject), terminal::styled());
     terminal::print(output, tables, &object)
+}
+
+/// Builds the data of a finished identifiability analysis's report.
+pub(crate) fn subject<'a>(
+    run: &'a Identification,
+    found: &'a Found,
+    wall_s: f64,
+) -> anyhow::Result<report::IdentificationInput<'a>> {
+    Ok(report::IdentificationInput {
+        case: &run.case,
+        identified: &found.identified,
+        origin: run.origin(String::new())?,
+        notes: &found.notes,
+        wall_s,
+    })
 }

@@ -116,6 +116,10 @@ impl StageDisplay {
 }
 
 impl Watch<StageView> for StageDisplay {
+    fn noted(&mut self, notes: &[String]) {
+        terminal::note(notes);
+    }
+
     fn progress(&mut self, view: &StageView, crew: &dyn Fn() -> WorkersSnapshot) {
         let StageView {
             stages,
@@ -183,14 +187,22 @@ impl Pace {
     }
 }
 
-/// Progress display that shows nothing, for replays, which are short and have no live workers.
+/// Progress display that shows notes alone, for replays, which are short and have no live workers.
 pub(crate) struct Silent;
 
 impl<V: View> Watch<V> for Silent {
+    fn noted(&mut self, notes: &[String]) {
+        terminal::note(notes);
+    }
+
     fn progress(&mut self, _view: &V, _crew: &dyn Fn() -> WorkersSnapshot) {}
 }
 
 impl Watch<ProgressView> for Display {
+    fn noted(&mut self, notes: &[String]) {
+        terminal::note(notes);
+    }
+
     fn resumed(&mut self, recorded: usize) {
         self.recorded = recorded as u64;
     }

@@ -1,6 +1,5 @@
 //! Work of a calibration: the search, then the comparison of the recommended with the best individual.
 use super::{diagnosis::inputs, opened::Run};
-use crate::cli::output::terminal;
 use discrepancy::{diagnose::Inputs, identify::UnknownEstimate, thresholds::Thresholds};
 use protocol::case::Case;
 use search::strategy::{self, Settings};
@@ -51,7 +50,7 @@ pub(crate) async fn calibrate<E: Evaluator>(
     };
     let notes = recommended.as_ref().map(|all| study::mismatches(case, all));
     let notes = notes.unwrap_or_default();
-    terminal::note(&notes);
+    watch.noted(&notes);
     let calibrated = study::calibrate(evaluator, case, strategy.as_mut(), watch, stop).await?;
     let recommended = recommended?;
     let best = |one: CompareRequest| CompareRequest {

@@ -4,7 +4,7 @@ use super::{
     manifest::{self, DIAGNOSE, Manifest},
     opened::Run,
 };
-use crate::cli::output::{problem::Problem, terminal};
+use crate::cli::output::problem::Problem;
 use case::Loaded;
 use discrepancy::{diagnose::Inputs, model::InactiveUnknowns, thresholds::Thresholds};
 use protocol::{announce::EffectDescriptor, case::Case};
@@ -64,7 +64,7 @@ pub(crate) async fn diagnose<E: Evaluator>(
 ) -> anyhow::Result<Found> {
     let library = study::library(evaluator, stop).await?;
     let notes = study::check_records(evaluator, &loaded.case, stop).await?;
-    terminal::note(&notes);
+    watch.noted(&notes);
     let notes = [&manifest.notes[..], &notes].concat();
     let off = InactiveUnknowns::of(&loaded.case.unknowns);
     for id in &manifest.settings.thresholds.without {

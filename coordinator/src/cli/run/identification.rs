@@ -4,7 +4,7 @@ use super::{
     manifest::{self, IDENTIFY, Manifest},
     opened::Run,
 };
-use crate::cli::output::{problem::Problem, terminal};
+use crate::cli::output::problem::Problem;
 use case::Loaded;
 use discrepancy::{
     diagnose::Inputs, identify::IdentificationResult, laboratory::Stage, thresholds::Thresholds,
@@ -59,7 +59,7 @@ pub(crate) async fn identify<E: Evaluator>(
 ) -> anyhow::Result<Found> {
     let library = study::library(evaluator, stop).await?;
     let notes = study::check_records(evaluator, &loaded.case, stop).await?;
-    terminal::note(&notes);
+    watch.noted(&notes);
     let notes = [&manifest.notes[..], &notes].concat();
     let own = &manifest.settings;
     let thresholds = Thresholds {

@@ -11,11 +11,15 @@ use super::{
 use crate::cli::{
     argument::output::Output,
     output::{
-        calibration::show, diagnosis::DiagnosisOutput, identification::show as identified,
-        object::diagnosis::times::Times, problem::Problem,
+        calibration::{calibration as calibration_data, show},
+        diagnosis::DiagnosisOutput,
+        identification::{show as identified, subject as identification_data},
+        object::diagnosis::times::Times,
+        problem::Problem,
     },
 };
 use case::Loaded;
+use report::Report;
 use std::path::Path;
 use study::{Evaluator, ProgressView, StageView, Stop, Watch};
 
@@ -95,6 +99,30 @@ impl AnyRun {
 }
 
 impl ReplayedRun<'_> {
+    /// Builds the report of the run, whose sessions took `wall_s` seconds in total.
+    ///
+    /// # Errors
+    /// If the journal or the result of the run cannot be read.
+    pub(crate) fn report(&self, wall_s: f64) -> anyhow::Result<Report> {
+        Ok(match self {
+            Self::Calibration(run, found) => {
+                report::calibration(&calibration_data(run, found, wall_s)?)
+            }
+            Self::Diagnosis(run, loaded, found) => {
+                let answer = DiagnosisOutput {
+                    run,
+                    loaded,
+                    found,
+                    wall_s,
+                };
+                report::diagnosis::report(&answer.subject()?)
+            }
+            Self::Identification(run, found) => {
+                report::identification::report(&identification_data(run, found, wall_s)?)
+            }
+        })
+    }
+
     /// Writes the result files of the run and prints its result.
     ///
     /// # Errors
@@ -103,9 +131,7 @@ impl ReplayedRun<'_> {
         match self {
             Self::Calibration(run, found) => show(run, &found, run.manifest.wall_s, output),
             Self::Diagnosis(run, loaded, mut found) => {
-                // reading takes a moment: the times are those of the session that computed
-                let known: Times = run.folder.read_json(RESULT)?;
-                known.restore(&mut found.diagnosed.accounts);
+                restore_times(run, &mut found)?;
                 let answer = DiagnosisOutput {
                     run,
                     loaded: &loaded,
@@ -120,4 +146,11 @@ impl ReplayedRun<'_> {
             }
         }
     }
+}
+
+/// Replaces the times of a diagnosis's stages, which reading takes, by those of the session that computed.
+pub(crate) fn restore_times(run: &Diagnosis, found: &mut diagnosis::Found) -> anyhow::Result<()> {
+    let known: Times = run.folder.read_json(RESULT)?;
+    known.restore(&mut found.diagnosed.accounts);
+    Ok(())
 }

@@ -15,7 +15,7 @@ use protocol::{
 };
 
 /// JavaScript player that reads the animation's data and moves the parts of the drawing.
-const PLAYER: &str = include_str!("player.js");
+pub(super) const PLAYER: &str = include_str!("player.js");
 /// Style sheet of the machine parts, used by this section only.
 const STYLE: &str = include_str!("film.css");
 
@@ -64,7 +64,6 @@ pub(super) fn machine(case: &Case, condition: usize, simulation: &Simulation) ->
                 figcaption { (curves.caption) }
             }
             script id="machine-film" type="application/json" { (PreEscaped(film.json())) }
-            script { (PreEscaped("/*<![CDATA[*/\n")) (PreEscaped(PLAYER)) (PreEscaped("/*]]>*/")) }
         }
     })
 }

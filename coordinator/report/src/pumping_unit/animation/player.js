@@ -1,7 +1,9 @@
-// Moves the parts of the drawing. Reads the film once, then only sets attributes.
-(function () {
+// Moves the parts of the drawing of the machine. Reads the film once, then only sets attributes.
+horsehead.parts.push(function (part) {
   "use strict";
-  var film = JSON.parse(document.getElementById("machine-film").textContent);
+  var data = part.querySelector("#machine-film");
+  if (!data) { return; }
+  var film = JSON.parse(data.textContent);
   var get = function (name) { return document.getElementById("machine-" + name); };
   var frames = film.turn.length;
   var last = film.turn[frames - 1];
@@ -102,7 +104,8 @@
   slider.max = String(last);
   var playing = false, before = null, turn = 0;
   function step(now) {
-    if (!playing) { return; }
+    // a drawing that was replaced stops
+    if (!playing || !slider.isConnected) { return; }
     if (before !== null) {
       turn += (now - before) / 1000 / film.seconds_per_deg * Number(speed.value);
       // a whole revolution runs on; a failed one starts again
@@ -120,4 +123,4 @@
   });
   slider.addEventListener("input", function () { turn = Number(slider.value); show(turn); });
   show(0);
-}());
+});

@@ -1,0 +1,137 @@
+//! `horsehead dashboard`: shows runs in a browser, live and finished.
+use crate::cli::{
+    dashboard::{DEFAULT_PORT, FolderPages, RunPages, listen},
+    output::{
+        problem::{EXIT_CODES, Problem},
+        terminal,
+    },
+    run::{bus, folder::RunFolder, interrupt},
+};
+use clap::Args;
+use dashboard::{Pages, serve};
+use std::{
+    io::Read as _,
+    net::{IpAddr, Ipv4Addr, TcpListener},
+    path::PathBuf,
+    sync::Arc,
+    thread,
+    time::{Duration, Instant},
+};
+use study::Stop;
+use tokio::sync::watch;
+
+/// Show a run, or a folder of runs, in a browser: while it goes on, and afterwards.
+#[derive(Debug, Args)]
+#[command(after_help = format!("\
+Examples:
+  horsehead dashboard
+  horsehead dashboard runs/cyjs10-5-37hb-quick-seed1
+  horsehead calibrate cases/cyjs10-5-37hb --dashboard
+
+Only shows: no request changes anything, and only this machine is answered unless --address says otherwise. From \
+another machine: ssh -L 7450:127.0.0.1:7450 HOST, then open http://127.0.0.1:7450/.
+Ctrl-C ends it; runs go on.
+{EXIT_CODES}"))]
+pub(super) struct Arguments {
+    /// Run folder, which need not exist yet, or a folder of runs.
+    #[arg(
+        value_name = "RUN|FOLDER",
+        default_value = "runs",
+        env = "HORSEHEAD_RUN"
+    )]
+    path: PathBuf,
+    /// Port to listen on; 0 for any free one.
+    #[arg(long, value_name = "PORT", default_value_t = DEFAULT_PORT, env = "HORSEHEAD_PORT")]
+    port: u16,
+    /// Address of this machine to listen on; any other than loopback lets every machine that reaches it see the
+    /// runs.
+    #[arg(long, value_name = "IP", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST), env = "HORSEHEAD_ADDRESS")]
+    address: IpAddr,
+    /// End when standard input does, and show the run even before it has begun: for `--dashboard`.
+    #[arg(long, hide = true, env = "HORSEHEAD_ATTACHED")]
+    attached: bool,
+}
+
+/// Longest time for which the page of a command that has ended is kept up, until it shows the end.
+const LAST_LOOK: Duration = Duration::from_secs(5);
+/// Time for which the page of the end is served to the browsers that are open.
+const LAST_ANSWER: Duration = Duration::from_secs(1);
+
+/// Serves the pages until the user stops it.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let path = &arguments.path;
+    let is_run = arguments.attached || RunFolder::new(path).is_begun();
+    if !is_run && !path.is_dir() {
+        return Err(Problem {
+            message: format!("{} is neither a run folder nor a folder of runs", path.display()),
+            remedy: "name a folder below runs/, or a folder that holds such folders; `horsehead calibrate CASE \
+                     --dashboard` begins a run with its page"
+                .to_owned(),
+        }
+        .into());
+    }
+    let listener = listen(arguments.address, arguments.port)?;
+    let address = listener.local_addr()?;
+    let url = format!("http://{address}/");
+    terminal::write(&format!("{url}\n"))?;
+    if !arguments.attached {
+        terminal::tell("open this address in a browser; Ctrl-C ends the dashboard, and runs go on");
+    }
+    if !address.ip().is_loopback() {
+        terminal::tell(
+            "warning: every machine that reaches this address can see the runs, without encryption",
+        );
+    }
+    if is_run {
+        let pages = Arc::new(RunPages::begin(path));
+        let own = Arc::clone(&pages);
+        let end = arguments
+            .attached
+            .then(|| input_end(move || own.has_ended()));
+        block_on(listener, pages, end)
+    } else {
+        block_on(listener, Arc::new(FolderPages::begin(path)), None)
+    }
+}
+
+/// Serves pages until the user stops it, or `end` becomes true.
+fn block_on(
+    listener: TcpListener,
+    pages: Arc<impl Pages>,
+    end: Option<Stop>,
+) -> anyhow::Result<()> {
+    bus::block_on(async {
+        let mut stop = interrupt::listen();
+        listener.set_nonblocking(true)?;
+        let listener = tokio::net::TcpListener::from_std(listener)?;
+        let ended = async move {
+            match end {
+                Some(mut end) => tokio::select! {
+                    _gone = end.wait_for(|end| *end) => {}
+                    _gone = stop.wait_for(|stop| *stop) => {}
+                },
+                None => drop(stop.wait_for(|stop| *stop).await),
+            }
+        };
+        serve(listener, pages, ended).await?;
+        Ok(())
+    })
+}
+
+/// Returns a value that becomes true when standard input has ended and the page shows the end of the run, or does
+/// not show it in time.
+fn input_end(shows_end: impl Fn() -> bool + Send + 'static) -> Stop {
+    let (sender, end) = watch::channel(false);
+    thread::spawn(move || {
+        let mut rest = Vec::new();
+        // what ends with an error has ended, too
+        drop(std::io::stdin().read_to_end(&mut rest));
+        let begun = Instant::now();
+        while !shows_end() && begun.elapsed() < LAST_LOOK {
+            thread::sleep(Duration::from_millis(100));
+        }
+        thread::sleep(LAST_ANSWER);
+        sender.send_replace(true);
+    });
+    end
+}

@@ -1,0 +1,464 @@
+//! Following of one run: its study is repeated on the growing journal in one thread, and its page is rendered
+//! in another.
+use super::{
+    sections::{self, ComparedRuns, pair},
+    simulator::{Simulated, Simulator},
+    state::{RunState, SharedState},
+};
+use crate::cli::run::{
+    bus,
+    folder::{MANIFEST, RESULT, RunFolder},
+    kind::{AnyRun, ReplayedRun, restore_times},
+};
+use dashboard::{Board, PageReader, Pages};
+use dispatch::journal;
+use protocol::case::Case;
+use report::{Block, Report, Section, document::section_markup};
+use std::{
+    fs,
+    os::unix::fs::MetadataExt,
+    path::{Path, PathBuf},
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::{Duration, Instant, SystemTime},
+};
+use study::{FollowingEvaluator, StudyError};
+use tokio::sync::{oneshot, watch};
+
+/// Interval at which the page of a run is rendered, if something has changed.
+const INTERVAL: Duration = Duration::from_millis(400);
+/// Minimum share of time that rendering leaves to others: a page that takes long is rendered less often.
+const REST: u32 = 9;
+/// Interval at which a run folder that cannot be read is tried again.
+const RETRY: Duration = Duration::from_secs(1);
+/// Minimum time between two simulations of the best individual so far.
+const BEST_INTERVAL: Duration = Duration::from_secs(4);
+/// Longest wait for the result file of a run whose last result is in the journal.
+const RESULT_WAIT: Duration = Duration::from_secs(20);
+
+/// Run that is followed until this value is dropped.
+pub(super) struct Followed {
+    shared: Arc<Shared>,
+    reader: PageReader,
+    stop: watch::Sender<bool>,
+}
+
+/// What the threads of a followed run share.
+struct Shared {
+    path: PathBuf,
+    state: SharedState,
+    /// The run as it was opened last.
+    run: Mutex<Option<Arc<AnyRun>>>,
+    ending: Mutex<Ending>,
+    simulator: Simulator,
+    stopped: AtomicBool,
+}
+
+/// End of a followed study.
+#[derive(Clone, Default)]
+struct Ending {
+    /// Report of the finished run.
+    report: Option<Arc<Report>>,
+    /// Why the study could not go on.
+    error: Option<String>,
+}
+
+/// Opened run as the page of one individual needs it.
+fn case_of(run: &AnyRun) -> &Case {
+    match run {
+        AnyRun::Calibration(run) => &run.case,
+        AnyRun::Diagnosis(run) => &run.case,
+        AnyRun::Identification(run) => &run.case,
+    }
+}
+
+impl Followed {
+    /// Begins to follow the run in a folder, which need not exist yet.
+    pub(super) fn begin(path: &Path, simulator: &Simulator) -> Self {
+        let name = path.display().to_string();
+        let board = Board::new(&name, &name);
+        let reader = board.reader();
+        let (stop, stopped) = watch::channel(false);
+        let shared = Arc::new(Shared {
+            path: path.to_owned(),
+            state: SharedState::default(),
+            run: Mutex::default(),
+            ending: Mutex::default(),
+            simulator: simulator.clone(),
+            stopped: AtomicBool::new(false),
+        });
+        let own = Arc::clone(&shared);
+        thread::spawn(move || own.follow(&stopped));
+        let own = Arc::clone(&shared);
+        thread::spawn(move || own.render(board));
+        Self {
+            shared,
+            reader,
+            stop,
+        }
+    }
+
+    pub(super) fn reader(&self) -> PageReader {
+        self.reader.clone()
+    }
+
+    /// Returns whether the page shows the end of the run.
+    pub(super) fn has_ended(&self) -> bool {
+        self.reader.borrow().state == FINISHED
+    }
+
+    /// Returns the HTML of one individual beside the recommended one; `None` if there is no such individual.
+    pub(super) async fn individual(&self, number: u64) -> Option<String> {
+        let run = self.shared.opened()?;
+        let case = Arc::new(case_of(&run).clone());
+        let genes = {
+            let state = self.shared.state.lock();
+            state.history.get(&number)?.genes.clone()
+        };
+        let both = [case.start(), genes.clone()].map(|one| self.shared.runs_of(&case, &one));
+        let mut found = Vec::new();
+        for one in both {
+            found.push(match one {
+                Ok(known) => Ok(known),
+                Err(asked) => asked
+                    .await
+                    .unwrap_or_else(|_| Err("the dashboard ends".to_owned())),
+            });
+        }
+        let section = match found.as_slice() {
+            [Ok(recommended), Ok(own)] => {
+                let conditions = pair(recommended, own);
+                report::individual(&case, (number, &genes), &conditions)
+            }
+            [Err(why), _] | [_, Err(why)] => Section {
+                id: "one-individual",
+                title: "One individual",
+                blocks: vec![Block::Warning(vec![format!(
+                    "Individual {number} could not be simulated: {why}"
+                )])],
+            },
+            _ => return None,
+        };
+        Some(section_markup(&section).into_string())
+    }
+}
+
+impl Drop for Followed {
+    fn drop(&mut self) {
+        self.shared.stopped.store(true, Ordering::Relaxed);
+        self.stop.send_replace(true);
+    }
+}
+
+/// Length and inode of a file, which tell whether it has changed; 0 if there is none.
+fn stamp(path: &Path) -> (u64, u64) {
+    fs::metadata(path).map_or((0, 0), |file| (file.len(), file.ino()))
+}
+
+/// State of a run whose result is written.
+const FINISHED: &str = "finished";
+
+impl Shared {
+    fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+
+    fn opened(&self) -> Option<Arc<AnyRun>> {
+        let run = self.run.lock().unwrap_or_else(PoisonError::into_inner);
+        run.clone()
+    }
+
+    fn ending(&self) -> Ending {
+        let ending = self.ending.lock().unwrap_or_else(PoisonError::into_inner);
+        ending.clone()
+    }
+
+    fn end(&self, ending: Ending) {
+        *self.ending.lock().unwrap_or_else(PoisonError::into_inner) = ending;
+    }
+
+    fn stamps(&self) -> [(u64, u64); 2] {
+        [MANIFEST, journal::FILE].map(|file| stamp(&self.path.join(file)))
+    }
+
+    /// Follows the run to its end; a run that cannot be followed is tried again when its files have changed.
+    fn follow(&self, stopped: &watch::Receiver<bool>) {
+        while !self.is_stopped() {
+            let before = self.stamps();
+            let followed = self.study(stopped);
+            let ended = followed.is_ok();
+            self.end(match followed {
+                Ok(report) => Ending {
+                    report: Some(Arc::new(report)),
+                    error: None,
+                },
+                Err(error) => Ending {
+                    report: None,
+                    error: Some(format!("{error:#}")),
+                },
+            });
+            // a run that is over is followed again only if another takes its place
+            while !self.is_stopped() && (ended || self.stamps() == before) {
+                thread::sleep(RETRY);
+                let [manifest, _] = self.stamps();
+                if ended && manifest.1 != 0 && manifest.0 != 0 && self.stamps()[1].1 != before[1].1
+                {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Repeats the study of the run as its results arrive, and returns the report of its end.
+    fn study(&self, stopped: &watch::Receiver<bool>) -> anyhow::Result<Report> {
+        let run = Arc::new(AnyRun::open(&self.path)?);
+        self.state.clear();
+        *self.run.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(&run));
+        self.end(Ending::default());
+        let mut stop = stopped.clone();
+        let mut watch = self.state.clone();
+        let mut observer = self.state.clone();
+        let mut evaluator = FollowingEvaluator::new(&self.path.join(journal::FILE), &mut observer);
+        let mut replayed =
+            bus::block_on(async { run.replay(&mut evaluator, &mut watch, &mut stop).await })?;
+        let wall_s = self.wall_s()?;
+        if let ReplayedRun::Diagnosis(run, _, found) = &mut replayed {
+            restore_times(run, found)?;
+        }
+        replayed.report(wall_s)
+    }
+
+    /// Waits for the result of the run and returns the wall time in it (s).
+    fn wall_s(&self) -> anyhow::Result<f64> {
+        let begun = Instant::now();
+        let folder = RunFolder::new(&self.path);
+        while !folder.is_finished() && begun.elapsed() < RESULT_WAIT {
+            if self.is_stopped() {
+                return Err(StudyError::Interrupted.into());
+            }
+            thread::sleep(INTERVAL);
+        }
+        let result: serde_json::Value = folder.read_json(RESULT)?;
+        Ok(result["wall_s"].as_f64().unwrap_or_default())
+    }
+
+    /// Returns the runs of an individual if they are known, from the journal or a former simulation; otherwise
+    /// requests their simulation.
+    fn runs_of(
+        &self,
+        case: &Arc<Case>,
+        genes: &[f64],
+    ) -> Result<Simulated, oneshot::Receiver<Result<Simulated, String>>> {
+        self.known(case, genes)
+            .ok_or_else(|| self.simulator.simulate(case, genes))
+    }
+
+    fn known(&self, case: &Case, genes: &[f64]) -> Option<Simulated> {
+        self.simulator
+            .known(genes)
+            .or_else(|| recorded(case, &self.state.lock(), genes))
+    }
+
+    /// Renders the page until the follower is dropped.
+    fn render(&self, mut board: Board) {
+        let mut shown = None;
+        let mut pictures = BestPictures::default();
+        while !self.is_stopped() {
+            let begun = Instant::now();
+            let ending = self.ending();
+            let run = self.opened();
+            let version = self.state.lock().version;
+            let word = self.state_word(&ending);
+            let drawn = run
+                .as_ref()
+                .is_some_and(|run| pictures.update(self, run, ending.report.is_some()));
+            let present = (
+                version,
+                word.clone(),
+                ending.error.clone(),
+                ending.report.is_some(),
+            );
+            if drawn || shown.as_ref() != Some(&present) {
+                let state = self.state.lock().clone();
+                let title = run.as_ref().map_or_else(
+                    || self.path.display().to_string(),
+                    |run| sections::title(run),
+                );
+                let mut page = vec![sections::notices(&state, ending.error.as_deref())];
+                match (&ending.report, &run) {
+                    (Some(report), _) => page.extend(report.sections.iter().cloned()),
+                    (None, Some(run)) => {
+                        page.extend(sections::unfinished(run, &state, pictures.compared()));
+                    }
+                    (None, None) => {}
+                }
+                board.publish(
+                    (&title, &word),
+                    state.position,
+                    &page,
+                    ending.report.is_some() || ending.error.is_some(),
+                );
+                shown = Some(present);
+            }
+            thread::sleep(INTERVAL.max(REST * begun.elapsed()));
+        }
+    }
+
+    /// Returns the state of the run in a word or two.
+    fn state_word(&self, ending: &Ending) -> String {
+        let folder = RunFolder::new(&self.path);
+        if ending.report.is_some() {
+            FINISHED.to_owned()
+        } else if !folder.is_begun() {
+            if self.opened().is_some() {
+                "deleted".to_owned()
+            } else {
+                "no run".to_owned()
+            }
+        } else if is_locked(&folder.file(journal::LOCK)) {
+            "running".to_owned()
+        } else if folder.is_finished() {
+            "reading".to_owned()
+        } else {
+            "stopped".to_owned()
+        }
+    }
+}
+
+/// Returns whether a process of this machine holds the lock of a run, from the kernel's table of locks; a run on
+/// another machine counts as running while its journal grows.
+pub(super) fn is_locked(lock: &Path) -> bool {
+    let Ok(file) = fs::metadata(lock) else {
+        return false;
+    };
+    let suffix = format!(":{}", file.ino());
+    let table = fs::read_to_string("/proc/locks").unwrap_or_default();
+    let mut words = table.split_whitespace();
+    if words.any(|word| word.ends_with(&suffix) && word.matches(':').count() == 2) {
+        return true;
+    }
+    let journal = lock.with_file_name(journal::FILE);
+    let changed = fs::metadata(journal).and_then(|file| file.modified());
+    let age = changed.map(|at| SystemTime::now().duration_since(at).unwrap_or_default());
+    age.is_ok_and(|age| age < Duration::from_secs(10))
+}
+
+/// Returns the runs of an individual that the run itself simulated for its tables, if all are there.
+fn recorded(case: &Case, state: &RunState, genes: &[f64]) -> Option<Simulated> {
+    let bits: Vec<u64> = genes.iter().map(|gene| gene.to_bits()).collect();
+    let mut runs = Vec::new();
+    for wanted in study::recommended(case, 0) {
+        let shown = state.shown.get(&(bits.clone(), wanted.condition))?;
+        let curves = study::ComparedCurves {
+            name: String::new(),
+            genes: Vec::new(),
+            evaluation: shown.evaluation.clone(),
+            drawn: shown.curves.clone()?,
+        };
+        runs.push((
+            wanted.condition,
+            crate::cli::output::calibration::report_run(&curves),
+        ));
+    }
+    Some(Arc::new(runs))
+}
+
+/// Curves of the recommended and the best individual so far of a calibration.
+#[derive(Default)]
+struct BestPictures {
+    case: Option<Arc<Case>>,
+    recommended: Option<Simulated>,
+    best: Option<(Vec<f64>, Simulated)>,
+    waiting: Option<(Vec<f64>, oneshot::Receiver<Result<Simulated, String>>)>,
+    asked: Option<Instant>,
+}
+
+impl BestPictures {
+    fn compared(&self) -> ComparedRuns<'_> {
+        let best = self.best.as_ref();
+        ComparedRuns {
+            recommended: self.recommended.as_ref().map(|runs| runs.as_slice()),
+            best: best.map(|(genes, runs)| (genes.as_slice(), runs.as_slice())),
+        }
+    }
+
+    /// Takes what has arrived, and requests the curves of a new best individual; returns whether curves have
+    /// arrived.
+    fn update(&mut self, shared: &Shared, run: &AnyRun, ended: bool) -> bool {
+        if ended || !matches!(run, AnyRun::Calibration(_)) {
+            return false;
+        }
+        let case = self
+            .case
+            .get_or_insert_with(|| Arc::new(case_of(run).clone()));
+        let case = Arc::clone(case);
+        let mut arrived = false;
+        if self.recommended.is_none() {
+            self.recommended = recorded(&case, &shared.state.lock(), &case.start());
+            arrived = self.recommended.is_some();
+        }
+        if let Some((genes, mut waiting)) = self.waiting.take() {
+            match waiting.try_recv() {
+                Ok(Ok(runs)) => {
+                    self.best = Some((genes, runs));
+                    arrived = true;
+                }
+                Ok(Err(_)) | Err(oneshot::error::TryRecvError::Closed) => {}
+                Err(oneshot::error::TryRecvError::Empty) => self.waiting = Some((genes, waiting)),
+            }
+        }
+        let best = shared.state.lock().best().map(|entry| entry.genes.clone());
+        let shown = self.best.as_ref().map(|(genes, _)| genes);
+        let rested = self.asked.is_none_or(|at| at.elapsed() >= BEST_INTERVAL);
+        if let Some(best) = best.filter(|best| Some(best) != shown)
+            && self.waiting.is_none()
+            && rested
+        {
+            match shared.runs_of(&case, &best) {
+                Ok(known) => {
+                    self.best = Some((best, known));
+                    arrived = true;
+                }
+                Err(waiting) => self.waiting = Some((best, waiting)),
+            }
+            self.asked = Some(Instant::now());
+        }
+        arrived
+    }
+}
+
+/// Pages of one run.
+pub(crate) struct RunPages(Followed);
+
+impl RunPages {
+    /// Begins to follow the run in a folder, which need not exist yet.
+    pub(crate) fn begin(path: &Path) -> Self {
+        Self(Followed::begin(path, &Simulator::new()))
+    }
+
+    /// Returns whether the page shows the end of the run.
+    pub(crate) fn has_ended(&self) -> bool {
+        self.0.has_ended()
+    }
+}
+
+impl Pages for RunPages {
+    fn start(&self) -> PageReader {
+        self.0.reader()
+    }
+
+    fn run(&self, _name: &str) -> Option<PageReader> {
+        None
+    }
+
+    async fn individual(&self, run: &str, number: u64) -> Option<String> {
+        if run.is_empty() {
+            self.0.individual(number).await
+        } else {
+            None
+        }
+    }
+}

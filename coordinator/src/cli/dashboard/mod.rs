@@ -1,0 +1,15 @@
+//! Dashboard: follows runs by their journals and shows them in a browser.
+//!
+//! `follow` repeats the study of a run on its growing journal; `sections` turns what is known so far into the
+//! sections of the report; `simulator` simulates individuals with a worker of the dashboard's own; `folder`
+//! lists the runs of a folder; `port` finds a free port. Nothing is written into a run folder.
+mod folder;
+mod follow;
+mod port;
+mod sections;
+mod simulator;
+mod state;
+
+pub(crate) use folder::FolderPages;
+pub(crate) use follow::RunPages;
+pub(crate) use port::{DEFAULT_PORT, listen};

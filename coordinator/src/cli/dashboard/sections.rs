@@ -1,0 +1,291 @@
+//! Sections of the page of a run that goes on: its progress, and the sections of the report as far as they are
+//! known.
+use super::state::{RunState, WorkerState};
+use crate::cli::{
+    output::calibration::{history_point, worker_use},
+    run::{calibration::Calibration, kind::AnyRun},
+};
+use discrepancy::thresholds::Thresholds;
+use report::{
+    Block, ConditionResult, Individual, Run, Section, Table,
+    document::{Fact, Row},
+    number::{count, duration, fixed, significant},
+};
+use std::time::{Duration, SystemTime};
+
+/// Runs of an individual: for each condition its index and the run.
+type Runs = [(usize, Run)];
+
+/// Maximum number of workers that the table lists, those that left last.
+const MOST_WORKERS: usize = 600;
+
+/// Runs of the two individuals that the page of a calibration compares.
+#[derive(Clone, Copy, Default)]
+pub(super) struct ComparedRuns<'a> {
+    pub(super) recommended: Option<&'a Runs>,
+    pub(super) best: Option<(&'a [f64], &'a Runs)>,
+}
+
+/// Returns the title of a run's page.
+pub(super) fn title(run: &AnyRun) -> String {
+    match run {
+        AnyRun::Calibration(run) => format!("Calibration of {}", run.case.name),
+        AnyRun::Diagnosis(run) => format!("Diagnosis of {}", run.case.name),
+        AnyRun::Identification(run) => format!("Identifiability of {}", run.case.name),
+    }
+}
+
+/// Returns the section of notices, such as a damaged journal; without blocks if there are none.
+pub(super) fn notices(state: &RunState, error: Option<&str>) -> Section {
+    let mut lines: Vec<String> = error.map(ToOwned::to_owned).into_iter().collect();
+    lines.extend(state.damage.iter().cloned());
+    let some = (!lines.is_empty()).then_some(Block::Warning(lines));
+    Section {
+        id: "notices",
+        title: "Notices",
+        blocks: some.into_iter().collect(),
+    }
+}
+
+/// Returns the sections of a run that is not finished.
+pub(super) fn unfinished(
+    run: &AnyRun,
+    state: &RunState,
+    compared: ComparedRuns<'_>,
+) -> Vec<Section> {
+    match run {
+        AnyRun::Calibration(run) => {
+            let mut sections = vec![search_progress(run, state)];
+            sections.extend(calibration(run, state, compared));
+            sections.push(workers(state));
+            sections
+        }
+        AnyRun::Diagnosis(run) => {
+            let budget = &run.manifest.settings.thresholds;
+            vec![stage_progress(state, Some(budget)), workers(state)]
+        }
+        AnyRun::Identification(_) => vec![stage_progress(state, None), workers(state)],
+    }
+}
+
+/// Returns the time since the last coordinator process began.
+fn running_s(state: &RunState) -> f64 {
+    let opened = SystemTime::UNIX_EPOCH + Duration::from_millis(state.opened_unix_ms);
+    let passed = opened.elapsed().unwrap_or_default();
+    if state.opened_unix_ms == 0 {
+        0.0
+    } else {
+        passed.as_secs_f64()
+    }
+}
+
+fn search_progress(run: &Calibration, state: &RunState) -> Section {
+    let view = &state.progress;
+    let unit = run.case.objective_unit();
+    let unit = unit.map_or_else(String::new, |unit| format!(" {unit}²"));
+    let mut facts = vec![Fact::new(
+        "evaluations",
+        format!(
+            "{} of about {}",
+            count(view.completed),
+            count(view.expected)
+        ),
+    )];
+    if view.generations > 1 {
+        facts.push(Fact::new(
+            "generation or stage",
+            format!("{} of {}", view.generation, view.generations),
+        ));
+    }
+    if let Some(best) = state.best() {
+        facts.push(Fact::new(
+            "best objective",
+            format!(
+                "{}{unit}, individual {}",
+                significant(best.fitness),
+                best.id
+            ),
+        ));
+    }
+    facts.push(Fact::new("did not complete", count(view.failed)));
+    facts.extend(time_left(
+        state,
+        view.expected.saturating_sub(view.completed),
+    ));
+    facts.push(Fact::code("command", run.manifest.command.clone()));
+    progress(vec![Block::Facts(facts)])
+}
+
+/// Estimates the time for the remaining evaluations from the rate since the last coordinator process began.
+fn time_left(state: &RunState, ahead: u64) -> Option<Fact> {
+    let passed_s = running_s(state);
+    let busy_s: f64 = state.workers.values().map(|worker| worker.busy_s).sum();
+    if state.closed || state.results == 0 || passed_s <= 0.0 || busy_s <= 0.0 {
+        return None;
+    }
+    let slots: u32 = connected(state).map(|worker| worker.slots).sum();
+    let one_s = busy_s / state.results as f64;
+    let left_s = ahead as f64 * one_s / f64::from(slots.max(1));
+    Some(Fact::new("at least left", duration(left_s)))
+}
+
+fn connected(state: &RunState) -> impl Iterator<Item = &WorkerState> {
+    let workers = state.workers.values();
+    workers.filter(|worker| worker.left.is_none())
+}
+
+const fn progress(blocks: Vec<Block>) -> Section {
+    Section {
+        id: "progress",
+        title: "Progress",
+        blocks,
+    }
+}
+
+/// Returns the section on the stages of a diagnosis or identification; `budget` has the simulations that each
+/// stage of a diagnosis may use.
+fn stage_progress(state: &RunState, budget: Option<&Thresholds>) -> Section {
+    let Some(last) = state.stages.last() else {
+        return progress(vec![Block::Text(
+            "Waiting for the first result.".to_owned(),
+        )]);
+    };
+    let position = |stage| state.stages.iter().find(|own| own.stage == stage);
+    let rows = last.stages.iter().map(|stage| {
+        let own = position(*stage);
+        let done = own.map_or(0, |own| own.done);
+        let words = match own {
+            None => "not begun",
+            Some(own) if own.stage == last.stage => "running",
+            Some(_) => "done",
+        };
+        let all = budget.and_then(|own| own.budget.get(*stage as usize));
+        let left = match (own, all) {
+            (_, None) => "–".to_owned(),
+            (None, Some(all)) => count(u64::from(*all)),
+            (Some(own), Some(_)) => fixed(own.left, 0),
+        };
+        let open = own.filter(|own| own.stage == last.stage);
+        let open = open.map_or(0, |own| own.open as u64);
+        Row::new(
+            stage.name(),
+            [words.to_owned(), count(done), count(open), left],
+        )
+    });
+    let table = Table::new(
+        "Stages",
+        ["stage", "state", "simulations", "open", "budget left"],
+        rows.collect(),
+    )
+    .with_notes(["Budget left: in simulations without derivatives; a stage ends sooner where it finds its answer."]);
+    let facts = vec![
+        Fact::new("stage", last.stage.name()),
+        Fact::new("simulations", count(state.results)),
+    ];
+    progress(vec![Block::Facts(facts), Block::Table(table)])
+}
+
+/// Returns the sections of the report of a calibration that goes on.
+fn calibration(run: &Calibration, state: &RunState, compared: ComparedRuns<'_>) -> Vec<Section> {
+    let Some(best) = state.best() else {
+        return Vec::new();
+    };
+    let account = state.account.clone().finish(Vec::new());
+    let shown = compared.best.map_or(&best.genes[..], |(genes, _)| genes);
+    let entry = state.history.values().find(|entry| entry.genes == shown);
+    let data = report::Calibration {
+        case: run.case.clone(),
+        origin: match run.origin(String::new()) {
+            Ok(origin) => origin,
+            Err(_) => return Vec::new(),
+        },
+        recommended: Individual {
+            id: None,
+            genes: run.case.start(),
+        },
+        optimised: Individual {
+            id: entry.map(|entry| entry.id),
+            genes: shown.to_vec(),
+        },
+        history: state
+            .history
+            .values()
+            .map(|entry| history_point(entry, state.costs.get(&entry.id).copied()))
+            .collect(),
+        workers: account.workers.iter().map(worker_use).collect(),
+        spent: account.spent,
+        wall_s: running_s(state),
+        finish: String::new(),
+        conditions: match (compared.recommended, compared.best) {
+            (Some(recommended), Some((_, best))) => pair(recommended, best),
+            _ => Vec::new(),
+        },
+        identifiability: Vec::new(),
+        notes: [&run.manifest.notes[..], &state.notes].concat(),
+    };
+    report::running_calibration(&data)
+}
+
+/// Pairs the runs of the recommended and of another individual by condition.
+pub(super) fn pair(recommended: &[(usize, Run)], other: &[(usize, Run)]) -> Vec<ConditionResult> {
+    let pair = |(condition, run): &(usize, Run)| {
+        let (_, optimised) = other.iter().find(|(own, _)| own == condition)?;
+        Some(ConditionResult {
+            condition: *condition,
+            recommended: run.clone(),
+            optimised: optimised.clone(),
+        })
+    };
+    recommended.iter().filter_map(pair).collect()
+}
+
+/// Returns the section on the workers of a run that goes on.
+fn workers(state: &RunState) -> Section {
+    let mut all: Vec<_> = state.workers.iter().collect();
+    all.sort_by_key(|(_, worker)| worker.left.is_some());
+    let rows = all.iter().take(MOST_WORKERS).map(|(id, worker)| {
+        Row::new(
+            id.to_string(),
+            [
+                worker.host.clone(),
+                count(u64::from(worker.slots)),
+                count(worker.done),
+                count(worker.failed),
+                duration(worker.busy_s),
+                worker
+                    .left
+                    .clone()
+                    .unwrap_or_else(|| "connected".to_owned()),
+            ],
+        )
+    });
+    let table = Table::new(
+        "Workers",
+        [
+            "worker",
+            "host",
+            "slots",
+            "results",
+            "failed",
+            "computing",
+            "state",
+        ],
+        rows.collect(),
+    );
+    let slots: u64 = connected(state).map(|worker| u64::from(worker.slots)).sum();
+    let lead = format!(
+        "{} workers with {} slots are connected; {} have left.",
+        connected(state).count(),
+        count(slots),
+        all.len() - connected(state).count()
+    );
+    Section {
+        id: "live-workers",
+        title: "Workers",
+        blocks: if all.is_empty() {
+            vec![Block::Text("No worker has joined yet.".to_owned())]
+        } else {
+            vec![Block::Text(lead), Block::Table(table)]
+        },
+    }
+}

@@ -1,0 +1,160 @@
+//! Simulation of individuals for the dashboard, by a worker process of its own in a temporary folder.
+use crate::cli::run::temporary::with_temporary_run;
+use protocol::case::Case;
+use report::Run;
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex, PoisonError, mpsc},
+    thread,
+    time::Duration,
+};
+use study::{CompareRequest, PICTURES, StudyError};
+use tokio::sync::oneshot;
+
+/// Time after the last request at which the worker process ends.
+const IDLE: Duration = Duration::from_secs(60);
+/// Maximum number of individuals that one temporary run simulates, below the 256 for which a comparison has
+/// job numbers.
+const MOST_IN_A_RUN: usize = 200;
+/// Maximum number of individuals whose curves are kept; 10 MB for the shipped machine.
+const MOST_KEPT: usize = 24;
+
+/// Result of simulating one individual: for each condition its index and the run.
+pub(super) type Simulated = Arc<Vec<(usize, Run)>>;
+
+struct Request {
+    case: Arc<Case>,
+    genes: Vec<f64>,
+    answer: oneshot::Sender<Result<Simulated, String>>,
+}
+
+/// Simulator of individuals, which starts its worker with the first request and keeps the last results.
+#[derive(Clone)]
+pub(super) struct Simulator {
+    requests: mpsc::Sender<Request>,
+    kept: Arc<Mutex<BTreeMap<Vec<u64>, Simulated>>>,
+}
+
+/// Returns the bits of an individual's values, by which its results are kept.
+fn key(genes: &[f64]) -> Vec<u64> {
+    genes.iter().map(|gene| gene.to_bits()).collect()
+}
+
+impl Simulator {
+    /// Creates a simulator without a worker.
+    pub(super) fn new() -> Self {
+        let (requests, asked) = mpsc::channel();
+        let kept = Arc::new(Mutex::new(BTreeMap::new()));
+        let own = Arc::clone(&kept);
+        thread::spawn(move || answer(&asked, &own));
+        Self { requests, kept }
+    }
+
+    /// Returns the kept result of an individual.
+    pub(super) fn known(&self, genes: &[f64]) -> Option<Simulated> {
+        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.get(&key(genes)).cloned()
+    }
+
+    /// Requests the simulation of an individual under all conditions; the answer arrives on the returned
+    /// channel.
+    pub(super) fn simulate(
+        &self,
+        case: &Arc<Case>,
+        genes: &[f64],
+    ) -> oneshot::Receiver<Result<Simulated, String>> {
+        let (answer, receiver) = oneshot::channel();
+        if let Some(known) = self.known(genes) {
+            drop(answer.send(Ok(known)));
+            return receiver;
+        }
+        let request = Request {
+            case: Arc::clone(case),
+            genes: genes.to_vec(),
+            answer,
+        };
+        // without its thread the request is dropped, which its receiver sees
+        drop(self.requests.send(request));
+        receiver
+    }
+}
+
+fn keep(kept: &Mutex<BTreeMap<Vec<u64>, Simulated>>, key: Vec<u64>, result: Simulated) {
+    let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+    if kept.len() >= MOST_KEPT {
+        kept.pop_first();
+    }
+    kept.insert(key, result);
+}
+
+/// Answers requests until the simulator is dropped; those for one case in a row share a worker.
+fn answer(asked: &mpsc::Receiver<Request>, kept: &Mutex<BTreeMap<Vec<u64>, Simulated>>) {
+    let mut next = None;
+    while let Some(first) = next.take().or_else(|| asked.recv().ok()) {
+        let case = Arc::clone(&first.case);
+        let mut waiting = Some(first);
+        let done = with_temporary_run(&case, "dashboard", 1, async |bus, stop| {
+            for number in 0..MOST_IN_A_RUN {
+                let request = match waiting.take() {
+                    Some(request) => request,
+                    None => match asked.recv_timeout(IDLE) {
+                        Ok(request) => request,
+                        Err(_) => return Ok(()),
+                    },
+                };
+                if !Arc::ptr_eq(&request.case, &case) {
+                    next = Some(request);
+                    return Ok(());
+                }
+                // asked for by several readers
+                let own = key(&request.genes);
+                let known = {
+                    let kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+                    kept.get(&own).cloned()
+                };
+                let result = match known {
+                    Some(known) => Ok(known),
+                    None => {
+                        let wanted = wanted(&case, number, &request.genes);
+                        match study::compare(bus, &case, &wanted, stop).await {
+                            Ok(compared) => Ok(Arc::new(runs(&compared))),
+                            Err(error @ StudyError::Interrupted) => return Err(error),
+                            Err(error) => Err(error.to_string()),
+                        }
+                    }
+                };
+                if let Ok(result) = &result {
+                    keep(kept, own, Arc::clone(result));
+                }
+                drop(request.answer.send(result));
+            }
+            Ok(())
+        });
+        if let (Err(error), Some(request)) = (done, waiting) {
+            drop(request.answer.send(Err(format!("{error:#}"))));
+        }
+    }
+}
+
+/// Returns the requests that simulate an individual as the run simulates the recommended one.
+fn wanted(case: &Case, number: usize, genes: &[f64]) -> Vec<CompareRequest> {
+    let wanted = study::recommended(case, PICTURES).into_iter();
+    wanted
+        .map(|one| CompareRequest {
+            first: number,
+            individuals: vec![(String::new(), genes.to_vec())],
+            ..one
+        })
+        .collect()
+}
+
+fn runs(compared: &[study::Compared]) -> Vec<(usize, Run)> {
+    let runs = compared.iter().filter_map(|one| {
+        let own = one.individuals.first()?;
+        Some((
+            one.condition,
+            crate::cli::output::calibration::report_run(own),
+        ))
+    });
+    runs.collect()
+}
