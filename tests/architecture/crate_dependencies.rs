@@ -42,6 +42,9 @@ const ARROWS: &[(&str, &str)] = &[
     ("store", "dispatch"),
     ("store", "study"),
     ("store", "case"),
+    // serves pages, whatever runs they are of
+    ("dashboard", "report"),
+    ("coordinator", "dashboard"),
     ("coordinator", "store"),
     ("coordinator", "report"),
     ("coordinator", "study"),
@@ -93,6 +96,7 @@ const GATED: &[(&str, &[&str])] = &[
             "worker",
             "launch",
             "dispatch",
+            "dashboard",
             "study",
             "coordinator",
             "tests",
@@ -109,6 +113,7 @@ const GATED: &[(&str, &[&str])] = &[
     ),
     ("faer", &["simulation"]),
     ("pulp", &["simulation"]),
+    ("axum", &["dashboard"]),
     ("rusqlite", &["store"]),
     ("parquet", &["store"]),
 ];

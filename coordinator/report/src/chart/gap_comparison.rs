@@ -60,7 +60,7 @@ impl GapComparison<'_> {
     }
 
     /// Returns the root mean square of the residual.
-    fn rms(&self, simulated: &[f64]) -> f64 {
+    pub(crate) fn rms(&self, simulated: &[f64]) -> f64 {
         let residual = self.residual(simulated);
         let square: f64 = residual.iter().map(|r| r * r).sum();
         (square / residual.len().max(1) as f64).sqrt()

@@ -1,6 +1,7 @@
 //! Measured against simulated curves of one channel, recommended beside optimised parameters on shared
 //! scales, with the residual below (paper, Figs. 7, 9 and 10).
 use super::axis::ChartAxis;
+use super::before_after::{BeforeAfter, before_after};
 use super::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
 use super::panel::Panel;
 use super::points::points;
@@ -143,6 +144,48 @@ pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figur
         ),
         svg,
     })
+}
+
+/// Draws the fitted channels of a result's condition with the recommended and the optimised parameters on one pair
+/// of axes each; `None` if none of them was measured.
+pub(crate) fn fitted(case: &Case, result: &ConditionResult) -> Option<Figure> {
+    let condition = words::condition_name(case, result.condition);
+    let measured = case.measured(result.condition);
+    let channels: Vec<_> = measured
+        .filter(|(_, channel, _)| case.objective.names(&channel.name))
+        .collect();
+    let axes = channels
+        .iter()
+        .map(|(_, channel, _)| kind::axis(case, &channel.abscissa));
+    let axes: Vec<ChartAxis> = axes.collect();
+    let shifted = |run: &Run, at: usize, channel: &Channel| -> Vec<f64> {
+        let score = run.evaluation.channels.iter().find(|own| own.channel == at);
+        let shift = shift(channel.offset, score);
+        let curve = run.shown(case, result.condition).channel(channel);
+        curve.iter().map(|value| value + shift).collect()
+    };
+    let drawn = channels.iter().zip(&axes);
+    let drawn: Vec<BeforeAfter<'_>> = drawn
+        .map(|(&(at, channel, record), axis)| BeforeAfter {
+            title: format!(
+                "{}, condition {condition}",
+                words::capitalised(&channel.title)
+            ),
+            unit: unit(&channel.unit).into(),
+            at: &channel.abscissa.points,
+            axis,
+            measured: &record.mean,
+            spread: &record.spread,
+            before: shifted(&result.recommended, at, channel),
+            after: Some(shifted(&result.optimised, at, channel)),
+        })
+        .collect();
+    before_after(
+        &drawn,
+        ["recommended parameters", "optimised parameters"],
+        "The fitted channels: measured, and simulated with the recommended and with the optimised parameters."
+            .to_owned(),
+    )
 }
 
 struct Measured {

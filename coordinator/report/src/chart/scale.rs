@@ -109,6 +109,15 @@ impl AxisScale {
         }
     }
 
+    /// Creates a logarithmic scale between two given positive ends.
+    pub const fn logarithmic_between(low: f64, high: f64) -> Self {
+        Self {
+            low,
+            high,
+            spacing: Spacing::Logarithmic,
+        }
+    }
+
     /// Returns the position of a value on the axis, 0 at the lower and 1 at the upper end, clamped so that
     /// curves stay in their frame. Not a number for values without a position on the scale.
     pub fn share(&self, value: f64) -> f64 {

@@ -1,4 +1,5 @@
 //! Report section with figures of the objective over each gene (searched unknown), between the gene's bounds.
+use crate::chart;
 use crate::chart::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
 use crate::chart::panel::Panel;
 use crate::chart::points::thinned;
@@ -15,7 +16,14 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
     Section {
         id: "genes",
         title: "Genes between their bounds",
-        blocks: figures(searched.then(|| genes(calibration))),
+        blocks: if searched {
+            let chosen = selection(&calibration.history, PARALLEL_ELITE, PARALLEL_MOST);
+            let mut blocks = figures(chart::parallel(calibration, &chosen));
+            blocks.extend(figures([genes(calibration)]));
+            blocks
+        } else {
+            Vec::new()
+        },
     }
 }
 
@@ -29,6 +37,10 @@ const PLOT: f64 = 104.0;
 const MOST: usize = 700;
 /// Number of best individuals that are always drawn.
 const ELITE: usize = 100;
+/// Maximum number of individuals in parallel coordinates, including the best ones: all of most searches.
+const PARALLEL_MOST: usize = 2000;
+/// Number of best individuals that parallel coordinates always show.
+const PARALLEL_ELITE: usize = 500;
 const CLOUD: Color = Color(0x9a, 0xa3, 0xab);
 const FAILED: Color = Color(0xd8, 0xd8, 0xd4);
 

@@ -24,12 +24,14 @@ pub use derivative::derivatives;
 pub use gene::genes;
 pub(super) use individual::one as individual;
 pub(super) use parameters::calibration as parameters;
+use summary::changes;
 pub use worker::{hosts, jobs, slot_time};
 
 /// Builds all sections of a calibration report, in page order.
 pub(super) fn calibration(all: &Calibration) -> Vec<Section> {
     let mut sections = vec![
         summary::calibration(all),
+        changes(all),
         parameters::calibration(all),
         agreement::calibration(all),
         gap::calibration(all),

@@ -1,16 +1,29 @@
 //! Report section with the outcome of a calibration in words: change of the error by condition and channel.
+use crate::chart;
 use crate::data::{Calibration, SingleRun};
-use crate::document::{Block, Section};
+use crate::document::{Block, Section, figures};
 use crate::number::{count, duration, significant};
 use crate::words;
 
+/// Builds the first screen: the change of the objective in one sentence, the fitted channels before and after, and
+/// what the fit leaves.
 pub(super) fn calibration(calibration: &Calibration) -> Section {
     let mut blocks = vec![Block::Lead(words::headline(calibration))];
+    let fitted = calibration.calibrated();
+    blocks.extend(figures(
+        fitted.and_then(|result| chart::fitted(&calibration.case, result)),
+    ));
     blocks.extend(words::model_error(calibration).map(|said| Block::Warning(vec![said])));
+    blocks.extend(words::noise_level(calibration).map(Block::Text));
     if calibration.origin.synthetic {
         blocks.push(Block::Text(words::SYNTHETIC.to_owned()));
     }
-    blocks.extend(conditions(calibration));
+    section(blocks)
+}
+
+/// Builds the section on what changed: the errors by condition and channel, the work of the search, and warnings.
+pub(super) fn changes(calibration: &Calibration) -> Section {
+    let mut blocks = conditions(calibration);
     let history = &calibration.history;
     let failed = history.iter().filter(|point| !point.complete).count();
     blocks.push(Block::Text(format!(
@@ -24,7 +37,11 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
     if !warnings.is_empty() {
         blocks.push(Block::Warning(warnings));
     }
-    section(blocks)
+    Section {
+        id: "changes",
+        title: "What changed",
+        blocks,
+    }
 }
 
 /// Describes the change of each channel's error, by condition.

@@ -5,7 +5,7 @@ use super::name::{calibrated, capitalised, channel_title, condition_name, is_fit
 use super::outcome::verdict;
 use crate::data::{Calibration, ConditionResult};
 use crate::number::{fixed, percent, quantity, ratio, significant, squared};
-use protocol::case::{Case, Scale, Term};
+use protocol::case::{Case, Channel, Scale, Term};
 use protocol::job::{ChannelScore, Verdict};
 
 /// Returns the objective with the recommended parameters, if their simulations were complete.
@@ -161,11 +161,7 @@ const FAR: f64 = 30.0;
 /// the cause; `None` where the residual is at noise level or the noise is unknown.
 pub(crate) fn model_error(calibration: &Calibration) -> Option<String> {
     let case = &calibration.case;
-    let fitted = calibration.conditions.iter();
-    let fitted = fitted.filter(|result| case.objective.holds(result.condition));
-    let left = fitted.flat_map(|result| result.optimised.gaps(case, result.condition));
-    let left = left.filter_map(|(channel, gap)| Some((channel, gap.over_noise()?)));
-    let (channel, most) = left.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (channel, most) = times_noise(calibration)?;
     if most < NOISE_RATIO_LIMIT {
         return None;
     }
@@ -197,6 +193,29 @@ pub(crate) fn model_error(calibration: &Calibration) -> Option<String> {
         channel.title,
         calibration.origin.run
     ))
+}
+
+/// Returns the fitted channel with the largest residual in terms of its noise, and that ratio; `None` where the
+/// noise is unknown.
+fn times_noise(calibration: &Calibration) -> Option<(&Channel, f64)> {
+    let case = &calibration.case;
+    let fitted = calibration.conditions.iter();
+    let fitted = fitted.filter(|result| case.objective.holds(result.condition));
+    let left = fitted.flat_map(|result| result.optimised.gaps(case, result.condition));
+    let left = left.filter_map(|(channel, gap)| Some((channel, gap.over_noise()?)));
+    left.max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// States that the fit leaves no more than noise; `None` if it leaves more, or the noise is unknown.
+pub(crate) fn noise_level(calibration: &Calibration) -> Option<String> {
+    let (channel, most) = times_noise(calibration)?;
+    (most < NOISE_RATIO_LIMIT).then(|| {
+        format!(
+            "What the fit leaves is at the level of the noise: {} times it at {}, the most of all fitted channels.",
+            fixed(most, 1),
+            channel.title
+        )
+    })
 }
 
 /// Lists the warnings that follow from the data of a calibration: failed runs, worse channels, unknowns at a

@@ -9,14 +9,15 @@ mod name;
 mod outcome;
 
 pub(super) use calibration::{
-    absolute_worse, channels, complete_objective, headline, model_error, square_after, warnings,
+    absolute_worse, channels, complete_objective, headline, model_error, noise_level, square_after,
+    warnings,
 };
 pub(super) use gene::{at_bound, bound, interval_cell};
-pub use name::condition_name;
 pub(super) use name::{
-    abscissa_quantity, calibrated, capitalised, channel_title, is_fitted, join_words, lower,
-    objective_heading, with_unit,
+    abscissa_quantity, calibrated, channel_title, is_fitted, join_words, lower, objective_heading,
+    with_unit,
 };
+pub use name::{capitalised, condition_name};
 pub use outcome::{failure, verdict};
 
 /// Notice for cases whose records are synthetic.

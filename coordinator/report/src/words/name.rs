@@ -73,7 +73,7 @@ pub(crate) fn join_words(items: &[String], last: &str) -> String {
 }
 
 /// Returns a text with its first letter in upper case.
-pub(crate) fn capitalised(text: &str) -> String {
+pub fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| {
         first.to_uppercase().chain(letters).collect()

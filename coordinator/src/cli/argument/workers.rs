@@ -22,6 +22,17 @@ pub(crate) struct WorkersChoice {
     /// How long the run waits where its disk is full before it ends with what it has, in minutes [default: 10].
     #[arg(long, value_name = "MINUTES", env = "HORSEHEAD_PAUSE_LIMIT", value_parser = clap::value_parser!(u32).range(0..=100_000))]
     pause_limit: Option<u32>,
+    /// Show the run in a browser while it goes on: the address of its page is printed; as --dashboard=PORT at a
+    /// port of your choice, or the next free one.
+    #[arg(
+        long,
+        value_name = "PORT",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "7450",
+        env = "HORSEHEAD_DASHBOARD"
+    )]
+    pub(crate) dashboard: Option<u16>,
 }
 
 /// Arguments that let workers of other machines take part, and that launch such workers for the time of a run.

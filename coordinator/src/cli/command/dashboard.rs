@@ -1,6 +1,6 @@
 //! `horsehead dashboard`: shows runs in a browser, live and finished.
 use crate::cli::{
-    dashboard::{DEFAULT_PORT, FolderPages, RunPages, listen},
+    dashboard::{DEFAULT_PORT, FolderPages, RunPages, listen, listen_near},
     output::{
         problem::{EXIT_CODES, Problem},
         terminal,
@@ -70,7 +70,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
         .into());
     }
-    let listener = listen(arguments.address, arguments.port)?;
+    let listener = if arguments.attached {
+        listen_near(arguments.address, arguments.port)?
+    } else {
+        listen(arguments.address, arguments.port)?
+    };
     let address = listener.local_addr()?;
     let url = format!("http://{address}/");
     terminal::write(&format!("{url}\n"))?;

@@ -9,9 +9,10 @@ use crate::cli::run::{
     bus,
     folder::{MANIFEST, RESULT, RunFolder},
     kind::{AnyRun, ReplayedRun, restore_times},
+    manifest::{CALIBRATE, DIAGNOSE, IDENTIFY},
 };
 use dashboard::{Board, PageReader, Pages};
-use dispatch::journal;
+use dispatch::journal::{self, Growth, JournalFollower};
 use protocol::case::Case;
 use report::{Block, Report, Section, document::section_markup};
 use std::{
@@ -25,7 +26,7 @@ use std::{
     thread,
     time::{Duration, Instant, SystemTime},
 };
-use study::{FollowingEvaluator, StudyError};
+use study::{FollowObserver as _, FollowingEvaluator, StudyError};
 use tokio::sync::{oneshot, watch};
 
 /// Interval at which the page of a run is rendered, if something has changed.
@@ -36,8 +37,9 @@ const REST: u32 = 9;
 const RETRY: Duration = Duration::from_secs(1);
 /// Minimum time between two simulations of the best individual so far.
 const BEST_INTERVAL: Duration = Duration::from_secs(4);
-/// Longest wait for the result file of a run whose last result is in the journal.
-const RESULT_WAIT: Duration = Duration::from_secs(20);
+/// Longest wait for the result file of a run whose last result is in the journal, and for the last results of a run
+/// whose result file is written.
+const RESULT_WAIT: Duration = Duration::from_secs(5);
 
 /// Run that is followed until this value is dropped.
 pub(super) struct Followed {
@@ -52,6 +54,8 @@ struct Shared {
     state: SharedState,
     /// The run as it was opened last.
     run: Mutex<Option<Arc<AnyRun>>>,
+    /// Command of a run whose results alone are shown, such as a sweep.
+    other: Mutex<Option<String>>,
     ending: Mutex<Ending>,
     simulator: Simulator,
     stopped: AtomicBool,
@@ -86,6 +90,7 @@ impl Followed {
             path: path.to_owned(),
             state: SharedState::default(),
             run: Mutex::default(),
+            other: Mutex::default(),
             ending: Mutex::default(),
             simulator: simulator.clone(),
             stopped: AtomicBool::new(false),
@@ -158,6 +163,8 @@ fn stamp(path: &Path) -> (u64, u64) {
     fs::metadata(path).map_or((0, 0), |file| (file.len(), file.ino()))
 }
 
+/// State of a finished run whose journal lacks results.
+const INCOMPLETE: &str = "incomplete";
 /// State of a run whose result is written.
 const FINISHED: &str = "finished";
 
@@ -214,6 +221,13 @@ impl Shared {
 
     /// Repeats the study of the run as its results arrive, and returns the report of its end.
     fn study(&self, stopped: &watch::Receiver<bool>) -> anyhow::Result<Report> {
+        if self.opened().is_some() && !RunFolder::new(&self.path).is_begun() {
+            anyhow::bail!("the run folder was deleted; what was read before stays on this page");
+        }
+        let kind = RunFolder::at(&self.path)?.head()?.kind;
+        if ![CALIBRATE, DIAGNOSE, IDENTIFY].contains(&kind.as_str()) {
+            return self.count_results(&kind);
+        }
         let run = Arc::new(AnyRun::open(&self.path)?);
         self.state.clear();
         *self.run.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(&run));
@@ -229,6 +243,34 @@ impl Shared {
             restore_times(run, found)?;
         }
         replayed.report(wall_s)
+    }
+
+    /// Follows the journal of a run whose study is not repeated, such as a sweep or requests of another program,
+    /// and returns a report of its results and workers.
+    fn count_results(&self, kind: &str) -> anyhow::Result<Report> {
+        self.state.clear();
+        *self.other.lock().unwrap_or_else(PoisonError::into_inner) = Some(kind.to_owned());
+        self.end(Ending::default());
+        let folder = RunFolder::new(&self.path);
+        let mut journal = JournalFollower::new(&folder.file(journal::FILE));
+        let mut observer = self.state.clone();
+        loop {
+            let was_finished = folder.is_finished();
+            let growth = journal.read(|entry, event| observer.event(entry, event))?;
+            observer.read(growth, journal.position(), journal.damage());
+            if self.is_stopped() {
+                return Err(StudyError::Interrupted.into());
+            }
+            if growth == Growth::Replaced || (growth == Growth::Missing && !folder.is_begun()) {
+                anyhow::bail!("the run folder was deleted");
+            }
+            if was_finished && growth == Growth::Unchanged {
+                let state = self.state.lock();
+                let title = sections::other_title(kind, &self.path);
+                return Ok(Report::new(title, "", sections::other(kind, &state)));
+            }
+            thread::sleep(INTERVAL);
+        }
     }
 
     /// Waits for the result of the run and returns the wall time in it (s).
@@ -266,12 +308,22 @@ impl Shared {
     fn render(&self, mut board: Board) {
         let mut shown = None;
         let mut pictures = BestPictures::default();
+        // the last version of the state, and when it was seen first
+        let mut heard = (0, Instant::now());
         while !self.is_stopped() {
             let begun = Instant::now();
             let ending = self.ending();
             let run = self.opened();
+            let other = self
+                .other
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .clone();
             let version = self.state.lock().version;
-            let word = self.state_word(&ending);
+            if version != heard.0 {
+                heard = (version, begun);
+            }
+            let word = self.state_word(&ending, begun - heard.1);
             let drawn = run
                 .as_ref()
                 .is_some_and(|run| pictures.update(self, run, ending.report.is_some()));
@@ -283,17 +335,27 @@ impl Shared {
             );
             if drawn || shown.as_ref() != Some(&present) {
                 let state = self.state.lock().clone();
-                let title = run.as_ref().map_or_else(
-                    || self.path.display().to_string(),
-                    |run| sections::title(run),
+                let title = match (&run, &other) {
+                    (Some(run), _) => sections::title(run),
+                    (None, Some(kind)) => sections::other_title(kind, &self.path),
+                    (None, None) => self.path.display().to_string(),
+                };
+                let lacking = (word == INCOMPLETE).then_some(
+                    "Results of this run are missing from its journal. The page shows what is left; the command that \
+                     began the run computes them again.",
                 );
-                let mut page = vec![sections::notices(&state, ending.error.as_deref())];
+                let error = ending.error.as_deref().or(lacking);
+                let mut page = vec![sections::notices(&state, error)];
                 match (&ending.report, &run) {
                     (Some(report), _) => page.extend(report.sections.iter().cloned()),
                     (None, Some(run)) => {
                         page.extend(sections::unfinished(run, &state, pictures.compared()));
                     }
-                    (None, None) => {}
+                    (None, None) => {
+                        if let Some(kind) = &other {
+                            page.extend(sections::other(kind, &state));
+                        }
+                    }
                 }
                 board.publish(
                     (&title, &word),
@@ -307,8 +369,8 @@ impl Shared {
         }
     }
 
-    /// Returns the state of the run in a word or two.
-    fn state_word(&self, ending: &Ending) -> String {
+    /// Returns the state of the run in a word or two; `quiet` is the time since anything was read.
+    fn state_word(&self, ending: &Ending, quiet: Duration) -> String {
         let folder = RunFolder::new(&self.path);
         if ending.report.is_some() {
             FINISHED.to_owned()
@@ -321,7 +383,11 @@ impl Shared {
         } else if is_locked(&folder.file(journal::LOCK)) {
             "running".to_owned()
         } else if folder.is_finished() {
-            "reading".to_owned()
+            if quiet < RESULT_WAIT {
+                "reading".to_owned()
+            } else {
+                INCOMPLETE.to_owned()
+            }
         } else {
             "stopped".to_owned()
         }

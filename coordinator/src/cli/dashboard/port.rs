@@ -44,6 +44,16 @@ pub(crate) fn listen(address: IpAddr, port: u16) -> anyhow::Result<TcpListener> 
     .into())
 }
 
+/// Opens the listening socket at an address, at the chosen port or the next free one.
+///
+/// # Errors
+/// As [`listen`], if the chosen port and all that are tried after it are in use.
+pub(crate) fn listen_near(address: IpAddr, port: u16) -> anyhow::Result<TcpListener> {
+    let mut ports = (0..=TRIED).filter_map(|more| port.checked_add(more));
+    let free = ports.find_map(|port| TcpListener::bind(SocketAddr::new(address, port)).ok());
+    free.map_or_else(|| listen(address, port), Ok)
+}
+
 /// Returns the name and the number of the process that listens at a TCP port of this machine; `None` if it
 /// belongs to another user or cannot be found.
 fn owner(port: u16) -> Option<String> {

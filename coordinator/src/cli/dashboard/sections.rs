@@ -10,7 +10,9 @@ use report::{
     Block, ConditionResult, Individual, Run, Section, Table,
     document::{Fact, Row},
     number::{count, duration, fixed, significant},
+    words,
 };
+use std::path::Path;
 use std::time::{Duration, SystemTime};
 
 /// Runs of an individual: for each condition its index and the run.
@@ -33,6 +35,21 @@ pub(super) fn title(run: &AnyRun) -> String {
         AnyRun::Diagnosis(run) => format!("Diagnosis of {}", run.case.name),
         AnyRun::Identification(run) => format!("Identifiability of {}", run.case.name),
     }
+}
+
+/// Returns the title of the page of a run of another kind, such as a sweep.
+pub(super) fn other_title(kind: &str, path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    format!("{} of {name}", words::capitalised(kind))
+}
+
+/// Returns the sections of a run of another kind, such as a sweep: its results and workers.
+pub(super) fn other(kind: &str, state: &RunState) -> Vec<Section> {
+    let facts = vec![
+        Fact::code("command", format!("horsehead {kind}")),
+        Fact::new("results", count(state.results)),
+    ];
+    vec![progress(vec![Block::Facts(facts)]), workers(state)]
 }
 
 /// Returns the section of notices, such as a damaged journal; without blocks if there are none.

@@ -7,8 +7,10 @@ use super::{
     manifest::RunIdentity,
     opened::Run,
 };
-use crate::cli::{argument::workers::WorkersChoice, output::terminal};
-use std::time::Instant;
+use crate::cli::{
+    argument::workers::WorkersChoice, dashboard::AttachedDashboard, output::terminal,
+};
+use std::{cell::RefCell, time::Instant};
 use study::{Stop, StudyError};
 
 /// Workers and start time of a session, one process that works on a run.
@@ -16,6 +18,8 @@ pub(crate) struct Session {
     workers: WorkersChoice,
     /// Time at which the command of this session began.
     started: Instant,
+    /// Dashboard of the run, which ends with the command, after the result is written.
+    dashboard: RefCell<Option<AttachedDashboard>>,
 }
 
 impl Session {
@@ -23,6 +27,7 @@ impl Session {
         Self {
             workers: workers.clone(),
             started: Instant::now(),
+            dashboard: RefCell::new(None),
         }
     }
 
@@ -58,7 +63,11 @@ impl Session {
             let mut bus = Bus::open(options, &run.case).await?;
             // the journal is ours now: before, another run may have it
             run.save(run.manifest.wall_s)?;
-            let path = run.folder.path().display();
+            let path = run.folder.path();
+            if let Some(port) = self.workers.dashboard {
+                *self.dashboard.borrow_mut() = AttachedDashboard::start(path, port);
+            }
+            let path = path.display();
             terminal::tell(&match (resumed || bus.recorded() > 0, bus.recorded()) {
                 (false, _) => format!("beginning {path}"),
                 (true, 1) => format!("going on with {path}: its journal holds 1 result"),

@@ -2,6 +2,7 @@
 use super::effect::named;
 use super::value::{equals, interval, nats, p_value};
 use crate::diagnosis::subject::DiagnosisInput;
+use crate::document::Fact;
 use crate::number::{percent, quantity, significant};
 use crate::words::condition_name;
 use discrepancy::diagnose::ForceEstimate;
@@ -112,6 +113,51 @@ fn closing(subject: &DiagnosisInput<'_>, row: &GapRow) -> String {
         data_role(row),
         percent(closed.closed.abs()),
     )
+}
+
+/// Lists the gap before and after adding effects with the share that is closed, one fact for each kind of data,
+/// and the predictive scores; the gap alone if nothing was added.
+pub(in crate::diagnosis) fn gap_numbers(subject: &DiagnosisInput<'_>) -> Vec<Fact> {
+    let diagnosis = subject.diagnosis();
+    let changed = !subject.added().is_empty();
+    let small = |share: f64| format!("{}\u{a0}%", significant(100.0 * share));
+    let gap = |row: &GapRow| {
+        let name = format!(
+            "gap, {}, {}",
+            condition_name(subject.case, row.condition),
+            data_role(row)
+        );
+        let closed = row.closed;
+        let value = if changed {
+            let interval = closed.interval.map_or_else(String::new, |[low, high]| {
+                format!(" (95\u{a0}% {} to {})", percent(low), percent(high))
+            });
+            format!(
+                "{} → {}; {} closed{interval}",
+                small(closed.before),
+                small(closed.after),
+                percent(closed.closed)
+            )
+        } else {
+            small(closed.before)
+        };
+        Fact::new(name, value)
+    };
+    let mut facts: Vec<Fact> = diagnosis.rows.iter().map(gap).collect();
+    if changed {
+        facts.extend(diagnosis.prediction.iter().map(|one| {
+            let name = format!(
+                "predictive score, {}, {}",
+                condition_name(subject.case, one.condition),
+                part(one.part)
+            );
+            Fact::new(
+                name,
+                format!("{} nats for the added effects", nats(one.nats)),
+            )
+        }));
+    }
+    facts
 }
 
 /// Returns the role of the data of a comparison row in the fit: fitted, or the kind of hold-out.

@@ -1,0 +1,172 @@
+//! A folder of runs of the oscillator: finished, diagnosed, stopped, damaged and foreign ones.
+use super::{Site, driver::Browser, picture, shown};
+use oscillator::{case_folder, effect::Effects};
+use rustix::process::Signal;
+use std::{
+    fs,
+    io::{Read as _, Write as _},
+    net::TcpStream,
+    path::Path,
+    time::Duration,
+};
+use tests::process::{Process, coordinator_program, wait_until};
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap() {
+        let entry = entry.unwrap();
+        if entry.file_type().unwrap().is_file() {
+            fs::copy(entry.path(), to.join(entry.file_name())).unwrap();
+        }
+    }
+}
+
+/// Returns the first line of the answer to a request.
+fn status(url: &str, request: &str) -> String {
+    let address = url.trim_start_matches("http://").trim_end_matches('/');
+    let mut stream = TcpStream::connect(address).unwrap();
+    stream
+        .set_read_timeout(Some(Duration::from_secs(10)))
+        .unwrap();
+    let request = request.replace("ADDRESS", address);
+    stream.write_all(request.as_bytes()).unwrap();
+    let mut answer = vec![0; 200];
+    let length = stream.read(&mut answer).unwrap();
+    let text = String::from_utf8_lossy(&answer[..length]).into_owned();
+    text.lines().next().unwrap().to_owned()
+}
+
+#[test]
+fn a_folder_shows_finished_stopped_damaged_foreign_and_deleted_runs() {
+    let Some(browser) = Browser::start() else {
+        return;
+    };
+    let worker = coordinator_program().with_file_name("test-oscillator-worker");
+    assert!(worker.exists(), "`cargo build` makes it");
+    let site = Site::new(Some(worker));
+    let effects = Effects {
+        friction_n: case_folder::FRICTION_N,
+        ..Effects::default()
+    };
+    case_folder::write(&site.path("case"), &case_folder::HIDDEN, &effects, 0).unwrap();
+    site.run(&["calibrate", "case", "--run", "runs/good"]);
+    site.run(&["diagnose", "case", "--run", "runs/named"]);
+    // one that is killed in the middle
+    let memetic = [
+        "calibrate",
+        "case",
+        "--preset",
+        "memetic",
+        "--run",
+        "runs/stopped",
+    ];
+    let coordinator = Process::logged(site.command(&memetic), &site.path("memetic.log"));
+    let journal = site.path("runs/stopped/journal.hhj");
+    wait_until("results are stored", super::driver::LIMIT, || {
+        fs::metadata(&journal).is_ok_and(|file| file.len() > 200_000)
+    });
+    coordinator.signal(Signal::KILL);
+    drop(coordinator);
+    // bytes in the middle of a journal, and the version of every record of another
+    copy(&site.path("runs/good"), &site.path("runs/damaged"));
+    let damaged = site.path("runs/damaged/journal.hhj");
+    let mut bytes = fs::read(&damaged).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle..middle + 40].fill(0);
+    fs::write(&damaged, &bytes).unwrap();
+    copy(&site.path("runs/good"), &site.path("runs/foreign"));
+    let foreign = site.path("runs/foreign/journal.hhj");
+    let mut bytes = fs::read(&foreign).unwrap();
+    for at in 0..bytes.len() - 4 {
+        if bytes[at..].starts_with(b"HHJ") {
+            bytes[at + 3] += 1;
+        }
+    }
+    fs::write(&foreign, &bytes).unwrap();
+    fs::create_dir(site.path("runs/empty")).unwrap();
+
+    let (_server, url) = site.dashboard("runs");
+    browser.open(&url);
+    browser.wait_for(
+        "all runs are listed",
+        "return document.querySelectorAll('#runs tbody tr').length === 5",
+    );
+    let table = browser.text("#runs");
+    let (good, named) = (site.result("runs/good"), site.result("runs/named"));
+    for text in [
+        shown(&good["objective"]["optimised"]),
+        format!("named: {}", named["effects"][0]["title"].as_str().unwrap()),
+        "stopped".to_owned(),
+    ] {
+        assert!(table.contains(&text), "{text}: {table}");
+    }
+    browser.picture((1200, 600), &picture("folder"));
+    browser.script("document.querySelector('a[href=\"/runs/good/\"]').click()");
+    browser.wait_for_state("finished");
+    assert!(
+        browser
+            .text("#summary")
+            .contains(&shown(&good["objective"]["optimised"]))
+    );
+
+    let page = |run: &str| format!("{url}runs/{run}/");
+    browser.open(&page("named"));
+    browser.wait_for_state("finished");
+    let verdict = browser.text("#verdict");
+    let size = &named["effects"][0]["parameters"];
+    let size = size.as_object().unwrap().values().next().unwrap();
+    assert!(verdict.contains("The simulation lacks"), "{verdict}");
+    assert!(verdict.contains(&shown(&size["value"])), "{verdict}");
+    assert!(verdict.contains("predictive score"), "{verdict}");
+    browser.picture((1200, 1100), &picture("diagnosis"));
+
+    browser.open(&page("damaged"));
+    browser.wait_for_state("incomplete");
+    let notices = browser.text("#notices");
+    assert!(
+        notices.contains("are damaged and were skipped"),
+        "{notices}"
+    );
+    assert!(!browser.text("#convergence").is_empty());
+
+    browser.open(&page("foreign"));
+    browser.wait_for(
+        "the other version is named",
+        "return document.getElementById('sections').innerText.includes('is of version')",
+    );
+
+    // a folder that is deleted under its page leaves what was read
+    browser.open(&page("stopped"));
+    browser.wait_for_state("stopped");
+    browser.wait_for(
+        "its results are shown",
+        "return document.querySelectorAll('tr[data-individual]').length > 50",
+    );
+    fs::remove_dir_all(site.path("runs/stopped")).unwrap();
+    browser.wait_for_state("deleted");
+    assert!(!browser.text("#convergence").is_empty());
+    assert_eq!(browser.console(), Vec::<String>::new());
+
+    // requests that other sites' pages could make, or that would change something
+    let ok = "GET / HTTP/1.1\r\nHost: ADDRESS\r\n\r\n";
+    assert!(status(&url, ok).contains("200"));
+    for (request, code) in [
+        (
+            "POST / HTTP/1.1\r\nHost: ADDRESS\r\nContent-Length: 0\r\n\r\n",
+            "405",
+        ),
+        ("GET / HTTP/1.1\r\nHost: other.example\r\n\r\n", "403"),
+        (
+            "GET /events HTTP/1.1\r\nHost: ADDRESS\r\nOrigin: http://other.example\r\n\r\n",
+            "403",
+        ),
+        (
+            "GET /runs/..%2f..%2fetc/ HTTP/1.1\r\nHost: ADDRESS\r\n\r\n",
+            "404",
+        ),
+        ("GET /runs/empty/ HTTP/1.1\r\nHost: ADDRESS\r\n\r\n", "404"),
+    ] {
+        let line = status(&url, request);
+        assert!(line.contains(code), "{request}: {line}");
+    }
+}
