@@ -31,7 +31,7 @@ pub struct Rendered {
 
 /// State of a page at one time.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Snapshot {
+pub struct PageState {
     /// Title of the page.
     pub title: String,
     /// Name of the run, or of the folder of runs.
@@ -45,12 +45,12 @@ pub struct Snapshot {
 }
 
 /// Reader's end of a page.
-pub type PageReader = watch::Receiver<Arc<Snapshot>>;
+pub type PageReader = watch::Receiver<Arc<PageState>>;
 
 /// Writer's end of a page.
 #[derive(Debug)]
 pub struct Board {
-    shown: watch::Sender<Arc<Snapshot>>,
+    shown: watch::Sender<Arc<PageState>>,
     revision: u64,
     published: BTreeMap<String, Instant>,
 }
@@ -58,10 +58,10 @@ pub struct Board {
 impl Board {
     /// Creates an empty page.
     pub fn new(title: &str, run: &str) -> Self {
-        let first = Snapshot {
+        let first = PageState {
             title: title.to_owned(),
             run: run.to_owned(),
-            ..Snapshot::default()
+            ..PageState::default()
         };
         Self {
             shown: watch::Sender::new(Arc::new(first)),
@@ -114,7 +114,7 @@ impl Board {
                 }
             }
         });
-        let snapshot = Snapshot {
+        let snapshot = PageState {
             title: title.to_owned(),
             run: before.run.clone(),
             state: state.to_owned(),

@@ -11,5 +11,5 @@ mod page;
 mod server;
 
 pub use access::allowed_hosts;
-pub use board::{Board, PageReader, Rendered, Snapshot};
+pub use board::{Board, PageReader, PageState, Rendered};
 pub use server::{Pages, serve};

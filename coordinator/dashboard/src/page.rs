@@ -1,5 +1,5 @@
 //! HTML page around the rendered sections.
-use super::board::Snapshot;
+use super::board::PageState;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use report::document::STYLE;
 
@@ -8,7 +8,7 @@ const LIVE_STYLE: &str = include_str!("live.css");
 
 /// Renders a page whose sections the script keeps up to date; `above` is the path of the page from which it was
 /// reached, if there is one.
-pub(super) fn page(snapshot: &Snapshot, above: Option<&str>) -> String {
+pub(super) fn page(snapshot: &PageState, above: Option<&str>) -> String {
     let page: Markup = html! {
         (DOCTYPE)
         html lang="en" {

@@ -1,7 +1,7 @@
 //! Routes of the server, and the stream of changed sections.
 use super::{
     access::{Hosts, guard},
-    board::{PageReader, Rendered, Snapshot},
+    board::{PageReader, PageState, Rendered},
     page,
 };
 use axum::{
@@ -199,7 +199,7 @@ fn events(page: PageReader, known: u64) -> impl Stream<Item = Result<Event, Infa
 
 impl Reading {
     /// Collects the events that bring the reader's page up to date.
-    fn collect(&mut self, snapshot: &Snapshot) {
+    fn collect(&mut self, snapshot: &PageState) {
         let id = snapshot.position.to_string();
         let sections = snapshot.sections.iter();
         let order: Vec<_> = sections.map(|own| [&own.id, &own.title]).collect();

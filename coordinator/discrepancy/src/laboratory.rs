@@ -47,6 +47,32 @@ impl Stage {
     }
 }
 
+/// Interim result of a diagnosis, for display: the suspects of the present model, and what it leaves of the record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// Identifiers of the effects that the present model has in addition to the case's own.
+    pub added: Vec<String>,
+    /// Gap of the present model: mean squared residual above the noise over the variance of the measured curves
+    /// \[1\].
+    pub gap: f64,
+    /// Candidate effects that were tested against the present model, likeliest first.
+    pub suspects: Vec<Suspect>,
+}
+
+/// Candidate effect of an interim result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Suspect {
+    /// Identifier of the effect.
+    pub id: String,
+    /// Title of the effect.
+    pub title: String,
+    /// p-value of the effect's own score test \[1\].
+    pub p_value: f64,
+    /// Log evidence gained by the model with the effect after a refit (nats); `None` before, or if it was not
+    /// refitted.
+    pub gain: Option<f64>,
+}
+
 /// Simulator of batches of experiments, through which a diagnosis obtains all simulated curves.
 pub trait Laboratory {
     /// Error that ends the diagnosis because no further experiment can be simulated.
@@ -69,6 +95,11 @@ pub trait Laboratory {
     fn left(&self, stage: Stage) -> f64 {
         let _ = stage;
         f64::INFINITY
+    }
+
+    /// Receives an interim result of the diagnosis, for display only.
+    fn found(&mut self, finding: &Finding) {
+        let _ = finding;
     }
 
     /// Simulates a batch and returns its observations in order, `None` for an experiment that failed.

@@ -3,7 +3,7 @@
 //! Every name of a quantity states its unit. Independent of files, clocks and workers.
 use discrepancy::identify::UnknownEstimate;
 use discrepancy::validation::gap::Gap;
-use dispatch::account::JobCost;
+use dispatch::account::{JobCost, Presence};
 use protocol::case::{Case, Channel, ChannelRecord, WeightedCondition};
 use protocol::event::Spent;
 use protocol::job::{Curves, Evaluation, Verdict};
@@ -169,6 +169,8 @@ pub struct Calibration {
     pub history: Vec<HistoryPoint>,
     /// Contribution of each worker to the calibration.
     pub workers: Vec<WorkerUse>,
+    /// Presence of the workers over the working time of the run.
+    pub presence: Vec<Presence>,
     /// Slot time of all workers by use, over all sessions of the run.
     pub spent: Spent,
     /// Wall time of the whole run, in seconds.

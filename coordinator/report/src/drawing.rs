@@ -17,8 +17,8 @@ pub trait ModelReport: Sync {
     /// names the parameter set it was run with.
     fn sections(&self, whose: &str, of: Option<&SimulationView<'_>>) -> Vec<Section>;
 
-    /// Returns the script that moves figures of the kind of model; empty if none moves. It adds functions to
-    /// `horsehead.parts`, which are called with each new part of a page.
+    /// Returns the script of the kind of model's sections, as in [`Block::Script`](super::document::Block::Script);
+    /// empty if none moves.
     fn script(&self) -> &'static str {
         ""
     }

@@ -1,6 +1,5 @@
 //! Output folder of a report: `report.html`, `tables.txt`, `figures/*.svg`, and data as CSV.
-use super::document::{Report, SCRIPT, page, text};
-use super::kind;
+use super::document::{Report, page, text};
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
@@ -28,20 +27,13 @@ pub enum ReportError {
     },
 }
 
-/// Returns the script of a page: that of every page, and those of all kinds of model.
-pub fn script() -> String {
-    let mut script = SCRIPT.to_owned();
-    script.extend(kind::scripts());
-    script
-}
-
 /// Writes page, text and figures into a folder, creating it if needed. Returns the paths, the HTML first.
 ///
 /// # Errors
 /// [`ReportError::Write`] when a file cannot be written.
 pub(super) fn write_report(folder: &Path, report: &Report) -> Result<Vec<PathBuf>, ReportError> {
     let mut written = vec![
-        write(folder, "report.html", &page(report, &script()))?,
+        write(folder, "report.html", &page(report))?,
         write(folder, "tables.txt", &text(report, false))?,
     ];
     let figures = folder.join("figures");

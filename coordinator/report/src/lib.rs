@@ -37,10 +37,10 @@ pub use data::{
 };
 pub use document::{Block, Figure, Report, Section, Table, page, text};
 pub use drawing::ModelReport;
-pub use folder::{ReportError, script};
+pub use folder::ReportError;
 pub use general::GenericReport;
 pub use section::{derivatives, genes, hosts, jobs, slot_time};
 pub use write::{
-    agreement, calibration, individual, parameters, ranges, running_calibration, simulation,
-    structure, write_calibration, write_simulation,
+    agreement, calibration, individual, parameters, ranges, running_calibration, script,
+    simulation, structure, write_calibration, write_simulation,
 };

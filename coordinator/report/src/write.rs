@@ -1,7 +1,7 @@
 //! Assembly and output of calibration and simulation reports with their data.
 use super::csv;
 use super::data::{Calibration, ConditionResult, SingleRun};
-use super::document::{Report, Section, Table, section_text};
+use super::document::{Report, SCRIPT, Section, Table, section_text};
 use super::folder::{ReportError, stream, write_report};
 use super::{kind, section, table, words};
 use protocol::case::Case;
@@ -12,6 +12,13 @@ pub fn calibration(calibration: &Calibration) -> Report {
     let title = format!("Calibration of {}", calibration.case.name);
     let sections = section::calibration(calibration);
     Report::new(title, &calibration.origin.run, sections)
+}
+
+/// Returns the script of the pages of a dashboard: that of every page, and those of all kinds of model.
+pub fn script() -> String {
+    let mut script = SCRIPT.to_owned();
+    script.extend(kind::scripts());
+    script
 }
 
 /// Builds the sections of a calibration that goes on, as far as there are data for them.

@@ -11,7 +11,7 @@ use super::{
 };
 use discrepancy::baseline::budget::cost;
 use discrepancy::diagnose::Inputs;
-use discrepancy::laboratory::{Laboratory, Stage};
+use discrepancy::laboratory::{Finding, Laboratory, Stage};
 use protocol::{
     announce::EffectDescriptor,
     id::JobId,
@@ -53,7 +53,7 @@ pub struct StageView {
 
 impl View for StageView {
     type Reason = Stage;
-    type Entry = ();
+    type Entry = Finding;
 }
 
 /// Asks a worker for the effects that it can simulate.
@@ -119,6 +119,10 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
 
     fn differentiates(&self) -> bool {
         self.differentiates
+    }
+
+    fn found(&mut self, finding: &Finding) {
+        self.watch.entered(finding);
     }
 
     async fn observe(

@@ -5,7 +5,7 @@ use super::evaluator::WorkersSnapshot;
 pub trait View {
     /// Type of the reason for which the study requests a job, such as a stage.
     type Reason: ?Sized;
-    /// Type of the entry that the study makes for each result.
+    /// Type of what the study finds on its way, such as the log entry of an individual.
     type Entry: ?Sized;
 }
 
@@ -21,7 +21,7 @@ pub trait Watch<V: View> {
     /// Receives the number of a job and the reason for it, before the job is submitted.
     fn asked(&mut self, _id: u64, _reason: &V::Reason) {}
 
-    /// Receives the entry that the study makes for a result.
+    /// Receives what the study has found, such as the log entry of an individual.
     fn entered(&mut self, _entry: &V::Entry) {}
 
     /// Receives notes about the case and its records.

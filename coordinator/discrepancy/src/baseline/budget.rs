@@ -4,7 +4,7 @@
 //! A stage that has used up its budget begins no further optional work, such as a search for a narrow
 //! minimum, a round of tests or the refit of a generic force. Work in progress is finished, so the budget may
 //! be exceeded by one such unit.
-use crate::laboratory::{Laboratory, Stage};
+use crate::laboratory::{Finding, Laboratory, Stage};
 use protocol::job::{Observation, SimulateSpec};
 
 /// Simulator that counts simulations and refuses optional work when a stage's budget is used up.
@@ -59,6 +59,10 @@ impl<L: Laboratory> Laboratory for Budgeted<'_, L> {
 
     fn left(&self, stage: Stage) -> f64 {
         self.left[stage as usize]
+    }
+
+    fn found(&mut self, finding: &Finding) {
+        self.lab.found(finding);
     }
 
     async fn observe(

@@ -10,13 +10,15 @@ use crate::estimate::absorbed::absorbed;
 use crate::estimate::experiment_design;
 use crate::estimate::limit::limits;
 use crate::hypothesis::candidate::{self, CandidateEffect};
-use crate::hypothesis::refit::refit;
+use crate::hypothesis::refit::{Refitted, refit};
 use crate::hypothesis::round::Round;
 use crate::hypothesis::signature::examine;
 use crate::hypothesis::valley_search;
-use crate::laboratory::{Laboratory, Stage};
+use crate::laboratory::{Finding, Laboratory, Stage, Suspect};
 use crate::model::fit::Fit;
+use crate::record::measured::Record;
 use crate::validation::compare::ValidationRecord;
+use crate::validation::gap_closure::gap;
 use protocol::announce::EffectDescriptor;
 
 /// Number of rounds of a diagnosis in which the narrow minimum of the misfit is searched.
@@ -117,6 +119,12 @@ pub(crate) async fn test_effects<L: Laboratory>(
     let mut tests = session.experiments(Stage::Test);
     let suspects = examine(&mut tests, current, named).await?;
     let generics = examine(&mut tests, current, generic).await?;
+    session.lab.found(&finding(
+        &session.base.record.record,
+        current,
+        &suspects,
+        &[],
+    ));
     let mut order = candidate::ranked(&suspects);
     // what its own test does not speak for is refitted only to have rivals
     let clear = order.iter().filter(|s| s.p_value() < thresholds.alpha);
@@ -145,5 +153,34 @@ pub(crate) async fn test_effects<L: Laboratory>(
         }
         refits.extend(refit(&mut session.experiments(Stage::Refit), current, some).await?);
     }
+    session.lab.found(&finding(
+        &session.base.record.record,
+        current,
+        &suspects,
+        &refits,
+    ));
     Ok(Round::new(current, suspects, generics, refits))
+}
+
+/// Summarises the tests and refits of candidate effects against a model, for display.
+fn finding(
+    record: &Record,
+    current: &Fit,
+    suspects: &[CandidateEffect],
+    refits: &[Refitted],
+) -> Finding {
+    let suspect = |own: &&CandidateEffect| Suspect {
+        id: own.effect.id.clone(),
+        title: own.effect.title.clone(),
+        p_value: own.p_value(),
+        gain: refits
+            .iter()
+            .find(|refit| refit.id == own.effect.id)
+            .map(|refit| refit.log_evidence - current.log_evidence()),
+    };
+    Finding {
+        added: ids(current),
+        gap: gap(record, &current.curves),
+        suspects: candidate::ranked(suspects).iter().map(suspect).collect(),
+    }
 }

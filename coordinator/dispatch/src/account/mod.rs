@@ -54,8 +54,34 @@ pub struct RunAccount {
     pub spent: Spent,
     /// Reasons why workers left, with their counts; the most frequent first.
     pub left: Vec<(String, u64)>,
+    /// Presence of the workers over time, by coordinator process and worker.
+    pub presence: Vec<Presence>,
     /// Stretches of the journal that could not be read.
     pub damage: Vec<Damage>,
+}
+
+/// Presence of one worker in one coordinator process, with the use of its slots over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Presence {
+    /// Worker that was present.
+    pub worker: WorkerId,
+    /// Host name of the worker's machine.
+    pub host: String,
+    /// Accounts in order of time.
+    pub marks: Vec<PresenceMark>,
+}
+
+/// Account of one worker at one time; sums are those since it joined.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PresenceMark {
+    /// Working time of the run's coordinator processes up to the account \[s\].
+    pub at_s: f64,
+    /// Time for which the worker was connected \[s\].
+    pub connected_s: f64,
+    /// Share of the slots' connected time that was spent on accepted results \[1\].
+    pub useful_share: f64,
+    /// Number of attempts that failed on the worker.
+    pub failed: u64,
 }
 
 /// Reads the account from a journal.
@@ -92,6 +118,8 @@ pub struct AccountBuilder {
     jobs: job::Jobs,
     /// Duration of each coordinator process, by epoch \[ms\].
     lasted: BTreeMap<u32, u64>,
+    /// Accounts of each worker in each coordinator process with the time of each in the process \[ms\].
+    accounts: BTreeMap<(u32, WorkerId), Vec<(u64, WorkerAccount)>>,
 }
 
 impl AccountBuilder {
@@ -110,6 +138,8 @@ impl AccountBuilder {
                 for row in &said.workers {
                     // the last word about a worker in a process counts
                     self.rows.insert((row.worker, said.epoch), row.clone());
+                    let own = self.accounts.entry((said.epoch, row.worker)).or_default();
+                    own.push((said.at_ms, row.clone()));
                 }
             }
             Event::Begun { .. }
@@ -124,6 +154,7 @@ impl AccountBuilder {
     pub fn finish(self, damage: Vec<Damage>) -> RunAccount {
         let mut account = self.account;
         account.damage = damage;
+        account.presence = presence(&self.accounts, &self.lasted);
         account.wall_s = self.lasted.values().sum::<u64>() as f64 / 1e3;
         (account.jobs, account.given_up) = self.jobs.counted();
         for row in self.rows.into_values() {
@@ -144,6 +175,34 @@ impl AccountBuilder {
             .sort_by_key(|(_, times)| std::cmp::Reverse(*times));
         account
     }
+}
+
+/// Places the accounts of workers on the working time of the run, in which one coordinator process follows
+/// another.
+fn presence(
+    accounts: &BTreeMap<(u32, WorkerId), Vec<(u64, WorkerAccount)>>,
+    lasted: &BTreeMap<u32, u64>,
+) -> Vec<Presence> {
+    let one = |((epoch, worker), rows): (&(u32, WorkerId), &Vec<(u64, WorkerAccount)>)| {
+        let earlier_ms: u64 = lasted.range(..epoch).map(|(_, ms)| ms).sum();
+        let mark = |(at_ms, row): &(u64, WorkerAccount)| {
+            let connected = row.spent.connected_us as f64 / 1e6;
+            PresenceMark {
+                at_s: (earlier_ms + at_ms) as f64 / 1e3,
+                connected_s: connected / f64::from(row.slots.max(1)),
+                useful_share: row.spent.useful_us as f64 / row.spent.connected_us.max(1) as f64,
+                failed: row.failed,
+            }
+        };
+        Presence {
+            worker: *worker,
+            host: rows
+                .first()
+                .map_or_else(String::new, |(_, row)| row.host.clone()),
+            marks: rows.iter().map(mark).collect(),
+        }
+    };
+    accounts.iter().map(one).collect()
 }
 
 impl RunAccount {

@@ -364,3 +364,64 @@ fn a_seed_and_settings_that_differ_are_named_not_dumped() {
     let other = header(r#"{"seed":1,"a":1,"b":2,"c":3,"d":4}"#);
     assert_eq!(differences(&was, &other).len(), 4);
 }
+
+#[test]
+fn a_follower_reads_what_is_appended_and_waits_for_the_rest_of_a_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = written(folder.path(), 3);
+    let path = folder.path().join("followed");
+    let mut follower = JournalFollower::new(&path);
+    let mut jobs = Vec::new();
+    let mut read = |follower: &mut JournalFollower| {
+        let growth = follower.read(|_, event| {
+            if let Event::Finished(finished) = event {
+                jobs.push(finished.job().0);
+            }
+        });
+        (growth.unwrap(), jobs.clone())
+    };
+    assert_eq!(read(&mut follower).0, Growth::Missing);
+    // byte by byte: each result once, and no damage
+    for length in 1..=whole.len() {
+        fs::write(&path, &whole[..length]).unwrap();
+        read(&mut follower);
+    }
+    let (growth, jobs) = read(&mut follower);
+    assert_eq!((growth, jobs), (Growth::Unchanged, vec![1, 2, 3]));
+    assert_eq!(follower.damage(), []);
+    assert_eq!(follower.position(), whole.len() as u64);
+    assert!(follower.has_result(JobId(2)) && !follower.has_result(JobId(4)));
+    let recalled = follower.recall(JobId(2)).unwrap().unwrap();
+    assert_eq!(Event::Finished(Box::new(recalled)), result(2));
+}
+
+#[test]
+fn a_follower_skips_damage_and_tells_a_replaced_or_missing_journal() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut bytes = written(folder.path(), 40);
+    let path = folder.path().join(FILE);
+    let middle = bytes.len() / 2;
+    bytes[middle..middle + 8].fill(0);
+    fs::write(&path, &bytes).unwrap();
+    let mut follower = JournalFollower::new(&path);
+    assert_eq!(follower.read(|_, _| {}).unwrap(), Growth::Grown);
+    assert_eq!(follower.damage().len(), 1);
+    assert!(follower.has_result(JobId(1)) && follower.has_result(JobId(40)));
+    // a coordinator that takes the run over cuts a torn tail off and goes on
+    let torn = [&bytes[..], &bytes[..20]].concat();
+    fs::write(&path, &torn).unwrap();
+    follower.read(|_, _| {}).unwrap();
+    let (journal, _) = open(folder.path()).unwrap();
+    journal.append(result(41)).unwrap();
+    drop(journal);
+    assert_eq!(follower.read(|_, _| {}).unwrap(), Growth::Grown);
+    assert!(follower.has_result(JobId(41)));
+    assert_eq!(follower.damage().len(), 1);
+    // another journal in its place is read from its beginning
+    fs::write(&path, &bytes[..middle / 2]).unwrap();
+    assert_eq!(follower.read(|_, _| {}).unwrap(), Growth::Replaced);
+    assert_eq!(follower.read(|_, _| {}).unwrap(), Growth::Grown);
+    assert!(!follower.has_result(JobId(41)));
+    fs::remove_file(&path).unwrap();
+    assert_eq!(follower.read(|_, _| {}).unwrap(), Growth::Missing);
+}

@@ -21,6 +21,7 @@ pub mod rows;
 pub mod scale;
 mod speed_up;
 pub mod strip;
+mod timeline;
 
 pub(super) use angle_map::angle_map;
 pub use axis::ChartAxis;
@@ -35,3 +36,4 @@ pub(super) use overlay::fitted;
 pub use overlay::{overlay, overlays};
 pub(super) use parallel::parallel;
 pub(super) use speed_up::speed_up;
+pub(super) use timeline::timeline;

@@ -52,6 +52,9 @@ pub enum Block {
     Figure(Figure),
     /// Markup for the HTML page only, e.g. an animation or links to figures.
     Markup(Markup),
+    /// Script that moves the figures of the section, in the HTML page only and once in it. It adds functions to
+    /// `horsehead.parts`, which are called with each new part of a page.
+    Script(&'static str),
     /// Collapsible blocks under a title.
     Folded(&'static str, Vec<Self>),
 }
@@ -119,6 +122,20 @@ fn gather<'a>(blocks: &'a [Block], figures: &mut Vec<&'a Figure>) {
             gather(inner, figures);
         }
     }
+}
+
+/// Returns the scripts of sections in page order, each once.
+pub(super) fn scripts(sections: &[Section]) -> Vec<&'static str> {
+    let blocks = sections.iter().flat_map(|section| &section.blocks);
+    let mut scripts = Vec::new();
+    for block in blocks {
+        if let Block::Script(script) = block
+            && !scripts.contains(script)
+        {
+            scripts.push(*script);
+        }
+    }
+    scripts
 }
 
 /// Wraps each figure in a [`Block`], the content element of report sections.

@@ -1,5 +1,5 @@
 //! HTML output: one self-contained, printable file without external resources.
-use super::block::{Block, Fact, Report, Section};
+use super::block::{Block, Fact, Report, Section, scripts};
 use super::figure::Figure;
 use super::table::{Label, Row, Table};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -10,8 +10,8 @@ pub const STYLE: &str = include_str!("style.css");
 /// Script of every page: sorts and filters tables, and replaces sections in the pages of a dashboard.
 pub(crate) const SCRIPT: &str = include_str!("page.js");
 
-/// Renders a report as an HTML page with a script.
-pub fn page(report: &Report, script: &str) -> String {
+/// Renders a report as an HTML page with its scripts.
+pub fn page(report: &Report) -> String {
     let (title, run) = (&report.title, &report.run);
     let page: Markup = html! {
         (DOCTYPE)
@@ -35,7 +35,12 @@ pub fn page(report: &Report, script: &str) -> String {
                 main {
                     @for section in &report.sections { (section_markup(section)) }
                 }
-                script { (PreEscaped("/*<![CDATA[*/\n")) (PreEscaped(script)) (PreEscaped("/*]]>*/")) }
+                script {
+                    (PreEscaped("/*<![CDATA[*/\n"))
+                    (PreEscaped(SCRIPT))
+                    @for script in scripts(&report.sections) { (PreEscaped(script)) }
+                    (PreEscaped("/*]]>*/"))
+                }
             }
         }
     };
@@ -66,6 +71,8 @@ fn markup(block: &Block) -> Markup {
         Block::Table(table) => table_markup(table),
         Block::Figure(figure) => figure_markup(figure),
         Block::Markup(markup) => markup.clone(),
+        // stands at the end of the page
+        Block::Script(_) => html! {},
         Block::Folded(title, blocks) => html! {
             details {
                 summary { (title) }

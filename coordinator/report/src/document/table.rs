@@ -58,7 +58,7 @@ impl Table {
     }
 
     /// Returns the table, or `None` if it has no rows.
-    pub(crate) fn non_empty(self) -> Option<Self> {
+    pub fn non_empty(self) -> Option<Self> {
         (!self.rows.is_empty()).then_some(self)
     }
 

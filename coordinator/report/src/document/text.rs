@@ -58,7 +58,7 @@ fn one(block: &Block, styled: bool) -> String {
         }
         Block::Table(table) => set_table(table, styled),
         Block::Folded(_, blocks) => all(blocks, styled),
-        Block::Figure(_) | Block::Markup(_) => String::new(),
+        Block::Figure(_) | Block::Markup(_) | Block::Script(_) => String::new(),
     }
 }
 

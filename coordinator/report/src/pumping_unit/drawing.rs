@@ -44,7 +44,10 @@ impl ModelReport for PumpingUnitReport {
         vec![Section {
             id: "moving-machine",
             title: "The machine in motion",
-            blocks: moving.into_iter().collect(),
+            blocks: moving
+                .into_iter()
+                .flat_map(|moving| [moving, Block::Script(animation::PLAYER)])
+                .collect(),
         }]
     }
 

@@ -33,13 +33,17 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
 fn table(calibration: &Calibration, chosen: &[usize]) -> Markup {
     let unknowns = &calibration.case.unknowns;
     let objective = objective_heading(&calibration.case);
+    let first = unknowns
+        .first()
+        .map_or("time", |unknown| unknown.name.as_str());
+    let placeholder = format!("words, or objective<10 {first}>1");
     html! {
-        figure.table {
+        figure.table.individuals {
             p.filter {
                 label {
                     "Filter "
                     input type="search" id="individuals-filter" size="34"
-                        placeholder="words, or objective<10 kb1>1e8";
+                        placeholder=(placeholder);
                 }
                 " " span.count {}
             }
@@ -86,7 +90,9 @@ fn row(point: &HistoryPoint) -> Markup {
                 (if complete { significant(point.fitness) } else { MISSING.to_owned() })
             }
             td data-value=[time] { (time.map_or_else(|| MISSING.to_owned(), duration)) }
-            @for gene in &point.genes { td data-value=(gene) { (significant(*gene)) } }
+            @for gene in &point.genes {
+                td data-value=[gene.is_finite().then_some(gene)] { (significant(*gene)) }
+            }
             td { (point.failure.as_deref().unwrap_or("complete")) }
         }
     }

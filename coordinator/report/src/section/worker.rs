@@ -1,5 +1,6 @@
 //! Report section on the utilisation of the workers: tables and figure.
 use crate::chart::canvas::{TextStyle, render};
+use crate::chart::timeline;
 use crate::color::{BAND, BLUE, GREY, INK};
 use crate::data::{Calibration, WorkerUse};
 use crate::document::{Block, Figure, Row, Section, Table, figures};
@@ -11,6 +12,7 @@ use protocol::event::Spent;
 pub(super) fn calibration(calibration: &Calibration) -> Section {
     let mut blocks = Vec::new();
     if !calibration.workers.is_empty() {
+        blocks.extend(figures(timeline(&calibration.presence)));
         blocks.extend(figures(chart(&calibration.workers)));
         blocks.extend([
             Block::Table(slot_time(&calibration.spent)),

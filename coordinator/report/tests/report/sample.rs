@@ -1,10 +1,11 @@
 //! Synthesised case with results: machine geometry, plausible curves and a search log.
 use crate::geometry::{self, Pose};
-use dispatch::account::JobCost;
+use dispatch::account::{JobCost, Presence, PresenceMark};
 use protocol::pumping_unit::failure;
 use protocol::{
     case::{Case, Channel, ChannelRecord, Condition, Objective, Term, Unknown},
     event::Spent,
+    id::WorkerId,
     job::{ChannelScore, Counters, Curves, Evaluation, Reached, Verdict},
     pumping_unit::{
         BackHead, Beam, Coefficient, Contact, Crank, Energy, FrontHead, Influence, LoadCard,
@@ -561,6 +562,7 @@ pub(crate) fn calibration(evaluations: usize) -> Calibration {
                 present_s: 300.0,
             })
             .collect(),
+        presence: (0..3).map(presence).collect(),
         // three workers of two slots for 300 s each
         spent: Spent {
             connected_us: 1_800_000_000,
@@ -576,6 +578,21 @@ pub(crate) fn calibration(evaluations: usize) -> Calibration {
         conditions,
         notes: vec!["The load card of 5rpm is not a simultaneous measurement.".to_owned()],
         case,
+    }
+}
+
+/// Builds the presence of a worker that joins later the higher its index, and of which an attempt fails.
+fn presence(index: u64) -> Presence {
+    let mark = |minute: u64| PresenceMark {
+        at_s: 60.0 * minute as f64,
+        connected_s: 60.0 * minute as f64 - 20.0 * index as f64,
+        useful_share: 0.3 * index as f64,
+        failed: u64::from(minute > 3) * index,
+    };
+    Presence {
+        worker: WorkerId(index),
+        host: format!("node-{index:02}"),
+        marks: (1..=5).map(mark).collect(),
     }
 }
 

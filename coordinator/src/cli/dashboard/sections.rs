@@ -5,11 +5,11 @@ use crate::cli::{
     output::calibration::{history_point, worker_use},
     run::{calibration::Calibration, kind::AnyRun},
 };
-use discrepancy::thresholds::Thresholds;
+use discrepancy::{laboratory::Finding, thresholds::Thresholds};
 use report::{
     Block, ConditionResult, Individual, Run, Section, Table,
     document::{Fact, Row},
-    number::{count, duration, fixed, significant},
+    number::{MISSING, count, duration, fixed, percent, significant},
     words,
 };
 use std::path::Path;
@@ -79,7 +79,12 @@ pub(super) fn unfinished(
         }
         AnyRun::Diagnosis(run) => {
             let budget = &run.manifest.settings.thresholds;
-            vec![stage_progress(state, Some(budget)), workers(state)]
+            vec![
+                stage_progress(state, Some(budget)),
+                gaps(state),
+                suspects(state),
+                workers(state),
+            ]
         }
         AnyRun::Identification(_) => vec![stage_progress(state, None), workers(state)],
     }
@@ -178,7 +183,7 @@ fn stage_progress(state: &RunState, budget: Option<&Thresholds>) -> Section {
         };
         let all = budget.and_then(|own| own.budget.get(*stage as usize));
         let left = match (own, all) {
-            (_, None) => "–".to_owned(),
+            (_, None) => MISSING.to_owned(),
             (None, Some(all)) => count(u64::from(*all)),
             (Some(own), Some(_)) => fixed(own.left, 0),
         };
@@ -200,6 +205,75 @@ fn stage_progress(state: &RunState, budget: Option<&Thresholds>) -> Section {
         Fact::new("simulations", count(state.results)),
     ];
     progress(vec![Block::Facts(facts), Block::Table(table)])
+}
+
+/// Returns the section on the gap as it closes: one row for each model that was tested.
+fn gaps(state: &RunState) -> Section {
+    let mut models: Vec<&Finding> = state.findings.iter().collect();
+    models.dedup_by(|one, other| one.added == other.added);
+    let first = models.first().map_or(0.0, |finding| finding.gap);
+    let rows = models.iter().map(|finding| {
+        let name = if finding.added.is_empty() {
+            "the recalibrated model".to_owned()
+        } else {
+            format!("with {}", finding.added.join(", "))
+        };
+        let closed = 1.0 - finding.gap / first;
+        let closed = closed.is_finite().then(|| percent(closed));
+        Row::new(
+            name,
+            [
+                format!("{}\u{a0}%", significant(100.0 * finding.gap)),
+                closed.unwrap_or_else(|| MISSING.to_owned()),
+            ],
+        )
+    });
+    let table = Table::new("The gap so far", ["", "gap", "closed"], rows.collect());
+    let table = table.with_notes([
+        "Gap on the cycles that are fitted: mean squared residual above the noise of the averaged record, over the \
+         variance of the measured curve. The verdict also needs cycles and conditions that are held out.",
+    ]);
+    Section {
+        id: "gaps",
+        title: "The gap as it closes",
+        blocks: table.non_empty().map(Block::Table).into_iter().collect(),
+    }
+}
+
+/// Returns the section on the suspects of the last model that was tested.
+fn suspects(state: &RunState) -> Section {
+    let rows = state.findings.last().into_iter().flat_map(|finding| {
+        finding.suspects.iter().map(|suspect| {
+            let gain = suspect.gain.map(|gain| fixed(gain, 1));
+            Row::new(
+                suspect.id.as_str(),
+                [
+                    suspect.title.clone(),
+                    significant(suspect.p_value),
+                    gain.unwrap_or_else(|| MISSING.to_owned()),
+                ],
+            )
+        })
+    });
+    let table = Table::new(
+        "Effects that the record may speak for",
+        [
+            "effect",
+            "title",
+            "p of its own test",
+            "gain after a refit [nats]",
+        ],
+        rows.collect(),
+    );
+    let table = table.with_notes([
+        "Not a verdict: an effect is named only when all rounds are over, its rivals are rejected and held-out data \
+         agree.",
+    ]);
+    Section {
+        id: "suspects",
+        title: "Suspects",
+        blocks: table.non_empty().map(Block::Table).into_iter().collect(),
+    }
 }
 
 /// Returns the sections of the report of a calibration that goes on.
@@ -230,6 +304,7 @@ fn calibration(run: &Calibration, state: &RunState, compared: ComparedRuns<'_>) 
             .map(|entry| history_point(entry, state.costs.get(&entry.id).copied()))
             .collect(),
         workers: account.workers.iter().map(worker_use).collect(),
+        presence: account.presence,
         spent: account.spent,
         wall_s: running_s(state),
         finish: String::new(),

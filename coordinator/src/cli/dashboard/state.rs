@@ -1,4 +1,5 @@
 //! What is known of a run that is followed: a fold over its journal and over the study that is repeated on it.
+use discrepancy::laboratory::Finding;
 use dispatch::{
     account::{AccountBuilder, Costs, JobCost},
     journal::{Damage, Growth, JournalEntry, describe_damage},
@@ -58,6 +59,8 @@ pub(super) struct RunState {
     pub(super) progress: ProgressView,
     /// Last progress of each stage of a diagnosis or identification, in order.
     pub(super) stages: Vec<StageView>,
+    /// Interim results of a diagnosis, in order.
+    pub(super) findings: Vec<Finding>,
     pub(super) notes: Vec<String>,
     /// Individuals that the run simulates for its tables, by the bits of their values and the condition.
     pub(super) shown: BTreeMap<(Vec<u64>, usize), Shown>,
@@ -200,6 +203,10 @@ impl Watch<ProgressView> for SharedState {
 impl Watch<StageView> for SharedState {
     fn progress(&mut self, view: &StageView, _: &dyn Fn() -> WorkersSnapshot) {
         self.change(|state| state.stage(view));
+    }
+
+    fn entered(&mut self, finding: &Finding) {
+        self.change(|state| state.findings.push(finding.clone()));
     }
 
     fn noted(&mut self, notes: &[String]) {

@@ -180,6 +180,7 @@ pub(crate) fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Resu
         },
         history: history.collect(),
         workers: account.workers.iter().map(worker_use).collect(),
+        presence: account.presence,
         spent: account.spent,
         wall_s,
         finish: match finish {
