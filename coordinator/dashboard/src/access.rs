@@ -16,7 +16,7 @@ use std::{
 
 /// Values of the header `Host` under which a server at an address may be reached.
 #[derive(Clone, Debug)]
-pub(super) struct Hosts(Arc<Vec<String>>);
+pub(super) struct Hosts(Arc<[String]>);
 
 /// Returns the values of the header `Host` under which a server at an address may be reached: its address, and
 /// on loopback the name `localhost` too.
@@ -39,7 +39,7 @@ impl Hosts {
         } else {
             allowed_hosts(address)
         };
-        Self(Arc::new(listed))
+        Self(listed.into())
     }
 
     fn allow(&self, host: &str) -> bool {
@@ -122,28 +122,28 @@ pub(super) async fn guard(State(hosts): State<Hosts>, request: Request, next: Ne
 mod tests {
     use super::*;
 
-    fn refused(address: &str, method: Method, headers: &[(&'static str, &str)]) -> bool {
+    fn refused(address: &str, method: &Method, headers: &[(&'static str, &str)]) -> bool {
         let mut map = HeaderMap::new();
         for (name, value) in headers {
             map.insert(*name, value.parse().unwrap());
         }
-        refusal(&Hosts::of(address.parse().unwrap()), &method, &map).is_some()
+        refusal(&Hosts::of(address.parse().unwrap()), method, &map).is_some()
     }
 
     #[test]
     fn own_pages_are_answered_and_other_sites_are_not() {
         let own = ("host", "127.0.0.1:7450");
         let at = "127.0.0.1:7450";
-        assert!(!refused(at, Method::GET, &[own]));
-        assert!(!refused(at, Method::GET, &[("host", "localhost:7450")]));
+        assert!(!refused(at, &Method::GET, &[own]));
+        assert!(!refused(at, &Method::GET, &[("host", "localhost:7450")]));
         let origin = ("origin", "http://127.0.0.1:7450");
-        assert!(!refused(at, Method::GET, &[own, origin]));
+        assert!(!refused(at, &Method::GET, &[own, origin]));
         let link = [
             own,
             ("sec-fetch-site", "cross-site"),
             ("sec-fetch-mode", "navigate"),
         ];
-        assert!(!refused(at, Method::GET, &link));
+        assert!(!refused(at, &Method::GET, &link));
         for wrong in [
             vec![],
             vec![("host", "example.org:7450")],
@@ -156,20 +156,20 @@ mod tests {
                 ("sec-fetch-mode", "cors"),
             ],
         ] {
-            assert!(refused(at, Method::GET, &wrong), "{wrong:?}");
+            assert!(refused(at, &Method::GET, &wrong), "{wrong:?}");
         }
         for method in [Method::POST, Method::PUT, Method::DELETE, Method::OPTIONS] {
-            assert!(refused(at, method, &[own]));
+            assert!(refused(at, &method, &[own]));
         }
     }
 
     #[test]
     fn a_server_on_all_addresses_has_no_name() {
         let at = "0.0.0.0:7450";
-        assert!(!refused(at, Method::GET, &[("host", "10.1.2.3:7450")]));
+        assert!(!refused(at, &Method::GET, &[("host", "10.1.2.3:7450")]));
         assert!(refused(
             at,
-            Method::GET,
+            &Method::GET,
             &[("host", "attacker.example:7450")]
         ));
     }

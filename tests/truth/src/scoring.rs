@@ -87,7 +87,7 @@ impl Trial {
         })
     }
 
-    /// Returns whether the first named effect is a hidden one.
+    /// Returns whether the first effect that the diagnosis named is one of those hidden in the record.
     pub fn first_is_right(&self) -> bool {
         self.verdict.added().next().is_some_and(|id| self.hides(id))
     }

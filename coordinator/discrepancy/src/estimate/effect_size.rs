@@ -5,7 +5,7 @@ use crate::linear::score::family_wise;
 use crate::model::fit::Fit;
 use crate::record::metric::Metric;
 
-/// Estimate of an effect of the answer.
+/// Estimate of one effect that the diagnosis added to the model, or that the record cannot distinguish from it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// Identifier of the effect.

@@ -171,7 +171,7 @@ pub(crate) fn fitted(case: &Case, result: &ConditionResult) -> Option<Figure> {
                 "{}, condition {condition}",
                 words::capitalised(&channel.title)
             ),
-            unit: unit(&channel.unit).into(),
+            unit: unit(&channel.unit),
             at: &channel.abscissa.points,
             axis,
             measured: &record.mean,

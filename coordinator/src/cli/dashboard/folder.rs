@@ -201,15 +201,14 @@ impl Row {
 
 /// Encodes a file name as one segment of a URL's path.
 fn path_segment(name: &str) -> String {
-    let mut text = String::new();
-    for byte in name.bytes() {
+    let encoded = |byte: u8| {
         if byte.is_ascii_alphanumeric() || b"-_.~".contains(&byte) {
-            text.push(char::from(byte));
+            char::from(byte).to_string()
         } else {
-            text.push_str(&format!("%{byte:02X}"));
+            format!("%{byte:02X}")
         }
-    }
-    text
+    };
+    name.bytes().map(encoded).collect()
 }
 
 /// Returns the section with the table of the runs of a folder, newest first.

@@ -2,7 +2,7 @@
 //! in another.
 use super::{
     sections::{self, ComparedRuns, pair},
-    simulator::{Simulated, Simulator},
+    simulator::{Awaited, Simulated, Simulator},
     state::{RunState, SharedState},
 };
 use crate::cli::run::{
@@ -12,8 +12,12 @@ use crate::cli::run::{
     manifest::{CALIBRATE, DIAGNOSE, IDENTIFY},
 };
 use dashboard::{Board, PageReader, Pages};
-use dispatch::journal::{self, Growth, JournalFollower};
-use protocol::case::Case;
+use dispatch::journal::{self, Damage, Growth, JournalEntry, JournalFollower};
+use protocol::{
+    case::Case,
+    event::{Event, Finished},
+    job::Job,
+};
 use report::{Block, Report, Section, document::section_markup};
 use std::{
     fs,
@@ -26,15 +30,16 @@ use std::{
     thread,
     time::{Duration, Instant, SystemTime},
 };
-use study::{FollowObserver as _, FollowingEvaluator, StudyError};
+use study::{FollowObserver, FollowingEvaluator, StudyError};
 use tokio::sync::{oneshot, watch};
 
 /// Interval at which the page of a run is rendered, if something has changed.
 const INTERVAL: Duration = Duration::from_millis(400);
 /// Minimum share of time that rendering leaves to others: a page that takes long is rendered less often.
 const REST: u32 = 9;
-/// Interval at which a run folder that cannot be read is tried again.
-const RETRY: Duration = Duration::from_secs(1);
+/// Time after which a run that could not be followed is tried again if its journal has grown; reading its case may
+/// take seconds.
+const RETRY: Duration = Duration::from_secs(30);
 /// Minimum time between two simulations of the best individual so far.
 const BEST_INTERVAL: Duration = Duration::from_secs(4);
 /// Longest wait for the result file of a run whose last result is in the journal, and for the last results of a run
@@ -187,6 +192,7 @@ impl Shared {
         *self.ending.lock().unwrap_or_else(PoisonError::into_inner) = ending;
     }
 
+    /// Returns length and inode of the manifest and the journal.
     fn stamps(&self) -> [(u64, u64); 2] {
         [MANIFEST, journal::FILE].map(|file| stamp(&self.path.join(file)))
     }
@@ -207,14 +213,20 @@ impl Shared {
                     error: Some(format!("{error:#}")),
                 },
             });
-            // a run that is over is followed again only if another takes its place
-            while !self.is_stopped() && (ended || self.stamps() == before) {
-                thread::sleep(RETRY);
-                let [manifest, _] = self.stamps();
-                if ended && manifest.1 != 0 && manifest.0 != 0 && self.stamps()[1].1 != before[1].1
-                {
-                    break;
+            // a run that is over is followed again only if another takes its place; one that cannot be followed if its
+            // files were replaced, and from time to time if its journal grows
+            let tried = Instant::now();
+            let is_due = |now: [(u64, u64); 2]| {
+                let [manifest, journal] = now;
+                let replaced = manifest != before[0] || journal.1 != before[1].1;
+                if ended {
+                    manifest.0 > 0 && journal.1 != before[1].1
+                } else {
+                    replaced || (now != before && tried.elapsed() > RETRY)
                 }
+            };
+            while !self.is_stopped() && !is_due(self.stamps()) {
+                thread::sleep(INTERVAL);
             }
         }
     }
@@ -229,12 +241,13 @@ impl Shared {
             return self.count_results(&kind);
         }
         let run = Arc::new(AnyRun::open(&self.path)?);
-        self.state.clear();
         *self.run.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(&run));
-        self.end(Ending::default());
         let mut stop = stopped.clone();
         let mut watch = self.state.clone();
-        let mut observer = self.state.clone();
+        let mut observer = Observer {
+            shared: self,
+            has_begun: false,
+        };
         let mut evaluator = FollowingEvaluator::new(&self.path.join(journal::FILE), &mut observer);
         let mut replayed =
             bus::block_on(async { run.replay(&mut evaluator, &mut watch, &mut stop).await })?;
@@ -289,11 +302,7 @@ impl Shared {
 
     /// Returns the runs of an individual if they are known, from the journal or a former simulation; otherwise
     /// requests their simulation.
-    fn runs_of(
-        &self,
-        case: &Arc<Case>,
-        genes: &[f64],
-    ) -> Result<Simulated, oneshot::Receiver<Result<Simulated, String>>> {
+    fn runs_of(&self, case: &Arc<Case>, genes: &[f64]) -> Result<Simulated, Awaited> {
         self.known(case, genes)
             .ok_or_else(|| self.simulator.simulate(case, genes))
     }
@@ -394,6 +403,38 @@ impl Shared {
     }
 }
 
+/// Observer of a journal that forgets what was known, and why it could not be followed before, when the journal is
+/// read for the first time.
+struct Observer<'a> {
+    shared: &'a Shared,
+    has_begun: bool,
+}
+
+impl Observer<'_> {
+    fn begin(&mut self) {
+        if !self.has_begun {
+            self.has_begun = true;
+            self.shared.state.clear();
+            self.shared.end(Ending::default());
+        }
+    }
+}
+
+impl FollowObserver for Observer<'_> {
+    fn event(&mut self, entry: JournalEntry, event: &Event) {
+        self.begin();
+        self.shared.state.clone().event(entry, event);
+    }
+
+    fn result(&mut self, job: &Job, finished: &Finished) {
+        self.shared.state.clone().result(job, finished);
+    }
+
+    fn read(&mut self, growth: Growth, position: u64, damage: &[Damage]) {
+        self.shared.state.clone().read(growth, position, damage);
+    }
+}
+
 /// Returns whether a process of this machine holds the lock of a run, from the kernel's table of locks; a run on
 /// another machine counts as running while its journal grows.
 pub(super) fn is_locked(lock: &Path) -> bool {
@@ -438,7 +479,7 @@ struct BestPictures {
     case: Option<Arc<Case>>,
     recommended: Option<Simulated>,
     best: Option<(Vec<f64>, Simulated)>,
-    waiting: Option<(Vec<f64>, oneshot::Receiver<Result<Simulated, String>>)>,
+    waiting: Option<(Vec<f64>, Awaited)>,
     asked: Option<Instant>,
 }
 

@@ -12,7 +12,7 @@ use study::{CompareRequest, PICTURES, StudyError};
 use tokio::sync::oneshot;
 
 /// Time after the last request at which the worker process ends.
-const IDLE: Duration = Duration::from_secs(60);
+const IDLE: Duration = Duration::from_mins(1);
 /// Maximum number of individuals that one temporary run simulates, below the 256 for which a comparison has
 /// job numbers.
 const MOST_IN_A_RUN: usize = 200;
@@ -21,6 +21,9 @@ const MOST_KEPT: usize = 24;
 
 /// Result of simulating one individual: for each condition its index and the run.
 pub(super) type Simulated = Arc<Vec<(usize, Run)>>;
+
+/// Answer to a request that arrives later: the result, or why the individual could not be simulated.
+pub(super) type Awaited = oneshot::Receiver<Result<Simulated, String>>;
 
 struct Request {
     case: Arc<Case>,
@@ -58,11 +61,7 @@ impl Simulator {
 
     /// Requests the simulation of an individual under all conditions; the answer arrives on the returned
     /// channel.
-    pub(super) fn simulate(
-        &self,
-        case: &Arc<Case>,
-        genes: &[f64],
-    ) -> oneshot::Receiver<Result<Simulated, String>> {
+    pub(super) fn simulate(&self, case: &Arc<Case>, genes: &[f64]) -> Awaited {
         let (answer, receiver) = oneshot::channel();
         if let Some(known) = self.known(genes) {
             drop(answer.send(Ok(known)));
@@ -112,15 +111,14 @@ fn answer(asked: &mpsc::Receiver<Request>, kept: &Mutex<BTreeMap<Vec<u64>, Simul
                     let kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
                     kept.get(&own).cloned()
                 };
-                let result = match known {
-                    Some(known) => Ok(known),
-                    None => {
-                        let wanted = wanted(&case, number, &request.genes);
-                        match study::compare(bus, &case, &wanted, stop).await {
-                            Ok(compared) => Ok(Arc::new(runs(&compared))),
-                            Err(error @ StudyError::Interrupted) => return Err(error),
-                            Err(error) => Err(error.to_string()),
-                        }
+                let result = if let Some(known) = known {
+                    Ok(known)
+                } else {
+                    let wanted = wanted(&case, number, &request.genes);
+                    match study::compare(bus, &case, &wanted, stop).await {
+                        Ok(compared) => Ok(Arc::new(runs(&compared))),
+                        Err(error @ StudyError::Interrupted) => return Err(error),
+                        Err(error) => Err(error.to_string()),
                     }
                 };
                 if let Ok(result) = &result {
