@@ -1,4 +1,4 @@
-//! Browser without a window, driven by the WebDriver protocol.
+//! Browser without a window, driven over `WebDriver`.
 use fantoccini::{Client, ClientBuilder};
 use hyper_util::client::legacy::connect::HttpConnector;
 use serde_json::{Value, json};
@@ -66,9 +66,7 @@ impl Browser {
             ),
         ];
         let capabilities = json!({ "goog:chromeOptions": { "args": arguments } });
-        let Value::Object(capabilities) = capabilities else {
-            panic!("an object");
-        };
+        let capabilities = serde_json::from_value(capabilities).unwrap();
         let runtime = Runtime::new().unwrap();
         let client = runtime.block_on(async {
             ClientBuilder::new(HttpConnector::new())

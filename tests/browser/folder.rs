@@ -1,5 +1,9 @@
 //! A folder of runs of the oscillator: finished, diagnosed, stopped, damaged and foreign ones.
-use super::{Site, driver::Browser, picture, shown};
+use super::{
+    Site,
+    driver::{Browser, LIMIT},
+    picture, shown,
+};
 use oscillator::{case_folder, effect::Effects};
 use rustix::process::Signal;
 use std::{
@@ -36,11 +40,8 @@ fn status(url: &str, request: &str) -> String {
     text.lines().next().unwrap().to_owned()
 }
 
-#[test]
-fn a_folder_shows_finished_stopped_damaged_foreign_and_deleted_runs() {
-    let Some(browser) = Browser::start() else {
-        return;
-    };
+/// Returns a site with a case of the oscillator in which friction is hidden.
+pub(crate) fn oscillator_site() -> Site {
     let worker = coordinator_program().with_file_name("test-oscillator-worker");
     assert!(worker.exists(), "`cargo build` makes it");
     let site = Site::new(Some(worker));
@@ -49,40 +50,19 @@ fn a_folder_shows_finished_stopped_damaged_foreign_and_deleted_runs() {
         ..Effects::default()
     };
     case_folder::write(&site.path("case"), &case_folder::HIDDEN, &effects, 0).unwrap();
+    site
+}
+
+#[test]
+fn a_folder_shows_finished_stopped_damaged_foreign_and_deleted_runs() {
+    let Some(browser) = Browser::start() else {
+        return;
+    };
+    let site = oscillator_site();
     site.run(&["calibrate", "case", "--run", "runs/good"]);
     site.run(&["diagnose", "case", "--run", "runs/named"]);
-    // one that is killed in the middle
-    let memetic = [
-        "calibrate",
-        "case",
-        "--preset",
-        "memetic",
-        "--run",
-        "runs/stopped",
-    ];
-    let coordinator = Process::logged(site.command(&memetic), &site.path("memetic.log"));
-    let journal = site.path("runs/stopped/journal.hhj");
-    wait_until("results are stored", super::driver::LIMIT, || {
-        fs::metadata(&journal).is_ok_and(|file| file.len() > 200_000)
-    });
-    coordinator.signal(Signal::KILL);
-    drop(coordinator);
-    // bytes in the middle of a journal, and the version of every record of another
-    copy(&site.path("runs/good"), &site.path("runs/damaged"));
-    let damaged = site.path("runs/damaged/journal.hhj");
-    let mut bytes = fs::read(&damaged).unwrap();
-    let middle = bytes.len() / 2;
-    bytes[middle..middle + 40].fill(0);
-    fs::write(&damaged, &bytes).unwrap();
-    copy(&site.path("runs/good"), &site.path("runs/foreign"));
-    let foreign = site.path("runs/foreign/journal.hhj");
-    let mut bytes = fs::read(&foreign).unwrap();
-    for at in 0..bytes.len() - 4 {
-        if bytes[at..].starts_with(b"HHJ") {
-            bytes[at + 3] += 1;
-        }
-    }
-    fs::write(&foreign, &bytes).unwrap();
+    stop_in_the_middle(&site);
+    damage(&site);
     fs::create_dir(site.path("runs/empty")).unwrap();
 
     let (_server, url) = site.dashboard("runs");
@@ -93,34 +73,76 @@ fn a_folder_shows_finished_stopped_damaged_foreign_and_deleted_runs() {
     );
     let table = browser.text("#runs");
     let (good, named) = (site.result("runs/good"), site.result("runs/named"));
-    for text in [
-        shown(&good["objective"]["optimised"]),
-        format!("named: {}", named["effects"][0]["title"].as_str().unwrap()),
-        "stopped".to_owned(),
-    ] {
-        assert!(table.contains(&text), "{text}: {table}");
+    let objective = shown(&good["objective"]["optimised"]);
+    let effect = &named["effects"][0];
+    let title = effect["title"].as_str().unwrap();
+    for text in [&objective, &format!("named: {title}"), "stopped"] {
+        assert!(table.contains(text), "{text}: {table}");
     }
     browser.picture((1200, 600), &picture("folder"));
     browser.script("document.querySelector('a[href=\"/runs/good/\"]').click()");
     browser.wait_for_state("finished");
-    assert!(
-        browser
-            .text("#summary")
-            .contains(&shown(&good["objective"]["optimised"]))
-    );
+    assert!(browser.text("#summary").contains(&objective));
 
-    let page = |run: &str| format!("{url}runs/{run}/");
-    browser.open(&page("named"));
+    browser.open(&format!("{url}runs/named/"));
     browser.wait_for_state("finished");
     let verdict = browser.text("#verdict");
-    let size = &named["effects"][0]["parameters"];
-    let size = size.as_object().unwrap().values().next().unwrap();
-    assert!(verdict.contains("The simulation lacks"), "{verdict}");
-    assert!(verdict.contains(&shown(&size["value"])), "{verdict}");
-    assert!(verdict.contains("predictive score"), "{verdict}");
+    let sizes = effect["parameters"].as_object().unwrap();
+    let size = shown(&sizes.values().next().unwrap()["value"]);
+    for text in ["The simulation lacks", &size, "predictive score"] {
+        assert!(verdict.contains(text), "{text}: {verdict}");
+    }
     browser.picture((1200, 1100), &picture("diagnosis"));
 
-    browser.open(&page("damaged"));
+    shows_runs_in_trouble(&browser, &site, &url);
+    assert_eq!(browser.console(), Vec::<String>::new());
+    refuses_requests(&url);
+}
+
+/// Begins a run and kills its coordinator after some results.
+fn stop_in_the_middle(site: &Site) {
+    let words = [
+        "calibrate",
+        "case",
+        "--preset",
+        "memetic",
+        "--run",
+        "runs/stopped",
+    ];
+    let coordinator = Process::logged(site.command(&words), &site.path("memetic.log"));
+    let journal = site.path("runs/stopped/journal.hhj");
+    wait_until("results are stored", LIMIT, || {
+        fs::metadata(&journal).is_ok_and(|file| file.len() > 200_000)
+    });
+    coordinator.signal(Signal::KILL);
+}
+
+/// Copies a finished run twice: with zeros in the middle of its journal, and with the version of every record
+/// raised.
+fn damage(site: &Site) {
+    let change = |name: &str, change: &dyn Fn(&mut [u8])| {
+        copy(&site.path("runs/good"), &site.path(name));
+        let journal = site.path(name).join("journal.hhj");
+        let mut bytes = fs::read(&journal).unwrap();
+        change(&mut bytes);
+        fs::write(&journal, &bytes).unwrap();
+    };
+    change("runs/damaged", &|bytes| {
+        let middle = bytes.len() / 2;
+        bytes[middle..middle + 40].fill(0);
+    });
+    change("runs/foreign", &|bytes| {
+        for at in 0..bytes.len() - 4 {
+            if bytes[at..].starts_with(b"HHJ") {
+                bytes[at + 3] += 1;
+            }
+        }
+    });
+}
+
+/// Checks the pages of a damaged run, of one of another version, and of one that is deleted under its page.
+fn shows_runs_in_trouble(browser: &Browser, site: &Site, url: &str) {
+    browser.open(&format!("{url}runs/damaged/"));
     browser.wait_for_state("incomplete");
     let notices = browser.text("#notices");
     assert!(
@@ -129,14 +151,13 @@ fn a_folder_shows_finished_stopped_damaged_foreign_and_deleted_runs() {
     );
     assert!(!browser.text("#convergence").is_empty());
 
-    browser.open(&page("foreign"));
+    browser.open(&format!("{url}runs/foreign/"));
     browser.wait_for(
         "the other version is named",
         "return document.getElementById('sections').innerText.includes('is of version')",
     );
 
-    // a folder that is deleted under its page leaves what was read
-    browser.open(&page("stopped"));
+    browser.open(&format!("{url}runs/stopped/"));
     browser.wait_for_state("stopped");
     browser.wait_for(
         "its results are shown",
@@ -145,11 +166,12 @@ fn a_folder_shows_finished_stopped_damaged_foreign_and_deleted_runs() {
     fs::remove_dir_all(site.path("runs/stopped")).unwrap();
     browser.wait_for_state("deleted");
     assert!(!browser.text("#convergence").is_empty());
-    assert_eq!(browser.console(), Vec::<String>::new());
+}
 
-    // requests that other sites' pages could make, or that would change something
-    let ok = "GET / HTTP/1.1\r\nHost: ADDRESS\r\n\r\n";
-    assert!(status(&url, ok).contains("200"));
+/// Checks the answers to requests that pages of other sites could make, or that would change something.
+fn refuses_requests(url: &str) {
+    let own = "GET / HTTP/1.1\r\nHost: ADDRESS\r\n\r\n";
+    assert!(status(url, own).contains("200"));
     for (request, code) in [
         (
             "POST / HTTP/1.1\r\nHost: ADDRESS\r\nContent-Length: 0\r\n\r\n",
@@ -166,7 +188,7 @@ fn a_folder_shows_finished_stopped_damaged_foreign_and_deleted_runs() {
         ),
         ("GET /runs/empty/ HTTP/1.1\r\nHost: ADDRESS\r\n\r\n", "404"),
     ] {
-        let line = status(&url, request);
+        let line = status(url, request);
         assert!(line.contains(code), "{request}: {line}");
     }
 }

@@ -4,6 +4,7 @@
     clippy::unwrap_used,
     reason = "helpers of a test suite: to panic is to fail the test"
 )]
+mod costs;
 mod driver;
 mod folder;
 mod live;
