@@ -28,9 +28,9 @@ Examples:
   horsehead dashboard runs/cyjs10-5-37hb-quick-seed1
   horsehead calibrate cases/cyjs10-5-37hb --dashboard
 
-Only shows: no request changes anything, and only this machine is answered unless --address says otherwise. From \
-another machine: ssh -L 7450:127.0.0.1:7450 HOST, then open http://127.0.0.1:7450/.
-Ctrl-C ends it; runs go on.
+No request changes a run, and only this machine is answered unless --address says otherwise.
+From another machine: ssh -L 7450:127.0.0.1:7450 HOST, then open http://127.0.0.1:7450/.
+Ctrl-C ends the dashboard; runs go on.
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
     /// Run folder, which need not exist yet, or a folder of runs.

@@ -64,6 +64,10 @@ fn owner(port: u16) -> Option<String> {
     let inode = tables.find_map(|table| listening_inode(&table, port))?;
     let socket = format!("socket:[{inode}]");
     for process in fs::read_dir("/proc").ok()?.flatten() {
+        let number = process.file_name().to_string_lossy().into_owned();
+        if number.parse::<u32>().is_err() {
+            continue;
+        }
         let Ok(open) = fs::read_dir(process.path().join("fd")) else {
             continue;
         };
@@ -72,7 +76,6 @@ fn owner(port: u16) -> Option<String> {
             .filter_map(|file| fs::read_link(file.path()).ok());
         if targets.any(|target| target.as_os_str() == socket.as_str()) {
             let name = fs::read_to_string(process.path().join("comm")).unwrap_or_default();
-            let number = process.file_name().to_string_lossy().into_owned();
             return Some(format!("{} (process {number})", name.trim()));
         }
     }
