@@ -24,19 +24,19 @@ var horsehead = { parts: [] };
       return down ? -order : order;
     });
     rows.forEach(function (row) { body.appendChild(row); });
-    Array.prototype.forEach.call(table.tHead.rows[0].cells, function (head, index) {
-      head.setAttribute("aria-sort", index === column ? (down ? "descending" : "ascending") : "none");
+    Array.prototype.forEach.call(table.tHead.rows[0].cells, function (label, index) {
+      label.setAttribute("aria-sort", index === column ? (down ? "descending" : "ascending") : "none");
     });
     table.dataset.sorted = column + (down ? " down" : " up");
   }
   // words must all occur in a row; NAME<NUMBER and NAME>NUMBER compare a column
   function filter(table, text) {
-    var heads = Array.prototype.map.call(table.tHead.rows[0].cells, function (head) {
-      return (head.dataset.name || head.textContent).trim().toLowerCase();
+    var labels = Array.prototype.map.call(table.tHead.rows[0].cells, function (label) {
+      return (label.dataset.name || label.textContent).trim().toLowerCase();
     });
     var tests = text.toLowerCase().split(/\s+/).filter(Boolean).map(function (word) {
       var limit = /^(.+?)([<>])(.+)$/.exec(word);
-      var column = limit ? heads.indexOf(limit[1]) : -1;
+      var column = limit ? labels.indexOf(limit[1]) : -1;
       if (column < 0 || isNaN(Number(limit[3]))) {
         return function (row) { return row.textContent.toLowerCase().indexOf(word) >= 0; };
       }
@@ -56,11 +56,11 @@ var horsehead = { parts: [] };
   }
   function tables(part) {
     part.querySelectorAll("table[data-sortable]").forEach(function (table) {
-      Array.prototype.forEach.call(table.tHead.rows[0].cells, function (head, column) {
-        head.tabIndex = 0;
-        function turn() { sort(table, column, head.getAttribute("aria-sort") === "ascending"); }
-        head.addEventListener("click", turn);
-        head.addEventListener("keydown", function (event) { if (event.key === "Enter") { turn(); } });
+      Array.prototype.forEach.call(table.tHead.rows[0].cells, function (label, column) {
+        label.tabIndex = 0;
+        function turn() { sort(table, column, label.getAttribute("aria-sort") === "ascending"); }
+        label.addEventListener("click", turn);
+        label.addEventListener("keydown", function (event) { if (event.key === "Enter") { turn(); } });
       });
       var input = table.closest("figure").querySelector("input[type=search]");
       if (input) {

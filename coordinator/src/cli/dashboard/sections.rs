@@ -240,6 +240,15 @@ fn gaps(state: &RunState) -> Section {
     }
 }
 
+/// Formats a p-value; very small ones as a bound.
+fn p_value(p: f64) -> String {
+    if p < 1e-12 {
+        "< 10⁻¹²".to_owned()
+    } else {
+        significant(p)
+    }
+}
+
 /// Returns the section on the suspects of the last model that was tested.
 fn suspects(state: &RunState) -> Section {
     let rows = state.findings.last().into_iter().flat_map(|finding| {
@@ -249,7 +258,7 @@ fn suspects(state: &RunState) -> Section {
                 suspect.id.as_str(),
                 [
                     suspect.title.clone(),
-                    significant(suspect.p_value),
+                    p_value(suspect.p_value),
                     gain.unwrap_or_else(|| MISSING.to_owned()),
                 ],
             )
