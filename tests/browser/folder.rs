@@ -60,7 +60,15 @@ fn a_folder_shows_finished_stopped_damaged_foreign_and_deleted_runs() {
     };
     let site = oscillator_site();
     site.run(&["calibrate", "case", "--run", "runs/good"]);
-    site.run(&["diagnose", "case", "--run", "runs/named"]);
+    // with a page of its own, which ends with the command
+    let diagnosed = site.run(&["diagnose", "case", "--run", "runs/named", "--dashboard=0"]);
+    let told = String::from_utf8_lossy(&diagnosed.stderr);
+    let line = told.lines().find(|line| line.starts_with("dashboard: "));
+    let own = line.unwrap().trim_start_matches("dashboard: ");
+    assert!(
+        TcpStream::connect(own.trim_start_matches("http://").trim_end_matches('/')).is_err(),
+        "{own} is still served"
+    );
     stop_in_the_middle(&site);
     damage(&site);
     fs::create_dir(site.path("runs/empty")).unwrap();
