@@ -2,7 +2,7 @@
 //! in another.
 use super::{
     sections::{self, ComparedRuns, pair},
-    simulator::{Awaited, Simulated, Simulator},
+    simulator::{Awaited, HashedCase, Simulated, Simulator},
     state::{RunState, SharedState},
 };
 use crate::cli::run::{
@@ -23,10 +23,7 @@ use std::{
     fs,
     os::unix::fs::MetadataExt,
     path::{Path, PathBuf},
-    sync::{
-        Arc, Mutex, PoisonError,
-        atomic::{AtomicBool, Ordering},
-    },
+    sync::{Arc, Mutex, PoisonError},
     thread,
     time::{Duration, Instant, SystemTime},
 };
@@ -57,13 +54,12 @@ pub(super) struct Followed {
 struct Shared {
     path: PathBuf,
     state: SharedState,
-    /// The run as it was opened last.
-    run: Mutex<Option<Arc<AnyRun>>>,
+    run: Mutex<Option<OpenedRun>>,
     /// Command of a run whose results alone are shown, such as a sweep.
     other: Mutex<Option<String>>,
     ending: Mutex<Ending>,
     simulator: Simulator,
-    stopped: AtomicBool,
+    stopped: watch::Receiver<bool>,
 }
 
 /// End of a followed study.
@@ -75,13 +71,11 @@ struct Ending {
     error: Option<String>,
 }
 
-/// Opened run as the page of one individual needs it.
-fn case_of(run: &AnyRun) -> &Case {
-    match run {
-        AnyRun::Calibration(run) => &run.case,
-        AnyRun::Diagnosis(run) => &run.case,
-        AnyRun::Identification(run) => &run.case,
-    }
+/// Run as it was opened last.
+#[derive(Clone)]
+struct OpenedRun {
+    run: Arc<AnyRun>,
+    case: Arc<HashedCase>,
 }
 
 impl Followed {
@@ -98,10 +92,10 @@ impl Followed {
             other: Mutex::default(),
             ending: Mutex::default(),
             simulator: simulator.clone(),
-            stopped: AtomicBool::new(false),
+            stopped,
         });
         let own = Arc::clone(&shared);
-        thread::spawn(move || own.follow(&stopped));
+        thread::spawn(move || own.follow());
         let own = Arc::clone(&shared);
         thread::spawn(move || own.render(board));
         Self {
@@ -123,12 +117,12 @@ impl Followed {
     /// Returns the HTML of one individual beside the recommended one; `None` if there is no such individual.
     pub(super) async fn individual(&self, number: u64) -> Option<String> {
         let run = self.shared.opened()?;
-        let case = Arc::new(case_of(&run).clone());
+        let case = &run.case;
         let genes = {
             let state = self.shared.state.lock();
             state.history.get(&number)?.genes.clone()
         };
-        let both = [case.start(), genes.clone()].map(|one| self.shared.runs_of(&case, &one));
+        let both = [case.case.start(), genes.clone()].map(|one| self.shared.runs_of(case, &one));
         let mut found = Vec::new();
         for one in both {
             found.push(match one {
@@ -141,7 +135,7 @@ impl Followed {
         let section = match found.as_slice() {
             [Ok(recommended), Ok(own)] => {
                 let conditions = pair(recommended, own);
-                report::individual(&case, (number, &genes), &conditions)
+                report::individual(&case.case, (number, &genes), &conditions)
             }
             [Err(why), _] | [_, Err(why)] => Section {
                 id: "one-individual",
@@ -158,7 +152,6 @@ impl Followed {
 
 impl Drop for Followed {
     fn drop(&mut self) {
-        self.shared.stopped.store(true, Ordering::Relaxed);
         self.stop.send_replace(true);
     }
 }
@@ -175,10 +168,10 @@ const FINISHED: &str = "finished";
 
 impl Shared {
     fn is_stopped(&self) -> bool {
-        self.stopped.load(Ordering::Relaxed)
+        *self.stopped.borrow()
     }
 
-    fn opened(&self) -> Option<Arc<AnyRun>> {
+    fn opened(&self) -> Option<OpenedRun> {
         let run = self.run.lock().unwrap_or_else(PoisonError::into_inner);
         run.clone()
     }
@@ -198,10 +191,10 @@ impl Shared {
     }
 
     /// Follows the run to its end; a run that cannot be followed is tried again when its files have changed.
-    fn follow(&self, stopped: &watch::Receiver<bool>) {
+    fn follow(&self) {
         while !self.is_stopped() {
             let before = self.stamps();
-            let followed = self.study(stopped);
+            let followed = self.study();
             let ended = followed.is_ok();
             self.end(match followed {
                 Ok(report) => Ending {
@@ -232,7 +225,7 @@ impl Shared {
     }
 
     /// Repeats the study of the run as its results arrive, and returns the report of its end.
-    fn study(&self, stopped: &watch::Receiver<bool>) -> anyhow::Result<Report> {
+    fn study(&self) -> anyhow::Result<Report> {
         if self.opened().is_some() && !RunFolder::new(&self.path).is_begun() {
             anyhow::bail!("the run folder was deleted; what was read before stays on this page");
         }
@@ -241,8 +234,11 @@ impl Shared {
             return self.count_results(&kind);
         }
         let run = Arc::new(AnyRun::open(&self.path)?);
-        *self.run.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(&run));
-        let mut stop = stopped.clone();
+        *self.run.lock().unwrap_or_else(PoisonError::into_inner) = Some(OpenedRun {
+            run: Arc::clone(&run),
+            case: HashedCase::new(run.case())?,
+        });
+        let mut stop = self.stopped.clone();
         let mut watch = self.state.clone();
         let mut observer = Observer {
             shared: self,
@@ -302,15 +298,15 @@ impl Shared {
 
     /// Returns the runs of an individual if they are known, from the journal or a former simulation; otherwise
     /// requests their simulation.
-    fn runs_of(&self, case: &Arc<Case>, genes: &[f64]) -> Result<Simulated, Awaited> {
+    fn runs_of(&self, case: &Arc<HashedCase>, genes: &[f64]) -> Result<Simulated, Awaited> {
         self.known(case, genes)
             .ok_or_else(|| self.simulator.simulate(case, genes))
     }
 
-    fn known(&self, case: &Case, genes: &[f64]) -> Option<Simulated> {
+    fn known(&self, case: &HashedCase, genes: &[f64]) -> Option<Simulated> {
         self.simulator
-            .known(genes)
-            .or_else(|| recorded(case, &self.state.lock(), genes))
+            .known(case, genes)
+            .or_else(|| recorded(&case.case, &self.state.lock(), genes))
     }
 
     /// Renders the page until the follower is dropped.
@@ -345,7 +341,7 @@ impl Shared {
             if drawn || shown.as_ref() != Some(&present) {
                 let state = self.state.lock().clone();
                 let title = match (&run, &other) {
-                    (Some(run), _) => sections::title(run),
+                    (Some(opened), _) => sections::title(&opened.run),
                     (None, Some(kind)) => sections::other_title(kind, &self.path),
                     (None, None) => self.path.display().to_string(),
                 };
@@ -357,8 +353,12 @@ impl Shared {
                 let mut page = vec![sections::notices(&state, error)];
                 match (&ending.report, &run) {
                     (Some(report), _) => page.extend(report.sections.iter().cloned()),
-                    (None, Some(run)) => {
-                        page.extend(sections::unfinished(run, &state, pictures.compared()));
+                    (None, Some(opened)) => {
+                        page.extend(sections::unfinished(
+                            &opened.run,
+                            &state,
+                            pictures.compared(),
+                        ));
                     }
                     (None, None) => {
                         if let Some(kind) = &other {
@@ -476,7 +476,6 @@ fn recorded(case: &Case, state: &RunState, genes: &[f64]) -> Option<Simulated> {
 /// Curves of the recommended and the best individual so far of a calibration.
 #[derive(Default)]
 struct BestPictures {
-    case: Option<Arc<Case>>,
     recommended: Option<Simulated>,
     best: Option<(Vec<f64>, Simulated)>,
     waiting: Option<(Vec<f64>, Awaited)>,
@@ -494,17 +493,14 @@ impl BestPictures {
 
     /// Takes what has arrived, and requests the curves of a new best individual; returns whether curves have
     /// arrived.
-    fn update(&mut self, shared: &Shared, run: &AnyRun, ended: bool) -> bool {
-        if ended || !matches!(run, AnyRun::Calibration(_)) {
+    fn update(&mut self, shared: &Shared, opened: &OpenedRun, ended: bool) -> bool {
+        if ended || !matches!(*opened.run, AnyRun::Calibration(_)) {
             return false;
         }
-        let case = self
-            .case
-            .get_or_insert_with(|| Arc::new(case_of(run).clone()));
-        let case = Arc::clone(case);
+        let case = &opened.case;
         let mut arrived = false;
         if self.recommended.is_none() {
-            self.recommended = recorded(&case, &shared.state.lock(), &case.start());
+            self.recommended = recorded(&case.case, &shared.state.lock(), &case.case.start());
             arrived = self.recommended.is_some();
         }
         if let Some((genes, mut waiting)) = self.waiting.take() {
@@ -524,7 +520,7 @@ impl BestPictures {
             && self.waiting.is_none()
             && rested
         {
-            match shared.runs_of(&case, &best) {
+            match shared.runs_of(case, &best) {
                 Ok(known) => {
                     self.best = Some((best, known));
                     arrived = true;

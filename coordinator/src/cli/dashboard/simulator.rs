@@ -1,6 +1,6 @@
 //! Simulation of individuals for the dashboard, by a worker process of its own in a temporary folder.
-use crate::cli::run::temporary::with_temporary_run;
-use protocol::case::Case;
+use crate::cli::run::{bus, temporary::with_temporary_run};
+use protocol::{case::Case, id::ContentHash};
 use report::Run;
 use std::{
     collections::BTreeMap,
@@ -25,8 +25,35 @@ pub(super) type Simulated = Arc<Vec<(usize, Run)>>;
 /// Answer to a request that arrives later: the result, or why the individual could not be simulated.
 pub(super) type Awaited = oneshot::Receiver<Result<Simulated, String>>;
 
+/// Case with the hash of its content, by which results of several runs are kept apart.
+pub(super) struct HashedCase {
+    pub(super) case: Case,
+    hash: ContentHash,
+}
+
+impl HashedCase {
+    /// Computes the hash of a case.
+    ///
+    /// # Errors
+    /// If the case cannot be encoded.
+    pub(super) fn new(case: &Case) -> anyhow::Result<Arc<Self>> {
+        Ok(Arc::new(Self {
+            case: case.clone(),
+            hash: bus::content_hash(case)?,
+        }))
+    }
+
+    /// Returns the key of an individual's results: the case and the bits of the individual's values.
+    fn key(&self, genes: &[f64]) -> Key {
+        (self.hash, genes.iter().map(|gene| gene.to_bits()).collect())
+    }
+}
+
+/// Key of an individual's results.
+type Key = (ContentHash, Vec<u64>);
+
 struct Request {
-    case: Arc<Case>,
+    case: Arc<HashedCase>,
     genes: Vec<f64>,
     answer: oneshot::Sender<Result<Simulated, String>>,
 }
@@ -35,12 +62,7 @@ struct Request {
 #[derive(Clone)]
 pub(super) struct Simulator {
     requests: mpsc::Sender<Request>,
-    kept: Arc<Mutex<BTreeMap<Vec<u64>, Simulated>>>,
-}
-
-/// Returns the bits of an individual's values, by which its results are kept.
-fn key(genes: &[f64]) -> Vec<u64> {
-    genes.iter().map(|gene| gene.to_bits()).collect()
+    kept: Arc<Mutex<BTreeMap<Key, Simulated>>>,
 }
 
 impl Simulator {
@@ -54,16 +76,16 @@ impl Simulator {
     }
 
     /// Returns the kept result of an individual.
-    pub(super) fn known(&self, genes: &[f64]) -> Option<Simulated> {
+    pub(super) fn known(&self, case: &HashedCase, genes: &[f64]) -> Option<Simulated> {
         let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.get(&key(genes)).cloned()
+        kept.get(&case.key(genes)).cloned()
     }
 
     /// Requests the simulation of an individual under all conditions; the answer arrives on the returned
     /// channel.
-    pub(super) fn simulate(&self, case: &Arc<Case>, genes: &[f64]) -> Awaited {
+    pub(super) fn simulate(&self, case: &Arc<HashedCase>, genes: &[f64]) -> Awaited {
         let (answer, receiver) = oneshot::channel();
-        if let Some(known) = self.known(genes) {
+        if let Some(known) = self.known(case, genes) {
             drop(answer.send(Ok(known)));
             return receiver;
         }
@@ -78,7 +100,7 @@ impl Simulator {
     }
 }
 
-fn keep(kept: &Mutex<BTreeMap<Vec<u64>, Simulated>>, key: Vec<u64>, result: Simulated) {
+fn keep(kept: &Mutex<BTreeMap<Key, Simulated>>, key: Key, result: Simulated) {
     let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
     if kept.len() >= MOST_KEPT {
         kept.pop_first();
@@ -87,12 +109,12 @@ fn keep(kept: &Mutex<BTreeMap<Vec<u64>, Simulated>>, key: Vec<u64>, result: Simu
 }
 
 /// Answers requests until the simulator is dropped; those for one case in a row share a worker.
-fn answer(asked: &mpsc::Receiver<Request>, kept: &Mutex<BTreeMap<Vec<u64>, Simulated>>) {
+fn answer(asked: &mpsc::Receiver<Request>, kept: &Mutex<BTreeMap<Key, Simulated>>) {
     let mut next = None;
     while let Some(first) = next.take().or_else(|| asked.recv().ok()) {
         let case = Arc::clone(&first.case);
         let mut waiting = Some(first);
-        let done = with_temporary_run(&case, "dashboard", 1, async |bus, stop| {
+        let done = with_temporary_run(&case.case, "dashboard", 1, async |bus, stop| {
             for number in 0..MOST_IN_A_RUN {
                 let request = match waiting.take() {
                     Some(request) => request,
@@ -101,12 +123,12 @@ fn answer(asked: &mpsc::Receiver<Request>, kept: &Mutex<BTreeMap<Vec<u64>, Simul
                         Err(_) => return Ok(()),
                     },
                 };
-                if !Arc::ptr_eq(&request.case, &case) {
+                if request.case.hash != case.hash {
                     next = Some(request);
                     return Ok(());
                 }
                 // asked for by several readers
-                let own = key(&request.genes);
+                let own = case.key(&request.genes);
                 let known = {
                     let kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
                     kept.get(&own).cloned()
@@ -114,8 +136,8 @@ fn answer(asked: &mpsc::Receiver<Request>, kept: &Mutex<BTreeMap<Vec<u64>, Simul
                 let result = if let Some(known) = known {
                     Ok(known)
                 } else {
-                    let wanted = wanted(&case, number, &request.genes);
-                    match study::compare(bus, &case, &wanted, stop).await {
+                    let wanted = wanted(&case.case, number, &request.genes);
+                    match study::compare(bus, &case.case, &wanted, stop).await {
                         Ok(compared) => Ok(Arc::new(runs(&compared))),
                         Err(error @ StudyError::Interrupted) => return Err(error),
                         Err(error) => Err(error.to_string()),

@@ -19,6 +19,7 @@ use crate::cli::{
     },
 };
 use case::Loaded;
+use protocol::case::Case;
 use report::Report;
 use std::path::Path;
 use study::{Evaluator, ProgressView, StageView, Stop, Watch};
@@ -55,6 +56,15 @@ impl AnyRun {
                     .to_owned(),
             }
             .into()),
+        }
+    }
+
+    /// Returns the case of the run, as it was when the run was begun.
+    pub(crate) const fn case(&self) -> &Case {
+        match self {
+            Self::Calibration(run) => &run.case,
+            Self::Diagnosis(run) => &run.case,
+            Self::Identification(run) => &run.case,
         }
     }
 
