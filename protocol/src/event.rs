@@ -117,7 +117,8 @@ pub struct Spent {
     /// Idle time for other reasons: fetching the case, waiting for the next job or for a journal that cannot
     /// be written, or no jobs in the run.
     pub starved_us: u64,
-    /// Slot time spent on results that another worker delivered first \[us\].
+    /// Slot time spent on results that another worker delivered first, or on anticipated jobs that have not
+    /// been requested \[us\].
     pub speculative_us: u64,
     /// Slot time spent on attempts that failed \[us\].
     pub failed_us: u64,

@@ -8,7 +8,7 @@ use protocol::{
     pumping_unit::{Discretisation, PumpingUnit},
     wire,
 };
-use std::{collections::BTreeMap, path::Path};
+use std::{collections::BTreeMap, path::Path, time::Duration};
 
 /// Loads the shipped machine with longer, fewer rope cylinders, for speed.
 fn coarse() -> Case {
@@ -54,15 +54,21 @@ fn jobs(case: &Case) -> Vec<Job> {
     (0..8).map(job).collect()
 }
 
-async fn outcomes(case: &Case, workers: usize) -> BTreeMap<JobId, Outcome> {
-    let folder = tempfile::tempdir().unwrap();
+fn options(case: &Case, folder: &Path, workers: usize) -> DispatchOptions {
     let mut options = DispatchOptions {
         pause_limit: dispatch::runtime::PAUSE_LIMIT,
         case: case.clone(),
-        ..tests::options(folder.path(), None, workers)
+        ..tests::options(folder, None, workers)
     };
     options.header.case = ContentHash::of(&wire::encode(case).unwrap());
-    let mut run = Dispatch::open(options).await.unwrap();
+    options
+}
+
+async fn outcomes(case: &Case, workers: usize) -> BTreeMap<JobId, Outcome> {
+    let folder = tempfile::tempdir().unwrap();
+    let mut run = Dispatch::open(options(case, folder.path(), workers))
+        .await
+        .unwrap();
     let jobs = jobs(case);
     let count = jobs.len();
     for (id, job) in (0..).zip(jobs) {
@@ -71,6 +77,57 @@ async fn outcomes(case: &Case, workers: usize) -> BTreeMap<JobId, Outcome> {
     let outcomes = collect(&mut run, count, LIMIT).await.unwrap();
     run.close().await.unwrap();
     outcomes
+}
+
+/// Checks that jobs computed ahead have the same bits, that their slot time counts as useful once they are
+/// submitted, and that the run ends without those that are never submitted.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn what_is_computed_ahead_has_the_same_bits() {
+    let case = coarse();
+    let expected = outcomes(&case, 1).await;
+    let folder = tempfile::tempdir().unwrap();
+    let mut run = Dispatch::open(options(&case, folder.path(), 3))
+        .await
+        .unwrap();
+    let jobs = jobs(&case);
+    run.submit(JobId(0), jobs[0].clone()).unwrap();
+    let mut outcomes = collect(&mut run, 1, LIMIT).await.unwrap();
+    run.anticipate(jobs[1..4].to_vec()).unwrap();
+    let wait_until_idle = async |run: &Dispatch| {
+        let is_done = || {
+            let snapshot = run.snapshot();
+            snapshot.spent.speculative_us > 0 && snapshot.running == 0
+        };
+        tokio::time::timeout(LIMIT, async {
+            while !is_done() {
+                tokio::time::sleep(Duration::from_millis(20)).await;
+            }
+        })
+        .await
+        .unwrap();
+        run.snapshot().spent
+    };
+    let ahead = wait_until_idle(&run).await;
+    // the first of them was divided for three idle slots: one job of two parts
+    run.submit(JobId(1), jobs[1].clone()).unwrap();
+    outcomes.extend(collect(&mut run, 1, LIMIT).await.unwrap());
+    tokio::time::sleep(Duration::from_millis(50)).await;
+    let claimed = run.snapshot().spent;
+    assert!(claimed.speculative_us < ahead.speculative_us, "{claimed:?}");
+    assert!(claimed.useful_us > ahead.useful_us, "{claimed:?}");
+    for (id, job) in (2..).zip(&jobs[2..]) {
+        run.submit(JobId(id), job.clone()).unwrap();
+    }
+    run.anticipate(vec![jobs[0].clone()]).unwrap();
+    outcomes.extend(collect(&mut run, 6, LIMIT).await.unwrap());
+    run.close().await.unwrap();
+    assert_eq!(outcomes, expected);
+    // the journal has the submitted jobs alone
+    let run = Dispatch::open(options(&case, folder.path(), 1))
+        .await
+        .unwrap();
+    assert_eq!(run.recorded(), 8);
+    run.close().await.unwrap();
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]

@@ -13,7 +13,7 @@ use protocol::{
     id::JobId,
     job::{Answer, Column, Individual, Job, Outcome, Reply, SimulateSpec},
 };
-use search::strategy::{Best, Finish, Proposal, Residual, Strategy};
+use search::strategy::{Best, Finish, Proposal, ProposalDraft, Purpose, Residual, Strategy};
 use std::collections::BTreeMap;
 
 /// Minimum number of evaluated individuals before a search in which all have failed is given up.
@@ -51,6 +51,9 @@ pub async fn calibrate<E: Evaluator>(
             evaluator.submit(JobId(proposal.id), score(case, &proposal))?;
             open.insert(proposal.id, proposal);
         }
+        if evaluator.computes_ahead() {
+            evaluator.anticipate(anticipated(case, strategy))?;
+        }
         view.plan(&strategy.progress());
         watch.progress(&view, &|| evaluator.workers_status());
         if let (Some(finish), Some(best)) = (strategy.finished(), strategy.best()) {
@@ -78,21 +81,32 @@ pub async fn calibrate<E: Evaluator>(
 
 /// Builds the simulation job that scores a proposed individual.
 pub(super) fn score(case: &Case, proposal: &Proposal) -> Job {
-    let individual = Individual::new(case.objective.condition, proposal.genes.clone());
+    score_for(case, &proposal.genes, proposal.purpose)
+}
+
+/// Builds the jobs of the individuals that a strategy will probably propose next, likeliest first.
+pub(super) fn anticipated(case: &Case, strategy: &dyn Strategy) -> Vec<Job> {
+    let drafts = strategy.anticipate().into_iter();
+    let job = |draft: ProposalDraft| score_for(case, &draft.genes, draft.purpose);
+    drafts.map(job).collect()
+}
+
+fn score_for(case: &Case, genes: &[f64], purpose: Purpose) -> Job {
+    let individual = Individual::new(case.objective.condition, genes.to_vec());
     let reply = Reply::Score {
-        with_residual: proposal.purpose.wants_residual(),
+        with_residual: purpose.wants_residual(),
         whole: true,
     };
     Job::Simulate(SimulateSpec {
-        columns: derived(case, proposal),
+        columns: derived(case, purpose),
         ..SimulateSpec::new(individual, reply)
     })
 }
 
-/// Returns the derivative columns that the job of a proposal requests: one for each unknown that is neither
-/// fixed nor switched off, or none if the proposal needs no derivatives.
-fn derived(case: &Case, proposal: &Proposal) -> Vec<Column> {
-    let wanted = proposal.purpose.wants_derivatives();
+/// Returns the derivative columns that a job requests for a purpose: one for each unknown that is neither
+/// fixed nor switched off, or none if the purpose needs no derivatives.
+fn derived(case: &Case, purpose: Purpose) -> Vec<Column> {
+    let wanted = purpose.wants_derivatives();
     let moving = case.unknowns.iter().filter(|it| !it.fixed && !it.is_off());
     let columns = moving.map(|unknown| Column::new(unknown.name.clone()));
     columns.filter(|_| wanted).collect()
@@ -101,7 +115,7 @@ fn derived(case: &Case, proposal: &Proposal) -> Vec<Column> {
 /// Returns the residual and its derivatives by name, if the job of the proposal requested and returned them.
 pub(super) fn residual(case: &Case, proposal: &Proposal, outcome: &Outcome) -> Option<Residual> {
     let evaluation = outcome.answer().and_then(Answer::evaluation)?;
-    let by = derived(case, proposal).into_iter();
+    let by = derived(case, proposal.purpose).into_iter();
     let by = by.map(|column| column.name).zip(evaluation.columns.clone());
     (!evaluation.residual.is_empty()).then(|| Residual {
         values: evaluation.residual.clone(),

@@ -18,6 +18,20 @@ pub trait Evaluator {
     /// If the evaluator can no longer take jobs.
     fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError>;
 
+    /// Replaces the jobs that the study will probably submit next, likeliest first; idle slots may compute them
+    /// ahead. It has no effect on results. The default does nothing.
+    ///
+    /// # Errors
+    /// If the evaluator can no longer take jobs.
+    fn anticipate(&mut self, _jobs: Vec<Job>) -> Result<(), EvaluatorError> {
+        Ok(())
+    }
+
+    /// Returns whether jobs can be computed ahead, that is, whether [`Self::anticipate`] has an effect now.
+    fn computes_ahead(&self) -> bool {
+        false
+    }
+
     /// Returns the next result. Cancellation-safe: no result is lost if the future is dropped.
     ///
     /// # Errors

@@ -17,7 +17,7 @@ use link::{
     zenoh::{CoordinatorOptions, ZenohCoordinator},
 };
 use protocol::{
-    id::{JobId, RunId},
+    id::{ContentHash, JobId, RunId},
     job::Job,
 };
 use std::sync::{Arc, Mutex, PoisonError};
@@ -34,6 +34,8 @@ pub struct Dispatch {
     /// Submitted jobs with derivatives that wait for the next call of [`Self::next`], when all jobs that can be
     /// computed at the same time are known.
     divisible: Vec<(JobId, Job)>,
+    /// Contents of the jobs anticipated last.
+    anticipated: Vec<ContentHash>,
     snapshot: Arc<Mutex<Snapshot>>,
     engine: JoinHandle<RunSummary>,
     listening: Vec<Locator>,
@@ -128,6 +130,7 @@ impl Dispatch {
             requests,
             completed,
             divisible: Vec::new(),
+            anticipated: Vec::new(),
             snapshot,
             engine,
             listening,
@@ -164,16 +167,38 @@ impl Dispatch {
         self.requests.send(asked).map_err(|_| DispatchError::Closed)
     }
 
+    /// Replaces the jobs that the run will probably submit next, likeliest first. Slots that would be idle compute
+    /// them ahead; once such a job is submitted, what has been computed of it is used. No effect on results.
+    ///
+    /// # Errors
+    /// [`DispatchError::Closed`] once the run has been stopped.
+    pub fn anticipate(&mut self, jobs: Vec<Job>) -> Result<(), DispatchError> {
+        let works: Vec<ContentHash> = jobs.iter().map(Job::work_hash).collect();
+        if works == self.anticipated {
+            return Ok(());
+        }
+        self.anticipated = works;
+        self.send_divisible()?;
+        let asked = self.requests.send(Request::Anticipate(jobs));
+        asked.map_err(|_| DispatchError::Closed)
+    }
+
+    /// Sends the submitted jobs with derivatives to the engine.
+    fn send_divisible(&mut self) -> Result<(), DispatchError> {
+        if self.divisible.is_empty() {
+            return Ok(());
+        }
+        let jobs = std::mem::take(&mut self.divisible);
+        let asked = self.requests.send(Request::SubmitDivisible(jobs));
+        asked.map_err(|_| DispatchError::Closed)
+    }
+
     /// Waits for the next job result, in the order of arrival. Cancel safe.
     ///
     /// # Errors
     /// The reason why the run cannot go on; afterwards only [`Self::close`] is useful.
     pub async fn next(&mut self) -> Result<Completed, DispatchError> {
-        if !self.divisible.is_empty() {
-            let jobs = std::mem::take(&mut self.divisible);
-            let asked = self.requests.send(Request::SubmitDivisible(jobs));
-            asked.map_err(|_| DispatchError::Closed)?;
-        }
+        self.send_divisible()?;
         self.completed
             .recv()
             .await
@@ -186,6 +211,12 @@ impl Dispatch {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .clone()
+    }
+
+    /// Returns whether some slot had no job when the last snapshot was taken, or computed a job ahead.
+    pub fn has_idle_slots(&self) -> bool {
+        let snapshot = self.snapshot.lock().unwrap_or_else(PoisonError::into_inner);
+        !self.anticipated.is_empty() || snapshot.workers.iter().any(|own| own.busy < own.slots)
     }
 
     /// Ends the run: tells workers, ends local workers and closes the journal, within 3 s. On a full disk it

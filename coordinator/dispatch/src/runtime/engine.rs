@@ -54,6 +54,8 @@ pub(super) enum Request {
     },
     /// Jobs with derivatives, submitted together, which may be divided into parts.
     SubmitDivisible(Vec<(JobId, Job)>),
+    /// Replaces the jobs that the run will probably submit next, likeliest first.
+    Anticipate(Vec<Job>),
     /// Request that arrived on the control socket.
     Control(PendingRequest),
 }
@@ -153,6 +155,7 @@ impl<L: CoordinatorEnd> Engine<L> {
                 request = requests.recv() => match request {
                     Some(Request::Submit { id, job }) => self.submit(id, *job),
                     Some(Request::SubmitDivisible(jobs)) => self.submit_divisible(jobs),
+                    Some(Request::Anticipate(jobs)) => self.anticipate(jobs),
                     Some(Request::Control((question, to))) => {
                         let reply = self.ask(&question);
                         // who asked may not wait any more
@@ -217,15 +220,41 @@ impl<L: CoordinatorEnd> Engine<L> {
     }
 
     fn submit(&mut self, id: JobId, job: Job) {
-        if self.is_new(id, &job) {
+        if self.is_new(id, &job) && !self.claim(id, &job) {
             self.handle(Input::Submit { id, job });
         }
+    }
+
+    /// Replaces the anticipated jobs, which idle slots compute ahead.
+    fn anticipate(&mut self, jobs: Vec<Job>) {
+        let change = self.divided.anticipate(jobs, self.core.idle_slots());
+        if !change.withdrawn.is_empty() {
+            let jobs = change.withdrawn;
+            self.handle(Input::Withdraw { jobs });
+        }
+        for (id, job) in change.parts {
+            self.handle(Input::Anticipate { id, job });
+        }
+    }
+
+    /// Makes a submitted job of an anticipated one with the same content; returns whether there is one.
+    fn claim(&mut self, id: JobId, job: &Job) -> bool {
+        let Some(jobs) = self.divided.claim(id, job) else {
+            return false;
+        };
+        let work = job.work_hash();
+        self.record(Event::Asked { job: id, work });
+        self.handle(Input::Claim { jobs });
+        let result = self.divided.join_finished(id);
+        self.take_joined(result);
+        true
     }
 
     /// Submits jobs with derivatives, divided into as many parts as there are idle slots for them.
     fn submit_divisible(&mut self, jobs: Vec<(JobId, Job)>) {
         let new = jobs.into_iter().filter(|(id, job)| self.is_new(*id, job));
-        let new: Vec<(JobId, Job)> = new.collect();
+        let mut new: Vec<(JobId, Job)> = new.collect();
+        new.retain(|(id, job)| !self.claim(*id, job));
         let (count, idle) = (new.len(), self.core.idle_slots());
         for (id, job) in new {
             let columns = match &job {
@@ -386,17 +415,21 @@ impl<L: CoordinatorEnd> Engine<L> {
     fn finish_part(&mut self, result: Finished) {
         let part = result.job();
         match self.divided.finish(result) {
-            PartResult::Awaited => {}
-            PartResult::Joined(whole) => {
-                self.give(Ok(Completed {
-                    id: whole.job(),
-                    cost: whole.cost,
-                    outcome: whole.outcome.clone(),
-                    replayed: false,
-                }));
-                self.record(Event::Finished(whole));
-            }
             PartResult::Discarded => self.handle(Input::Stored { jobs: vec![part] }),
+            joined => self.take_joined(joined),
+        }
+    }
+
+    /// Records and delivers the result of a divided job, if it is complete.
+    fn take_joined(&mut self, result: PartResult) {
+        if let PartResult::Joined(whole) = result {
+            self.give(Ok(Completed {
+                id: whole.job(),
+                cost: whole.cost,
+                outcome: whole.outcome.clone(),
+                replayed: false,
+            }));
+            self.record(Event::Finished(whole));
         }
     }
 
@@ -482,6 +515,7 @@ impl<L: CoordinatorEnd> Engine<L> {
     }
 
     async fn close(mut self) -> RunSummary {
+        self.anticipate(Vec::new());
         self.handle(Input::Finish);
         self.write_last().await;
         self.handle(Input::Close);

@@ -22,7 +22,7 @@ pub use bench::{
     SleepingJobsResult, bench, connect, keep_silent, processor_time, sleep_through,
 };
 pub use dispatch::Dispatch;
-pub(crate) use divide::part_count;
+pub(crate) use divide::{DividedJobs, PartResult, anticipated_parts, is_part, part_count};
 pub use engine::RunSummary;
 pub use error::DispatchError;
 pub use options::{DispatchOptions, PAUSE_LIMIT};

@@ -67,6 +67,15 @@ pub(super) fn may_have(core: &Core, pending: &Pending, worker: WorkerId) -> bool
             || !others.any(|(id, member)| member.takes_jobs() && !refused(id) && !failed(id)))
 }
 
+/// Returns the worker with the largest share of idle slots among those that satisfy a condition.
+pub(super) fn most_idle(core: &Core, suits: impl Fn(WorkerId) -> bool) -> Option<WorkerId> {
+    let all = core.members.iter().filter(|(id, _)| suits(**id));
+    let free = all.filter(|(_, member)| member.takes_jobs());
+    let most = free.max_by_key(|(_, member)| member.idle() * 4096 / member.slots());
+    most.filter(|(_, member)| member.idle() > 0)
+        .map(|(id, _)| *id)
+}
+
 /// Returns the worker reserved for a job that waits to run alone: the least loaded worker that may have it,
 /// which gets no new jobs meanwhile.
 fn reserved(core: &Core) -> Option<WorkerId> {

@@ -1,6 +1,6 @@
 //! Dispatch of the core's inputs to the modules that handle them.
 use super::{
-    admission, assign, drain,
+    admission, anticipated, assign, drain,
     input::{Command, Input},
     lease, membership, reconcile, result,
     slot_time::WorkState,
@@ -23,6 +23,9 @@ impl Core {
         membership::compensate_stall(self, now);
         match input {
             Input::Submit { id, job } => submit(self, id, job, now),
+            Input::Anticipate { id, job } => anticipated::anticipate(self, id, job),
+            Input::Claim { jobs } => anticipated::claim(self, jobs),
+            Input::Withdraw { jobs } => anticipated::withdraw(self, jobs, now),
             Input::Message { from, message } => heard(self, from, message, now),
             Input::OtherRun { from } => self.send(from, ToWorker::Identify),
             Input::OtherVersion { from, version } => {
@@ -39,11 +42,13 @@ impl Core {
         }
         drain::end_drained(self, now);
         if self.may_give_out() && membership::rejoin_finished(self, now) {
+            anticipated::make_room(self, self.queue.len(), now);
             assign::assign(self, now);
             stragglers::steal(self, now);
+            anticipated::assign(self, now);
         }
         self.clocks.set_state(WorkState {
-            computes: self.jobs.len() > self.queue.len(),
+            computes: self.held_jobs() > 0,
             waits_for_others: self.waits_for_others(),
         });
         mem::take(&mut self.commands)

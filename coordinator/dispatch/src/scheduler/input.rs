@@ -31,6 +31,23 @@ pub enum Input {
         /// Content of the submitted job: the work to execute.
         job: Job,
     },
+    /// A job is computed ahead if a slot would be idle, because the run will probably request it.
+    Anticipate {
+        /// Identifier of the anticipated job.
+        id: JobId,
+        /// Content of the anticipated job.
+        job: Job,
+    },
+    /// Anticipated jobs are requested now.
+    Claim {
+        /// Jobs that were anticipated before.
+        jobs: Vec<JobId>,
+    },
+    /// Anticipated jobs will not be requested.
+    Withdraw {
+        /// Jobs that were anticipated before; their ids are not used again.
+        jobs: Vec<JobId>,
+    },
     /// A message from a worker arrived.
     Message {
         /// Identifier of the worker.

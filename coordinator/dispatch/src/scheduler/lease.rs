@@ -79,7 +79,9 @@ pub(super) fn release(core: &mut Core, worker: WorkerId, job: JobId, what: Attem
 pub(super) fn requeue(core: &mut Core, worker: WorkerId, job: JobId) {
     if let Some(pending) = core.jobs.get_mut(&job) {
         pending.holders.retain(|holder| *holder != worker);
-        if pending.holders.is_empty() {
+        if pending.holders.is_empty() && core.anticipated.contains(&job) {
+            core.anticipated_queue.push_front(job);
+        } else if pending.holders.is_empty() {
             core.queue.insert(job);
         }
     }

@@ -144,11 +144,19 @@ impl Member {
     }
 
     /// Books the slot time of an ended attempt under the given use.
-    pub(super) fn attribute(&mut self, lease: &Lease, what: AttemptUse) {
+    ///
+    /// Returns the time booked.
+    pub(super) fn attribute(&mut self, lease: &Lease, what: AttemptUse) -> Duration {
         let spent = what
             .reported_time()
             .map_or(lease.held, |said| self.creditable_time(lease, said));
         self.slot_time.add(what, spent);
+        spent
+    }
+
+    /// Makes time that was booked for an anticipated job useful, because the job was requested.
+    pub(super) fn claim(&mut self, time: Duration) {
+        self.slot_time.claim(time);
     }
 
     /// Books the slot time of all leases as lost, because the worker was lost.

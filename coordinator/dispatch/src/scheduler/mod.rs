@@ -6,6 +6,8 @@
 //!             +---------+
 //! ```
 //!
+//! Jobs that the run will probably request can be computed ahead by slots that would be idle.
+//!
 //! Jobs are pure functions, so the first result of a job is accepted, whichever worker delivers it and
 //! however late; later results are acknowledged and dropped. A result is delivered as soon as it is accepted
 //! but acknowledged only once it is stored, so a worker forgets nothing that a crash of this process could
@@ -13,9 +15,10 @@
 //!
 //! Each file depends only on those listed before it: the state (`state` over `member`, `slot_time`, `policy`,
 //! `times`, `failures`); `lease`; `result` and `roster`; `drain`, `admission_rules`, `admission` and
-//! `reconcile`; `membership`; `assign` and `stragglers`; and at the top `inbox`, which receives all inputs.
+//! `reconcile`; `membership`; `assign`, `anticipated` and `stragglers`; and at the top `inbox`, which receives all inputs.
 mod admission;
 mod admission_rules;
+mod anticipated;
 mod assign;
 mod completed;
 mod drain;

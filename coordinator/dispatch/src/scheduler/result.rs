@@ -109,6 +109,7 @@ fn work_mismatch(pending: &Pending, done: &Done) -> Option<Failure> {
 /// Accepts the result of a job: stores and delivers it, and cancels the attempts of other workers.
 fn accept(core: &mut Core, from: Option<WorkerId>, done: Done) {
     let job = done.attempt.job;
+    let anticipated = core.anticipated.contains(&job);
     let Some(pending) = core.forget(job) else {
         return;
     };
@@ -126,7 +127,12 @@ fn accept(core: &mut Core, from: Option<WorkerId>, done: Done) {
                 let before = core.latency.unwrap_or(fresh);
                 core.latency = Some((before * 7 + fresh) / 8);
             }
-            member.attribute(&lease, AttemptUse::Useful(done.cost.wall_us));
+            if anticipated {
+                let spent = member.attribute(&lease, AttemptUse::Ahead(done.cost.wall_us));
+                core.computed_ahead.insert(job, (holder, spent));
+            } else {
+                member.attribute(&lease, AttemptUse::Useful(done.cost.wall_us));
+            }
         } else {
             member.attribute(&lease, AttemptUse::Speculative);
             core.send(holder, ToWorker::Cancel(lease.attempt));

@@ -1,8 +1,8 @@
 //! Accounting of slot time: every moment of every slot is counted exactly once, under one kind of use.
 //!
 //! A slot is either computing or not. Computing time is attributed when the attempt ends: *useful* if its
-//! result became the job's result, *speculative* if another attempt's result was accepted, *failed*, or
-//! *lost*. Idle time is *barrier* while the run waits for results of other slots (all requested jobs are
+//! result became the job's result, *speculative* if another attempt's result was accepted or the job was
+//! anticipated and has not been requested, *failed*, or *lost*. Idle time is *barrier* while the run waits for results of other slots (all requested jobs are
 //! dispatched), otherwise *starved* (the worker still fetches the case, an order is in transit, the journal
 //! cannot be written, or no job is requested).
 //!
@@ -61,6 +61,8 @@ impl Clocks {
 pub(super) enum AttemptUse {
     /// The attempt's result became the job's result, after the given time in the slot \[us\].
     Useful(u64),
+    /// The attempt computed an anticipated job, in the given time in the slot \[us\].
+    Ahead(u64),
     /// The attempt failed, after the given time in the slot \[us\].
     Failed(u64),
     /// The coordinator ended the attempt because it was overdue.
@@ -75,7 +77,9 @@ impl AttemptUse {
     /// Returns the computing time of the attempt as reported by the worker; `None` if no report exists.
     pub(super) const fn reported_time(self) -> Option<Duration> {
         match self {
-            Self::Useful(us) | Self::Failed(us) => Some(Duration::from_micros(us)),
+            Self::Useful(us) | Self::Ahead(us) | Self::Failed(us) => {
+                Some(Duration::from_micros(us))
+            }
             Self::Overdue | Self::Speculative | Self::Lost => None,
         }
     }
@@ -131,10 +135,16 @@ impl SlotTime {
         let kind = match what {
             AttemptUse::Useful(_) => &mut self.useful,
             AttemptUse::Failed(_) | AttemptUse::Overdue => &mut self.failed,
-            AttemptUse::Speculative => &mut self.speculative,
+            AttemptUse::Speculative | AttemptUse::Ahead(_) => &mut self.speculative,
             AttemptUse::Lost => &mut self.lost,
         };
         *kind += spent;
+    }
+
+    /// Makes time that was spent on an anticipated job useful, because the job was requested.
+    pub(super) fn claim(&mut self, time: Duration) {
+        self.speculative = self.speculative.saturating_sub(time);
+        self.useful += time;
     }
 
     /// Converts the account into its journal form; `connected_us` is the connected time of all slots, and the

@@ -79,7 +79,7 @@ impl Core {
         Snapshot {
             workers,
             queued: self.queue.len(),
-            running: self.jobs.len() - self.queue.len(),
+            running: self.held_jobs(),
             done: self.finished.len() + self.storing.len(),
             lost: self.counts.lost,
             failed: self.counts.failed,

@@ -19,7 +19,7 @@ use protocol::{
     proof::ReferenceResult,
 };
 use std::{
-    collections::{BTreeMap, BTreeSet},
+    collections::{BTreeMap, BTreeSet, VecDeque},
     mem,
     time::Duration,
 };
@@ -64,6 +64,12 @@ pub struct Core {
     pub(super) drained: BTreeMap<WorkerId, Drain>,
     pub(super) jobs: BTreeMap<JobId, Pending>,
     pub(super) queue: BTreeSet<JobId>,
+    /// Pending jobs that are anticipated, waiting or held by a worker.
+    pub(super) anticipated: BTreeSet<JobId>,
+    /// Anticipated jobs that no worker holds, likeliest first.
+    pub(super) anticipated_queue: VecDeque<JobId>,
+    /// Anticipated jobs with a result, each with the worker that computed it and the slot time it took.
+    pub(super) computed_ahead: BTreeMap<JobId, (WorkerId, Duration)>,
     /// Quarantined jobs: pending jobs that must run alone on a worker because workers holding them were lost.
     pub(super) suspects: BTreeSet<JobId>,
     /// Jobs with an accepted result not yet stored in the journal, each with the attempts to acknowledge once
@@ -167,6 +173,9 @@ impl Core {
             drained: BTreeMap::new(),
             jobs: BTreeMap::new(),
             queue: BTreeSet::new(),
+            anticipated: BTreeSet::new(),
+            anticipated_queue: VecDeque::new(),
+            computed_ahead: BTreeMap::new(),
             suspects: BTreeSet::new(),
             storing: BTreeMap::new(),
             finished,
@@ -193,11 +202,16 @@ impl Core {
         self.finished.contains(job) || self.storing.contains_key(&job)
     }
 
-    /// Returns the number of slots that would stay idle if every job without a result ran now.
+    /// Returns the number of slots that would stay idle if every requested job without a result ran now.
     pub fn idle_slots(&self) -> usize {
         let ready = self.members.values().filter(|member| member.takes_jobs());
         let slots: usize = ready.map(Member::slots).sum();
-        slots.saturating_sub(self.jobs.len())
+        slots.saturating_sub(self.jobs.len() - self.anticipated.len())
+    }
+
+    /// Returns the number of jobs that workers hold.
+    pub(super) fn held_jobs(&self) -> usize {
+        self.jobs.len() - self.queue.len() - self.anticipated_queue.len()
     }
 
     /// Returns the number of accepted results not yet stored.
@@ -235,6 +249,9 @@ impl Core {
     pub(super) fn forget(&mut self, job: JobId) -> Option<Pending> {
         self.queue.remove(&job);
         self.suspects.remove(&job);
+        if self.anticipated.remove(&job) {
+            self.anticipated_queue.retain(|own| *own != job);
+        }
         self.jobs.remove(&job)
     }
 

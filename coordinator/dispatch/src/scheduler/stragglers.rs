@@ -5,7 +5,8 @@
 //! other attempt is cancelled. A job has at most one copy at a time, and none if workers holding it were
 //! lost.
 use super::{
-    assign::may_have,
+    anticipated::make_room,
+    assign::{may_have, most_idle},
     lease::{lease, release},
     slot_time::AttemptUse,
     state::Core,
@@ -58,10 +59,13 @@ fn waiting(core: &Core, idle: WorkerId, now: Duration) -> Option<(WorkerId, Atte
 
 /// Gives idle slots copies of jobs that run for suspiciously long, the slowest first.
 pub(super) fn copy_slow(core: &mut Core, now: Duration) {
-    if !core.waits_for_others() || most_idle(core, |_| true).is_none() {
+    let has_room = most_idle(core, |_| true).is_some() || !core.anticipated.is_empty();
+    if !core.waits_for_others() || !has_room {
         return;
     }
-    for (holder, job) in slow(core) {
+    let slow = slow(core);
+    make_room(core, slow.len(), now);
+    for (holder, job) in slow {
         let pending = core.jobs.get(&job);
         let suits = |id: WorkerId| {
             id != holder && pending.is_some_and(|pending| may_have(core, pending, id))
@@ -70,15 +74,6 @@ pub(super) fn copy_slow(core: &mut Core, now: Duration) {
             lease(core, worker, job, now);
         }
     }
-}
-
-/// Returns the worker with the largest share of idle slots among those that satisfy a condition.
-fn most_idle(core: &Core, suits: impl Fn(WorkerId) -> bool) -> Option<WorkerId> {
-    let all = core.members.iter().filter(|(id, _)| suits(**id));
-    let free = all.filter(|(_, member)| member.takes_jobs());
-    let most = free.max_by_key(|(_, member)| member.idle() * 4096 / member.slots());
-    most.filter(|(_, member)| member.idle() > 0)
-        .map(|(id, _)| *id)
 }
 
 /// Returns the jobs that exactly one worker holds and has run for suspiciously long, with that worker;
@@ -96,7 +91,12 @@ fn slow(core: &mut Core) -> Vec<(WorkerId, JobId)> {
             };
             let after = core.times.copy_after(pending.job.kind(), policy);
             let is_slow = after.is_some_and(|after| lease.held > after);
-            if is_slow && !core.must_run_alone(pending) && pending.holders.len() == 1 {
+            let is_requested = !core.anticipated.contains(&lease.attempt.job);
+            if is_slow
+                && is_requested
+                && !core.must_run_alone(pending)
+                && pending.holders.len() == 1
+            {
                 slow.push((lease.held, *holder, lease.attempt.job));
             }
         }

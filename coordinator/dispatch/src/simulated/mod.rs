@@ -11,14 +11,17 @@ pub use event::Fault;
 pub use source::{Generations, JobSource, SimulatedDerivatives, SimulatedSearch, job};
 pub use worker::{Running, SimulatedWorker, cost, outcome};
 
-use crate::scheduler::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, StopReason};
+use crate::{
+    runtime::{self, DividedJobs, PartResult},
+    scheduler::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, StopReason},
+};
 use event::ClusterEvent;
 use protocol::{
     announce::{Announcement, ModelDescriptor},
     case::Reproducibility,
     event::Event,
     id::{ContentHash, JobId, RunId, WorkerId},
-    job::Outcome,
+    job::{Job, Outcome},
     message::{Attempt, Done, FromWorker, ToWorker},
     proof::ReferenceResult,
     wire,
@@ -36,6 +39,9 @@ pub const MODEL: &str = "model";
 pub const CASE: ContentHash = ContentHash([7; 32]);
 /// Result of the reference individual by which every simulated worker proves its numerics.
 pub const PROOF: ReferenceResult = ReferenceResult::Bits(ContentHash([8; 32]));
+
+/// Time until a result is stored.
+const STORING: Duration = Duration::from_micros(300);
 
 /// Builds the announcement of a simulated worker with one slot and the given model digest.
 pub fn announcement(digest: &str) -> Announcement {
@@ -113,6 +119,10 @@ pub struct Cluster {
     stopped: Option<StopReason>,
     /// Simulated time at which the coordinator has finished handling all results that have arrived.
     free_at: Duration,
+    /// Anticipated jobs of the source.
+    divided: DividedJobs,
+    /// Numbers in the source of the anticipated jobs, by their ids in the core.
+    anticipated: BTreeMap<JobId, u64>,
     events: BTreeMap<(Duration, u64), ClusterEvent>,
     sequence: u64,
     workers: BTreeMap<WorkerId, SimulatedWorker>,
@@ -154,6 +164,8 @@ impl Cluster {
             charged: BTreeSet::new(),
             stopped: None,
             free_at: Duration::ZERO,
+            divided: DividedJobs::default(),
+            anticipated: BTreeMap::new(),
             events: BTreeMap::new(),
             sequence: 0,
             workers: BTreeMap::new(),
@@ -222,6 +234,7 @@ impl Cluster {
 
     /// Returns the computing time of a job on a worker of normal speed, which depends on the job alone.
     fn time_of(&self, job: JobId) -> Duration {
+        let job = self.anticipated.get(&job).map_or(job, |own| JobId(*own));
         if let Some(takes) = &self.job_durations {
             return takes(job.0);
         }
@@ -262,7 +275,37 @@ impl Cluster {
 
     fn submit(&mut self, source: &mut dyn JobSource) {
         for (id, job) in source.ask(self.core.idle_slots()) {
-            self.tell_core(Input::Submit { id: JobId(id), job });
+            let id = JobId(id);
+            let Some(jobs) = self.divided.claim(id, &job) else {
+                self.tell_core(Input::Submit { id, job });
+                continue;
+            };
+            self.tell_core(Input::Claim { jobs });
+            let result = self.divided.join_finished(id);
+            self.take_joined(result);
+        }
+        let idle = self.core.idle_slots();
+        let (numbers, jobs): (Vec<u64>, Vec<Job>) = source.anticipate(idle).into_iter().unzip();
+        let numbers: BTreeMap<ContentHash, u64> =
+            jobs.iter().map(Job::work_hash).zip(numbers).collect();
+        let change = self.divided.anticipate(jobs, idle);
+        if !change.withdrawn.is_empty() {
+            let jobs = change.withdrawn;
+            self.tell_core(Input::Withdraw { jobs });
+        }
+        for (id, job) in change.parts {
+            let number = numbers.get(&job.work_hash()).copied();
+            self.anticipated.insert(id, number.unwrap_or_default());
+            self.tell_core(Input::Anticipate { id, job });
+        }
+    }
+
+    /// Delivers and stores the result of an anticipated job that has been submitted.
+    fn take_joined(&mut self, result: PartResult) {
+        if let PartResult::Joined(whole) = result {
+            let id = whole.job();
+            self.undelivered_outcomes.push((id, whole.outcome));
+            self.schedule(STORING, ClusterEvent::Stored(vec![id]));
         }
     }
 
@@ -282,7 +325,10 @@ impl Cluster {
             ClusterEvent::Up(from, message) | ClusterEvent::Heard(from, message) => {
                 self.tell_core(Input::Message { from, message });
             }
-            ClusterEvent::Stored(jobs) => self.tell_core(Input::Stored { jobs }),
+            ClusterEvent::Stored(jobs) => {
+                let jobs = self.divided.stored(jobs);
+                self.tell_core(Input::Stored { jobs });
+            }
             ClusterEvent::Tick => {
                 self.tell_core(Input::Tick);
                 self.schedule(Duration::from_millis(250), ClusterEvent::Tick);
@@ -392,7 +438,12 @@ impl Cluster {
         for command in self.core.handle(input, self.now) {
             match command {
                 Command::Send { to, message } => self.send(ClusterEvent::Down(to, message)),
+                Command::Store(finished) if runtime::is_part(finished.job()) => {
+                    let result = self.divided.finish(*finished);
+                    self.take_joined(result);
+                }
                 Command::Store(finished) => storing.push(finished.job()),
+                Command::Deliver(done) if runtime::is_part(done.id) => {}
                 Command::Deliver(done) => self.undelivered_outcomes.push((done.id, done.outcome)),
                 Command::Record(event @ Event::Accounted(_)) => self.accounts.push(event),
                 Command::Record(_) => {}
@@ -401,7 +452,7 @@ impl Cluster {
             }
         }
         if !storing.is_empty() {
-            self.schedule(Duration::from_micros(300), ClusterEvent::Stored(storing));
+            self.schedule(STORING, ClusterEvent::Stored(storing));
         }
     }
 

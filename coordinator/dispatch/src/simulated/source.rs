@@ -1,13 +1,11 @@
 //! Job sources of a simulated cluster: generations, or a search.
-use crate::runtime::part_count;
+use crate::runtime::{anticipated_parts, part_count};
 use protocol::job::{Job, Outcome};
-use search::strategy::{EvaluationResult, Proposal, Residual, Strategy};
+use search::strategy::{EvaluationResult, Proposal, Purpose, Residual, Strategy};
 use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
 
-/// Bit that the numbers of parts of divided jobs have and those of proposals do not.
+/// Bit that the numbers of anticipated jobs and of parts of divided jobs have and those of proposals do not.
 const PART: u64 = 1 << 40;
-/// Bits of a part's number that hold its index.
-const PART_INDEX_BITS: u32 = 8;
 
 /// Builds a job of kind `Nothing`, identified by its number.
 pub fn job(n: u64) -> Job {
@@ -22,6 +20,11 @@ pub fn job(n: u64) -> Job {
 pub trait JobSource {
     /// Returns jobs that can be submitted now, with their ids; `idle` slots have nothing to do without them.
     fn ask(&mut self, idle: usize) -> Vec<(u64, Job)>;
+    /// Returns jobs that will probably be submitted next, likeliest first, with numbers that tell them apart;
+    /// `idle` slots could compute them ahead.
+    fn anticipate(&mut self, _idle: usize) -> Vec<(u64, Job)> {
+        Vec::new()
+    }
     /// Passes the outcome of a job to the source.
     fn tell(&mut self, id: u64, outcome: &Outcome);
     /// Returns whether the source needs no more results.
@@ -93,6 +96,13 @@ pub struct SimulatedSearch<'a> {
     pub limit: u64,
     /// Proposals without a result, each with the number of its jobs that have none.
     open: BTreeMap<u64, (Proposal, usize)>,
+    /// Proposals by the numbers of their jobs without a result.
+    proposal_of: BTreeMap<u64, u64>,
+    /// Numbers of the jobs of anticipated individuals, by their genes (as bits) and by whether their
+    /// derivatives are computed.
+    anticipated: BTreeMap<(Vec<u64>, bool), Vec<u64>>,
+    /// Number of numbers with the bit [`PART`] given so far.
+    part_numbers: u64,
     log: blake3::Hasher,
 }
 
@@ -105,6 +115,9 @@ impl<'a> SimulatedSearch<'a> {
             derivatives: None,
             limit: u64::MAX,
             open: BTreeMap::new(),
+            proposal_of: BTreeMap::new(),
+            anticipated: BTreeMap::new(),
+            part_numbers: 0,
             log: blake3::Hasher::new(),
         }
     }
@@ -122,32 +135,53 @@ impl<'a> SimulatedSearch<'a> {
         self.log.finalize().to_hex().to_string()
     }
 
-    /// Returns the job numbers of a proposal: its own, or those of the parts into which its derivatives are
-    /// divided.
-    fn job_numbers(&self, proposal: &Proposal, parts: usize) -> Vec<u64> {
-        let Some(derivatives) = self.derivatives_of(proposal) else {
-            return vec![proposal.id];
-        };
-        let size = derivatives.columns.div_ceil(parts.max(1));
-        let parts = derivatives.columns.div_ceil(size.max(1)).max(1);
-        let numbers: Vec<u64> = if parts == 1 {
-            vec![proposal.id]
-        } else {
-            let of = |index: u64| PART | (proposal.id << PART_INDEX_BITS) | index;
-            (0..parts as u64).map(of).collect()
-        };
-        let share = size as f64 / derivatives.columns as f64;
-        let factor = 1.0 + (derivatives.cost - 1.0) * share;
-        let mut factors = derivatives.factors.borrow_mut();
-        factors.extend(numbers.iter().map(|number| (*number, factor)));
+    /// Returns the job numbers of a proposal: those under which it was anticipated, its own, or those of the
+    /// parts into which its derivatives are divided.
+    fn job_numbers(&mut self, proposal: &Proposal, parts: usize) -> Vec<u64> {
+        let key = self.key(&proposal.genes, proposal.purpose);
+        if let Some(numbers) = self.anticipated.remove(&key) {
+            return numbers;
+        }
+        if parts > 1 && self.columns(proposal.purpose) > 1 {
+            return self.new_numbers(proposal.purpose, parts);
+        }
+        self.set_factors(&[proposal.id], proposal.purpose, 1);
+        vec![proposal.id]
+    }
+
+    /// Returns new numbers for the parts of an individual's evaluation.
+    fn new_numbers(&mut self, purpose: Purpose, parts: usize) -> Vec<u64> {
+        let columns = self.columns(purpose).max(1);
+        let count = columns.div_ceil(columns.div_ceil(parts.max(1))) as u64;
+        let first = PART | self.part_numbers;
+        self.part_numbers += count;
+        let numbers: Vec<u64> = (first..first + count).collect();
+        self.set_factors(&numbers, purpose, parts);
         numbers
     }
 
-    fn derivatives_of(&self, proposal: &Proposal) -> Option<&SimulatedDerivatives<'a>> {
-        let wanted = |own: &&SimulatedDerivatives<'_>| {
-            proposal.purpose.wants_derivatives() && own.columns > 0
-        };
-        self.derivatives.as_ref().filter(wanted)
+    /// Records the computing time of jobs that divide an evaluation into about `parts` parts, over that of a
+    /// plain job.
+    fn set_factors(&self, numbers: &[u64], purpose: Purpose, parts: usize) {
+        let columns = self.columns(purpose);
+        if let Some(derivatives) = self.derivatives.as_ref().filter(|_| columns > 0) {
+            let share = columns.div_ceil(parts.max(1)) as f64 / columns as f64;
+            let factor = 1.0 + (derivatives.cost - 1.0) * share;
+            let mut factors = derivatives.factors.borrow_mut();
+            factors.extend(numbers.iter().map(|number| (*number, factor)));
+        }
+    }
+
+    /// Returns the number of columns of the derivatives that a proposal with a purpose needs; 0 if none.
+    fn columns(&self, purpose: Purpose) -> usize {
+        let derivatives = self.derivatives.as_ref();
+        let wanted = derivatives.filter(|_| purpose.wants_derivatives());
+        wanted.map_or(0, |own| own.columns)
+    }
+
+    fn key(&self, genes: &[f64], purpose: Purpose) -> (Vec<u64>, bool) {
+        let genes = genes.iter().map(|gene| gene.to_bits());
+        (genes.collect(), self.columns(purpose) > 0)
     }
 }
 
@@ -155,27 +189,44 @@ impl JobSource for SimulatedSearch<'_> {
     fn ask(&mut self, idle: usize) -> Vec<(u64, Job)> {
         let mut asked = self.strategy.ask();
         asked.retain(|proposal| proposal.id < self.limit);
-        let with = asked.iter().filter_map(|own| self.derivatives_of(own));
-        let (mut divisible, mut columns) = (0, 0);
-        for derivatives in with {
-            (divisible, columns) = (divisible + 1, derivatives.columns);
-        }
-        let idle = idle.saturating_sub(asked.len() - divisible);
-        let parts = part_count(columns, divisible, idle);
+        let columns = asked.iter().map(|proposal| self.columns(proposal.purpose));
+        let divisible: Vec<usize> = columns.filter(|columns| *columns > 0).collect();
+        let idle = idle.saturating_sub(asked.len() - divisible.len());
+        let columns = divisible.first().copied().unwrap_or(0);
+        let parts = part_count(columns, divisible.len(), idle);
         let mut jobs = Vec::new();
         for proposal in asked {
             let numbers = self.job_numbers(&proposal, parts);
             jobs.extend(numbers.iter().map(|number| (*number, job(*number))));
+            let whole = numbers.iter().map(|number| (*number, proposal.id));
+            self.proposal_of.extend(whole);
             self.open.insert(proposal.id, (proposal, numbers.len()));
         }
         jobs
     }
 
+    fn anticipate(&mut self, idle: usize) -> Vec<(u64, Job)> {
+        let drafts = self.strategy.anticipate();
+        let columns: Vec<usize> = drafts
+            .iter()
+            .map(|draft| self.columns(draft.purpose))
+            .collect();
+        let mut jobs = Vec::new();
+        for (draft, parts) in drafts.iter().zip(anticipated_parts(&columns, idle)) {
+            let key = self.key(&draft.genes, draft.purpose);
+            let numbers = match self.anticipated.get(&key) {
+                Some(numbers) => numbers.clone(),
+                None => self.new_numbers(draft.purpose, parts),
+            };
+            jobs.extend(numbers.iter().map(|number| (*number, job(*number))));
+            self.anticipated.insert(key, numbers);
+        }
+        jobs
+    }
+
     fn tell(&mut self, number: u64, _outcome: &Outcome) {
-        let id = if number & PART == 0 {
-            number
-        } else {
-            (number & !PART) >> PART_INDEX_BITS
+        let Some(id) = self.proposal_of.remove(&number) else {
+            return;
         };
         let Some((_, left)) = self.open.get_mut(&id) else {
             return;

@@ -15,5 +15,5 @@ mod step;
 mod tests;
 
 pub use problem::{EvaluatedPoint, LeastSquaresSettings, Linearized, Prior, Termination, Variable};
-pub use search::LeastSquares;
+pub use search::{Anticipated, LeastSquares};
 pub use step::{prior_cost, undamped};

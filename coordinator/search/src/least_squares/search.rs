@@ -36,6 +36,28 @@ pub struct LeastSquares {
     phase: Phase,
 }
 
+/// Continuation of a search, as far as the results of its planned points are known.
+#[derive(Clone, Debug)]
+pub enum Anticipated {
+    /// All results are there: the search with them absorbed.
+    Certain(Box<LeastSquares>),
+    /// Some results are awaited: points at which exact Jacobian columns may be requested next, likeliest first.
+    Candidates(Vec<Vec<f64>>),
+}
+
+/// Returns the indices below `count` from both ends inwards, beginning with the last one. It is the order of
+/// the steps of a fan by how often each was the best: of 54 fans of the shipped case 16, 14, 11, 7 and 6
+/// times.
+fn ends_first(count: usize) -> impl Iterator<Item = usize> {
+    (0..count).map(move |rank| {
+        if rank.is_multiple_of(2) {
+            count - 1 - rank / 2
+        } else {
+            rank / 2
+        }
+    })
+}
+
 impl LeastSquares {
     /// Creates a search from the variables' starts, clamped into their boxes.
     pub fn new(variables: Vec<Variable>, settings: LeastSquaresSettings) -> Self {
@@ -119,6 +141,39 @@ impl LeastSquares {
             Phase::Fan(fan) => self.fan(fan, residuals),
             Phase::Over(ended) => self.phase = Phase::Over(ended),
         }
+    }
+
+    /// Returns the search as it will be after the planned points, if their results are all there; otherwise
+    /// the points at which its next Jacobian may be computed, likeliest first. `found` holds the results of
+    /// the planned points in their order; `None` for those still awaited.
+    pub fn anticipate(&self, found: Vec<Option<Option<EvaluatedPoint>>>) -> Anticipated {
+        let awaited: Vec<bool> = found.iter().map(Option::is_none).collect();
+        if !awaited.contains(&true) {
+            let mut next = self.clone();
+            next.absorb(found.into_iter().flatten().collect());
+            return Anticipated::Certain(Box::new(next));
+        }
+        let Phase::Fan(fan) = &self.phase else {
+            return Anticipated::Candidates(Vec::new());
+        };
+        if !self.settings.exact {
+            return Anticipated::Candidates(Vec::new());
+        }
+        let mut found = fan.iter().zip(found);
+        let mut best: Option<(f64, &[f64])> = None;
+        for ((_, x), found) in found.by_ref() {
+            let Some(point) = found.flatten() else {
+                continue;
+            };
+            let cost = point.residual.norm_squared() + step::prior_cost(x, &self.variables);
+            if cost < best.map_or(self.cost, |(least, _)| least) {
+                best = Some((cost, x));
+            }
+        }
+        let ends_first = ends_first(fan.len()).filter(|index| awaited[*index]);
+        let candidates = best.map(|(_, x)| x).into_iter();
+        let candidates = candidates.chain(ends_first.map(|index| &fan[index].1[..]));
+        Anticipated::Candidates(candidates.map(<[f64]>::to_vec).collect())
     }
 
     /// Returns why the search ended; `None` while it is running.

@@ -218,3 +218,54 @@ fn known_columns_take_the_place_of_differences() {
     assert_eq!(none.best(), differenced.best());
     assert_eq!(none.work(), differenced.work());
 }
+
+/// Residual with its exact Jacobian columns.
+fn exact(x: &[f64]) -> EvaluatedPoint {
+    let columns = [vec![-20.0 * x[0], -1.0], vec![10.0, 0.0]];
+    EvaluatedPoint {
+        residual: DVector::from_vec(rosenbrock(x)),
+        columns: columns.map(|own| Some(DVector::from_vec(own))).into(),
+    }
+}
+
+/// Checks that the search anticipates its next points: with certainty once all results are there, and before
+/// that as one of few candidates, the best known point first.
+#[test]
+fn the_next_points_are_anticipated() {
+    let settings = LeastSquaresSettings {
+        exact: true,
+        ..tight()
+    };
+    let variables = vec![variable(-1.2, -5.0, 5.0), variable(1.0, -5.0, 5.0)];
+    let mut search = LeastSquares::new(variables, settings);
+    let mut fans = 0;
+    while search.ended().is_none() {
+        let points = search.plan();
+        let found: Vec<Option<EvaluatedPoint>> = points.iter().map(|x| Some(exact(x))).collect();
+        let none = search.anticipate(vec![None; points.len()]);
+        let mut all_but_last: Vec<_> = found.iter().cloned().map(Some).collect();
+        *all_but_last.last_mut().unwrap() = None;
+        let some = search.anticipate(all_but_last);
+        let all = search.anticipate(found.iter().cloned().map(Some).collect());
+        let wanted_columns = search.wants_columns();
+        search.absorb(found);
+        let Anticipated::Certain(next) = all else {
+            panic!("{all:?}");
+        };
+        assert_eq!(next.plan(), search.plan());
+        let (Anticipated::Candidates(none), Anticipated::Candidates(some)) = (none, some) else {
+            panic!("some results are awaited");
+        };
+        if wanted_columns {
+            assert!(none.is_empty() && some.is_empty());
+        } else if search.wants_columns() {
+            fans += 1;
+            assert_eq!(none.len(), points.len());
+            assert_eq!(none[0], points[points.len() - 1], "the most damped step");
+            assert!(some.len() <= 2, "the best known and the awaited one");
+            let next = &search.plan()[0];
+            assert!(none.contains(next) && some.contains(next), "{some:?}");
+        }
+    }
+    assert!(fans > 5, "{fans}");
+}

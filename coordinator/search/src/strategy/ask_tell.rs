@@ -4,6 +4,7 @@ use super::{
     evaluation_result::EvaluationResult,
     outcome::{Best, Finish, Progress},
     proposal::Proposal,
+    stage::ProposalDraft,
 };
 
 /// Search for the individual of smallest fitness, in ask/tell form.
@@ -20,6 +21,13 @@ pub trait Strategy {
     /// Takes the residual vector of a proposal whose purpose requires one, before its result. A strategy that
     /// needs no residuals ignores it.
     fn tell_residual(&mut self, _id: u64, _residual: Residual) {}
+
+    /// Returns individuals that the search will probably propose next, likeliest first, judged by all results
+    /// told so far; slots that would be idle can evaluate them before they are proposed. The search does not
+    /// depend on whether that happens.
+    fn anticipate(&self) -> Vec<ProposalDraft> {
+        Vec::new()
+    }
 
     /// Returns why the search is over; `None` while it is running.
     fn finished(&self) -> Option<Finish>;

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     derivative::terms,
-    least_squares::{self, LeastSquares, LeastSquaresSettings, Variable},
+    least_squares::{Anticipated, EvaluatedPoint, LeastSquares, LeastSquaresSettings, Variable},
     space::Space,
 };
 use nalgebra::DVector;
@@ -295,6 +295,29 @@ fn columns(space: &Space, genes: &[f64], residual: &Residual) -> Vec<Option<DVec
     (0..space.dimension()).map(column).collect()
 }
 
+/// Returns the purpose for which a descent proposes its next points.
+const fn purpose(search: &LeastSquares) -> Purpose {
+    if search.wants_columns() {
+        Purpose::Derivatives
+    } else {
+        Purpose::LeastSquares
+    }
+}
+
+/// Converts a result to a point of a descent, with the derivatives by each axis if they are `wanted`; `None`
+/// if its simulation failed or there is no residual.
+fn evaluated(space: &Space, one: &EvaluatedIndividual, wanted: bool) -> Option<EvaluatedPoint> {
+    let residual = one.residual.as_ref().filter(|_| one.result.survived())?;
+    Some(EvaluatedPoint {
+        residual: DVector::from_column_slice(&residual.values),
+        columns: if wanted {
+            columns(space, &one.genes, residual)
+        } else {
+            Vec::new()
+        },
+    })
+}
+
 impl Piece for Levenberg {
     fn plan(&mut self, archive: &Archive) -> Option<Batch> {
         if self.searches.is_none() {
@@ -305,11 +328,7 @@ impl Piece for Levenberg {
         for (search, awaited) in self.searches.iter_mut().flatten() {
             let points = search.plan();
             *awaited = points.len();
-            let purpose = if search.wants_columns() {
-                Purpose::Derivatives
-            } else {
-                Purpose::LeastSquares
-            };
+            let purpose = purpose(search);
             drafts.extend(points.iter().map(|x| ProposalDraft {
                 genes: self.space.values(x),
                 purpose,
@@ -330,21 +349,44 @@ impl Piece for Levenberg {
         for (search, awaited) in self.searches.iter_mut().flatten() {
             if *awaited > 0 {
                 let own = results.by_ref().take(*awaited);
-                let (space, wanted) = (&self.space, search.wants_columns());
-                let residual = |one: &EvaluatedIndividual| {
-                    let residual = one.residual.as_ref().filter(|_| one.result.survived())?;
-                    Some(least_squares::EvaluatedPoint {
-                        residual: DVector::from_column_slice(&residual.values),
-                        columns: if wanted {
-                            columns(space, &one.genes, residual)
-                        } else {
-                            Vec::new()
-                        },
-                    })
-                };
-                search.absorb(own.map(residual).collect::<Vec<_>>());
+                let wanted = search.wants_columns();
+                let found = own.map(|one| evaluated(&self.space, one, wanted));
+                search.absorb(found.collect::<Vec<_>>());
             }
         }
+    }
+
+    fn anticipate(
+        &self,
+        result: &dyn Fn(usize) -> Option<EvaluatedIndividual>,
+    ) -> Vec<ProposalDraft> {
+        let (mut first, mut ranked) = (0, Vec::new());
+        for (search, awaited) in self.searches.iter().flatten() {
+            let own = first..first + awaited;
+            first = own.end;
+            if own.is_empty() {
+                continue;
+            }
+            let wanted = search.wants_columns();
+            let found = |index| Some(evaluated(&self.space, &result(index)?, wanted));
+            match search.anticipate(own.map(found).collect()) {
+                Anticipated::Certain(next) => {
+                    let purpose = purpose(&next);
+                    ranked.extend(next.plan().into_iter().map(|x| (0, x, purpose)));
+                }
+                Anticipated::Candidates(points) => {
+                    let ranks = (1..).zip(points);
+                    ranked.extend(ranks.map(|(rank, x)| (rank, x, Purpose::Derivatives)));
+                }
+            }
+        }
+        // stable: of equal rank in the order of the descents
+        ranked.sort_by_key(|(rank, ..)| *rank);
+        let draft = |(_, x, purpose): (usize, Vec<f64>, Purpose)| ProposalDraft {
+            genes: self.space.values(&x),
+            purpose,
+        };
+        ranked.into_iter().map(draft).collect()
     }
 
     fn generations(&self) -> u32 {

@@ -52,6 +52,22 @@ impl Intake {
         Some((id, told))
     }
 
+    /// Returns the individual of a proposal with its result, consumed or buffered; `None` while the result is
+    /// awaited.
+    pub(super) fn result(&self, id: u64) -> Option<EvaluatedIndividual> {
+        if let Some(genes) = self.open.get(&id) {
+            let result = *self.early.get(&id)?;
+            return Some(EvaluatedIndividual {
+                id,
+                genes: genes.clone(),
+                result,
+                residual: None,
+            });
+        }
+        let index = usize::try_from(id).ok()?;
+        self.archive.entries().get(index).cloned()
+    }
+
     pub(super) const fn archive(&self) -> &Archive {
         &self.archive
     }

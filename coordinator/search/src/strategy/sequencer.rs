@@ -75,20 +75,19 @@ impl Conductor {
         if self.slots.is_empty() {
             return;
         }
-        let entries = self.intake.archive().entries();
-        let results: Vec<EvaluatedIndividual> = std::mem::take(&mut self.slots)
-            .into_iter()
-            .filter_map(|id| {
-                let entry = entries.get(usize::try_from(id).ok()?)?;
-                Some(EvaluatedIndividual {
-                    residual: self.residuals.get(&id).cloned(),
-                    ..entry.clone()
-                })
-            })
-            .collect();
+        let slots = std::mem::take(&mut self.slots);
+        let results: Vec<EvaluatedIndividual> =
+            slots.iter().filter_map(|id| self.result(*id)).collect();
         if let Some(piece) = self.pieces.front_mut() {
             piece.absorb(&results);
         }
+    }
+
+    /// Returns the result of a proposal with its residual; `None` while it is awaited.
+    fn result(&self, id: u64) -> Option<EvaluatedIndividual> {
+        let residual = self.residuals.get(&id).cloned();
+        let result = self.intake.result(id)?;
+        Some(EvaluatedIndividual { residual, ..result })
     }
 
     fn open_batch(&mut self, batch: Batch) {
@@ -144,6 +143,13 @@ impl Strategy for Conductor {
         if self.intake.awaits(id) {
             self.residuals.entry(id).or_insert(residual);
         }
+    }
+
+    fn anticipate(&self) -> Vec<ProposalDraft> {
+        let Some(piece) = self.pieces.front() else {
+            return Vec::new();
+        };
+        piece.anticipate(&|index| self.result(*self.slots.get(index)?))
     }
 
     fn finished(&self) -> Option<Finish> {

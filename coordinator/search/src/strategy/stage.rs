@@ -14,6 +14,15 @@ pub trait Piece {
     /// Takes the results of the batch planned last: one per draft, in the order of the drafts.
     fn absorb(&mut self, results: &[EvaluatedIndividual]);
 
+    /// Returns points that the next batch will probably contain, likeliest first. `result` returns the result
+    /// of a draft of the batch planned last, by the draft's index; `None` while it is awaited.
+    fn anticipate(
+        &self,
+        _result: &dyn Fn(usize) -> Option<EvaluatedIndividual>,
+    ) -> Vec<ProposalDraft> {
+        Vec::new()
+    }
+
     /// Returns the number of generations that the piece adds to the search.
     fn generations(&self) -> u32;
 

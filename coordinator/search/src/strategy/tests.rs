@@ -149,6 +149,48 @@ fn the_result_does_not_depend_on_the_order_of_arrival() {
     }
 }
 
+/// Checks that asking for what a search anticipates changes nothing, and that descents whose results are all
+/// there anticipate what they propose next.
+#[test]
+fn anticipation_changes_nothing_and_comes_true() {
+    let space = RESONANCE.space();
+    let preset = preset("least-squares").unwrap();
+    let (mut strategy, mut silent) = (made(preset, &space, 3), made(preset, &space, 3));
+    let (mut open, mut anticipated) = (Vec::new(), Vec::new());
+    let (mut right, mut proposed) = (0, 0);
+    while strategy.finished().is_none() {
+        let asked = strategy.ask();
+        assert_eq!(asked, silent.ask());
+        for proposal in &asked {
+            let draft = ProposalDraft {
+                genes: proposal.genes.clone(),
+                purpose: proposal.purpose,
+            };
+            if proposal.purpose == Purpose::LeastSquares {
+                proposed += 1;
+                right += u32::from(anticipated.contains(&draft));
+            }
+        }
+        open.extend(asked);
+        anticipated = strategy.anticipate();
+        let proposal: Proposal = open.remove(0);
+        let result = RESONANCE.tell(&space, &proposal.genes);
+        for one in [&mut strategy, &mut silent] {
+            if proposal.purpose.wants_residual() {
+                let residual = Residual {
+                    values: RESONANCE.residual(&space, &proposal.genes),
+                    ..Residual::default()
+                };
+                one.tell_residual(proposal.id, residual);
+            }
+            one.tell(proposal.id, result);
+        }
+    }
+    assert_eq!(strategy.best(), silent.best());
+    // of four descents three are complete when the next batch is anticipated, and of the last one none
+    assert!(4 * right > proposed, "{right} of {proposed}");
+}
+
 #[test]
 fn the_seed_decides_and_ids_are_consecutive() {
     for preset in CATALOGUE {

@@ -102,6 +102,15 @@ impl Evaluator for Bus {
             .map_err(|error| explain(&error))
     }
 
+    fn anticipate(&mut self, jobs: Vec<Job>) -> Result<(), EvaluatorError> {
+        let sent = self.dispatch.anticipate(jobs);
+        sent.map_err(|error| explain(&error))
+    }
+
+    fn computes_ahead(&self) -> bool {
+        self.dispatch.has_idle_slots()
+    }
+
     async fn next(&mut self) -> Result<Completed, EvaluatorError> {
         self.dispatch.next().await.map_err(|error| explain(&error))
     }

@@ -247,6 +247,14 @@ impl Evaluator for NumberedSearch<'_> {
         self.bus.submit(JobId(self.first + id.0), job)
     }
 
+    fn anticipate(&mut self, jobs: Vec<Job>) -> Result<(), EvaluatorError> {
+        self.bus.anticipate(jobs)
+    }
+
+    fn computes_ahead(&self) -> bool {
+        self.bus.computes_ahead()
+    }
+
     async fn next(&mut self) -> Result<Completed, EvaluatorError> {
         loop {
             let completed = self.bus.next().await?;

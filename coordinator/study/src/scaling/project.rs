@@ -121,6 +121,7 @@ pub fn project(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use dispatch::simulated::Fault;
     use search::{
         strategy::{SearchPlan, build, preset},
         test_function::SPHERE,
@@ -204,5 +205,54 @@ mod tests {
         // parts repeat the simulation that they differentiate
         assert!(many.useful_s > 1.05 * few.useful_s, "{many:?} {few:?}");
         assert!(few.wall_s > 1.5 * many.wall_s, "{many:?} {few:?}");
+    }
+
+    /// Checks that derivatives computed ahead change no evaluation, whatever is lost, doubled or killed, and that
+    /// they use slots that would be idle.
+    #[test]
+    fn derivatives_computed_ahead_change_no_evaluation() {
+        let space = SPHERE.space();
+        let stand = SyntheticObjective(&space);
+        let tell = |genes: &[f64]| stand.evaluate(genes);
+        let residual = |genes: &[f64]| stand.residual(genes);
+        let run = |workers: u64, loss: f64, kills: u64| {
+            let mut cluster = Cluster::new(ClusterSetting {
+                slow_one_in: 10,
+                loss,
+                duplication: loss,
+                ..ClusterSetting::even(workers)
+            });
+            for n in 0..kills {
+                let at = Duration::from_millis(1500 + 1700 * n);
+                cluster.fault(at, (n * 3) % workers, Fault::Kill);
+            }
+            let settings = preset("least-squares").unwrap().settings;
+            let plan = SearchPlan {
+                space: &space,
+                workers: 80,
+            };
+            let strategy = build(&settings(&plan), &space, 1).unwrap();
+            let mut source = SimulatedSearch::new(strategy, &tell);
+            source.derivatives = Some(SimulatedDerivatives {
+                residual: &residual,
+                columns: space.dimension(),
+                cost: 5.0,
+                factors: Rc::default(),
+            });
+            cluster.run(&mut source, LIMIT);
+            let spent = cluster.core.snapshot(cluster.now).spent;
+            (source.digest(), spent.speculative_us)
+        };
+        let (alone, _) = run(1, 0.0, 0);
+        let mut ahead = 0;
+        for (workers, loss, kills) in [(8, 0.0, 0), (80, 0.0, 0), (80, 0.2, 8), (500, 0.1, 0)] {
+            let (digest, speculative_us) = run(workers, loss, kills);
+            assert_eq!(
+                digest, alone,
+                "{workers} workers, {loss} lost, {kills} killed"
+            );
+            ahead += speculative_us;
+        }
+        assert!(ahead > 1_000_000, "{ahead}");
     }
 }

@@ -5,7 +5,7 @@
 //! searches request is computed once, and a resumed run finds all results in its journal. The result of a
 //! search depends neither on the other searches nor on the order in which results arrive.
 use super::{
-    calibrate::{MIN_FAILED_EVALUATIONS, all_failed, entry, residual, score},
+    calibrate::{MIN_FAILED_EVALUATIONS, all_failed, anticipated, entry, residual, score},
     error::StudyError,
     evaluator::Evaluator,
     job_number::JobNumbers,
@@ -118,6 +118,11 @@ impl<'a> Sweep<'a> {
                 };
                 self.running.insert(index, running);
                 self.advance(evaluator, index)?;
+            }
+            if evaluator.computes_ahead() {
+                let running = self.running.values();
+                let jobs = running.map(|own| anticipated(self.case, own.strategy.as_ref()));
+                evaluator.anticipate(jobs.flatten().collect())?;
             }
             self.plan(waiting.clone().filter_map(|(_, search)| search.evaluations));
             watch.progress(&self.view, &|| evaluator.workers_status());

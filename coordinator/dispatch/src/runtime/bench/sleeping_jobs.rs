@@ -48,15 +48,17 @@ pub async fn sleep_through(
     }
     let (begun, processor, before) = (Instant::now(), processor_time(), dispatch.snapshot());
     let (mut results, mut open) = (0, 0_usize);
+    let sleeping = |(number, job): (u64, Job)| {
+        let delay = takes(number).as_millis();
+        delayed(job, u32::try_from(delay).unwrap_or(u32::MAX))
+    };
     while !source.is_done() {
         for (id, job) in source.ask(slots.saturating_sub(open)) {
             open += 1;
-            let delay = takes(id).as_millis();
-            dispatch.submit(
-                JobId(id),
-                delayed(job, u32::try_from(delay).unwrap_or(u32::MAX)),
-            )?;
+            dispatch.submit(JobId(id), sleeping((id, job)))?;
         }
+        let anticipated = source.anticipate(slots.saturating_sub(open));
+        dispatch.anticipate(anticipated.into_iter().map(sleeping).collect())?;
         let done = dispatch.next().await?;
         results += 1;
         open -= 1;

@@ -17,6 +17,7 @@ use std::{
 
 mod accounting;
 mod admission;
+mod anticipated;
 mod drain;
 mod failure;
 mod lease;
@@ -104,7 +105,12 @@ impl Scene {
     /// Checks the invariants of the core that must hold after every step.
     fn check(&self) {
         for (id, pending) in &self.core.jobs {
-            let queued = self.core.queue.contains(id);
+            let anticipated = self.core.anticipated.contains(id);
+            let queued = if anticipated {
+                self.core.anticipated_queue.contains(id)
+            } else {
+                self.core.queue.contains(id)
+            };
             assert_eq!(
                 queued,
                 pending.holders.is_empty(),
