@@ -65,6 +65,21 @@ fn checked(program: &str, words: &[&str], file: &Path) {
     assert!(output.status.success(), "{program}: {said}\n{text}");
 }
 
+/// Runs a checker in a folder and returns what it prints; `None` after [`tests::skip`] where it is missing.
+fn printed_in(folder: &Path, program: &str, words: &[&str]) -> Option<String> {
+    let output = Command::new(program)
+        .args(words)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .output();
+    let Ok(output) = output else {
+        tests::skip(&format!("{program} is not installed"));
+        return None;
+    };
+    assert!(output.status.success(), "{program}: {}", errors(&output));
+    Some(String::from_utf8(output.stdout).unwrap())
+}
+
 #[test]
 fn plans_are_printed_without_anybody_in_reach_and_nothing_is_written() {
     let site = Site::new(1);
@@ -163,7 +178,12 @@ fn a_printed_plan_does_what_a_launch_does() {
 #[test]
 fn the_files_of_deploy_pass_those_who_check_such_things() {
     let deploy = Path::new(env!("CARGO_MANIFEST_DIR")).join("../deploy");
-    for script in ["portable.sh", "slurm/workers.sbatch", "pbs/workers.pbs"] {
+    for script in [
+        "portable.sh",
+        "slurm/workers.sbatch",
+        "slurm/rehearse.sh",
+        "pbs/workers.pbs",
+    ] {
         checked("bash", &["-n"], &deploy.join(script));
         checked("shellcheck", &[], &deploy.join(script));
     }
@@ -171,14 +191,77 @@ fn the_files_of_deploy_pass_those_who_check_such_things() {
         let file = deploy.join(format!("k8s/{manifest}.yaml"));
         checked("kubernetes-validate", &["--strict"], &file);
     }
-    // a unit names a program that must be there
+    checked("hadolint", &[], &deploy.join("Containerfile"));
+    let compose = ["--project-directory", "..", "--file", "compose.yaml"];
+    printed_in(
+        &deploy,
+        "docker-compose",
+        &[&compose[..], &["config"]].concat(),
+    );
+
+    // what kustomize makes of the folder, with a worker's keys beside the manifests
     let scratch = tempfile::tempdir().unwrap();
-    let unit = scratch.path().join("horsehead-worker.service");
-    let text = fs::read_to_string(deploy.join("systemd/horsehead-worker.service")).unwrap();
-    let worker = tests::process::worker_program();
-    let text = text.replace("/usr/local/bin/horsehead-worker", worker.to_str().unwrap());
-    fs::write(&unit, text).unwrap();
-    checked("systemd-analyze", &["verify", "--man=no"], &unit);
+    let folder = scratch.path().join("k8s");
+    fs::create_dir_all(folder.join("keys")).unwrap();
+    for file in fs::read_dir(deploy.join("k8s")).unwrap() {
+        let file = file.unwrap();
+        fs::copy(file.path(), folder.join(file.file_name())).unwrap();
+    }
+    for file in ["ca.pem", "worker.pem", "worker.key"] {
+        fs::write(folder.join("keys").join(file), "key material").unwrap();
+    }
+    if let Some(made) = printed_in(&folder, "kubectl", &["kustomize", "."]) {
+        for part in [
+            "kind: Secret",
+            "kind: ConfigMap",
+            "kind: NetworkPolicy",
+            "replicas: 4",
+        ] {
+            assert!(made.contains(part), "{part}: {made}");
+        }
+        let manifests = scratch.path().join("made.yaml");
+        fs::write(&manifests, made).unwrap();
+        checked("kubernetes-validate", &["--strict"], &manifests);
+    }
+
+    // a unit names a program that must be there
+    for (name, program, own) in [
+        (
+            "horsehead-worker",
+            "horsehead-worker",
+            tests::process::worker_program(),
+        ),
+        ("horsehead-coordinator", "horsehead ", coordinator_program()),
+    ] {
+        let unit = scratch.path().join(format!("{name}.service"));
+        let text = fs::read_to_string(deploy.join(format!("systemd/{name}.service"))).unwrap();
+        let end = &program[program.trim_end().len()..];
+        let own = format!("{}{end}", own.display());
+        let text = text.replace(&format!("/usr/local/bin/{program}"), &own);
+        fs::write(&unit, text).unwrap();
+        checked("systemd-analyze", &["verify", "--man=no"], &unit);
+    }
+}
+
+/// Checks that the files of a coordinator that its unit names are a folder of key material that it can use.
+#[test]
+fn the_credentials_of_the_unit_are_those_that_a_coordinator_needs() {
+    let site = Site::new(1);
+    let unit = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../deploy/systemd/horsehead-coordinator.service");
+    let text = fs::read_to_string(unit).unwrap();
+    fs::create_dir(site.path("credentials")).unwrap();
+    let named = text.lines().filter_map(|line| {
+        let (name, path) = line.strip_prefix("LoadCredential=")?.split_once(':')?;
+        Some((name, path.strip_prefix("/etc/horsehead/")?))
+    });
+    for (name, path) in named {
+        fs::copy(site.path(path), site.path("credentials").join(name)).unwrap();
+    }
+    let checked = site.horsehead(&["keys", "check", "credentials"]);
+    let said = String::from_utf8_lossy(&checked.stdout).into_owned() + &errors(&checked);
+    assert!(checked.status.success(), "{said}");
+    assert!(said.contains("coordinator; 1 workers may join"), "{said}");
 }
 
 /// Checks that workers built by `deploy/portable.sh` need no newer glibc than 2.28, if the script has been

@@ -9,6 +9,7 @@ use oscillator::{case_folder, effect::Effects};
 use serde_json::json;
 use std::{
     collections::BTreeMap,
+    process::Stdio,
     time::{Duration, Instant, SystemTime},
 };
 use tests::{
@@ -165,11 +166,71 @@ fn every_command_on_four_hosts_gives_the_result_of_one_machine() {
     assert_eq!((&here, here.len()), (&there, 5));
 
     check_scaling(&spare, &all);
+    let by_hand = follow_readme(&spare);
+    assert_eq!(by_hand["log_digest"], alone["log_digest"]);
     for port in HOSTS {
-        let script = "ls /proc/*/exe -l 2>/dev/null | grep -c horsehead/worker || true";
+        // the worker that was started by hand stays for another run
+        let script = "ls /proc/*/exe -l 2>/dev/null | grep -c cache/horsehead/worker || true";
         let left = on_host(&spare.site, &spare.namespaces, port, script);
         assert_eq!(left, "0", "workers are left on {port}");
     }
+}
+
+/// Follows the three commands of `deploy/README.md` for a worker that is started by hand, with another case,
+/// and returns the object that the calibration prints.
+fn follow_readme(spare: &Spare) -> Value {
+    let deploy = Path::new(env!("CARGO_MANIFEST_DIR")).join("../deploy");
+    let text = fs::read_to_string(deploy.join("README.md")).unwrap();
+    let (_, text) = text.split_once("## By hand: three commands").unwrap();
+    let (text, _) = text.split_once("\n## ").unwrap();
+    let commands = text.lines().filter_map(|line| line.strip_prefix("    "));
+    let commands = commands.map(|line| {
+        line.replace("head.example", HEAD).replace(
+            "cases/cyjs10-5-37hb --preset paper",
+            "case --preset least-squares",
+        )
+    });
+    let commands: Vec<String> = commands.collect();
+    let [keys, calibrate, worker] = &commands[..] else {
+        panic!("three commands are expected: {commands:?}");
+    };
+    let words = |line: &str| -> Vec<String> {
+        let words = line.strip_prefix("horsehead ").unwrap().split(' ');
+        words.map(str::to_owned).collect()
+    };
+    // those of the site
+    fs::remove_dir_all(spare.site.path("keys")).unwrap();
+    let keys = words(keys);
+    let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
+    let made = spare.run(&keys);
+    assert!(made.status.success(), "{}", errors(&made));
+    let mut calibrate = words(calibrate);
+    let own = ["--workers", "0", "--run", "by-hand", "--output", "json"];
+    calibrate.extend(own.map(str::to_owned));
+    let calibrate: Vec<&str> = calibrate.iter().map(String::as_str).collect();
+    let mut calibrate = spare.command(&calibrate);
+    calibrate.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let calibrating = calibrate.spawn().unwrap();
+
+    // `scp -r keys/worker-01 NODE:`, with the port and the key of the test
+    assert!(text.contains("`scp -r keys/worker-01 NODE:`"));
+    // in place of `cargo install`
+    fs::hard_link(&spare.worker, spare.site.path("horsehead-worker"))
+        .or_else(|_| fs::copy(&spare.worker, spare.site.path("horsehead-worker")).map(drop))
+        .unwrap();
+    let mut copy = spare.namespaces.on_head(Path::new("scp"));
+    let copied = copy
+        .args(["-q", "-F", "ssh_config", "-P", "2201", "-r"])
+        .args(["keys/worker-01", &format!("root@{NODE}:")])
+        .current_dir(spare.site.folder.path())
+        .status();
+    assert!(copied.unwrap().success());
+    let programs = spare.site.folder.path().display();
+    let script = format!("(PATH={programs}:$PATH {worker} >by-hand.log 2>&1 &)");
+    on_host(&spare.site, &spare.namespaces, HOSTS[0], &script);
+    let output = calibrating.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", errors(&output));
+    serde_json::from_slice(&output.stdout).unwrap()
 }
 
 /// Measures the scaling of two searches on two and on four of the hosts.

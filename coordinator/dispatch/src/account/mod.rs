@@ -252,8 +252,8 @@ pub fn reasons(spent: &Spent) -> Vec<String> {
                  coordinator's load and the disk"
             }
             "speculative" => {
-                "speculative: copies of slow jobs that were not needed in the end; some workers \
-                 are slower than others"
+                "speculative: copies of slow jobs that were not needed in the end, and jobs that idle \
+                 slots computed ahead but the search did not request; neither delayed a requested job"
             }
             "failed" => {
                 "failed: attempts that crashed or exceeded their deadline; the warnings of the run name \

@@ -14,7 +14,7 @@ use protocol::{
     job::{Answer, Column, Derivative, Failure, Job, Outcome, Reply},
     message::{Attempt, Cost},
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Bit that the ids of parts have and ids of submitted jobs do not.
 const PART: u64 = 1 << 63;
@@ -148,13 +148,18 @@ impl DividedJobs {
             .filter_map(|id| Some((self.open.get(&id)?.work, id)))
             .collect();
         let mut new = Vec::new();
+        let mut seen = BTreeSet::new();
         for job in jobs {
-            let Some(id) = before.get(&job.work_hash()) else {
+            let work = job.work_hash();
+            if !seen.insert(work) {
+                continue;
+            }
+            let Some(id) = before.get(&work) else {
                 new.push(job);
                 continue;
             };
             let running = self.open.get(id).map_or(0, DividedJob::running);
-            if running <= idle && !self.anticipated.contains(id) {
+            if running <= idle {
                 idle -= running;
                 self.anticipated.push(*id);
             }
@@ -552,6 +557,17 @@ mod tests {
             let later = divided.anticipate(vec![wrong], 8).parts;
             assert!(later.iter().all(|(id, _)| !withdrawn.contains(id)));
         }
+    }
+
+    #[test]
+    fn a_job_that_is_anticipated_twice_is_computed_once() {
+        let mut divided = DividedJobs::default();
+        let job = other_job(2, 1.0);
+        let parts = divided.anticipate(vec![job.clone(), job.clone()], 9).parts;
+        assert_eq!(parts.len(), 2);
+        let again = divided.anticipate(vec![job.clone(), job], 9);
+        assert_eq!(again, AnticipationChange::default());
+        assert_eq!(divided.anticipate(Vec::new(), 9).withdrawn.len(), 2);
     }
 
     #[test]

@@ -126,7 +126,8 @@ fn shares(scaled: &ScalingResult) -> Table {
     ];
     Table::new("Where slot time went", head, grouped(scaled, cells)).with_notes([
         "Barrier: slots waited for results that others computed. Starved: they waited for the next order. \
-         Speculative: they computed what another slot brought first.",
+         Speculative: they computed what another slot brought first, or what the search might have requested \
+         next and did not.",
     ])
 }
 

@@ -66,7 +66,7 @@ pub fn slot_time(spent: &Spent) -> Table {
         "useful" => "computing results that were used",
         "barrier" => "waiting for results of others",
         "starved" => "waiting for the case, an order or the journal",
-        "speculative" => "copies that came second",
+        "speculative" => "copies that came second, and jobs computed ahead but never requested",
         "failed" => "attempts that crashed or ran out of time",
         _ => "attempts whose worker was lost",
     };

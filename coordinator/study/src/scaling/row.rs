@@ -45,7 +45,8 @@ pub struct Shares {
     pub barrier: f64,
     /// Share of slot time spent waiting for the next job although jobs were available.
     pub starved: f64,
-    /// Share of slot time spent computing results that another slot delivered first.
+    /// Share of slot time spent computing results that another slot delivered first, or that were never
+    /// requested.
     pub speculative: f64,
     /// Share of slot time spent on attempts that failed.
     pub failed: f64,
