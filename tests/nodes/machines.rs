@@ -46,7 +46,7 @@ fn configure(site: &Site) {
     }
     let server = format!(
         "HostKey {}\nAuthorizedKeysFile {}\nStrictModes no\nUsePAM no\nPermitRootLogin yes\n\
-         PidFile none\n",
+         PidFile none\nSubsystem sftp internal-sftp\n",
         path("host_key"),
         path("user_key.pub")
     );

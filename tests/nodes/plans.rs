@@ -231,13 +231,12 @@ fn the_files_of_deploy_pass_those_who_check_such_things() {
             "horsehead-worker",
             tests::process::worker_program(),
         ),
-        ("horsehead-coordinator", "horsehead ", coordinator_program()),
+        ("horsehead-coordinator", "horsehead", coordinator_program()),
     ] {
         let unit = scratch.path().join(format!("{name}.service"));
         let text = fs::read_to_string(deploy.join(format!("systemd/{name}.service"))).unwrap();
-        let end = &program[program.trim_end().len()..];
-        let own = format!("{}{end}", own.display());
-        let text = text.replace(&format!("/usr/local/bin/{program}"), &own);
+        let installed = format!("ExecStart=/usr/local/bin/{program}");
+        let text = text.replace(&installed, &format!("ExecStart={}", own.display()));
         fs::write(&unit, text).unwrap();
         checked("systemd-analyze", &["verify", "--man=no"], &unit);
     }

@@ -191,20 +191,18 @@ fn follow_readme(spare: &Spare) -> Value {
         )
     });
     let commands: Vec<String> = commands.collect();
-    let [keys, calibrate, worker] = &commands[..] else {
-        panic!("three commands are expected: {commands:?}");
-    };
+    let [keys, calibrate, worker] = <[String; 3]>::try_from(commands).unwrap();
     let words = |line: &str| -> Vec<String> {
         let words = line.strip_prefix("horsehead ").unwrap().split(' ');
         words.map(str::to_owned).collect()
     };
     // those of the site
     fs::remove_dir_all(spare.site.path("keys")).unwrap();
-    let keys = words(keys);
+    let keys = words(&keys);
     let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
     let made = spare.run(&keys);
     assert!(made.status.success(), "{}", errors(&made));
-    let mut calibrate = words(calibrate);
+    let mut calibrate = words(&calibrate);
     let own = ["--workers", "0", "--run", "by-hand", "--output", "json"];
     calibrate.extend(own.map(str::to_owned));
     let calibrate: Vec<&str> = calibrate.iter().map(String::as_str).collect();

@@ -225,7 +225,9 @@ impl DividedJobs {
                 };
                 spec.columns.chunks(size).map(part).collect()
             }
-            whole => vec![whole],
+            whole @ (Job::Simulate(_) | Job::Own { .. } | Job::Describe | Job::Nothing { .. }) => {
+                vec![whole]
+            }
         };
         let parts: Vec<(JobId, Job)> = parts
             .into_iter()

@@ -416,7 +416,7 @@ impl<L: CoordinatorEnd> Engine<L> {
         let part = result.job();
         match self.divided.finish(result) {
             PartResult::Discarded => self.handle(Input::Stored { jobs: vec![part] }),
-            joined => self.take_joined(joined),
+            joined @ (PartResult::Awaited | PartResult::Joined(_)) => self.take_joined(joined),
         }
     }
 

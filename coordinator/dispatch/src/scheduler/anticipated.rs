@@ -5,6 +5,7 @@
 use super::{
     assign::{may_have, most_idle},
     lease::{lease, release},
+    member::Member,
     result,
     slot_time::AttemptUse,
     state::{Core, Pending},
@@ -93,7 +94,7 @@ pub(super) fn make_room(core: &mut Core, wanted: usize, now: Duration) {
         return;
     }
     let ready = core.members.values().filter(|member| member.takes_jobs());
-    let idle: usize = ready.map(|member| member.idle()).sum();
+    let idle: usize = ready.map(Member::idle).sum();
     for (worker, attempt) in held(core, wanted.saturating_sub(idle)) {
         core.send(worker, ToWorker::Cancel(attempt));
         if let Some(member) = core.members.get_mut(&worker) {

@@ -10,7 +10,7 @@ use std::{
     fs,
     io::Write as _,
     path::{Path, PathBuf},
-    process::{Command, Stdio},
+    process::{Child, Command, Stdio},
     thread,
     time::{Duration, Instant},
 };
@@ -91,6 +91,18 @@ impl Rig {
             .env("HORSEHEAD_WORKERS", "2")
             .current_dir(self.0.path());
         command
+    }
+
+    /// Starts an oscillator worker with one slot that dials the coordinator at an address until it answers, and
+    /// ends some seconds after the run.
+    pub(crate) fn worker(&self, address: &str) -> Child {
+        Command::new(env!("CARGO_BIN_EXE_test-oscillator-worker"))
+            .args(["--connect", address, "--slots", "1", "--idle-timeout", "5"])
+            .current_dir(self.0.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap()
     }
 
     /// Runs a command, asserts success, checks that its output contains no pumping-unit terms, and returns

@@ -4,7 +4,7 @@ use crate::{
     rig::{Rig, number},
 };
 use serde_json::Value;
-use std::fs;
+use std::{fs, net::TcpListener};
 
 fn rows(object: &Value) -> &[Value] {
     object["rows"].as_array().map_or(&[], Vec::as_slice)
@@ -83,6 +83,35 @@ fn slots_are_computed_slept_and_projected_and_rows_are_kept() {
     fs::remove_file(rig.file("run/projected-window-8-80.json")).unwrap();
     let again = rig.json(&words);
     assert_eq!(again, object, "a projection is the same each time");
+}
+
+/// Checks that rows are computed on workers that were started by hand and are waited for, on the largest number
+/// first, and that those which a smaller number leaves out end.
+#[test]
+fn workers_that_come_by_themselves_are_waited_for() {
+    let rig = Rig::new();
+    let run = rig.path("run");
+    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr();
+    let address = format!("tcp/{}", port.unwrap());
+    let mut workers = [(); 2].map(|()| rig.worker(&address));
+    let words = "sweep scaling CASE --presets least-squares --evaluations 30 --crews 0 --sleeping 0 \
+                 --projected 80 --nodes 1,2";
+    let words = words.split_whitespace();
+    let words: Vec<&str> = words.chain(["--listen", &address, "--run", &run]).collect();
+    let object = rig.json(&words);
+    let told = rows(&object)
+        .iter()
+        .map(|row| (row["how"].as_str().unwrap(), row["slots"].as_u64().unwrap()));
+    assert_eq!(
+        told.collect::<Vec<_>>(),
+        [("remote", 1), ("remote", 2), ("projected", 80)]
+    );
+    for row in rows(&object) {
+        assert!(row["evaluations"].as_u64().unwrap() >= 30, "{row}");
+    }
+    for worker in &mut workers {
+        assert!(worker.wait().unwrap().success());
+    }
 }
 
 #[test]
