@@ -29,7 +29,7 @@ use crate::{
 use allow_list::AllowList;
 use forward::forward_streams;
 use quinn::{
-    AckFrequencyConfig, Connection, ConnectionError, Endpoint, Incoming, TransportConfig, VarInt,
+    Connection, ConnectionError, Endpoint, Incoming, TransportConfig, VarInt,
     crypto::rustls::{HandshakeData, QuicServerConfig},
 };
 use refusal::Refusals;
@@ -48,8 +48,6 @@ use tokio::{
 
 /// Number of unidirectional streams of the bus per direction: one for each priority except the highest.
 const STREAMS: u32 = 7;
-/// Number of packets that a peer may leave without an acknowledgement.
-const PACKETS_PER_ACKNOWLEDGEMENT: u32 = 20;
 /// Maximum number of handshakes that the gate (authenticating proxy) performs concurrently.
 const PENDING: usize = 1024;
 /// Number of pending handshakes above which peers must validate their address (QUIC retry) first.
@@ -169,10 +167,6 @@ fn streams() -> TransportConfig {
     config.max_concurrent_bidi_streams(VarInt::from_u32(1));
     config.max_concurrent_uni_streams(VarInt::from_u32(STREAMS));
     config.datagram_receive_buffer_size(None);
-    // the peer acknowledges every second packet otherwise, a dozen packets for each result
-    let mut acknowledgements = AckFrequencyConfig::default();
-    acknowledgements.ack_eliciting_threshold(VarInt::from_u32(PACKETS_PER_ACKNOWLEDGEMENT));
-    config.ack_frequency_config(Some(acknowledgements));
     config
 }
 

@@ -1,11 +1,9 @@
 //! Forwarding of streams between two connections in both directions, without inspection.
 use super::terms::CLOSE_OK;
 use quinn::{Connection, ConnectionError, RecvStream, SendStream, VarInt};
-use std::array;
 
-/// Maximum number of pieces of a stream, each the content of a packet, that are forwarded at a time: more than
-/// a result of usual size has.
-const PIECES: usize = 64;
+/// Maximum number of bytes of a stream that are forwarded at a time.
+const PIECE: usize = 64 << 10;
 
 /// Forwards all streams between two connections until one of them ends, then closes both.
 pub(super) async fn forward_streams(outer: &Connection, inner: &Connection) {
@@ -56,15 +54,8 @@ async fn one_way(from: &Connection, to: &Connection) -> Result<(), ConnectionErr
 
 /// Forwards bytes of one stream; writes wait for the receiver, so backpressure reaches the sender.
 async fn pass(mut from: RecvStream, mut to: SendStream) {
-    #[expect(
-        clippy::default_trait_access,
-        reason = "the crate of the type is no dependency of this one"
-    )]
-    let mut pieces: [_; PIECES] = array::from_fn(|_| Default::default());
-    // together, so that they leave in few system calls
-    while let Ok(Some(count)) = from.read_chunks(&mut pieces).await {
-        let read = pieces.get_mut(..count).unwrap_or_default();
-        if to.write_all_chunks(read).await.is_err() {
+    while let Ok(Some(piece)) = from.read_chunk(PIECE, true).await {
+        if to.write_chunk(piece.bytes).await.is_err() {
             return;
         }
     }
