@@ -76,7 +76,7 @@ show() {
   "$@"
 }
 calibrate() {
-  horsehead calibrate "$repository/cases/cyjs10-5-37hb" --preset paper --set generations=3 --set population=40 \
+  horsehead calibrate "$repository/cases/cyjs10-5-37hb" --preset paper --set generations=6 \
     --run "$1" --output json "${@:2}" >"$1.json" 2>"$1.log"
 }
 listen() {
@@ -121,7 +121,7 @@ show scancel --user root
 until [[ -z "$(squeue --noheader)" ]]; do sleep 0.5; done
 
 listen time-limit
-show sbatch --array=1-2 --nodes=1 --time=2 \
+show sbatch --array=1-2 --nodes=1 --time=1 \
   "--export=ALL,HORSEHEAD_CONNECT=quic/$head:7447,HORSEHEAD_TLS=$scratch/keys/worker-01" \
   "$repository/deploy/slurm/workers.sbatch"
 wait_for time-limit working 2
