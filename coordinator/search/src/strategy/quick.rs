@@ -108,7 +108,7 @@ pub const DESCENT: Preset = Preset {
         table: levenberg::SETTINGS,
         excluded: &["starts", "apart", "heat", "keep"],
     }],
-    slots: 2,
+    slots: 4,
     expectations: Expectations {
         // it stays in the basin that it begins in
         many_basins: 1e3,
