@@ -76,8 +76,8 @@ show() {
   "$@"
 }
 calibrate() {
-  horsehead calibrate "$repository/cases/cyjs10-5-37hb" --preset paper --set generations=6 \
-    --run "$1" --output json "${@:2}" >"$1.json" 2>"$1.log"
+  local search=(horsehead calibrate "$repository/cases/cyjs10-5-37hb" --preset paper --set generations=6)
+  "${search[@]}" --run "$1" --output json "${@:2}" >"$1.json" 2>"$1.log"
 }
 listen() {
   calibrate "$1" --workers 0 --listen "quic/$head:7447" --tls keys &
@@ -103,7 +103,7 @@ calibrate one-machine --workers 2 &
 run=$!
 finish one-machine
 
-horsehead keys new keys --workers 2 --host "$head" >keys.log 2>&1
+show horsehead keys new keys --workers 2 --host "$head" >keys.log 2>&1
 listen requeued
 show horsehead workers up --connect "quic/$head:7447" --tls keys --slurm nodes=2,time=00:10:00
 wait_for requeued working 2
