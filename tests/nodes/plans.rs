@@ -49,20 +49,9 @@ fn read_by<'a>(script: &'a str, from: &str) -> &'a str {
 
 /// Runs a linter on a file and asserts success; skips the check where the linter is not installed.
 fn checked(program: &str, words: &[&str], file: &Path) {
-    let output = Command::new(program)
-        .args(words)
-        .arg(file)
-        // what systemd-analyze looks into, though nothing of it matters here
-        .env("XDG_RUNTIME_DIR", std::env::temp_dir())
-        .stdin(Stdio::null())
-        .output();
-    let Ok(output) = output else {
-        tests::skip(&format!("{program} is not installed"));
-        return;
-    };
-    let said = String::from_utf8_lossy(&output.stdout).into_owned() + &errors(&output);
-    let text = fs::read_to_string(file).unwrap();
-    assert!(output.status.success(), "{program}: {said}\n{text}");
+    let file = std::path::absolute(file).unwrap();
+    let words = [words, &[file.to_str().unwrap()]].concat();
+    printed_in(file.parent().unwrap(), program, &words);
 }
 
 /// Runs a checker in a folder and returns what it prints; `None` after [`tests::skip`] where it is missing.
@@ -70,14 +59,21 @@ fn printed_in(folder: &Path, program: &str, words: &[&str]) -> Option<String> {
     let output = Command::new(program)
         .args(words)
         .current_dir(folder)
+        // what systemd-analyze looks into, though nothing of it matters here
+        .env("XDG_RUNTIME_DIR", std::env::temp_dir())
         .stdin(Stdio::null())
         .output();
     let Ok(output) = output else {
         tests::skip(&format!("{program} is not installed"));
         return None;
     };
-    assert!(output.status.success(), "{program}: {}", errors(&output));
-    Some(String::from_utf8(output.stdout).unwrap())
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    let said = errors(&output);
+    assert!(
+        output.status.success(),
+        "{program} {words:?}: {printed}{said}"
+    );
+    Some(printed)
 }
 
 #[test]

@@ -4,7 +4,7 @@
 //! job, or withdrawn.
 use super::{
     assign::{may_have, most_idle},
-    lease::{lease, release},
+    lease::{lease, revoke},
     member::Member,
     result,
     slot_time::AttemptUse,
@@ -96,11 +96,7 @@ pub(super) fn make_room(core: &mut Core, wanted: usize, now: Duration) {
     let ready = core.members.values().filter(|member| member.takes_jobs());
     let idle: usize = ready.map(Member::idle).sum();
     for (worker, attempt) in held(core, wanted.saturating_sub(idle)) {
-        core.send(worker, ToWorker::Cancel(attempt));
-        if let Some(member) = core.members.get_mut(&worker) {
-            member.revoked.push((attempt, now));
-        }
-        release(core, worker, attempt.job, AttemptUse::Speculative);
+        revoke(core, worker, attempt, (AttemptUse::Speculative, now));
     }
 }
 

@@ -1,6 +1,6 @@
 //! Draining of workers: they get no new jobs, finish or return their current jobs, and stay idle or end.
 use super::{
-    input::Drain, lease::release, member::Member, notice::Notice, roster::dismiss,
+    input::Drain, lease::revoke, member::Member, notice::Notice, roster::dismiss,
     slot_time::AttemptUse, state::Core,
 };
 use protocol::{
@@ -18,12 +18,8 @@ pub(super) fn drain(core: &mut Core, worker: WorkerId, how: Drain, now: Duration
     core.drained.insert(worker, how);
     if how.now {
         let held: Vec<Attempt> = member.leases.iter().map(|lease| lease.attempt).collect();
-        member
-            .revoked
-            .extend(held.iter().map(|attempt| (*attempt, now)));
         for attempt in held {
-            core.send(worker, ToWorker::Cancel(attempt));
-            release(core, worker, attempt.job, AttemptUse::Lost);
+            revoke(core, worker, attempt, (AttemptUse::Lost, now));
         }
     }
 }

@@ -75,6 +75,21 @@ pub(super) fn release(core: &mut Core, worker: WorkerId, job: JobId, what: Attem
     requeue(core, worker, job);
 }
 
+/// Takes a job from a worker that may have begun it: cancels the attempt, books its slot time under the given
+/// use and requeues the job.
+pub(super) fn revoke(
+    core: &mut Core,
+    worker: WorkerId,
+    attempt: Attempt,
+    (what, now): (AttemptUse, Duration),
+) {
+    core.send(worker, ToWorker::Cancel(attempt));
+    if let Some(member) = core.members.get_mut(&worker) {
+        member.revoked.push((attempt, now));
+    }
+    release(core, worker, attempt.job, what);
+}
+
 /// Removes a worker from the holders of a job and requeues the job if no other worker holds it.
 pub(super) fn requeue(core: &mut Core, worker: WorkerId, job: JobId) {
     if let Some(pending) = core.jobs.get_mut(&job) {

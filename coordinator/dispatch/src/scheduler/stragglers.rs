@@ -7,13 +7,13 @@
 use super::{
     anticipated::make_room,
     assign::{may_have, most_idle},
-    lease::{lease, release},
+    lease::{lease, revoke},
     slot_time::AttemptUse,
     state::Core,
 };
 use protocol::{
     id::{JobId, WorkerId},
-    message::{Attempt, ToWorker},
+    message::Attempt,
 };
 use std::{cmp::Reverse, time::Duration};
 
@@ -31,11 +31,7 @@ pub(super) fn steal(core: &mut Core, now: Duration) {
         let Some((busy, attempt)) = waiting(core, idle, now) else {
             return;
         };
-        core.send(busy, ToWorker::Cancel(attempt));
-        if let Some(member) = core.members.get_mut(&busy) {
-            member.revoked.push((attempt, now));
-        }
-        release(core, busy, attempt.job, AttemptUse::Lost);
+        revoke(core, busy, attempt, (AttemptUse::Lost, now));
         core.queue.remove(&attempt.job);
         let repeated = core.counts.repeated;
         lease(core, idle, attempt.job, now);

@@ -46,8 +46,8 @@ pub enum Anticipated {
 }
 
 /// Returns the indices below `count` from both ends inwards, beginning with the last one. It is the order of
-/// the steps of a fan by how often each was the best: of 54 fans of the shipped case 16, 14, 11, 7 and 6
-/// times.
+/// the steps of a fan by how often each was the best: in 58 fans of two `least-squares` searches of the shipped
+/// case (seeds 1 and 2) the fifth 17, the first 17, the fourth 12, the second 7 and the third 5 times.
 fn ends_first(count: usize) -> impl Iterator<Item = usize> {
     (0..count).map(move |rank| {
         if rank.is_multiple_of(2) {
@@ -153,15 +153,11 @@ impl LeastSquares {
             next.absorb(found.into_iter().flatten().collect());
             return Anticipated::Certain(Box::new(next));
         }
-        let Phase::Fan(fan) = &self.phase else {
+        let (Phase::Fan(fan), true) = (&self.phase, self.settings.exact) else {
             return Anticipated::Candidates(Vec::new());
         };
-        if !self.settings.exact {
-            return Anticipated::Candidates(Vec::new());
-        }
-        let mut found = fan.iter().zip(found);
         let mut best: Option<(f64, &[f64])> = None;
-        for ((_, x), found) in found.by_ref() {
+        for ((_, x), found) in fan.iter().zip(found) {
             let Some(point) = found.flatten() else {
                 continue;
             };
