@@ -10,13 +10,8 @@ export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-target}/determinism"
 check() {
     level=$1 flags=$2 tests=${3:-}
     echo "optimisation $level, ${flags:-instruction set of the default target}"
-    # of these crates only whole numbers are used, for a small head: they need not be fast here
     RUSTFLAGS="$flags" cargo test --quiet -p simulation \
         --config "profile.dev.package.simulation.opt-level=$level" \
-        --config "profile.dev.package.faer.opt-level=0" \
-        --config "profile.dev.package.gemm.opt-level=0" \
-        --config "profile.dev.package.gemm-common.opt-level=0" \
-        --config "profile.dev.package.gemm-f64.opt-level=0" \
         --test numerics "determinism::$tests"
 }
 check 3 ""

@@ -111,6 +111,7 @@ const GATED: &[(&str, &[&str])] = &[
         "nalgebra",
         &["simulation", "search", "discrepancy", "oscillator"],
     ),
+    ("amd", &["simulation"]),
     ("faer", &["simulation"]),
     ("pulp", &["simulation"]),
     ("axum", &["dashboard"]),

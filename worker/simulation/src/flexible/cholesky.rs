@@ -1,24 +1,9 @@
 //! Sparse Cholesky factorisation with bit-identical results on every processor.
 //!
-//! faer computes the elimination order and the supernodes (columns of the factor that share one sparsity
-//! pattern), which are integers and equal on every processor. Its numeric kernels choose their instructions
-//! by the processor, and a fused multiply-add rounds once where two instructions round twice. The numeric
-//! factorisation is therefore implemented here, in plain loops with a fixed order of summation: left-looking,
-//! supernode by supernode, with products in register tiles.
-use super::{assembly::Symmetric, error::ReductionError};
-use faer::{
-    Side,
-    sparse::{
-        SymbolicSparseColMatRef,
-        linalg::{
-            SupernodalThreshold,
-            cholesky::{
-                CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-                factorize_symbolic_cholesky,
-            },
-        },
-    },
-};
+//! Libraries choose their instructions by the processor, and a fused multiply-add rounds once where two
+//! instructions round twice. The numeric factorisation is therefore implemented here, in plain loops with a
+//! fixed order of summation: left-looking, supernode by supernode, with products in register tiles.
+use super::{assembly::Symmetric, elimination::Elimination, error::ReductionError};
 use std::cmp::Ordering;
 
 /// Number of rows and of columns of a register tile, the unit in which matrix products are computed.
@@ -93,22 +78,35 @@ impl Factor {
         let too_large = ReductionError::TooLarge {
             unknowns: matrix.len(),
         };
-        let plan = plan(matrix).ok_or(too_large.clone())?;
-        let order = plan.perm().map(|perm| perm.arrays().0.to_vec());
-        let order = order.unwrap_or_else(|| (0..matrix.len()).collect());
-        let SymbolicCholeskyRaw::Supernodal(nodes) = plan.raw() else {
-            return Err(too_large);
-        };
+        let Elimination {
+            order,
+            columns,
+            rows,
+        } = Elimination::new(matrix).ok_or(too_large.clone())?;
+        let (mut row_starts, mut value_starts) = (vec![0], vec![0]);
+        let mut size: usize = 0;
+        for (ends, rows) in columns.windows(2).zip(&rows) {
+            row_starts.push(row_starts[row_starts.len() - 1] + rows.len());
+            let width = ends[1] - ends[0];
+            let panel = width.checked_mul(width + rows.len());
+            size = panel
+                .and_then(|panel| size.checked_add(panel))
+                .ok_or(too_large.clone())?;
+            value_starts.push(size);
+        }
+        let mut values = Vec::new();
+        values.try_reserve_exact(size).map_err(|_| too_large)?;
+        values.resize(size, 0.0);
         let shape = Shape {
-            columns: [nodes.supernode_begin(), &[matrix.len()]].concat(),
-            row_starts: nodes.col_ptr_for_row_idx().to_vec(),
-            rows: nodes.row_idx().to_vec(),
-            value_starts: nodes.col_ptr_for_val().to_vec(),
+            columns,
+            row_starts,
+            rows: rows.concat(),
+            value_starts,
         };
         let mut factor = Self {
-            values: vec![0.0; nodes.len_val()],
             order,
             shape,
+            values,
         };
         factor.scatter(matrix);
         factor.eliminate()?;
@@ -229,18 +227,6 @@ impl Factor {
             vector[unknown] = *value;
         }
     }
-}
-
-/// Computes the elimination order and the supernodes; `None` if the factor does not fit into memory.
-fn plan(matrix: &Symmetric) -> Option<SymbolicCholesky<usize>> {
-    let (starts, rows) = matrix.pattern();
-    let order = matrix.len();
-    let pattern = SymbolicSparseColMatRef::new_checked(order, order, starts, None, rows);
-    let always = CholeskySymbolicParams {
-        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-        ..CholeskySymbolicParams::default()
-    };
-    factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, always).ok()
 }
 
 /// Copies a panel's rows from row `from` on into strips of [`TILE`] rows, each stored column by column, so

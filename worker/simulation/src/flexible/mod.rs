@@ -10,6 +10,7 @@ mod cholesky;
 mod coupling;
 mod eigen;
 mod element;
+mod elimination;
 mod error;
 mod gauge;
 mod mesh;
