@@ -182,8 +182,22 @@ pub struct Calibration {
     /// First-order estimate, for each searched unknown, of the interval that the measured record determines;
     /// empty if not computed.
     pub identifiability: Vec<UnknownEstimate>,
+    /// Best fit of every other family whose objective lies near the best one, best first: the record decides
+    /// only weakly between them.
+    pub rivals: Vec<RivalFit>,
     /// Further notes and warnings, one sentence each.
     pub notes: Vec<String>,
+}
+
+/// Fit whose objective lies near the best one, with another value of an unknown that the record determines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RivalFit {
+    /// Values of the unknowns, in the case's order.
+    pub genes: Vec<f64>,
+    /// Objective of the fit.
+    pub objective: f64,
+    /// Names of the unknowns that the record determines and in which the fit differs from the best one.
+    pub differs: Vec<String>,
 }
 
 impl Calibration {

@@ -32,8 +32,8 @@ pub mod words;
 mod write;
 
 pub use data::{
-    Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, SimulationView, SingleRun,
-    WorkerUse,
+    Calibration, ConditionResult, HistoryPoint, Individual, Origin, RivalFit, Run, SimulationView,
+    SingleRun, WorkerUse,
 };
 pub use document::{Block, Figure, Report, Section, Table, page, text};
 pub use drawing::ModelReport;
@@ -41,6 +41,6 @@ pub use folder::ReportError;
 pub use general::GenericReport;
 pub use section::{derivatives, genes, hosts, jobs, slot_time};
 pub use write::{
-    agreement, calibration, individual, parameters, ranges, running_calibration, script,
+    agreement, calibration, individual, parameters, ranges, rivals, running_calibration, script,
     simulation, structure, write_calibration, write_simulation,
 };

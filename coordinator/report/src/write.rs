@@ -41,6 +41,11 @@ pub fn parameters(calibration: &Calibration, styled: bool) -> String {
     section_text(&section::parameters(calibration), styled)
 }
 
+/// States that the search found fits of other families with nearly the same objective; `None` if it found none.
+pub fn rivals(calibration: &Calibration) -> Option<String> {
+    words::rivals(calibration)
+}
+
 /// Describes how far a calibration's residual exceeds the measurement noise; `None` where the residual is at
 /// noise level.
 pub fn structure(calibration: &Calibration) -> Option<String> {

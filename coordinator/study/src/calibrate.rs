@@ -13,7 +13,9 @@ use protocol::{
     id::JobId,
     job::{Answer, Column, Individual, Job, Outcome, Reply, SimulateSpec},
 };
-use search::strategy::{Best, Finish, Proposal, ProposalDraft, Purpose, Residual, Strategy};
+use search::strategy::{
+    Best, DescentEnd, Finish, Proposal, ProposalDraft, Purpose, Residual, Strategy,
+};
 use std::collections::BTreeMap;
 
 /// Minimum number of evaluated individuals before a search in which all have failed is given up.
@@ -26,6 +28,8 @@ pub struct Calibrated {
     pub best: Best,
     /// Stopping criterion that ended the search.
     pub finish: Finish,
+    /// Ends of the search's least-squares descents that converged.
+    pub descent_ends: Vec<DescentEnd>,
     /// Log of all evaluations of the search, in index order.
     pub log: EvaluationLog,
 }
@@ -58,7 +62,12 @@ pub async fn calibrate<E: Evaluator>(
         watch.progress(&view, &|| evaluator.workers_status());
         if let (Some(finish), Some(best)) = (strategy.finished(), strategy.best()) {
             return if best.complete {
-                Ok(Calibrated { best, finish, log })
+                Ok(Calibrated {
+                    best,
+                    finish,
+                    descent_ends: strategy.descent_ends().to_vec(),
+                    log,
+                })
             } else {
                 Err(all_failed(&log))
             };

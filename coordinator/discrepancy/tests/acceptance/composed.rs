@@ -1,6 +1,6 @@
 //! Acceptance tests with two effects at once, and with effects that are in no library.
 use crate::strata::{OUTSIDE, named, planted};
-use crate::trial::{diagnose_usual, line, say, trials};
+use crate::trial::{diagnose_usual, diagnoses, line, say};
 use crate::truth::{Truth, Unlisted};
 use discrepancy::verdict::Verdict;
 
@@ -8,7 +8,7 @@ use discrepancy::verdict::Verdict;
 #[test]
 fn two_effects_at_once_are_both_found() {
     let named = named();
-    let sets = trials(15);
+    let sets = diagnoses(5, 75);
     let (mut exact, mut one) = (0, 0);
     let mut missed = Vec::new();
     for seed in 0..sets {
@@ -46,7 +46,7 @@ fn two_effects_at_once_are_both_found() {
 /// and form, and with the amplitude of the force.
 #[test]
 fn what_is_in_no_library_gets_no_name() {
-    let each = trials(3);
+    let each = diagnoses(1, 15);
     let (mut unlisted, mut form, mut joint, mut both) = (0, 0, 0, 0);
     let mut missed = Vec::new();
     for (k, (what, place, forms)) in OUTSIDE.iter().enumerate() {
@@ -93,7 +93,7 @@ fn what_is_in_no_library_gets_no_name() {
 /// only: a mass that swings slowly on the beam equals an inertia of the beam up to the noise.
 #[test]
 fn what_acts_like_a_listed_effect_takes_only_its_name() {
-    for seed in 0..trials(3) {
+    for seed in 0..diagnoses(1, 15) {
         let mut truth = Truth::healthy(3500 + seed);
         truth.unlisted = Some(Unlisted::SwingingMass(0.1));
         let answer = diagnose_usual(&truth);

@@ -1,8 +1,8 @@
 //! Acceptance tests of the discovery pipeline against a stand-in machine whose simulations cost a fraction of
 //! a millisecond each, and against true machines whose laws differ from those of the pipeline's model.
 //!
-//! Sizes are those of continuous integration; `HORSEHEAD_ACCEPTANCE=full` makes every stratum five times as
-//! large. `cargo test -p discrepancy --test acceptance -- --nocapture` prints the rates.
+//! Sizes are those of continuous integration; `HORSEHEAD_ACCEPTANCE=full` makes every stratum large enough for
+//! rates. `cargo test -p discrepancy --test acceptance -- --nocapture` prints the rates.
 #![expect(
     clippy::too_many_lines,
     clippy::unused_self,

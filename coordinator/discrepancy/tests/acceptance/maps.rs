@@ -3,7 +3,7 @@
 use crate::case::{ORDERS, space};
 use crate::healthy::healthy;
 use crate::strata::{named, planted};
-use crate::trial::{MACHINE, diagnose_usual, say, trials};
+use crate::trial::{MACHINE, diagnose_usual, diagnoses, say, trials};
 use crate::truth::{ALL, Truth, record};
 use discrepancy::linear::score::score;
 use discrepancy::linear::tangent::Tangent;
@@ -255,7 +255,7 @@ fn parameters_wander_with_what_is_missing_and_not_with_the_answer() {
         let shifts = all.iter().flat_map(|wander| &wander.shifts);
         shifts.map(|shift| shift.p_value).fold(1.0, f64::min)
     };
-    let sets = trials(30);
+    let sets = diagnoses(14, 150);
     let healthy = (0..sets)
         .filter(|seed| least(&healthy(2000 + seed, 1.0).wander) < 0.05)
         .count();

@@ -2,14 +2,14 @@
 //! effects that are not in the library.
 use crate::healthy::healthy;
 use crate::strata::{machine, named, planted};
-use crate::trial::{Setup, diagnose_usual, diagnosed, line, say, trials};
+use crate::trial::{Setup, diagnose_usual, diagnosed, diagnoses, line, say};
 use crate::truth::Truth;
 use discrepancy::verdict::Verdict;
 
 /// Acceptance 3: checks that at most one healthy machine in twenty gets a claim.
 #[test]
 fn healthy_machines_are_left_alone() {
-    let sets = trials(40);
+    let sets = diagnoses(14, 200);
     let mut claims = Vec::new();
     let mut unresolved = 0;
     for seed in 0..sets {
@@ -34,7 +34,7 @@ fn healthy_machines_are_left_alone() {
 /// the limit is printed.
 #[test]
 fn effects_far_below_their_limits_are_not_claimed() {
-    let each = trials(4);
+    let each = diagnoses(1, 20);
     let mut quiet = 0;
     let mut loud = Vec::new();
     for (k, effect) in named().into_iter().enumerate() {

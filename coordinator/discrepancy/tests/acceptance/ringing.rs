@@ -3,7 +3,7 @@
 use crate::by_curves::ByCurves;
 use crate::by_sample::{SAMPLES, SIZES, record, times};
 use crate::case::{effect, size};
-use crate::trial::{now, say, trials};
+use crate::trial::{diagnoses, now, say};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::record::{Acts, Curves, Nuisance, Record};
 use discrepancy::thresholds::Thresholds;
@@ -263,7 +263,7 @@ fn a_correlation_that_is_not_stated_is_taken_from_what_is_left() {
         }
         own
     };
-    let sets = trials(12);
+    let sets = diagnoses(4, 60);
     let (mut claims, mut quiet) = (0, 0);
     for seed in 0..sets {
         let answer = diagnosed(vec![without(400 + seed, &[])]);
@@ -307,7 +307,7 @@ fn cycles_that_drift_name_nothing() {
         }
         own
     };
-    let sets = trials(20);
+    let sets = diagnoses(7, 100);
     for cycles in [3, 6] {
         let (mut claims, mut quiet) = (Vec::new(), 0);
         for seed in 0..sets {

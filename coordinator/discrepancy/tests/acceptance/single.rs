@@ -1,6 +1,6 @@
 //! Tests with one planted effect at a time, at multiples of its printed detection limit.
 use crate::strata::{NOISES, limits, machine, named, planted, planted_at};
-use crate::trial::{Setup, diagnose_usual, line, say, trials};
+use crate::trial::{Setup, diagnose_usual, diagnoses, line, say};
 use crate::truth::{ALL, Truth};
 use discrepancy::diagnose::Diagnosis;
 use discrepancy::linear::isolability::distances;
@@ -15,7 +15,7 @@ use statrs::distribution::{Binomial, DiscreteCDF};
 /// that its size is right.
 #[test]
 fn every_effect_is_named_at_three_times_its_limit() {
-    let each = trials(3);
+    let each = diagnoses(1, 15);
     let (mut top, mut within, mut members) = (0_u32, 0, 0);
     let (mut confusions, mut predicted) = (0, 0);
     let (mut covered, mut errors) = (0, Vec::new());
@@ -124,7 +124,7 @@ fn expected(answer: &Diagnosis, effect: &EffectDescriptor, (rival, truth): (&str
 /// of the size that is detected in nine records of ten.
 #[test]
 fn printed_limits_are_those_of_ninety_per_cent_power() {
-    let each = trials(2);
+    let each = diagnoses(1, 10);
     let detected = |multiple: f64| {
         let mut seen = 0;
         for (k, effect) in named().into_iter().enumerate() {
@@ -155,7 +155,7 @@ fn four_gauges_alone_name_most_effects() {
     };
     let (mut right, mut all) = (0, 0);
     let mut missed = Vec::new();
-    for seed in 0..trials(1) {
+    for seed in 0..diagnoses(1, 5) {
         for (k, effect) in named().into_iter().enumerate() {
             let healthy = Truth::healthy(30_000 + 100 * k as u64 + seed);
             let limits = crate::trial::diagnosed(&healthy, &setup).0.limits;

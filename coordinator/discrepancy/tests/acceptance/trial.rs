@@ -160,10 +160,20 @@ pub(crate) fn line(diagnosis: &Diagnosis) -> String {
     )
 }
 
-/// Returns the number of trials of a stratum: five times as many if `HORSEHEAD_ACCEPTANCE=full` is set.
+/// Returns whether every stratum has its full size: `HORSEHEAD_ACCEPTANCE=full`.
+fn is_full() -> bool {
+    std::env::var("HORSEHEAD_ACCEPTANCE").is_ok_and(|v| v == "full")
+}
+
+/// Returns the number of diagnoses of a stratum: `few` in continuous integration, at fixed seeds; `many` for
+/// rates.
+pub(crate) fn diagnoses(few: u64, many: u64) -> u64 {
+    if is_full() { many } else { few }
+}
+
+/// Returns the number of records of a stratum without diagnoses: five times as many if it has its full size.
 pub(crate) fn trials(few: u64) -> u64 {
-    let full = std::env::var("HORSEHEAD_ACCEPTANCE").is_ok_and(|v| v == "full");
-    if full { 5 * few } else { few }
+    if is_full() { 5 * few } else { few }
 }
 
 /// Prints a line about the result of a stratum; shown with `--nocapture` and when a test fails.

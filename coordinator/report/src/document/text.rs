@@ -1,7 +1,7 @@
 //! Plain-text output for the terminal and for `tables.txt`: the whole report without its images.
 use super::block::{Block, Report, Section};
 use super::table::{Label, Row, Table};
-use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, presets};
+use comfy_table::{Cell, CellAlignment, LineStyle, presets};
 
 /// Renders the whole report as text; `styled` if the terminal supports bold.
 pub fn text(report: &Report, styled: bool) -> String {
@@ -70,13 +70,6 @@ fn items(lines: &[String], mark: &str) -> String {
 
 /// Renders a table with its title and notes.
 pub fn set_table(table: &Table, styled: bool) -> String {
-    let bold = |cell: Cell| {
-        if styled {
-            cell.add_attribute(Attribute::Bold)
-        } else {
-            cell
-        }
-    };
     let alignment = |column: usize| {
         if table.is_prose(column) {
             CellAlignment::Left
@@ -87,19 +80,14 @@ pub fn set_table(table: &Table, styled: bool) -> String {
     let mut grid = comfy_table::Table::new();
     // rules above, below and under the head only, as in print
     grid.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
-    if styled {
-        grid.enforce_styling();
-    } else {
-        grid.force_no_tty();
-    }
     grid.set_header(table.head.iter().enumerate().map(|(column, head)| {
         let alignment = column.checked_sub(1).map_or(CellAlignment::Left, alignment);
-        bold(Cell::new(head).set_alignment(alignment))
+        Cell::new(head).set_alignment(alignment)
     }));
     for row in &table.rows {
         match row {
             Row::Group(name) => {
-                grid.add_row(vec![bold(Cell::new(name))]);
+                grid.add_row(vec![Cell::new(name)]);
             }
             Row::Values(label, cells) => {
                 let label = match label {
@@ -114,5 +102,34 @@ pub fn set_table(table: &Table, styled: bool) -> String {
         }
     }
     let notes = items(&table.notes, "  ");
-    format!("{}\n{}\n{notes}", table.title, grid.trim_fmt())
+    let grid = grid.trim_fmt();
+    let grid = if styled {
+        bold_heads(&grid, table)
+    } else {
+        grid
+    };
+    format!("{}\n{grid}\n{notes}", table.title)
+}
+
+/// Sets the head and the group names of a rendered table in bold, for a terminal.
+fn bold_heads(grid: &str, table: &Table) -> String {
+    let is_group = |line: &str| {
+        let groups = table.rows.iter().filter_map(|row| match row {
+            Row::Group(name) => Some(name.as_str()),
+            Row::Values(..) => None,
+        });
+        groups.into_iter().any(|name| name == line.trim())
+    };
+    // the head stands between the first rule and the second
+    let mut rules = 0;
+    let lines = grid.lines().map(|line| {
+        let is_rule = line.starts_with(['─', '═']);
+        rules += usize::from(is_rule);
+        if !is_rule && (rules == 1 || is_group(line)) {
+            format!("\x1b[1m{line}\x1b[0m")
+        } else {
+            line.to_owned()
+        }
+    });
+    lines.collect::<Vec<_>>().join("\n")
 }

@@ -9,7 +9,8 @@ pub(crate) fn calibration(calibration: &Calibration) -> Section {
     let others = calibration.conditions.iter();
     let others = others.filter(|result| result.condition != case.objective.condition);
     let others = others.map(|result| table::table_4(case, result));
-    section(std::iter::once(table::table_3(calibration)).chain(others))
+    let first = std::iter::once(table::table_3(calibration)).chain(table::rivals(calibration));
+    section(first.chain(others))
 }
 
 pub(super) fn simulation(run: &SingleRun) -> Section {

@@ -13,6 +13,7 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
     blocks.extend(figures(
         fitted.and_then(|result| chart::fitted(&calibration.case, result)),
     ));
+    blocks.extend(words::rivals(calibration).map(|said| Block::Warning(vec![said])));
     blocks.extend(words::model_error(calibration).map(|said| Block::Warning(vec![said])));
     blocks.extend(words::noise_level(calibration).map(Block::Text));
     if calibration.origin.synthetic {

@@ -231,6 +231,42 @@ pub fn table_3(calibration: &Calibration) -> Table {
     table
 }
 
+/// Builds the table of the best fit and of the rival fits of other families, with the objective of each;
+/// `None` if there is no rival.
+pub fn rivals(calibration: &Calibration) -> Option<Table> {
+    let Calibration { case, rivals, .. } = calibration;
+    let (_, best) = calibration.objective(|result| &result.optimised)?;
+    let mut table = Table::new(
+        "Fits of other families with nearly the same objective",
+        ["", "unit", "optimised"],
+        Vec::new(),
+    );
+    let numbers = 1..=rivals.len();
+    table.head.extend(numbers.map(|k| format!("rival {k}")));
+    let fits = std::iter::once(&calibration.optimised.genes);
+    let fits = fits.chain(rivals.iter().map(|rival| &rival.genes));
+    for (index, unknown) in case.unknowns.iter().enumerate() {
+        let value = |genes: &Vec<f64>| {
+            let value = genes.get(index).copied().unwrap_or(f64::NAN);
+            let bound = words::at_bound(unknown, value).map_or("", |_| " *");
+            format!("{}{bound}", significant(value))
+        };
+        let cells = [unit(&unknown.unit)].into_iter();
+        table
+            .rows
+            .push(Row::of(unknown, cells.chain(fits.clone().map(value))));
+    }
+    let objectives = std::iter::once(best).chain(rivals.iter().map(|rival| rival.objective));
+    let cells = [squared(case.objective_unit())].into_iter();
+    let cells = cells.chain(objectives.map(significant));
+    table.rows.push(Row::new("Objective", cells));
+    let notes = [
+        "A rival is the end of a descent whose objective is at most 1.5 times the best, and which differs by more than \
+         half a decade in an unknown that the record determines. * at a bound of the search.",
+    ];
+    (!rivals.is_empty()).then(|| table.with_notes(notes))
+}
+
 /// Builds the reference paper's Table 4: agreement with the measurement under another condition, with the
 /// parameters of the calibration unchanged.
 pub fn table_4(case: &Case, result: &ConditionResult) -> Table {

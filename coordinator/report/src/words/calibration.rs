@@ -5,7 +5,8 @@ use super::name::{calibrated, capitalised, channel_title, condition_name, is_fit
 use super::outcome::verdict;
 use crate::data::{Calibration, ConditionResult};
 use crate::number::{fixed, percent, quantity, ratio, significant, squared};
-use protocol::case::{Case, Channel, Scale, Term};
+use discrepancy::identify::Determination;
+use protocol::case::{Case, Channel, Scale, Term, Unknown};
 use protocol::job::{ChannelScore, Verdict};
 
 /// Returns the objective with the recommended parameters, if their simulations were complete.
@@ -165,16 +166,12 @@ pub(crate) fn model_error(calibration: &Calibration) -> Option<String> {
     if most < NOISE_RATIO_LIMIT {
         return None;
     }
-    let seen = |name: &str| {
-        let mut said = calibration.identifiability.iter();
-        said.any(|own| own.name == name && matches!(own.interval, [Some(_), Some(_)]))
-    };
     let unknowns = case.unknowns.iter().zip(&calibration.optimised.genes);
     let far = unknowns.filter_map(|(unknown, value)| {
         let times = value / unknown.start;
         let is_far = !(1.0 / FAR..=FAR).contains(&times);
         let logarithmic = unknown.scale == Scale::Logarithmic;
-        (is_far && logarithmic && seen(&unknown.name))
+        (is_far && logarithmic && determined(calibration, &unknown.name))
             .then(|| format!("{} at {}", unknown.name, ratio(*value, unknown.start)))
     });
     let far: Vec<String> = far.collect();
@@ -183,7 +180,7 @@ pub(crate) fn model_error(calibration: &Calibration) -> Option<String> {
     } else {
         let all = join_words(&far, "and");
         format!(
-            " Unknowns far from their recommended values may compensate for it: {all} of the recommended value."
+            " Unknowns far from their recommended values may compensate for it, and then describe this fit, not the machine: {all} of the recommended value."
         )
     };
     Some(format!(
@@ -218,6 +215,44 @@ pub(crate) fn noise_level(calibration: &Calibration) -> Option<String> {
     })
 }
 
+/// States that the search found fits of other families with nearly the same objective, and in which unknowns
+/// they differ; `None` if it found none.
+pub(crate) fn rivals(calibration: &Calibration) -> Option<String> {
+    let case = &calibration.case;
+    let (_, best) = calibration.objective(|result| &result.optimised)?;
+    if calibration.rivals.is_empty() {
+        return None;
+    }
+    let differs = |unknown: &&Unknown| {
+        let mut rivals = calibration.rivals.iter();
+        rivals.any(|rival| rival.differs.contains(&unknown.name))
+    };
+    let names = case.unknowns.iter().filter(differs);
+    let names: Vec<String> = names.map(|unknown| unknown.name.clone()).collect();
+    let unit = square_after(case.objective_unit());
+    let rivals = calibration.rivals.iter();
+    let objectives: Vec<String> = rivals.map(|rival| significant(rival.objective)).collect();
+    let (fits, they) = match objectives.len() {
+        1 => ("another fit", "It differs"),
+        _ => ("other fits", "They differ"),
+    };
+    Some(format!(
+        "The search is not sure: it also ended in {fits} with an objective of {}{unit} beside {}. {they} in {}; \
+         both sets of values stand under \"Parameters and errors\". An effect that the model lacks may prefer the \
+         wrong one: compare them with `horsehead verify` under another condition, or repeat the search with another \
+         `--seed`.",
+        join_words(&objectives, "and"),
+        significant(best),
+        join_words(&names, "and"),
+    ))
+}
+
+/// Returns whether the record bounds an unknown on both sides.
+fn determined(calibration: &Calibration, name: &str) -> bool {
+    let mut said = calibration.identifiability.iter();
+    said.any(|own| own.name == name && own.seen == Determination::Both)
+}
+
 /// Lists the warnings that follow from the data of a calibration: failed runs, worse channels, unknowns at a
 /// bound.
 pub(crate) fn warnings(calibration: &Calibration) -> Vec<String> {
@@ -248,11 +283,18 @@ pub(crate) fn warnings(calibration: &Calibration) -> Vec<String> {
     }
     for (gene, &value) in case.unknowns.iter().zip(&calibration.optimised.genes) {
         if let Some(side) = at_bound(gene, value) {
+            let mut said = calibration.identifiability.iter();
+            let blind = said.any(|own| own.name == gene.name && own.seen == Determination::NotSeen);
             warnings.push(format!(
-                "{} ended at {} ({}): the optimum may lie outside.",
+                "{} ended at {} ({}): {}.",
                 gene.name,
                 bound(gene, side),
-                quantity(value, &gene.unit)
+                quantity(value, &gene.unit),
+                if blind {
+                    "the record does not determine it, and the other values do not depend on it"
+                } else {
+                    "the optimum may lie outside, and the other values may compensate for that"
+                }
             ));
         }
     }

@@ -9,8 +9,8 @@ mod name;
 mod outcome;
 
 pub(super) use calibration::{
-    absolute_worse, channels, complete_objective, headline, model_error, noise_level, square_after,
-    warnings,
+    absolute_worse, channels, complete_objective, headline, model_error, noise_level, rivals,
+    square_after, warnings,
 };
 pub(super) use gene::{at_bound, bound, interval_cell};
 pub(super) use name::{

@@ -541,6 +541,7 @@ pub(crate) fn calibration(evaluations: usize) -> Calibration {
         1.2 * conditions[1].recommended.evaluation.channels[3].mse;
     Calibration {
         identifiability: Vec::new(),
+        rivals: Vec::new(),
         origin: origin(),
         recommended: Individual {
             id: None,

@@ -32,6 +32,7 @@ pub struct Archive {
     entries: Vec<EvaluatedIndividual>,
     by_genes: BTreeMap<Vec<u64>, usize>,
     best: Option<usize>,
+    families: Vec<Vec<Vec<f64>>>,
 }
 
 impl Archive {
@@ -61,6 +62,21 @@ impl Archive {
             .collect();
         ranked.sort_by(|a, b| a.result.order(b.result));
         ranked
+    }
+
+    /// Returns the individuals from which the next piece may begin: for each family the genes of its
+    /// individuals, best first, the family with the best one first. All that survived are one family, unless the
+    /// last piece distinguished several.
+    pub fn families(&self) -> Vec<Vec<Vec<f64>>> {
+        if self.families.is_empty() {
+            return vec![self.ranked().iter().map(|one| one.genes.clone()).collect()];
+        }
+        self.families.clone()
+    }
+
+    /// Replaces the families of individuals from which the next piece may begin.
+    pub(super) fn set_families(&mut self, families: Vec<Vec<Vec<f64>>>) {
+        self.families = families;
     }
 
     pub(super) fn push(&mut self, entry: EvaluatedIndividual) {

@@ -2,6 +2,7 @@
 use super::{
     archive::{Archive, Residual},
     evaluation_result::EvaluationResult,
+    family::DescentEnd,
     outcome::{Best, Finish, Progress},
     proposal::Proposal,
     stage::ProposalDraft,
@@ -37,6 +38,11 @@ pub trait Strategy {
 
     /// Returns the best individual so far: complete before failed, then by fitness, then by id.
     fn best(&self) -> Option<Best>;
+
+    /// Returns the ends of the least-squares descents that converged; empty for a strategy without descents.
+    fn descent_ends(&self) -> &[DescentEnd] {
+        &[]
+    }
 
     /// Returns the archive of all results that the search has consumed, in id order.
     fn archive(&self) -> &Archive;

@@ -6,13 +6,16 @@
 //! more near a minimum than any search that uses the fitness alone.
 use super::{
     archive::{Archive, EvaluatedIndividual, Residual},
+    family::DescentEnd,
     proposal::Purpose,
     setting::{AllowedValues, Setting, SettingsError, check},
     stage::{Batch, Piece, ProposalDraft},
 };
 use crate::{
     derivative::terms,
-    least_squares::{Anticipated, EvaluatedPoint, LeastSquares, LeastSquaresSettings, Variable},
+    least_squares::{
+        Anticipated, EvaluatedPoint, LeastSquares, LeastSquaresSettings, Termination, Variable,
+    },
     space::Space,
 };
 use nalgebra::DVector;
@@ -211,10 +214,23 @@ impl Levenberg {
     }
 
     fn begin(&self, archive: &Archive) -> Vec<(LeastSquares, usize)> {
-        let ranked = archive.ranked().into_iter();
-        let ranked = ranked.map(|one| (self.space.point(&one.genes), one.result.fitness));
         let apart = SpacingRule::new(&self.space, self.settings.apart);
-        let starts = apart.first(self.settings.starts, ranked, |(x, _)| x);
+        let located = |genes: Vec<f64>| {
+            let fitness = archive.find(&genes)?.result.fitness;
+            Some((self.space.point(&genes), fitness))
+        };
+        let first = |family: Vec<Vec<f64>>| {
+            let all = family.into_iter().filter_map(located);
+            apart.first(self.settings.starts, all, |(x, _)| x)
+        };
+        let families: Vec<_> = archive.families().into_iter().map(first).collect();
+        // the best of each family, then the second of each
+        let longest = families.iter().map(Vec::len).max().unwrap_or(0);
+        let places = (0..longest).flat_map(|place| {
+            let at = families.iter().filter_map(move |family| family.get(place));
+            at.cloned()
+        });
+        let starts: Vec<(Vec<f64>, f64)> = places.take(self.settings.starts).collect();
         let search = |(x, fitness): (Vec<f64>, f64)| {
             let usual = LeastSquaresSettings::default();
             let exact = self.settings.finish == DescentTolerance::Exact;
@@ -387,6 +403,26 @@ impl Piece for Levenberg {
             purpose,
         };
         ranked.into_iter().map(draft).collect()
+    }
+
+    fn families(&self, _archive: &Archive) -> Vec<Vec<Vec<f64>>> {
+        let mut left: Vec<&LeastSquares> = self.searches.iter().flatten().map(|s| &s.0).collect();
+        left.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+        let genes = |search: &LeastSquares| vec![self.space.values(&search.best().x)];
+        left.into_iter().map(genes).collect()
+    }
+
+    fn descent_ends(&self) -> Vec<DescentEnd> {
+        let converged = |search: &&(LeastSquares, usize)| {
+            let ended = search.0.ended();
+            matches!(ended, Some(Termination::Converged | Termination::Stalled))
+        };
+        let converged = self.searches.iter().flatten().filter(converged);
+        let end = converged.map(|(search, _)| DescentEnd {
+            genes: self.space.values(&search.best().x),
+            fitness: search.cost(),
+        });
+        end.collect()
     }
 
     fn generations(&self) -> u32 {

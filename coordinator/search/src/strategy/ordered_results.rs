@@ -68,6 +68,11 @@ impl Intake {
         self.archive.entries().get(index).cloned()
     }
 
+    /// Replaces the archive's families of individuals from which the next piece may begin.
+    pub(super) fn set_families(&mut self, families: Vec<Vec<Vec<f64>>>) {
+        self.archive.set_families(families);
+    }
+
     pub(super) const fn archive(&self) -> &Archive {
         &self.archive
     }

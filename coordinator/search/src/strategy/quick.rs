@@ -6,8 +6,8 @@
 //! box. A population finds the plateau around it but not the valley; and on the plateau more damping always
 //! looks better, because it removes the oscillation whose phase does not fit. `quick` therefore races
 //! descents of the residual vector from scattered points, which finds approximate values of the other
-//! unknowns, scans the unknown with the narrow minimum around the best of them, on lines along which the
-//! valley is visible, and races descents again from the best grid points (stations) of the scan. `memetic`
+//! unknowns, scans the unknown with the narrow minimum around the ends of the best two, on lines along which
+//! the valley is visible, and races descents again from the best grid points (stations) about each of them. `memetic`
 //! needs the fitness alone: population, scan, refinement, fine scan, refinement. The case states which
 //! unknown has a narrow valley and which other unknowns hide it; if it states none, there is no scan.
 use super::{
@@ -268,12 +268,20 @@ impl QuickSettings {
         Self { trust, parts }
     }
 
-    /// Returns the settings of ten descents from scattered points, a scan about the best, and eight descents
-    /// from the grid points of the scan, two of which run to convergence: some 400 evaluations, 60 of them
-    /// with derivatives. Results with these numbers are in `tests/truth/README.md`.
+    /// Returns the settings of ten descents from scattered points, a scan about the ends of the best two, and
+    /// eight descents from the grid points of the scan, half of them from each of its base points, two of which
+    /// run to convergence: some 450 evaluations, 55 of them with derivatives. Results with these numbers are in
+    /// `docs/verdicts.md`.
     pub fn quick(space: &Space) -> Self {
         let Self { trust, mut parts } = Self::least_squares(space);
         parts[0] = SearchPart::Points { points: 16 };
+        let starts = if let SearchPart::Scan(scan) = &mut parts[1] {
+            scan.points = 2;
+            RACE.starts
+        } else {
+            // the descents that are left go on
+            RACE.keep
+        };
         if let Some(SearchPart::LeastSquares(descent)) = parts.last_mut() {
             // it decides between families of fits, not how deep each of them is
             let race = SearchPart::LeastSquares(LevenbergSettings {
@@ -284,10 +292,12 @@ impl QuickSettings {
                 ..descent.clone()
             });
             *descent = LevenbergSettings {
-                starts: RACE.starts,
+                starts,
                 apart: RACE.apart,
                 heat: RACE.elimination_interval,
                 keep: RACE.keep,
+                // a longer step may end where an unknown has no effect, from where no step leads back
+                longest: 0.8,
                 ..descent.clone()
             };
             parts.insert(1, race);

@@ -159,6 +159,8 @@ pub struct Scan {
     space: Space,
     done: bool,
     running: usize,
+    /// Genes of each base point and of the stations on its lines, in the order of the base points.
+    families: Vec<Vec<Vec<f64>>>,
 }
 
 impl Scan {
@@ -173,12 +175,19 @@ impl Scan {
             space: space.clone(),
             done: false,
             running: 0,
+            families: Vec::new(),
         })
     }
 
-    /// Returns the base points of the scan: the best points found so far that are far enough apart
-    /// (coordinate).
+    /// Returns the base points of the scan: the best of each family, or the best points found so far that are
+    /// far enough apart (coordinate).
     fn bases(&self, archive: &Archive) -> Vec<Vec<f64>> {
+        let families = archive.families();
+        if families.len() > 1 {
+            let best = families.iter().filter_map(|family| family.first());
+            let best = best.map(|genes| self.space.point(genes));
+            return best.take(self.settings.points).collect();
+        }
         let mut bases: Vec<Vec<f64>> = Vec::new();
         for entry in archive.ranked() {
             let point = self.space.point(&entry.genes);
@@ -204,13 +213,17 @@ impl Piece for Scan {
         if std::mem::replace(&mut self.done, true) {
             return None;
         }
-        let bases = self.bases(archive).into_iter();
-        let points = bases.flat_map(|base| self.settings.points_around(&self.space, &base));
-        let draft = |point: Vec<f64>| ProposalDraft {
-            genes: self.space.values(&point),
-            purpose: Purpose::Scan,
-        };
-        let drafts: Vec<ProposalDraft> = points.map(draft).collect();
+        let mut drafts = Vec::new();
+        for base in self.bases(archive) {
+            let stations = self.settings.points_around(&self.space, &base).into_iter();
+            let stations: Vec<_> = stations.map(|point| self.space.values(&point)).collect();
+            drafts.extend(stations.iter().map(|genes| ProposalDraft {
+                genes: genes.clone(),
+                purpose: Purpose::Scan,
+            }));
+            let base = self.space.values(&base);
+            self.families.push([vec![base], stations].concat());
+        }
         self.running = drafts.len();
         (!drafts.is_empty()).then_some(Batch {
             generation: 1,
@@ -220,6 +233,19 @@ impl Piece for Scan {
 
     fn absorb(&mut self, _results: &[EvaluatedIndividual]) {
         self.running = 0;
+    }
+
+    fn families(&self, archive: &Archive) -> Vec<Vec<Vec<f64>>> {
+        if self.families.len() < 2 {
+            return Vec::new();
+        }
+        let ranked = |family: &Vec<Vec<f64>>| {
+            let known = family.iter().filter_map(|genes| archive.find(genes));
+            let mut known: Vec<_> = known.filter(|one| one.result.survived()).collect();
+            known.sort_by(|a, b| a.result.order(b.result));
+            known.into_iter().map(|one| one.genes.clone()).collect()
+        };
+        self.families.iter().map(ranked).collect()
     }
 
     fn generations(&self) -> u32 {

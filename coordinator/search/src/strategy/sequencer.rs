@@ -7,6 +7,7 @@ use super::{
     archive::{Archive, EvaluatedIndividual, Residual, key},
     ask_tell::Strategy,
     evaluation_result::EvaluationResult,
+    family::DescentEnd,
     ordered_results::Intake,
     outcome::{Best, Finish, Progress},
     proposal::Proposal,
@@ -24,6 +25,8 @@ pub struct Conductor {
     slots: Vec<u64>,
     outbox: Vec<Proposal>,
     residuals: BTreeMap<u64, Residual>,
+    /// Ends of the descents of the completed pieces that converged.
+    descent_ends: Vec<DescentEnd>,
     next_id: u64,
     generation: u32,
     /// Number of generations of the completed pieces.
@@ -42,6 +45,7 @@ impl Conductor {
             slots: Vec::new(),
             outbox: Vec::new(),
             residuals: BTreeMap::new(),
+            descent_ends: Vec::new(),
             next_id: 0,
             generation: 0,
             generations_done: 0,
@@ -65,6 +69,9 @@ impl Conductor {
                 self.open_batch(batch);
             } else {
                 self.generations_done += piece.generations();
+                self.descent_ends.extend(piece.descent_ends());
+                let families = piece.families(self.intake.archive());
+                self.intake.set_families(families);
                 self.pieces.pop_front();
             }
         }
@@ -188,6 +195,10 @@ impl Strategy for Conductor {
 
     fn best(&self) -> Option<Best> {
         self.intake.archive().best().map(Best::from)
+    }
+
+    fn descent_ends(&self) -> &[DescentEnd] {
+        &self.descent_ends
     }
 
     fn archive(&self) -> &Archive {

@@ -1,6 +1,7 @@
 //! Interface of a piece: a part of a strategy that works batch by batch.
 use super::{
     archive::{Archive, EvaluatedIndividual},
+    family::DescentEnd,
     proposal::Purpose,
 };
 
@@ -20,6 +21,17 @@ pub trait Piece {
         &self,
         _result: &dyn Fn(usize) -> Option<EvaluatedIndividual>,
     ) -> Vec<ProposalDraft> {
+        Vec::new()
+    }
+
+    /// Returns the ends of the least-squares descents of a finished piece that converged.
+    fn descent_ends(&self) -> Vec<DescentEnd> {
+        Vec::new()
+    }
+
+    /// Returns the families of individuals from which the next piece should begin (see [`Archive::families`]);
+    /// empty if a finished piece distinguishes none.
+    fn families(&self, _archive: &Archive) -> Vec<Vec<Vec<f64>>> {
         Vec::new()
     }
 

@@ -122,7 +122,7 @@ impl Record {
 #[test]
 fn the_bits_of_every_preset_stay() {
     let frozen = [
-        ("quick", 0xb311_6c1a_264e_b223),
+        ("quick", 0x8271_1539_3b72_c7ff),
         ("memetic", 0xaff2_9ab8_8a60_5ccc),
         ("least-squares", 0xe6e3_4944_ef6c_20a7),
         ("hybrid", 0x165b_cdda_ecdd_bace),
@@ -338,7 +338,9 @@ fn progress_ends_at_what_was_expected() {
         );
         assert_eq!(last.generation, last.generations, "{}", preset.name);
         let ratio = last.evaluations as f64 / first.expected_evaluations as f64;
-        assert!((0.7..1.4).contains(&ratio), "{}: {ratio}", preset.name);
+        // every descent ends in the one minimum: both base points of a scan are the same, and its stations known
+        let least = if preset.name == "quick" { 0.5 } else { 0.7 };
+        assert!((least..1.4).contains(&ratio), "{}: {ratio}", preset.name);
     }
 }
 
@@ -573,4 +575,38 @@ fn unknown_settings_and_values_are_refused_with_what_there_is() {
     let error = quick.set(&mut settings, "scan_step", "0.1").unwrap_err();
     let words = error.to_string();
     assert!(words.starts_with("`scan_step` has no effect"), "{words}");
+}
+
+/// Checks that a search with two nearly equal minima reports the one that did not win, and that a minimum that
+/// is much worse, or differs only in what is not determined, is none.
+#[test]
+fn descents_that_end_in_another_family_are_rivals() {
+    let unknown = |name: &str| Unknown::new(name, "N/m", Scale::Logarithmic, 1.0, [1e-3, 1e3]);
+    let space = Space::new(&[unknown("k"), unknown("c")]).unwrap();
+    for (tilt, expected) in [(0.1, 1), (1.0, 0)] {
+        // minima near x = 1 and x = -1, the second of which is worse the larger the tilt
+        let residual = |genes: &[f64]| {
+            let x = space.point(genes);
+            vec![x[0] * x[0] - 1.0, tilt * (x[0] - 1.5), 1e-3 * x[1], 1.0]
+        };
+        let tell = |genes: &[f64]| EvaluationResult {
+            fitness: residual(genes).iter().map(|r| r * r).sum(),
+            complete: true,
+        };
+        let mut quick = QuickSettings::quick(&space);
+        quick.parts.truncate(2);
+        if let Some(quick::SearchPart::LeastSquares(race)) = quick.parts.last_mut() {
+            (race.heat, race.iterations) = (100, 50);
+        }
+        let mut strategy = build(&Settings::of(&quick), &space, 1).unwrap();
+        let best = run_with(strategy.as_mut(), &tell, &residual, None).best;
+        let best = (&best.genes[..], best.fitness);
+        let found = family::rivals(&space, best, strategy.descent_ends(), |name| name == "k");
+        assert_eq!(found.len(), expected, "{tilt}: {found:?}");
+        for rival in found {
+            assert_eq!(rival.differs, ["k"]);
+            let x = space.point(&rival.end.genes);
+            assert!((x[0] + 1.0).abs() < 0.2, "{x:?}");
+        }
+    }
 }

@@ -322,6 +322,7 @@ fn calibration(run: &Calibration, state: &RunState, compared: ComparedRuns<'_>) 
             _ => Vec::new(),
         },
         identifiability: Vec::new(),
+        rivals: Vec::new(),
         notes: [&run.manifest.notes[..], &state.notes].concat(),
     };
     report::running_calibration(&data)

@@ -2,6 +2,7 @@
 use super::{
     object::{
         calibration::CalibrateOutput,
+        calibration::RivalOutput,
         score::{ConditionOutput, RecommendedAndOptimised, condition, unknowns},
     },
     terminal,
@@ -14,6 +15,7 @@ use crate::cli::{
         tables,
     },
 };
+use discrepancy::identify::{Determination, UnknownEstimate};
 use dispatch::account::{self, JobCost};
 use dispatch::journal;
 use protocol::{
@@ -21,8 +23,11 @@ use protocol::{
     event::WorkerAccount,
     job::{Counters, Evaluation, Verdict},
 };
-use report::{self, Calibration, ConditionResult, HistoryPoint, Individual, WorkerUse};
-use search::strategy::Finish;
+use report::{self, Calibration, ConditionResult, HistoryPoint, Individual, RivalFit, WorkerUse};
+use search::strategy::{
+    Finish,
+    family::{Rival, rivals},
+};
 use std::collections::BTreeMap;
 use study::{self, Calibrated, Compared, ComparedCurves, LogEntry};
 
@@ -74,14 +79,22 @@ pub(crate) fn show(run: &Run, found: &Found, wall_s: f64, output: Output) -> any
     object
         .unknowns
         .add_identifiability(&calibration.identifiability);
+    let rivals = calibration.rivals.iter();
+    object.rivals = rivals
+        .map(|rival| RivalOutput::new(&run.case, rival))
+        .collect();
     folder.write_json(RESULT, &object)?;
     terminal::tell(&format!(
         "open {}\nparameters in {}",
         folder.file("report.html").display(),
         folder.file(GENES).display()
     ));
-    if let Some(structure) = report::structure(&calibration) {
-        terminal::tell(&format!("note: {structure}"));
+    let said = [
+        report::rivals(&calibration),
+        report::structure(&calibration),
+    ];
+    for note in said.into_iter().flatten() {
+        terminal::tell(&format!("note: {note}"));
     }
     let tables = || report::parameters(&calibration, terminal::styled());
     terminal::print(output, tables, &object)
@@ -127,6 +140,7 @@ fn result_object<'a>(
         wall_s,
         unknowns: unknowns(case, &found.calibrated.best.genes),
         objective: calibrated.objective,
+        rivals: Vec::new(),
         channels: calibrated.channels,
         other_conditions,
         log_digest: log.digest(),
@@ -159,7 +173,12 @@ pub(crate) fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Resu
     let case = &run.case;
     // what workers of earlier sessions did is in the journal alone
     let (account, costs) = account::read_with_costs(&run.folder.file(journal::FILE))?;
-    let Calibrated { best, finish, log } = &found.calibrated;
+    let Calibrated {
+        best, finish, log, ..
+    } = &found.calibrated;
+    // a run of before this was looked at has none
+    let identifiability: Vec<UnknownEstimate> =
+        run.folder.read_json(IDENTIFIABILITY).unwrap_or_default();
     let mut notes = [&run.manifest.notes[..], &found.notes].concat();
     if !best.complete {
         notes.push("no individual completed its simulation".to_owned());
@@ -188,10 +207,31 @@ pub(crate) fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Resu
             Finish::Threshold => "the fitness threshold was reached".to_owned(),
         },
         conditions: found.compared.iter().filter_map(condition_result).collect(),
-        // a run of before this was looked at has none
-        identifiability: run.folder.read_json(IDENTIFIABILITY).unwrap_or_default(),
+        rivals: rival_fits(run, &found.calibrated, &identifiability)?,
+        identifiability,
         notes,
     })
+}
+
+/// Returns the best fits of other families whose objective lies near that of the best individual.
+fn rival_fits(
+    run: &Run,
+    found: &Calibrated,
+    identifiability: &[UnknownEstimate],
+) -> anyhow::Result<Vec<RivalFit>> {
+    let space = run.manifest.space(&run.case)?;
+    let determined = |name: &str| {
+        let mut said = identifiability.iter();
+        said.any(|own| own.name == name && own.seen == Determination::Both)
+    };
+    let best = (&found.best.genes[..], found.best.fitness);
+    let rivals = rivals(&space, best, &found.descent_ends, determined).into_iter();
+    let fit = |rival: Rival<'_>| RivalFit {
+        genes: rival.end.genes.clone(),
+        objective: rival.end.fitness,
+        differs: rival.differs.into_iter().map(str::to_owned).collect(),
+    };
+    Ok(rivals.map(fit).collect())
 }
 
 /// Converts a log entry to the report's type; `cost` is that of its simulation, if known.

@@ -171,6 +171,7 @@ fn a_calibration_has_the_fields_that_programs_rely_on() {
     let (before, after) = (curves(Verdict::Complete), curves(Verdict::Complete));
     let scores = condition(&case, &before, &after);
     let object = CalibrateOutput {
+        rivals: Vec::new(),
         run: "runs/x".to_owned(),
         case: &case.name,
         preset: "quick",
@@ -199,6 +200,7 @@ fn a_calibration_has_the_fields_that_programs_rely_on() {
             "objective",
             "other_conditions",
             "preset",
+            "rivals",
             "run",
             "seed",
             "wall_s"

@@ -1,5 +1,7 @@
 //! JSON objects of `horsehead calibrate` and `horsehead verify`.
 use super::score::{ConditionOutput, RecommendedAndOptimised, ScoreOutput, Unknowns};
+use protocol::case::Case;
+use report::RivalFit;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -21,6 +23,8 @@ pub(crate) struct CalibrateOutput<'a> {
     /// Objective of the recommended and the optimised parameters, summed over the calibrated conditions, in
     /// the square of the unit that its channels share.
     pub(crate) objective: RecommendedAndOptimised<Option<f64>>,
+    /// Fits of other families whose objective lies near that of the optimised parameters, best first.
+    pub(crate) rivals: Vec<RivalOutput>,
     /// Agreement between simulation and measurement by channel, for the recommended and the optimised
     /// parameters, at the first calibrated condition.
     pub(crate) channels: BTreeMap<String, RecommendedAndOptimised<Option<ScoreOutput>>>,
@@ -31,6 +35,28 @@ pub(crate) struct CalibrateOutput<'a> {
     pub(crate) log_digest: String,
     /// Paths of the result files that were written.
     pub(crate) files: Vec<String>,
+}
+
+/// Fit of another family than the optimised parameters.
+#[derive(Debug, Serialize)]
+pub(crate) struct RivalOutput {
+    objective: f64,
+    /// Names of the unknowns in which the fit differs from the optimised parameters.
+    differs: Vec<String>,
+    /// Values of the unknowns, by name.
+    values: BTreeMap<String, f64>,
+}
+
+impl RivalOutput {
+    /// Converts a fit of the unknowns of a case.
+    pub(crate) fn new(case: &Case, rival: &RivalFit) -> Self {
+        let names = case.unknowns.iter().map(|unknown| unknown.name.clone());
+        Self {
+            objective: rival.objective,
+            differs: rival.differs.clone(),
+            values: names.zip(rival.genes.iter().copied()).collect(),
+        }
+    }
 }
 
 /// JSON object printed by `horsehead verify RUN --condition NAME --output json`.
