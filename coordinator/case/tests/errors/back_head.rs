@@ -4,6 +4,35 @@ use std::fs;
 
 pub(super) const FAULTS: &[Spoilt] = &[
     (
+        "several faults at once",
+        |c| {
+            c.replace(TOML, "mass_kg = 450.0", "mass_kg = -450.0");
+            c.replace(TOML, "radius_m = 1.900", "radius_m = 0.0");
+            c.replace(TOML, "recommended = 3.14e8", "recommended = 3.14e13");
+            c.effect("parameters = { moment = { value = inf, unit = \"N.m\" } }");
+            for file in ["measured/test_4rpm.csv.gz", "measured/card_5rpm.csv"] {
+                fs::remove_file(c.path(file)).unwrap();
+            }
+            for file in [
+                "back_head/back_head.msh",
+                "back_head/back_head_influence.csv",
+            ] {
+                fs::remove_file(c.path(file)).unwrap();
+            }
+        },
+        &[
+            "8 faults",
+            "`rod.mass_kg` = -450",
+            "`back_head.radius_m` = 0",
+            "`genes.kb1.recommended`",
+            "`effects[0].parameters.moment.value` = inf",
+            "test_4rpm.csv.gz: no such file",
+            "card_5rpm.csv: no such file",
+            "back_head.msh: no such file",
+            "back_head_influence.csv: no such file",
+        ],
+    ),
+    (
         "modes absent",
         |c| fs::remove_file(c.path(MODES)).unwrap(),
         &["back_head_modes.json", "no such file"],

@@ -18,27 +18,27 @@ use std::fs;
 
 #[test]
 fn every_fault_of_the_case_file_is_named() {
-    assert_each_is_named(case_file::FAULTS);
+    assert_each_is_named(case_file::FAULTS, Copy::without_mesh);
 }
 
 #[test]
 fn every_fault_of_a_load_card_is_named() {
-    assert_each_is_named(card::FAULTS);
+    assert_each_is_named(card::FAULTS, Copy::without_mesh);
 }
 
 #[test]
 fn every_fault_of_a_record_is_named() {
-    assert_each_is_named(record::FAULTS);
+    assert_each_is_named(record::FAULTS, Copy::without_mesh);
 }
 
 #[test]
 fn every_fault_of_the_back_head_is_named() {
-    assert_each_is_named(back_head::FAULTS);
+    assert_each_is_named(back_head::FAULTS, Copy::new);
 }
 
 #[test]
 fn every_fault_of_twin_ropes_is_named() {
-    assert_each_is_named(twins::FAULTS);
+    assert_each_is_named(twins::FAULTS, Copy::new);
 }
 
 /// Checks that the folder of `--measured` may hold records of only some conditions: the others keep their
