@@ -6,9 +6,9 @@
 )]
 mod columns;
 mod commands;
+mod coordinator_kills;
 mod disk;
 mod faults;
-mod hundred_kills;
 mod late_reading;
 mod local;
 mod misbehaviour;

@@ -237,10 +237,9 @@ pub(crate) fn rivals(calibration: &Calibration) -> Option<String> {
         _ => ("other fits", "They differ"),
     };
     Some(format!(
-        "The search is not sure: it also ended in {fits} with an objective of {}{unit} beside {}. {they} in {}; \
-         both sets of values stand under \"Parameters and errors\". An effect that the model lacks may prefer the \
-         wrong one: compare them with `horsehead verify` under another condition, or repeat the search with another \
-         `--seed`.",
+        "The search is not sure: it also ended in {fits} with an objective of {}{unit} beside {}. {they} in {}; the \
+         values of all fits stand under \"Parameters and errors\". An effect that the model lacks may prefer the wrong \
+         one: trust none of these values before another condition or another `--seed` confirms them.",
         join_words(&objectives, "and"),
         significant(best),
         join_words(&names, "and"),
