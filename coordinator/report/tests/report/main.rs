@@ -506,7 +506,7 @@ fn a_rival_fit_stands_beside_the_best_with_all_its_values() {
     let alone = report::text(&report::calibration(&data), false);
     assert!(!alone.contains("rival") && !alone.contains("is not sure"));
     let mut genes = data.optimised.genes.clone();
-    genes[0] = 12.5 * genes[0];
+    genes[0] *= 12.5;
     data.rivals = vec![RivalFit {
         genes,
         objective: 0.731,
@@ -521,7 +521,7 @@ fn a_rival_fit_stands_beside_the_best_with_all_its_values() {
     assert!(said.contains("It differs in kb1;"), "{said}");
     let all = report::text(&report::calibration(&data), false);
     assert!(all.contains(&said));
-    let table = report::table::rivals(&data).expect("a table");
+    let table = table::rivals(&data).expect("a table");
     assert_eq!(table.head, ["", "unit", "optimised", "rival 1"]);
     let [table::Row::Values(_, cells), ..] = &table.rows[..] else {
         unreachable!("{table:?}")
