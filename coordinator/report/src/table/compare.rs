@@ -262,7 +262,8 @@ pub fn rivals(calibration: &Calibration) -> Option<Table> {
     table.rows.push(Row::new("Objective", cells));
     let notes = [
         "A rival is the end of a descent whose objective is at most 1.5 times the best, and which differs by more than \
-         half a decade in an unknown that the record determines. * at a bound of the search.",
+         half a decade (on a linear axis, a quarter of the interval) in an unknown that the record bounds on both sides \
+         at the best fit. * at a bound of the search.",
     ];
     (!rivals.is_empty()).then(|| table.with_notes(notes))
 }

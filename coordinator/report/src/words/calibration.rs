@@ -233,13 +233,19 @@ pub(crate) fn rivals(calibration: &Calibration) -> Option<String> {
     let rivals = calibration.rivals.iter();
     let objectives: Vec<String> = rivals.map(|rival| significant(rival.objective)).collect();
     let (fits, they) = match objectives.len() {
-        1 => ("another fit", "It differs"),
-        _ => ("other fits", "They differ"),
+        1 => (
+            "another fit, with an objective of",
+            "It differs from the best one in",
+        ),
+        _ => (
+            "other fits, with objectives of",
+            "Each differs from the best one in some of",
+        ),
     };
     Some(format!(
-        "The search is not sure: it also ended in {fits} with an objective of {}{unit} beside {}. {they} in {}; the \
-         values of all fits stand under \"Parameters and errors\". An effect that the model lacks may prefer the wrong \
-         one: trust none of these values before another condition or another `--seed` confirms them.",
+        "Several fits have nearly the same objective: the search also ended in {fits} {}{unit}; the best one has {}{unit}. \
+         {they} {}; the values of all fits are under \"Parameters and errors\". An effect that the model lacks may \
+         prefer the wrong one: trust none of these values before another condition confirms them.",
         join_words(&objectives, "and"),
         significant(best),
         join_words(&names, "and"),
@@ -290,7 +296,7 @@ pub(crate) fn warnings(calibration: &Calibration) -> Vec<String> {
                 bound(gene, side),
                 quantity(value, &gene.unit),
                 if blind {
-                    "the record does not determine it, and the other values do not depend on it"
+                    "near this value the record does not determine it, to first order; another value may fit better"
                 } else {
                     "the optimum may lie outside, and the other values may compensate for that"
                 }

@@ -32,7 +32,7 @@ pub struct Archive {
     entries: Vec<EvaluatedIndividual>,
     by_genes: BTreeMap<Vec<u64>, usize>,
     best: Option<usize>,
-    families: Vec<Vec<Vec<f64>>>,
+    start_groups: Vec<Vec<Vec<f64>>>,
 }
 
 impl Archive {
@@ -64,19 +64,18 @@ impl Archive {
         ranked
     }
 
-    /// Returns the individuals from which the next piece may begin: for each family the genes of its
-    /// individuals, best first, the family with the best one first. All that survived are one family, unless the
-    /// last piece distinguished several.
-    pub fn families(&self) -> Vec<Vec<Vec<f64>>> {
-        if self.families.is_empty() {
+    /// Returns the individuals from which the next piece may begin, in groups: for each group the genes of its
+    /// individuals, best first. All that survived are one group, unless the last piece distinguished several.
+    pub fn start_groups(&self) -> Vec<Vec<Vec<f64>>> {
+        if self.start_groups.is_empty() {
             return vec![self.ranked().iter().map(|one| one.genes.clone()).collect()];
         }
-        self.families.clone()
+        self.start_groups.clone()
     }
 
-    /// Replaces the families of individuals from which the next piece may begin.
-    pub(super) fn set_families(&mut self, families: Vec<Vec<Vec<f64>>>) {
-        self.families = families;
+    /// Replaces the groups of individuals from which the next piece may begin.
+    pub(super) fn set_start_groups(&mut self, start_groups: Vec<Vec<Vec<f64>>>) {
+        self.start_groups = start_groups;
     }
 
     pub(super) fn push(&mut self, entry: EvaluatedIndividual) {

@@ -219,15 +219,15 @@ impl Levenberg {
             let fitness = archive.find(&genes)?.result.fitness;
             Some((self.space.point(&genes), fitness))
         };
-        let first = |family: Vec<Vec<f64>>| {
-            let all = family.into_iter().filter_map(located);
+        let first = |group: Vec<Vec<f64>>| {
+            let all = group.into_iter().filter_map(located);
             apart.first(self.settings.starts, all, |(x, _)| x)
         };
-        let families: Vec<_> = archive.families().into_iter().map(first).collect();
-        // the best of each family, then the second of each
-        let longest = families.iter().map(Vec::len).max().unwrap_or(0);
+        let groups: Vec<_> = archive.start_groups().into_iter().map(first).collect();
+        // the best of each group, then the second of each
+        let longest = groups.iter().map(Vec::len).max().unwrap_or(0);
         let places = (0..longest).flat_map(|place| {
-            let at = families.iter().filter_map(move |family| family.get(place));
+            let at = groups.iter().filter_map(move |group| group.get(place));
             at.cloned()
         });
         let starts: Vec<(Vec<f64>, f64)> = places.take(self.settings.starts).collect();
@@ -405,8 +405,9 @@ impl Piece for Levenberg {
         ranked.into_iter().map(draft).collect()
     }
 
-    fn families(&self, _archive: &Archive) -> Vec<Vec<Vec<f64>>> {
-        let mut left: Vec<&LeastSquares> = self.searches.iter().flatten().map(|s| &s.0).collect();
+    fn start_groups(&self, _archive: &Archive) -> Vec<Vec<Vec<f64>>> {
+        let left = self.searches.iter().flatten().map(|(search, _)| search);
+        let mut left: Vec<&LeastSquares> = left.filter(|one| one.cost().is_finite()).collect();
         left.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         let genes = |search: &LeastSquares| vec![self.space.values(&search.best().x)];
         left.into_iter().map(genes).collect()

@@ -68,9 +68,9 @@ impl Intake {
         self.archive.entries().get(index).cloned()
     }
 
-    /// Replaces the archive's families of individuals from which the next piece may begin.
-    pub(super) fn set_families(&mut self, families: Vec<Vec<Vec<f64>>>) {
-        self.archive.set_families(families);
+    /// Replaces the archive's groups of individuals from which the next piece may begin.
+    pub(super) fn set_start_groups(&mut self, start_groups: Vec<Vec<Vec<f64>>>) {
+        self.archive.set_start_groups(start_groups);
     }
 
     pub(super) const fn archive(&self) -> &Archive {

@@ -160,7 +160,7 @@ pub struct Scan {
     done: bool,
     running: usize,
     /// Genes of each base point and of the stations on its lines, in the order of the base points.
-    families: Vec<Vec<Vec<f64>>>,
+    groups: Vec<Vec<Vec<f64>>>,
 }
 
 impl Scan {
@@ -175,16 +175,16 @@ impl Scan {
             space: space.clone(),
             done: false,
             running: 0,
-            families: Vec::new(),
+            groups: Vec::new(),
         })
     }
 
-    /// Returns the base points of the scan: the best of each family, or the best points found so far that are
+    /// Returns the base points of the scan: the best of each group, or the best points found so far that are
     /// far enough apart (coordinate).
     fn bases(&self, archive: &Archive) -> Vec<Vec<f64>> {
-        let families = archive.families();
-        if families.len() > 1 {
-            let best = families.iter().filter_map(|family| family.first());
+        let groups = archive.start_groups();
+        if groups.len() > 1 {
+            let best = groups.iter().filter_map(|group| group.first());
             let best = best.map(|genes| self.space.point(genes));
             return best.take(self.settings.points).collect();
         }
@@ -222,7 +222,7 @@ impl Piece for Scan {
                 purpose: Purpose::Scan,
             }));
             let base = self.space.values(&base);
-            self.families.push([vec![base], stations].concat());
+            self.groups.push([vec![base], stations].concat());
         }
         self.running = drafts.len();
         (!drafts.is_empty()).then_some(Batch {
@@ -235,17 +235,17 @@ impl Piece for Scan {
         self.running = 0;
     }
 
-    fn families(&self, archive: &Archive) -> Vec<Vec<Vec<f64>>> {
-        if self.families.len() < 2 {
+    fn start_groups(&self, archive: &Archive) -> Vec<Vec<Vec<f64>>> {
+        if self.groups.len() < 2 {
             return Vec::new();
         }
-        let ranked = |family: &Vec<Vec<f64>>| {
-            let known = family.iter().filter_map(|genes| archive.find(genes));
+        let ranked = |group: &Vec<Vec<f64>>| {
+            let known = group.iter().filter_map(|genes| archive.find(genes));
             let mut known: Vec<_> = known.filter(|one| one.result.survived()).collect();
             known.sort_by(|a, b| a.result.order(b.result));
             known.into_iter().map(|one| one.genes.clone()).collect()
         };
-        self.families.iter().map(ranked).collect()
+        self.groups.iter().map(ranked).collect()
     }
 
     fn generations(&self) -> u32 {

@@ -70,8 +70,8 @@ impl Conductor {
             } else {
                 self.generations_done += piece.generations();
                 self.descent_ends.extend(piece.descent_ends());
-                let families = piece.families(self.intake.archive());
-                self.intake.set_families(families);
+                let groups = piece.start_groups(self.intake.archive());
+                self.intake.set_start_groups(groups);
                 self.pieces.pop_front();
             }
         }

@@ -29,9 +29,9 @@ pub trait Piece {
         Vec::new()
     }
 
-    /// Returns the families of individuals from which the next piece should begin (see [`Archive::families`]);
+    /// Returns the groups of individuals from which the next piece should begin (see [`Archive::start_groups`]);
     /// empty if a finished piece distinguishes none.
-    fn families(&self, _archive: &Archive) -> Vec<Vec<Vec<f64>>> {
+    fn start_groups(&self, _archive: &Archive) -> Vec<Vec<Vec<f64>>> {
         Vec::new()
     }
 

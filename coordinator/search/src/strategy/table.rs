@@ -9,6 +9,7 @@ use super::{
     ask_tell::Strategy,
     catalogue::build,
     evaluation_result::EvaluationResult,
+    family::DescentEnd,
     ordered_results::Intake,
     outcome::{Best, Finish, Progress},
     proposal::{Proposal, Purpose},
@@ -189,6 +190,10 @@ impl Strategy for TableFirst {
 
     fn best(&self) -> Option<Best> {
         self.intake.archive().best().map(Best::from)
+    }
+
+    fn descent_ends(&self) -> &[DescentEnd] {
+        self.inner.descent_ends()
     }
 
     fn archive(&self) -> &Archive {
