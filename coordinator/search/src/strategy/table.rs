@@ -208,10 +208,13 @@ mod tests {
         random::{Phase, Streams},
         strategy::{
             catalogue::{CATALOGUE, preset},
-            tests::{run_on, settings},
+            family,
+            quick::{self, QuickSettings},
+            tests::{run_on, run_with, settings},
         },
         test_function::SPHERE,
     };
+    use protocol::case::{Scale, Unknown};
 
     fn at(space: &Space, coordinates: &[f64]) -> Vec<Vec<f64>> {
         let one = |x: &f64| space.values(&vec![*x; space.dimension()]);
@@ -297,5 +300,41 @@ mod tests {
         assert!(error.contains("is 3, but must be at most 2"), "{error}");
         let mut empty = build_after(&settings, &space, 5, &[]).unwrap();
         assert_eq!(empty.ask(), build(&settings, &space, 5).unwrap().ask());
+    }
+
+    /// Checks that a search after a table, with two nearly equal minima, reports the one that did not win, and that a minimum that
+    /// is much worse, or differs only in what is not determined, is none.
+    #[test]
+    fn descents_that_end_in_another_family_are_rivals() {
+        let unknown = |name: &str| Unknown::new(name, "N/m", Scale::Logarithmic, 1.0, [1e-3, 1e3]);
+        let space = Space::new(&[unknown("k"), unknown("c")]).unwrap();
+        for (tilt, expected) in [(0.1, 1), (1.0, 0)] {
+            // minima near x = 1 and x = -1, the second of which is worse the larger the tilt
+            let residual = |genes: &[f64]| {
+                let x = space.point(genes);
+                vec![x[0] * x[0] - 1.0, tilt * (x[0] - 1.5), 1e-3 * x[1], 1.0]
+            };
+            let tell = |genes: &[f64]| EvaluationResult {
+                fitness: residual(genes).iter().map(|r| r * r).sum(),
+                complete: true,
+            };
+            let mut quick = QuickSettings::quick(&space);
+            quick.parts.truncate(2);
+            if let Some(quick::SearchPart::LeastSquares(race)) = quick.parts.last_mut() {
+                (race.heat, race.iterations) = (100, 50);
+            }
+            // a table of first individuals hides nothing of what the search finds
+            let table = [space.values(&[0.1, 0.2])];
+            let mut strategy = build_after(&Settings::of(&quick), &space, 1, &table).unwrap();
+            let best = run_with(strategy.as_mut(), &tell, &residual, None).best;
+            let best = (&best.genes[..], best.fitness);
+            let found = family::rivals(&space, best, strategy.descent_ends(), |name| name == "k");
+            assert_eq!(found.len(), expected, "{tilt}: {found:?}");
+            for rival in found {
+                assert_eq!(rival.differs, ["k"]);
+                let x = space.point(&rival.end.genes);
+                assert!((x[0] + 1.0).abs() < 0.2, "{x:?}");
+            }
+        }
     }
 }

@@ -41,7 +41,8 @@ pub(super) fn run_on(
     )
 }
 
-fn run_with(
+/// Runs a strategy to its end on an objective and a residual vector of the gene values.
+pub(super) fn run_with(
     strategy: &mut dyn Strategy,
     tell: &Tell<'_>,
     residual: &dyn Fn(&[f64]) -> Vec<f64>,
@@ -575,40 +576,4 @@ fn unknown_settings_and_values_are_refused_with_what_there_is() {
     let error = quick.set(&mut settings, "scan_step", "0.1").unwrap_err();
     let words = error.to_string();
     assert!(words.starts_with("`scan_step` has no effect"), "{words}");
-}
-
-/// Checks that a search with two nearly equal minima reports the one that did not win, and that a minimum that
-/// is much worse, or differs only in what is not determined, is none.
-#[test]
-fn descents_that_end_in_another_family_are_rivals() {
-    let unknown = |name: &str| Unknown::new(name, "N/m", Scale::Logarithmic, 1.0, [1e-3, 1e3]);
-    let space = Space::new(&[unknown("k"), unknown("c")]).unwrap();
-    for (tilt, expected) in [(0.1, 1), (1.0, 0)] {
-        // minima near x = 1 and x = -1, the second of which is worse the larger the tilt
-        let residual = |genes: &[f64]| {
-            let x = space.point(genes);
-            vec![x[0] * x[0] - 1.0, tilt * (x[0] - 1.5), 1e-3 * x[1], 1.0]
-        };
-        let tell = |genes: &[f64]| EvaluationResult {
-            fitness: residual(genes).iter().map(|r| r * r).sum(),
-            complete: true,
-        };
-        let mut quick = QuickSettings::quick(&space);
-        quick.parts.truncate(2);
-        if let Some(quick::SearchPart::LeastSquares(race)) = quick.parts.last_mut() {
-            (race.heat, race.iterations) = (100, 50);
-        }
-        // a table of first individuals hides nothing of what the search finds
-        let table = [space.values(&[0.1, 0.2])];
-        let mut strategy = build_after(&Settings::of(&quick), &space, 1, &table).unwrap();
-        let best = run_with(strategy.as_mut(), &tell, &residual, None).best;
-        let best = (&best.genes[..], best.fitness);
-        let found = family::rivals(&space, best, strategy.descent_ends(), |name| name == "k");
-        assert_eq!(found.len(), expected, "{tilt}: {found:?}");
-        for rival in found {
-            assert_eq!(rival.differs, ["k"]);
-            let x = space.point(&rival.end.genes);
-            assert!((x[0] + 1.0).abs() < 0.2, "{x:?}");
-        }
-    }
 }
