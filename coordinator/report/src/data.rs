@@ -1,7 +1,7 @@
 //! Plain data of a report, as handed over by the study, before any drawing.
 //!
 //! Every name of a quantity states its unit. Independent of files, clocks and workers.
-use discrepancy::identify::UnknownEstimate;
+use discrepancy::identify::{Determination, UnknownEstimate};
 use discrepancy::validation::gap::Gap;
 use dispatch::account::{JobCost, Presence};
 use protocol::case::{Case, Channel, ChannelRecord, WeightedCondition};
@@ -198,6 +198,12 @@ pub struct RivalFit {
     pub objective: f64,
     /// Names of the unknowns that the record determines and in which the fit differs from the best one.
     pub differs: Vec<String>,
+}
+
+/// Returns whether the record bounds an unknown on both sides, by its first-order estimate.
+pub fn is_determined(identifiability: &[UnknownEstimate], name: &str) -> bool {
+    let mut said = identifiability.iter();
+    said.any(|own| own.name == name && own.seen == Determination::Both)
 }
 
 impl Calibration {

@@ -33,7 +33,7 @@ mod write;
 
 pub use data::{
     Calibration, ConditionResult, HistoryPoint, Individual, Origin, RivalFit, Run, SimulationView,
-    SingleRun, WorkerUse,
+    SingleRun, WorkerUse, is_determined,
 };
 pub use document::{Block, Figure, Report, Section, Table, page, text};
 pub use drawing::ModelReport;

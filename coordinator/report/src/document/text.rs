@@ -114,11 +114,11 @@ pub fn set_table(table: &Table, styled: bool) -> String {
 /// Sets the head and the group names of a rendered table in bold, for a terminal.
 fn bold_heads(grid: &str, table: &Table) -> String {
     let is_group = |line: &str| {
-        let groups = table.rows.iter().filter_map(|row| match row {
+        let mut groups = table.rows.iter().filter_map(|row| match row {
             Row::Group(name) => Some(name.as_str()),
             Row::Values(..) => None,
         });
-        groups.into_iter().any(|name| name == line.trim())
+        groups.any(|name| name == line.trim())
     };
     // the head stands between the first rule and the second
     let mut rules = 0;

@@ -235,6 +235,9 @@ pub fn table_3(calibration: &Calibration) -> Table {
 /// `None` if there is no rival.
 pub fn rivals(calibration: &Calibration) -> Option<Table> {
     let Calibration { case, rivals, .. } = calibration;
+    if rivals.is_empty() {
+        return None;
+    }
     let (_, best) = calibration.objective(|result| &result.optimised)?;
     let mut table = Table::new(
         "Fits of other families with nearly the same objective",
@@ -260,12 +263,10 @@ pub fn rivals(calibration: &Calibration) -> Option<Table> {
     let cells = [squared(case.objective_unit())].into_iter();
     let cells = cells.chain(objectives.map(significant));
     table.rows.push(Row::new("Objective", cells));
-    let notes = [
-        "A rival is the end of a descent whose objective is at most 1.5 times the best, and which differs by more than \
-         half a decade (on a linear axis, a quarter of the interval) in an unknown that the record bounds on both sides \
-         at the best fit. * at a bound of the search.",
-    ];
-    (!rivals.is_empty()).then(|| table.with_notes(notes))
+    let note = "A rival is the end of a descent whose objective is at most 1.5 times the best, and which differs by more than \
+                half a decade (on a linear axis, a quarter of the interval) in an unknown that the record bounds on both sides \
+                at the best fit. * at a bound of the search.";
+    Some(table.with_notes([note]))
 }
 
 /// Builds the reference paper's Table 4: agreement with the measurement under another condition, with the

@@ -3,7 +3,7 @@ use super::change::change;
 use super::gene::{at_bound, bound};
 use super::name::{calibrated, capitalised, channel_title, condition_name, is_fitted, join_words};
 use super::outcome::verdict;
-use crate::data::{Calibration, ConditionResult};
+use crate::data::{Calibration, ConditionResult, is_determined};
 use crate::number::{fixed, percent, quantity, ratio, significant, squared};
 use discrepancy::identify::Determination;
 use protocol::case::{Case, Channel, Scale, Term, Unknown};
@@ -171,7 +171,7 @@ pub(crate) fn model_error(calibration: &Calibration) -> Option<String> {
         let times = value / unknown.start;
         let is_far = !(1.0 / FAR..=FAR).contains(&times);
         let logarithmic = unknown.scale == Scale::Logarithmic;
-        (is_far && logarithmic && determined(calibration, &unknown.name))
+        (is_far && logarithmic && is_determined(&calibration.identifiability, &unknown.name))
             .then(|| format!("{} at {}", unknown.name, ratio(*value, unknown.start)))
     });
     let far: Vec<String> = far.collect();
@@ -219,10 +219,10 @@ pub(crate) fn noise_level(calibration: &Calibration) -> Option<String> {
 /// they differ; `None` if it found none.
 pub(crate) fn rivals(calibration: &Calibration) -> Option<String> {
     let case = &calibration.case;
-    let (_, best) = calibration.objective(|result| &result.optimised)?;
     if calibration.rivals.is_empty() {
         return None;
     }
+    let (_, best) = calibration.objective(|result| &result.optimised)?;
     let differs = |unknown: &&Unknown| {
         let mut rivals = calibration.rivals.iter();
         rivals.any(|rival| rival.differs.contains(&unknown.name))
@@ -250,12 +250,6 @@ pub(crate) fn rivals(calibration: &Calibration) -> Option<String> {
         significant(best),
         join_words(&names, "and"),
     ))
-}
-
-/// Returns whether the record bounds an unknown on both sides.
-fn determined(calibration: &Calibration, name: &str) -> bool {
-    let mut said = calibration.identifiability.iter();
-    said.any(|own| own.name == name && own.seen == Determination::Both)
 }
 
 /// Lists the warnings that follow from the data of a calibration: failed runs, worse channels, unknowns at a

@@ -3,6 +3,7 @@ mod diagnosis;
 mod effect_gene;
 mod geometry;
 mod numbers;
+mod rivals;
 mod sample;
 mod suspicion;
 
@@ -10,8 +11,7 @@ use protocol::job::{Reached, Verdict};
 use protocol::pumping_unit::{Simulation, failure};
 use report::pumping_unit::{balance, simulation};
 use report::{
-    self, Calibration, Figure, RivalFit, SingleRun, chart, table, write_calibration,
-    write_simulation,
+    self, Calibration, Figure, SingleRun, chart, table, write_calibration, write_simulation,
 };
 use roxmltree::{Document, ParsingOptions};
 use std::collections::BTreeSet;
@@ -498,40 +498,6 @@ fn terminal_tables_are_styled_only_on_demand() {
     ] {
         assert!(single.contains(part), "{part} is not in\n{single}");
     }
-}
-
-#[test]
-fn a_rival_fit_stands_beside_the_best_with_all_its_values() {
-    let mut data = sample::calibration(40);
-    let alone = report::text(&report::calibration(&data), false);
-    assert!(!alone.contains("rival") && !alone.contains("Several fits"));
-    let mut genes = data.optimised.genes.clone();
-    genes[0] *= 12.5;
-    data.rivals = vec![RivalFit {
-        genes,
-        objective: 0.731,
-        differs: vec!["kb1".to_owned()],
-    }];
-    let best = data.optimised.genes[0];
-    let said = report::rivals(&data).expect("a sentence");
-    assert!(
-        said.contains("another fit, with an objective of 0.731 MPa²"),
-        "{said}"
-    );
-    assert!(
-        said.contains("It differs from the best one in kb1;"),
-        "{said}"
-    );
-    let all = report::text(&report::calibration(&data), false);
-    assert!(all.contains(&said));
-    let table = table::rivals(&data).expect("a table");
-    assert_eq!(table.head, ["", "unit", "optimised", "rival 1"]);
-    let [table::Row::Values(_, cells), ..] = &table.rows[..] else {
-        unreachable!("{table:?}")
-    };
-    let shown = [best, 12.5 * best].map(report::number::significant);
-    assert_eq!(cells[1..], shown);
-    assert!(report::parameters(&data, false).contains("rival 1"));
 }
 
 #[test]

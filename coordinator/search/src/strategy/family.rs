@@ -29,10 +29,9 @@ pub struct Rival<'a> {
 }
 
 /// Returns the best fit of every other family than that of the best individual, best first: ends of descents
-/// with at most 1.5 times its fitness that differ by more than half a decade (on a linear axis, a quarter of the
-/// interval) in an unknown
-/// that the record determines, from the best individual and from each other. `determines` tells whether the
-/// record determines an unknown, by its name.
+/// with at most 1.5 times its fitness that differ by more than half a decade (on a linear axis, a
+/// quarter of the interval) in an unknown that the record determines, from the best individual and from each
+/// other. `determines` tells whether the record determines an unknown, by its name.
 pub fn rivals<'a>(
     space: &'a Space,
     (best, fitness): (&[f64], f64),

@@ -1,8 +1,7 @@
 //! Output of a finished calibration: files in the run folder, and text or JSON on standard output.
 use super::{
     object::{
-        calibration::CalibrateOutput,
-        calibration::RivalOutput,
+        calibration::{CalibrateOutput, RivalOutput},
         score::{ConditionOutput, RecommendedAndOptimised, condition, unknowns},
     },
     terminal,
@@ -15,7 +14,7 @@ use crate::cli::{
         tables,
     },
 };
-use discrepancy::identify::{Determination, UnknownEstimate};
+use discrepancy::identify::UnknownEstimate;
 use dispatch::account::{self, JobCost};
 use dispatch::journal;
 use protocol::{
@@ -220,10 +219,7 @@ fn rival_fits(
     identifiability: &[UnknownEstimate],
 ) -> anyhow::Result<Vec<RivalFit>> {
     let space = run.manifest.space(&run.case)?;
-    let determined = |name: &str| {
-        let mut said = identifiability.iter();
-        said.any(|own| own.name == name && own.seen == Determination::Both)
-    };
+    let determined = |name: &str| report::is_determined(identifiability, name);
     let best = (&found.best.genes[..], found.best.fitness);
     let rivals = rivals(&space, best, &found.descent_ends, determined).into_iter();
     let fit = |rival: Rival<'_>| RivalFit {
