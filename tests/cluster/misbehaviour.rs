@@ -1,7 +1,10 @@
 //! Tests with jobs that crash, allocate without bound, never return, leave processes behind or kill their
 //! worker: each is terminated and reported, and the other jobs are done.
 use super::{OWN_SLOTS, collect};
-use dispatch::runtime::{Completed, Dispatch, RunSummary};
+use dispatch::{
+    runtime::{Completed, Dispatch, DispatchError, RunSummary},
+    scheduler::StopReason,
+};
 use protocol::{
     id::{AttemptId, JobId},
     job::{Answer, Failure, Outcome},
@@ -72,20 +75,59 @@ async fn jobs_that_crash_or_allocate_without_bound_fail_alone_and_say_why() {
     assert_eq!(summary.last.repeated, 2, "each was tried twice");
 }
 
-/// Checks that a job that kills its workers runs alone after two losses and is given up after four, and that
-/// no other job fails.
+/// Checks that a job that kills its workers runs alone after two losses and waits for a worker that joins after four, that
+/// no other job fails, and that the run ends without a result for it and is resumed by a healthy worker.
 #[tokio::test(flavor = "multi_thread")]
-async fn a_job_that_kills_its_workers_is_quarantined_and_given_up() {
-    let (results, summary) = outcomes(30, "3:kill-worker", 6).await;
-    assert_eq!(
-        results[&JobId(3)],
-        Outcome::Failed(Failure::Lost { workers: 4 })
-    );
-    let others = results
-        .values()
-        .filter(|it| matches!(it, Outcome::Done(Answer::Nothing(_))));
-    assert_eq!(others.count(), 29);
-    assert_eq!((summary.last.failed, summary.last.lost), (1, 4));
+async fn a_job_that_kills_its_workers_is_quarantined_and_computed_when_the_run_is_resumed() {
+    let folder = tempfile::tempdir().unwrap();
+    let locator = free_locator();
+    let mut run = options(folder.path(), Some(&locator), 0);
+    run.pause_limit = Duration::from_secs(2);
+    let arguments = ["--slots", "2"];
+    let workers: Vec<Process> = (0..6)
+        .map(|_| {
+            let environment = [("HORSEHEAD_TEST_MISBEHAVE", "3:kill-worker")];
+            Process::worker_with(&locator, &arguments, &environment)
+        })
+        .collect();
+    let mut results = BTreeMap::new();
+    for is_resumed in [false, true] {
+        let mut dispatch = Dispatch::open(run.clone()).await.unwrap();
+        let healthy = is_resumed.then(|| Process::worker_with(&locator, &arguments, &[]));
+        for n in 0..30 {
+            dispatch.submit(JobId(n), job(n, 5)).unwrap();
+        }
+        let ended = tokio::time::timeout(LIMIT, async {
+            while results.len() < 30 {
+                let completed = dispatch.next().await?;
+                results.insert(completed.id, completed.outcome);
+            }
+            Ok(())
+        });
+        match ended.await.unwrap() {
+            Ok(()) => assert!(is_resumed),
+            Err(DispatchError::Stopped(StopReason::WorkersLost { job, workers, .. })) => {
+                // a worker that joined late counts as new
+                assert!((4..=6).contains(&workers), "{workers} workers");
+                assert_eq!((job, is_resumed), (JobId(3), false));
+                assert_eq!(results.len(), 29);
+            }
+            Err(error) => panic!("{error}"),
+        }
+        let summary = dispatch.close().await.unwrap();
+        if !is_resumed {
+            assert_eq!(summary.last.failed, 0);
+            assert!(
+                (4..=6).contains(&summary.last.lost),
+                "{}",
+                summary.last.lost
+            );
+        }
+        drop(healthy);
+    }
+    let done = |it: &&Outcome| matches!(it, Outcome::Done(Answer::Nothing(_)));
+    assert_eq!(results.values().filter(done).count(), 30);
+    drop(workers);
 }
 
 /// Creates options of a slot with misbehaving jobs. The slot is started by a shell script that sets its

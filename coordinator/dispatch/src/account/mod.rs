@@ -334,7 +334,11 @@ mod tests {
                     2 * place,
                     Outcome::Done(Answer::Nothing(vec![1])),
                 ),
-                (9, 1, Outcome::Failed(Failure::Lost { workers: 4 })),
+                (
+                    9,
+                    1,
+                    Outcome::Failed(Failure::crashed("signal 9".to_owned())),
+                ),
             ] {
                 journal
                     .append(finished(job, seconds * 1_000_000, outcome))
@@ -353,7 +357,8 @@ mod tests {
         let nothing = account.jobs["nothing"];
         assert_eq!((nothing.results, nothing.machine_failed), (4, 0));
         assert_eq!((nothing.median_s, nothing.longest_s), (2.0, 4.0));
-        let given_up = (9, "4 workers were lost over it".to_owned());
+        let reason = "the process that computed the job ended: signal 9";
+        let given_up = (9, reason.to_owned());
         assert_eq!(account.given_up, [given_up.clone(), given_up]);
         let reasons = account.reasons();
         assert_eq!(reasons.len(), 1);

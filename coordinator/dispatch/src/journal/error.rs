@@ -50,6 +50,18 @@ pub enum JournalError {
         /// Version of the journal.
         found: u8,
     },
+    /// The journal holds an intact record of this version that this build cannot decode.
+    #[error(
+        "the record at offset {at} of the journal {} is intact, but this build cannot decode it; nothing was \
+         changed: continue with the build that began the run, or choose another run folder",
+        path.display()
+    )]
+    Undecodable {
+        /// Path of the journal.
+        path: PathBuf,
+        /// Offset of the record (bytes).
+        at: u64,
+    },
     /// Every record of the journal that identifies the run is lost, and so is the copy of the first record.
     #[error(
         "the run of the journal {} cannot be identified, because every copy of its first record is \
@@ -60,9 +72,9 @@ pub enum JournalError {
         /// Path of the journal without identification.
         path: PathBuf,
     },
-    /// The journal was deleted during the run.
+    /// The journal was deleted during the run, or another file took its place.
     #[error(
-        "the journal {} was deleted during the run: its results cannot be kept, so the run \
+        "the journal {} was deleted or replaced during the run: its results cannot be kept, so the run \
          stops; leave run folders alone until `horsehead` has ended",
         path.display()
     )]

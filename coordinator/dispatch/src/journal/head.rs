@@ -28,8 +28,8 @@ pub(super) fn read(folder: &Path) -> Result<Option<(RunId, RunHeader)>, JournalE
         }
     });
     match read {
-        // the journal itself has been asked for its version
-        Ok(_) | Err(JournalError::Version { .. }) => Ok(found),
+        // the journal itself has been asked for its version and can be read
+        Ok(_) | Err(JournalError::Version { .. } | JournalError::Undecodable { .. }) => Ok(found),
         Err(error) => Err(error),
     }
 }

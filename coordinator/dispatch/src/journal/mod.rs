@@ -7,9 +7,9 @@
 //! Each record carries its own mark and checksum, so that a flipped byte, a zeroed block or a torn tail costs
 //! only the records it touched. The identity of the run stands in the first record, in every later opening's,
 //! and in a file of its own ([`HEAD`]), so that no single damage makes a run impossible to continue. The
-//! version is that of the wire protocol, since records hold wire messages; a journal of another version is
-//! refused and not treated as damaged. Readers are folds over the events ([`fold`]). The writer ([`Journal`])
-//! holds a lock, so that one run has one writer; on a full disk it waits. This module does not interpret what
+//! version is that of the wire protocol, since records hold wire messages; a journal with an intact record that this
+//! version cannot read is refused and not treated as damaged. Readers are folds over the events ([`fold`]). The
+//! writer ([`Journal`]) holds a lock on the file, so that one run has one writer; on a full disk it waits. This module does not interpret what
 //! the events mean for a run.
 mod differences;
 mod error;

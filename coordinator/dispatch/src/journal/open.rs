@@ -6,7 +6,7 @@ use super::{
     index::Results,
     read::{JournalEntry, ReadReport, fold},
     record::{FILE, LOCK, record},
-    write::{Writer, WriterReport},
+    write::{NamedFile, Writer, WriterReport, is_at},
 };
 use protocol::{
     event::{Event, Finished, RunHeader},
@@ -68,8 +68,8 @@ pub struct Journal {
     to_writer: Option<mpsc::Sender<Event>>,
     writer: Option<thread::JoinHandle<()>>,
     closing: Arc<AtomicBool>,
-    /// Lock held until the process ends.
-    _lock: RunLock,
+    /// Locks of the journal and of the file that earlier versions lock.
+    _locks: [RunLock; 2],
 }
 
 impl Journal {
@@ -95,15 +95,10 @@ impl Journal {
             }
         };
         std::fs::create_dir_all(folder).map_err(failed("create", folder))?;
-        let lock = lock(folder)?;
         let path = folder.join(FILE);
-        let mut file = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(&path)
-            .map_err(failed("open", &path))?;
+        // coordinators of earlier versions lock this file alone
+        let locks = [lock(folder, &folder.join(LOCK))?, lock(folder, &path)?];
+        let mut file = locks[1].0.try_clone().map_err(failed("open", &path))?;
         let mut past = RecoveredRun::default();
         let report = fold(&path, |entry, event| past.apply(entry, event))?;
         let copy = head::read(folder)?;
@@ -131,7 +126,8 @@ impl Journal {
         let closing = Arc::new(AtomicBool::new(false));
         let (to_writer, events) = mpsc::channel();
         let end = file.stream_position().map_err(failed("open", &path))?;
-        let mut writing = Writer::new(file, end, said, Arc::clone(&closing));
+        let medium = NamedFile::new(file, &path).map_err(failed("open", &path))?;
+        let mut writing = Writer::new(medium, end, said, Arc::clone(&closing));
         let writer = thread::Builder::new()
             .name("journal".to_owned())
             .spawn(move || writing.run(&events))
@@ -150,7 +146,7 @@ impl Journal {
             to_writer: Some(to_writer),
             writer: Some(writer),
             closing,
-            _lock: lock,
+            _locks: locks,
         };
         Ok((journal, begun))
     }
@@ -299,7 +295,7 @@ fn identify(
     }
 }
 
-/// Lock of a run. It is released explicitly on drop: a child process being spawned by another thread briefly
+/// File that this process has locked. The lock is released explicitly on drop: a child process being spawned by another thread briefly
 /// inherits all open files, and would keep the lock.
 #[derive(Debug)]
 struct RunLock(File);
@@ -311,24 +307,30 @@ impl Drop for RunLock {
     }
 }
 
-fn lock(folder: &Path) -> Result<RunLock, JournalError> {
-    let path = folder.join(LOCK);
+/// Opens or creates a file of a run folder and locks it.
+fn lock(folder: &Path, path: &Path) -> Result<RunLock, JournalError> {
     let failed = |source: io::Error| JournalError::Io {
         doing: "lock",
-        path: path.clone(),
+        path: path.to_owned(),
         source,
     };
-    let lock = OpenOptions::new()
-        .write(true)
-        .create(true)
-        .truncate(false)
-        .open(&path);
-    let lock = lock.map_err(failed)?;
-    match lock.try_lock() {
-        Ok(()) => Ok(RunLock(lock)),
-        Err(TryLockError::WouldBlock) => Err(JournalError::Locked {
-            folder: folder.to_owned(),
-        }),
-        Err(TryLockError::Error(source)) => Err(failed(source)),
+    loop {
+        let mut options = OpenOptions::new();
+        let options = options.read(true).write(true).create(true).truncate(false);
+        let file = options.open(path).map_err(failed)?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                return Err(JournalError::Locked {
+                    folder: folder.to_owned(),
+                });
+            }
+            Err(TryLockError::Error(source)) => return Err(failed(source)),
+        }
+        // a file that was replaced between its opening and its locking is another coordinator's by now
+        let lock = RunLock(file);
+        if is_at(&lock.0, path).map_err(failed)? {
+            return Ok(lock);
+        }
     }
 }

@@ -5,6 +5,7 @@ use super::{
 };
 use protocol::{
     event::Event,
+    job::{Failure, Outcome},
     wire::{self, BODY_LIMIT},
 };
 use std::{
@@ -77,15 +78,16 @@ pub struct ReadReport {
     pub records: u64,
     /// Damaged stretches that were skipped.
     pub damage: Vec<Damage>,
-    /// File offset of the end of the last readable record (bytes).
+    /// File offset of the end of the last intact record (bytes).
     pub end: u64,
 }
 
-/// Calls `apply` for each readable event of a journal, in order.
+/// Calls `apply` for each readable event of a journal, in order. Records of lost workers, which earlier versions
+/// wrote as results, are left out: their jobs have no result.
 ///
 /// # Errors
-/// [`JournalError::Io`] if the file cannot be read, [`JournalError::Version`] if all that is sound
-/// in it was written by another version; damage is no error.
+/// [`JournalError::Io`] if the file cannot be read; [`JournalError::Version`] or [`JournalError::Undecodable`] if it
+/// holds an intact record that this version cannot read. Damage is no error.
 pub fn fold(
     path: &Path,
     apply: impl FnMut(JournalEntry, Event),
@@ -101,116 +103,182 @@ pub fn fold(
 pub(super) fn fold_from(
     path: &Path,
     from: u64,
-    mut apply: impl FnMut(JournalEntry, Event),
+    apply: impl FnMut(JournalEntry, Event),
 ) -> Result<ReadReport, JournalError> {
-    let failed = |source| JournalError::Io {
-        doing: "read",
-        path: path.to_owned(),
-        source,
-    };
-    let file = File::open(path).map_err(failed)?;
-    let length = file.metadata().map_err(failed)?.len();
+    let file = File::open(path).map_err(ReadError::Io);
+    let read = file.and_then(|file| fold_medium(&file, from, apply));
+    read.map_err(|error| error.of(path))
+}
+
+/// Error of reading a journal, without its path.
+#[derive(Debug)]
+pub(crate) enum ReadError {
+    /// The medium cannot be read.
+    Io(io::Error),
+    /// An intact record was written by another version of this program.
+    Version(u8),
+    /// An intact record of this version at this offset (bytes) cannot be decoded.
+    Undecodable(u64),
+}
+
+impl From<io::Error> for ReadError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+impl ReadError {
+    fn of(self, path: &Path) -> JournalError {
+        let path = path.to_owned();
+        match self {
+            Self::Io(source) => JournalError::Io {
+                doing: "read",
+                path,
+                source,
+            },
+            Self::Version(found) => JournalError::Version { path, found },
+            Self::Undecodable(at) => JournalError::Undecodable { path, at },
+        }
+    }
+}
+
+/// Calls `apply` for each readable event in a medium after the offset `from` (bytes), as [`fold_from`] does for a
+/// file.
+///
+/// # Errors
+/// [`ReadError`] as [`fold`].
+pub(crate) fn fold_medium<M: Read + Seek>(
+    mut medium: M,
+    from: u64,
+    mut apply: impl FnMut(JournalEntry, Event),
+) -> Result<ReadReport, ReadError> {
+    let length = medium.seek(SeekFrom::End(0))?;
     let mut reader = Reader {
-        file: BufReader::with_capacity(1 << 16, file),
+        medium: BufReader::with_capacity(1 << 16, medium),
         at: from,
         length,
-        foreign: None,
     };
-    reader.file.seek(SeekFrom::Start(from)).map_err(failed)?;
+    reader.medium.seek(SeekFrom::Start(from))?;
     let mut report = ReadReport {
         end: from,
         ..ReadReport::default()
     };
-    let mut lost_from = None;
+    let (mut lost_from, mut foreign) = (None, None);
     while reader.at < length {
         let at = reader.at;
-        if let Some((entry, event)) = reader.record().map_err(failed)? {
-            if let Some(from) = lost_from.take() {
-                report.damage.push(Damage {
-                    at: from,
-                    bytes: at - from,
-                    torn: false,
-                });
+        match reader.record()? {
+            Record::Own(entry, event) => {
+                if let Some(from) = lost_from.take() {
+                    report.damage.push(Damage {
+                        at: from,
+                        bytes: at - from,
+                        torn: false,
+                    });
+                }
+                report.records += 1;
+                report.end = reader.at;
+                if !is_lost(&event) {
+                    apply(entry, event);
+                }
             }
-            report.records += 1;
-            report.end = reader.at;
-            apply(entry, event);
-        } else {
-            lost_from.get_or_insert(at);
-            reader.seek_mark(at + 1).map_err(failed)?;
+            // a process of another version begins with two records, so that a single one has a damaged version
+            Record::Foreign(version) if foreign.replace(version) == Some(version) => {
+                return Err(ReadError::Version(version));
+            }
+            Record::Foreign(_) => {
+                lost_from.get_or_insert(at);
+                report.end = reader.at;
+            }
+            Record::Damaged => {
+                lost_from.get_or_insert(at);
+                reader.seek_mark(at + 1)?;
+            }
         }
     }
     if let Some(from) = lost_from {
         report.damage.push(Damage {
             at: from,
             bytes: length - from,
-            torn: true,
+            torn: report.end <= from,
         });
     }
-    match reader.foreign {
-        Some(found) if report.end == 0 => Err(JournalError::Version {
-            path: path.to_owned(),
-            found,
-        }),
-        Some(_) | None => Ok(report),
+    match foreign.filter(|_| report.records == 0 && from == 0) {
+        Some(version) => Err(ReadError::Version(version)),
+        None => Ok(report),
     }
 }
 
-struct Reader {
-    file: BufReader<File>,
-    at: u64,
-    length: u64,
-    /// Format version of an intact record that another version of the program wrote, if one was found.
-    foreign: Option<u8>,
+/// Returns whether an event is the result of a job whose workers were lost, which earlier versions recorded.
+fn is_lost(event: &Event) -> bool {
+    let Event::Finished(finished) = event else {
+        return false;
+    };
+    matches!(finished.outcome, Outcome::Failed(Failure::Lost { .. }))
 }
 
-impl Reader {
-    /// Reads the record at the current offset; `None` if there is no intact record of this version.
-    fn record(&mut self) -> io::Result<Option<(JournalEntry, Event)>> {
+/// What stands at an offset of a journal.
+enum Record {
+    /// Intact record of this version.
+    Own(JournalEntry, Event),
+    /// Intact record with the mark of another version.
+    Foreign(u8),
+    /// No intact record.
+    Damaged,
+}
+
+struct Reader<M> {
+    medium: BufReader<M>,
+    at: u64,
+    length: u64,
+}
+
+impl<M: Read + Seek> Reader<M> {
+    /// Reads what stands at the current offset, and moves behind an intact record.
+    fn record(&mut self) -> Result<Record, ReadError> {
         let left = self.length - self.at;
         let mut header = [0; RECORD_HEADER];
         if left < RECORD_HEADER as u64 {
-            return Ok(None);
+            return Ok(Record::Damaged);
         }
-        self.file.read_exact(&mut header)?;
+        self.medium.read_exact(&mut header)?;
         let [m0, m1, m2, m3, l0, l1, l2, l3, c0, c1, c2, c3] = header;
         let length = u32::from_le_bytes([l0, l1, l2, l3]);
         let fits =
             length as usize <= BODY_LIMIT && u64::from(length) + RECORD_HEADER as u64 <= left;
         let [h0, h1, j, version] = MARK;
         if [m0, m1, m2] != [h0, h1, j] || !fits {
-            return Ok(None);
+            return Ok(Record::Damaged);
         }
         let mut body = vec![0; length as usize];
-        self.file.read_exact(&mut body)?;
+        self.medium.read_exact(&mut body)?;
         if checksum(length, &body) != u32::from_le_bytes([c0, c1, c2, c3]) {
-            return Ok(None);
+            return Ok(Record::Damaged);
         }
-        if m3 != version {
-            self.foreign = Some(m3.wrapping_sub(b'0'));
-            return Ok(None);
-        }
-        let Ok(event) = wire::decode(&body) else {
-            return Ok(None);
-        };
+        let start = self.at;
         let entry = JournalEntry {
-            at: self.at + RECORD_HEADER as u64,
+            at: start + RECORD_HEADER as u64,
             length,
         };
         self.at = entry.at + u64::from(length);
-        Ok(Some((entry, event)))
+        if m3 != version {
+            return Ok(Record::Foreign(m3.wrapping_sub(b'0')));
+        }
+        // what is intact is not damage: a build that can read it needs it
+        let event = wire::decode(&body).map_err(|_| ReadError::Undecodable(start))?;
+        Ok(Record::Own(entry, event))
     }
 
-    /// Moves to the next record mark at or after an offset, or to the end of the file.
+    /// Moves to the next record mark of any version at or after an offset, or to the end of the medium.
     fn seek_mark(&mut self, from: u64) -> io::Result<()> {
-        self.file.seek(SeekFrom::Start(from))?;
-        let mut last = [0; 4];
-        for (place, byte) in (from..).zip(self.file.by_ref().bytes()) {
+        const LETTERS: usize = MARK.len() - 1;
+        self.medium.seek(SeekFrom::Start(from))?;
+        let mut last = [0; LETTERS];
+        for (place, byte) in (from..).zip(self.medium.by_ref().bytes()) {
             last.rotate_left(1);
-            last[3] = byte?;
-            if last == MARK && place >= from + 3 {
-                self.at = place - 3;
-                self.file.seek(SeekFrom::Start(self.at))?;
+            last[LETTERS - 1] = byte?;
+            if MARK.starts_with(&last) && place + 1 >= from + LETTERS as u64 {
+                self.at = place + 1 - LETTERS as u64;
+                self.medium.seek(SeekFrom::Start(self.at))?;
                 return Ok(());
             }
         }

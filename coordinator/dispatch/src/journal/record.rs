@@ -8,7 +8,7 @@ use protocol::{
 pub const FILE: &str = "journal.hhj";
 /// Name of the copy of the journal's first record within a run's folder.
 pub const HEAD: &str = "journal.head";
-/// Name of the lock within a run's folder.
+/// Name of the file within a run's folder that is locked beside the journal: earlier versions lock it alone.
 pub const LOCK: &str = "lock";
 
 /// Mark at the start of each journal record; the last byte is the format version, as a digit.

@@ -1,8 +1,14 @@
 //! Tests of the journal under truncation, flipped bytes, zeroed blocks and deletion.
-use super::{differences::differences, record::RECORD_HEADER, sample::result, *};
+use super::{
+    differences::differences,
+    record::{RECORD_HEADER, checksum, record},
+    sample::{finished, result},
+    *,
+};
 use protocol::{
     event::{Event, RunHeader},
     id::{ContentHash, JobId, RunId},
+    job::{Failure, Outcome},
     wire::VERSION,
 };
 use std::{
@@ -290,6 +296,99 @@ fn a_journal_of_another_version_is_refused_as_such_and_left_as_it_is() {
         Err(JournalError::Version { found: 1, .. })
     ));
     assert_eq!(fs::read(&path).unwrap(), bytes);
+}
+
+/// Checks that an intact record that cannot be read, of this version or another one, stops the reading wherever it
+/// stands and is left as it is. Regression: it was cut off as torn, with all records after it.
+#[test]
+fn an_intact_record_that_cannot_be_read_is_never_cut_off() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(FILE);
+    let whole = written(folder.path(), 40);
+    let body = vec![0xff; 40];
+    let length = u32::try_from(body.len()).unwrap();
+    let mut strange = MARK.to_vec();
+    strange.extend(length.to_le_bytes());
+    strange.extend(checksum(length, &body).to_le_bytes());
+    strange.extend(&body);
+    let mut foreign = record(&result(41)).unwrap();
+    foreign[3] += 1;
+    let foreign = foreign.repeat(2);
+    let torn = [&foreign[..], &whole[..20]].concat();
+    let behind_damage = [&[0; 100], &foreign[..]].concat();
+    for last in [strange, foreign, torn, behind_damage] {
+        let bytes = [&whole[..], &last].concat();
+        fs::write(&path, &bytes).unwrap();
+        let error = open(folder.path()).unwrap_err();
+        assert!(
+            matches!(
+                error,
+                JournalError::Undecodable { .. } | JournalError::Version { .. }
+            ),
+            "{error}"
+        );
+        assert_eq!(fs::read(&path).unwrap(), bytes);
+    }
+    // a single record of another version has a damaged byte: it is not cut off either
+    let mut bytes = whole;
+    let last = bytes.len() - record_length();
+    bytes[last + 3] += 1;
+    fs::write(&path, &bytes).unwrap();
+    drop(open(folder.path()).unwrap());
+    assert!(fs::read(&path).unwrap().starts_with(&bytes));
+}
+
+/// Checks that jobs whose workers were lost, which earlier versions recorded as failed, have no result.
+#[test]
+fn lost_workers_of_an_earlier_version_are_no_results() {
+    let folder = tempfile::tempdir().unwrap();
+    let (journal, _) = open(folder.path()).unwrap();
+    let lost = Outcome::Failed(Failure::Lost { workers: 4 });
+    journal.append(finished(1, 5, lost)).unwrap();
+    journal.append(result(2)).unwrap();
+    drop(journal);
+    let (journal, _) = open(folder.path()).unwrap();
+    assert_eq!(journal.finished().collect::<Vec<_>>(), [JobId(2)]);
+    assert_eq!(journal.recall(JobId(1)).unwrap(), None);
+    journal.append(result(1)).unwrap();
+    drop(journal);
+    assert_eq!(read(&folder.path().join(FILE)).0.len(), 2);
+}
+
+/// Checks that the lock lies on the journal itself, so that it cannot be deleted under a run.
+#[test]
+fn a_run_whose_lock_file_was_deleted_stays_locked() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = open(folder.path()).unwrap();
+    fs::remove_file(folder.path().join(LOCK)).unwrap();
+    assert!(matches!(
+        open(folder.path()),
+        Err(JournalError::Locked { .. })
+    ));
+    drop(own);
+    // coordinators of earlier versions know the other file alone
+    let other = fs::File::create(folder.path().join(LOCK)).unwrap();
+    other.lock().unwrap();
+    assert!(matches!(
+        open(folder.path()),
+        Err(JournalError::Locked { .. })
+    ));
+}
+
+/// Checks that nothing is acknowledged once another file stands at the journal's path.
+#[test]
+fn a_journal_that_was_replaced_is_noticed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(FILE);
+    let (say, said) = std::sync::mpsc::channel();
+    let (journal, _) = Journal::open(folder.path(), &header(), RunId(5), 17, move |appended| {
+        say.send(appended).unwrap();
+    })
+    .unwrap();
+    fs::rename(&path, folder.path().join("moved")).unwrap();
+    fs::copy(folder.path().join("moved"), &path).unwrap();
+    journal.append(result(1)).unwrap();
+    assert_eq!(said.recv(), Ok(WriterReport::Deleted));
 }
 
 /// Checks that results written to a deleted journal, which cannot be found again, are not acknowledged.

@@ -2,9 +2,10 @@
 use super::record::record;
 use protocol::{event::Event, id::JobId};
 use std::{
-    fs::File,
+    fs::{self, File},
     io::{self, Seek, SeekFrom, Write},
     os::unix::fs::MetadataExt,
+    path::{Path, PathBuf},
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -26,7 +27,7 @@ pub enum WriterReport {
     Paused(String),
     /// Writing the journal succeeds again.
     Resumed,
-    /// The journal file was deleted; records written to it now are lost when this process ends.
+    /// The journal file was deleted or replaced; records written to it now are lost when this process ends.
     Deleted,
 }
 
@@ -38,27 +39,54 @@ pub(super) trait Medium {
     fn flush(&mut self) -> io::Result<()>;
     /// Truncates the storage to a length (bytes).
     fn cut(&mut self, length: u64) -> io::Result<()>;
-    /// Returns whether the file still has a name in the file system, i.e. has not been deleted.
+    /// Returns whether the file is still at its path, i.e. was neither deleted nor replaced.
     fn is_there(&self) -> bool;
 }
 
-impl Medium for File {
+/// File that is expected to stay at its path.
+pub(super) struct NamedFile {
+    file: File,
+    path: PathBuf,
+}
+
+impl NamedFile {
+    /// Creates the medium from an open file and its path, which is made absolute.
+    pub(super) fn new(file: File, path: &Path) -> io::Result<Self> {
+        let path = path.canonicalize()?;
+        Ok(Self { file, path })
+    }
+}
+
+/// Returns whether a path leads to an open file.
+///
+/// # Errors
+/// If the path cannot be examined; a missing file is no error.
+pub(super) fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+    let own = file.metadata()?;
+    match fs::metadata(path) {
+        Ok(found) => Ok((found.dev(), found.ino()) == (own.dev(), own.ino())),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+impl Medium for NamedFile {
     fn add(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.write_all(bytes)
+        self.file.write_all(bytes)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.sync_data()
+        self.file.sync_data()
     }
 
     fn cut(&mut self, length: u64) -> io::Result<()> {
-        self.set_len(length)?;
-        self.seek(SeekFrom::Start(length)).map(drop)
+        self.file.set_len(length)?;
+        self.file.seek(SeekFrom::Start(length)).map(drop)
     }
 
     fn is_there(&self) -> bool {
         // what cannot be asked is told by the next attempt to write
-        self.metadata().map_or(true, |file| file.nlink() > 0)
+        is_at(&self.file, &self.path).unwrap_or(true)
     }
 }
 

@@ -10,7 +10,7 @@
 #[cfg(test)]
 mod tests;
 
-use crate::scheduler::Completed;
+use crate::scheduler::{Completed, PART};
 use protocol::{
     event::Finished,
     id::{ContentHash, JobId},
@@ -18,9 +18,6 @@ use protocol::{
     message::{Attempt, Cost},
 };
 use std::collections::{BTreeMap, BTreeSet};
-
-/// Bit that the ids of parts have and ids of submitted jobs do not.
-const PART: u64 = 1 << 63;
 
 /// Divided jobs of a run without a stored result, and anticipated jobs.
 #[derive(Debug, Default)]
@@ -76,11 +73,6 @@ pub(crate) enum PartResult {
     Joined(Box<Finished>),
     /// The job has its result already, or is unknown: the result of the part can be discarded.
     Discarded,
-}
-
-/// Returns whether an id is that of a part.
-pub(crate) const fn is_part(id: JobId) -> bool {
-    id.0 & PART != 0
 }
 
 /// Returns whether a job can be divided: a simulation that returns the derivatives by several columns.

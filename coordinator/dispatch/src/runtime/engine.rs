@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     journal::{Journal, WriterReport},
-    scheduler::{Command, Completed, ConnectedWorker, Core, Input, Snapshot},
+    scheduler::{Command, Completed, ConnectedWorker, Core, Input, Snapshot, is_part},
 };
 use link::{CoordinatorEnd, LinkEvent};
 use protocol::{
@@ -387,18 +387,18 @@ impl<L: CoordinatorEnd> Engine<L> {
         for command in self.core.handle(input, self.begun.elapsed()) {
             match command {
                 Command::Send { to, message } => self.send(to, &message),
-                Command::Store(finished) if divide::is_part(finished.job()) => {
+                Command::Store(finished) if is_part(finished.job()) => {
                     self.finish_part(*finished);
                 }
                 Command::Store(finished) => self.record(Event::Finished(finished)),
                 // the whole job was recorded
-                Command::Record(Event::Asked { job, .. }) if divide::is_part(job) => {}
+                Command::Record(Event::Asked { job, .. }) if is_part(job) => {}
                 Command::Record(event) => self.record(event),
                 Command::Deliver(completed) => {
                     if let Some(workers) = &self.workers {
                         workers.note_result();
                     }
-                    if divide::is_part(completed.id) {
+                    if is_part(completed.id) {
                         self.deliver_part(&completed);
                     } else {
                         self.give(Ok(completed));

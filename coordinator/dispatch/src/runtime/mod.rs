@@ -16,14 +16,14 @@ mod parts;
 mod suspend;
 mod worker_control;
 
-pub use crate::scheduler::{Completed, Policy, Snapshot, WorkerSnapshot};
+pub use crate::scheduler::{Completed, PAUSE_LIMIT, Policy, Snapshot, WorkerSnapshot};
 pub use bench::{
     BenchPlan, BenchResult, BenchWorkers, SilentPlan, SilentResult, SilentStage,
     SleepingJobsResult, bench, connect, keep_silent, processor_time, sleep_through,
 };
 pub use dispatch::Dispatch;
-pub(crate) use divide::{DividedJobs, PartResult, anticipated_parts, is_part, part_count};
+pub(crate) use divide::{DividedJobs, PartResult, anticipated_parts, part_count};
 pub use engine::RunSummary;
 pub use error::DispatchError;
-pub use options::{DispatchOptions, PAUSE_LIMIT};
+pub use options::DispatchOptions;
 pub use protocol::event::{RunHeader, Spent};

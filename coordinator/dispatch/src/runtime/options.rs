@@ -2,10 +2,6 @@
 use protocol::{case::Case, event::RunHeader};
 use std::{path::PathBuf, time::Duration};
 
-/// Default time for which a run waits while the journal cannot be written, long enough for a person to free
-/// space on the disk.
-pub const PAUSE_LIMIT: Duration = Duration::from_mins(10);
-
 /// Options for opening a run.
 #[derive(Clone, Debug)]
 pub struct DispatchOptions {
@@ -19,7 +15,8 @@ pub struct DispatchOptions {
     pub tls: Option<PathBuf>,
     /// Number of worker processes to start on this machine, with one slot each.
     pub local_workers: usize,
-    /// Maximum time to wait while the journal cannot be written; then the run ends with the results it has.
+    /// Maximum time to wait while the journal cannot be written, or while only jobs are left whose workers were
+    /// all lost; then the run ends with the results it has.
     pub pause_limit: Duration,
     /// Case that the jobs simulate.
     pub case: Case,

@@ -67,7 +67,10 @@ impl Parts {
             } else {
                 BTreeSet::new()
             },
-            policy: Policy::of(&options.case),
+            policy: Policy {
+                pause_limit: options.pause_limit,
+                ..Policy::of(&options.case)
+            },
         });
         Ok(Self {
             run: begun.run,

@@ -56,9 +56,18 @@ fn pick(core: &Core, job: JobId) -> Option<WorkerId> {
         .map(|(id, _)| *id)
 }
 
-/// Returns whether a worker may be given a job: never if it refused the job; if it crashed or exceeded its
-/// deadline on the job, only while no other worker is left to try.
+/// Returns whether a worker may be given a job: never if it refused the job, or joined before the last of many
+/// losses of workers that held it; if it crashed or exceeded its deadline on the job, only while no other worker
+/// is left to try.
 pub(super) fn may_have(core: &Core, pending: &Pending, worker: WorkerId) -> bool {
+    let failures = &pending.failures;
+    let is_new = core
+        .members
+        .get(&worker)
+        .is_some_and(|member| member.joined_at >= failures.last_loss);
+    if failures.awaits_new_worker(&core.options.policy) && !is_new {
+        return false;
+    }
     let refused = |id: &WorkerId| pending.refused_by.contains(id);
     let failed = |id: &WorkerId| pending.failed_at.contains(id);
     let mut others = core.members.iter();
@@ -76,16 +85,20 @@ pub(super) fn most_idle(core: &Core, suits: impl Fn(WorkerId) -> bool) -> Option
         .map(|(id, _)| *id)
 }
 
-/// Returns the worker reserved for a job that waits to run alone: the least loaded worker that may have it,
-/// which gets no new jobs meanwhile.
+/// Returns the worker reserved for the first queued job that must run alone and that a worker may have: the
+/// least loaded such worker, which gets no new jobs meanwhile.
 fn reserved(core: &Core) -> Option<WorkerId> {
-    let mut suspects = core.suspects.iter().filter_map(|job| core.jobs.get(job));
-    let waiting = suspects.find(|job| job.holders.is_empty())?;
-    let ready = core
-        .members
-        .iter()
-        .filter(|(id, member)| member.takes_jobs() && may_have(core, waiting, **id));
-    ready
-        .min_by_key(|(_, member)| member.leases.len())
-        .map(|(id, _)| *id)
+    let waiting = core.suspects.iter().filter_map(|job| {
+        // a suspect that is only anticipated runs nowhere
+        let pending = core.jobs.get(job)?;
+        (pending.holders.is_empty() && !core.anticipated.contains(job)).then_some(pending)
+    });
+    let mut workers = waiting.filter_map(|job| {
+        let ready = core
+            .members
+            .iter()
+            .filter(|(id, member)| member.takes_jobs() && may_have(core, job, **id));
+        ready.min_by_key(|(_, member)| member.leases.len())
+    });
+    workers.next().map(|(id, _)| *id)
 }

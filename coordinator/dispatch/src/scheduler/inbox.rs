@@ -110,6 +110,7 @@ fn tick(core: &mut Core, now: Duration) {
     membership::check_silence(core, now);
     result::check_overdue(core, now);
     membership::check_no_workers(core, now);
+    membership::check_waiting_jobs(core, now);
     stragglers::copy_slow(core, now);
     if now.saturating_sub(core.last_account) >= core.options.policy.account_interval {
         core.account(now);

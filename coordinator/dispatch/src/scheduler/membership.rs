@@ -2,15 +2,14 @@
 //! silence, and compensation of stalls of the coordinator.
 use super::{
     admission_rules::sanitized,
-    lease::requeue,
-    notice::Notice,
-    result,
+    input::Command,
+    lease::{adopt, requeue},
+    notice::{Notice, StopReason},
     roster::{dismiss, remove},
-    state::{Core, millis},
+    state::{Core, Phase, millis},
 };
 use protocol::{
     id::{JobId, WorkerId},
-    job::Failure,
     message::ToWorker,
 };
 use std::{collections::BTreeSet, time::Duration};
@@ -101,19 +100,68 @@ fn declare_lost(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) 
     let mut suspects = Vec::new();
     for job in jobs {
         requeue(core, worker, job);
-        let Some(pending) = core.jobs.get(&job) else {
+        let Some(pending) = core.jobs.get_mut(&job) else {
             continue;
         };
-        let losses = pending.failures.losses + 1;
-        result::failed(core, worker, job, Failure::Lost { workers: losses }, now);
-        if losses == workers && core.jobs.contains_key(&job) {
+        pending.failures.count_loss(now);
+        let losses = pending.failures.losses;
+        if losses == workers {
             suspects.push(job);
         }
+        if losses == core.options.policy.wait_after_losses && !core.anticipated.contains(&job) {
+            let (worker, host) = (worker, member.announcement.host.clone());
+            core.notice(Notice::AwaitsWorker {
+                job,
+                losses,
+                worker,
+                host,
+                limit: core.options.policy.pause_limit,
+            });
+        }
+        adopt(core, job, now);
     }
     if !suspects.is_empty() {
         core.suspects.extend(&suspects);
         let jobs = suspects;
         core.notice(Notice::Quarantined { jobs, workers });
+    }
+}
+
+/// Stops the run once no result has come for longer than the pause limit and no job is left but those that
+/// wait for a new worker because all that held them were lost.
+pub(super) fn check_waiting_jobs(core: &mut Core, now: Duration) {
+    let policy = &core.options.policy;
+    let mut waiting = None;
+    for (id, pending) in &core.jobs {
+        if core.anticipated.contains(id) {
+            continue;
+        }
+        if pending.failures.awaits_new_worker(policy) {
+            waiting.get_or_insert((*id, pending.failures.losses));
+        } else if !pending.holders.is_empty() {
+            // the run makes progress
+            core.waiting_since = None;
+            return;
+        }
+    }
+    let Some((job, workers)) = waiting.filter(|_| core.phase == Phase::Open) else {
+        core.waiting_since = None;
+        return;
+    };
+    let since = *core.waiting_since.get_or_insert(now);
+    let is_held = core
+        .jobs
+        .get(&job)
+        .is_some_and(|job| !job.holders.is_empty());
+    let limit = policy.pause_limit;
+    if !is_held && now.saturating_sub(since) >= limit {
+        core.phase = Phase::Finishing;
+        let reason = StopReason::WorkersLost {
+            job,
+            workers,
+            limit,
+        };
+        core.commands.push(Command::Stop(reason));
     }
 }
 

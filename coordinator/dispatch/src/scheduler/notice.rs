@@ -4,7 +4,7 @@ use protocol::{
     job::Failure,
     wire,
 };
-use std::fmt;
+use std::{fmt, time::Duration};
 
 /// Largest number of jobs that a notice lists by id.
 const MOST_NAMED: usize = 5;
@@ -66,6 +66,19 @@ pub enum Notice {
         jobs: Vec<JobId>,
         /// Number of lost workers that held each of the jobs.
         workers: u32,
+    },
+    /// A job waits for a worker that joins from now on, because all workers that held it were lost.
+    AwaitsWorker {
+        /// Job that waits.
+        job: JobId,
+        /// Number of lost workers that held the job.
+        losses: u32,
+        /// Last of these workers.
+        worker: WorkerId,
+        /// Host of the last of these workers.
+        host: String,
+        /// Time without a result after which the run ends if no other job is left.
+        limit: Duration,
     },
     /// A job is abandoned after too many failures.
     GivenUp {
@@ -130,33 +143,46 @@ impl fmt::Display for Notice {
                 "every worker was refused ({refused}) and {jobs} jobs wait: use the same build of \
                  horsehead and horsehead-worker everywhere"
             ),
-            Self::Quarantined { jobs, workers } => {
-                let named: Vec<String> =
-                    jobs.iter().take(MOST_NAMED).map(JobId::to_string).collect();
-                let named = named.join(", ");
-                match jobs.len() {
-                    0 | 1 => write!(
-                        to,
-                        "{workers} workers that held job {named} were lost: the job now runs on a worker without other jobs"
-                    ),
-                    count if count <= MOST_NAMED => write!(
-                        to,
-                        "{workers} workers were lost that held the jobs {named}: from now on each \
-                         runs alone"
-                    ),
-                    count => write!(
-                        to,
-                        "{workers} workers were lost that held {count} jobs ({named}, ...): from \
-                         now on each runs alone"
-                    ),
-                }
-            }
+            Self::Quarantined { jobs, workers } => quarantined(to, jobs, *workers),
+            Self::AwaitsWorker {
+                job,
+                losses,
+                worker,
+                host,
+                limit,
+            } => write!(
+                to,
+                "job {job} waits for a worker that joins from now on: {losses} workers that held it were lost, the \
+                 last one {worker} on {host}. The worker's log (`horsehead workers logs --ssh {host}`) or the \
+                 kernel's log there (out of memory) shows why. The other jobs go on; when none is left and {} s \
+                 pass without a result, the run ends and the same command resumes it",
+                limit.as_secs()
+            ),
             Self::GivenUp { job, failure } => write!(to, "job {job} was abandoned: {failure}"),
             Self::Stalled { ms } => write!(
                 to,
                 "the coordinator was suspended for {ms} ms; no worker is counted as lost because of this"
             ),
         }
+    }
+}
+
+fn quarantined(to: &mut fmt::Formatter<'_>, jobs: &[JobId], workers: u32) -> fmt::Result {
+    let named: Vec<String> = jobs.iter().take(MOST_NAMED).map(JobId::to_string).collect();
+    let named = named.join(", ");
+    match jobs.len() {
+        0 | 1 => write!(
+            to,
+            "{workers} workers that held job {named} were lost: the job now runs on a worker without other jobs"
+        ),
+        count if count <= MOST_NAMED => write!(
+            to,
+            "{workers} workers were lost that held the jobs {named}: from now on each runs alone"
+        ),
+        count => write!(
+            to,
+            "{workers} workers were lost that held {count} jobs ({named}, ...): from now on each runs alone"
+        ),
     }
 }
 
@@ -170,6 +196,15 @@ pub enum StopReason {
         /// Failure of the most recent job.
         last: Failure,
     },
+    /// A job has no result because all workers that held it were lost, and nothing else is left to do.
+    WorkersLost {
+        /// Job without a result.
+        job: JobId,
+        /// Number of lost workers that held the job.
+        workers: u32,
+        /// Time for which the run waited.
+        limit: Duration,
+    },
 }
 
 impl fmt::Display for StopReason {
@@ -178,6 +213,16 @@ impl fmt::Display for StopReason {
             Self::EverythingFails { jobs, last } => {
                 write!(to, "the first {jobs} jobs all failed; last failure: {last}")
             }
+            Self::WorkersLost {
+                job,
+                workers,
+                limit,
+            } => write!(
+                to,
+                "job {job} has no result: {workers} workers that held it were lost, and no result came within {} s \
+                 (--pause-limit); nothing was recorded for it, so the run can be resumed once the cause is removed",
+                limit.as_secs()
+            ),
         }
     }
 }

@@ -6,14 +6,20 @@
 //! | the physics (a verdict) | never | | it is the job's result |
 //! | deadline | with twice the time | 2 attempts | a failed result, recorded |
 //! | crashed | on any worker | 2 attempts | a failed result, recorded |
-//! | its worker was lost | on any worker; alone on one after 2 | 4 workers | a failed result, recorded |
+//! | its worker was lost | on any worker; alone on one after 2 | none | after 4 it waits for a worker that joins later |
 //! | refused | on workers that have not refused | all have | delivered, not recorded |
 //! | misconfigured | never | | delivered, not recorded |
 //!
 //! A recorded result is part of the run and never computed again; refused and misconfigured jobs are not
-//! recorded because another build or another case may succeed. If the first 8 jobs all fail, the run stops.
+//! recorded because another build or another case may succeed. The loss of a worker is never a result: a run
+//! that has nothing left but jobs that wait for new workers ends after the pause limit and can be resumed. If the
+//! first 8 jobs all fail, the run stops.
 use protocol::case::{Case, Reproducibility};
 use std::time::Duration;
+
+/// Default time for which a run waits while the journal cannot be written or workers are missing, long enough for
+/// a person to free space on the disk or to start workers.
+pub const PAUSE_LIMIT: Duration = Duration::from_mins(10);
 
 /// Time limits and retry limits of the scheduler; the defaults are measured to give no false loss of a worker
 /// on a machine with thirty times more runnable threads than cores.
@@ -85,9 +91,11 @@ pub struct Policy {
     /// Number of lost workers that held a job, running or not, after which the job runs alone (default 2):
     /// until then another job on those workers may be the cause.
     pub alone_after_losses: u32,
-    /// Number of lost workers that held a job after which the job is given up (default 4): the last two of
-    /// them held no other job.
-    pub give_up_after_losses: u32,
+    /// Number of lost workers that held a job after which the job is given only to workers that join after the
+    /// last loss (default 4): the last two of them held no other job.
+    pub wait_after_losses: u32,
+    /// Time without a result after which a run ends whose only jobs left wait for new workers (default 10 min).
+    pub pause_limit: Duration,
     /// Time between two slot-time accounts in the journal (default 60 s).
     pub account_interval: Duration,
     /// Number of failed jobs without any success at which the run stops (default 8).
@@ -142,7 +150,8 @@ impl Default for Policy {
             give_up_after_deadlines: 2,
             give_up_after_crashes: 2,
             alone_after_losses: 2,
-            give_up_after_losses: 4,
+            wait_after_losses: 4,
+            pause_limit: PAUSE_LIMIT,
             account_interval: Duration::from_mins(1),
             stop_after_failures: 8,
         }

@@ -23,7 +23,7 @@ pub(super) fn reconcile(core: &mut Core, from: WorkerId, beat: &Heartbeat, now: 
         if leased {
             continue;
         }
-        if core.has_finished(job) {
+        if core.has_finished(job) || core.is_orphan(job) {
             core.send(from, ToWorker::Cancel(*attempt));
         } else if let Some(member) = core.members.get_mut(&from) {
             member.claims.push(*attempt);

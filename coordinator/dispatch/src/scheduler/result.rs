@@ -35,6 +35,11 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
         return;
     }
     let Some(pending) = core.jobs.get(&job) else {
+        if core.is_orphan(job) {
+            core.unclaimed.take(job);
+            core.send(from, ToWorker::Stored(vec![done.attempt]));
+            return;
+        }
         // nothing of strangers is kept, unless they may be workers of an earlier process
         if core.members.contains_key(&from)
             || core.options.expected.contains(&from)
@@ -64,6 +69,7 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
         }
         core.times.add(kind, wall_us, &core.options.policy);
         core.counts.succeeded += 1;
+        core.waiting_since = None;
         accept(core, Some(from), done);
         return;
     };
@@ -242,11 +248,11 @@ fn give_up(core: &mut Core, job: JobId, failure: Failure) {
     let (cost, attempt) = (Cost::default(), COORDINATOR_ATTEMPT);
     match failure {
         // another build or another case may do better: not a result of the run
-        Failure::Refused { .. } | Failure::Misconfigured { .. } => {
+        Failure::Refused { .. } | Failure::Misconfigured { .. } | Failure::Lost { .. } => {
             core.forget(job);
             deliver(core, job, cost, Outcome::Failed(failure));
         }
-        Failure::Deadline { .. } | Failure::Crashed { .. } | Failure::Lost { .. } => {
+        Failure::Deadline { .. } | Failure::Crashed { .. } => {
             let done = Done {
                 attempt: Attempt { job, attempt },
                 work,

@@ -5,6 +5,7 @@ use super::{
     job_set::JobSet,
     member::Member,
     notice::Notice,
+    part::is_part,
     policy::Policy,
     slot_time::Clocks,
     times::JobDurations,
@@ -87,6 +88,8 @@ pub struct Core {
     /// Time since which jobs have waited without any worker.
     pub(super) no_worker_since: Option<Duration>,
     pub(super) no_worker_notified: bool,
+    /// Time since which no job but those that wait for a new worker is left; `None` if the run makes progress.
+    pub(super) waiting_since: Option<Duration>,
     /// Model effects that all workers must support; `None` until the first worker joins.
     pub(super) effects: Option<Vec<String>>,
     pub(super) clocks: Clocks,
@@ -186,6 +189,7 @@ impl Core {
             reconnect_grace_until: Duration::ZERO,
             no_worker_since: None,
             no_worker_notified: false,
+            waiting_since: None,
             effects: None,
             clocks: Clocks::default(),
             latency: None,
@@ -200,6 +204,15 @@ impl Core {
     /// Returns whether the job has an accepted result, stored or about to be.
     pub fn has_finished(&self, job: JobId) -> bool {
         self.finished.contains(job) || self.storing.contains_key(&job)
+    }
+
+    /// Returns whether a job is a part that an earlier coordinator process made and that this one has not made
+    /// again by the end of the wait for the workers of that process: nobody will request it.
+    pub(super) fn is_orphan(&self, job: JobId) -> bool {
+        is_part(job)
+            && !self.jobs.contains_key(&job)
+            && self.rejoin_until.is_none()
+            && self.options.expected.is_empty()
     }
 
     /// Returns the number of slots that would stay idle if every requested job without a result ran now.

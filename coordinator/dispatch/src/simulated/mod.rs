@@ -12,8 +12,8 @@ pub use source::{Generations, JobSource, SimulatedDerivatives, SimulatedSearch, 
 pub use worker::{Running, SimulatedWorker, cost, outcome};
 
 use crate::{
-    runtime::{self, DividedJobs, PartResult},
-    scheduler::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, StopReason},
+    runtime::{DividedJobs, PartResult},
+    scheduler::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, StopReason, is_part},
 };
 use event::ClusterEvent;
 use protocol::{
@@ -39,6 +39,9 @@ pub const MODEL: &str = "model";
 pub const CASE: ContentHash = ContentHash([7; 32]);
 /// Result of the reference individual by which every simulated worker proves its numerics.
 pub const PROOF: ReferenceResult = ReferenceResult::Bits(ContentHash([8; 32]));
+
+/// Number of workers that a job kills before it is done.
+pub const KILLS: u32 = 6;
 
 /// Time until a result is stored.
 const STORING: Duration = Duration::from_micros(300);
@@ -82,7 +85,7 @@ pub struct ClusterSetting {
     pub loss: f64,
     /// Share of messages delivered twice \[1\].
     pub duplication: f64,
-    /// Jobs that kill their worker as soon as they start.
+    /// Jobs that kill their worker as soon as they start, the first [`KILLS`] times.
     pub killers: &'static [u64],
 }
 
@@ -138,6 +141,8 @@ pub struct Cluster {
     pub computed: Duration,
     /// Number of attempts started.
     pub begun: u64,
+    /// Number of workers that each job has killed.
+    kills: BTreeMap<JobId, u32>,
 }
 
 impl Cluster {
@@ -175,6 +180,7 @@ impl Cluster {
             notices: Vec::new(),
             computed: Duration::ZERO,
             begun: 0,
+            kills: BTreeMap::new(),
         };
         for place in 0..setting.workers {
             cluster.start(place);
@@ -425,7 +431,9 @@ impl Cluster {
             };
             let (slowness, place) = (worker.slowness, worker.place);
             self.begun += 1;
-            if self.setting.killers.contains(&attempt.job.0) {
+            let kills = self.kills.entry(attempt.job).or_default();
+            if self.setting.killers.contains(&attempt.job.0) && *kills < KILLS {
+                *kills += 1;
                 self.schedule(Duration::ZERO, ClusterEvent::Fault(place, Fault::Kill));
             }
             let time = self.time_of(attempt.job).mul_f64(slowness);
@@ -438,12 +446,12 @@ impl Cluster {
         for command in self.core.handle(input, self.now) {
             match command {
                 Command::Send { to, message } => self.send(ClusterEvent::Down(to, message)),
-                Command::Store(finished) if runtime::is_part(finished.job()) => {
+                Command::Store(finished) if is_part(finished.job()) => {
                     let result = self.divided.finish(*finished);
                     self.take_joined(result);
                 }
                 Command::Store(finished) => storing.push(finished.job()),
-                Command::Deliver(done) if runtime::is_part(done.id) => {}
+                Command::Deliver(done) if is_part(done.id) => {}
                 Command::Deliver(done) => self.undelivered_outcomes.push((done.id, done.outcome)),
                 Command::Record(event @ Event::Accounted(_)) => self.accounts.push(event),
                 Command::Record(_) => {}

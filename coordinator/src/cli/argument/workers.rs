@@ -19,7 +19,8 @@ pub(crate) struct WorkersChoice {
     workers: Option<usize>,
     #[command(flatten)]
     pub(crate) remote: RemoteChoice,
-    /// How long the run waits where its disk is full before it ends with what it has, in minutes [default: 10].
+    /// How long the run waits where its disk is full, or while all that is left are jobs whose workers were lost,
+    /// before it ends with what it has, in minutes [default: 10].
     #[arg(long, value_name = "MINUTES", env = "HORSEHEAD_PAUSE_LIMIT", value_parser = clap::value_parser!(u32).range(0..=100_000))]
     pause_limit: Option<u32>,
     /// Show the run in a browser while it goes on: the address of its page is printed; as --dashboard=PORT at a
@@ -56,7 +57,7 @@ impl WorkersChoice {
         self.workers.unwrap_or_else(cores)
     }
 
-    /// Returns how long the run waits while its disk is full before it ends.
+    /// Returns how long the run waits for room on its disk, or for new workers, before it ends.
     pub(crate) fn pause_limit(&self) -> Duration {
         let minutes = |minutes: u32| Duration::from_secs(60 * u64::from(minutes));
         self.pause_limit.map_or(PAUSE_LIMIT, minutes)

@@ -5,7 +5,6 @@ use super::{
 };
 use crate::cli::run::folder::{MANIFEST, RESULT, RunFolder};
 use dashboard::{Board, PageReader, Pages};
-use dispatch::journal;
 use maud::{Markup, html};
 use report::{
     Block, Section,
@@ -147,7 +146,7 @@ impl Row {
             });
         };
         let result = json(&folder.join(RESULT)).unwrap_or(Value::Null);
-        let state = if is_locked(&folder.join(journal::LOCK)) {
+        let state = if is_locked(&folder) {
             "running"
         } else if result.is_null() {
             "stopped"

@@ -389,7 +389,7 @@ impl Shared {
             } else {
                 "no run".to_owned()
             }
-        } else if is_locked(&folder.file(journal::LOCK)) {
+        } else if is_locked(&self.path) {
             "running".to_owned()
         } else if folder.is_finished() {
             if quiet < RESULT_WAIT {
@@ -435,19 +435,22 @@ impl FollowObserver for Observer<'_> {
     }
 }
 
-/// Returns whether a process of this machine holds the lock of a run, from the kernel's table of locks; a run on
-/// another machine counts as running while its journal grows.
-pub(super) fn is_locked(lock: &Path) -> bool {
-    let Ok(file) = fs::metadata(lock) else {
-        return false;
-    };
-    let suffix = format!(":{}", file.ino());
+/// Returns whether a process of this machine has locked the journal in a run folder, or the file that earlier
+/// versions lock, from the kernel's table of locks; a run on another machine counts as running while its journal
+/// grows.
+pub(super) fn is_locked(run: &Path) -> bool {
+    let journal = run.join(journal::FILE);
     let table = fs::read_to_string("/proc/locks").unwrap_or_default();
-    let mut words = table.split_whitespace();
-    if words.any(|word| word.ends_with(&suffix) && word.matches(':').count() == 2) {
-        return true;
+    for file in [&journal, &run.join(journal::LOCK)] {
+        let Ok(file) = fs::metadata(file) else {
+            continue;
+        };
+        let suffix = format!(":{}", file.ino());
+        let mut words = table.split_whitespace();
+        if words.any(|word| word.ends_with(&suffix) && word.matches(':').count() == 2) {
+            return true;
+        }
     }
-    let journal = lock.with_file_name(journal::FILE);
     let changed = fs::metadata(journal).and_then(|file| file.modified());
     let age = changed.map(|at| SystemTime::now().duration_since(at).unwrap_or_default());
     age.is_ok_and(|age| age < Duration::from_secs(10))

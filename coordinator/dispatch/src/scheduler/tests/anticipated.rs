@@ -111,6 +111,33 @@ fn a_lost_worker_gives_requested_jobs_the_slots_of_anticipated_ones() {
     assert_eq!(jobs(&scene.given()), [100]);
 }
 
+/// Checks that an anticipated job whose workers were lost keeps no worker free. Regression: it was never leased,
+/// and a worker of eight slots got nothing until another one joined.
+#[test]
+fn an_anticipated_job_whose_workers_were_lost_keeps_no_worker_free() {
+    let mut scene = Scene::new();
+    anticipate(&mut scene, 100..101);
+    for worker in 1..=2 {
+        scene.join(worker, 1);
+        assert_eq!(jobs(&scene.given()), [100]);
+        scene.tell(Input::Disconnected {
+            worker: WorkerId(worker),
+        });
+    }
+    scene.join(3, 8);
+    assert_eq!(scene.given(), [], "nobody asked for it");
+    scene.submit(0..3);
+    assert_eq!(scene.given().len(), 3);
+    // once it is requested, it gets a worker of its own
+    scene.tell(Input::Claim {
+        jobs: vec![JobId(100)],
+    });
+    for lease in scene.core.members[&WorkerId(3)].leases.clone() {
+        scene.finish(3, lease.attempt);
+    }
+    assert_eq!(jobs(&scene.given()), [100]);
+}
+
 #[test]
 fn slow_jobs_are_copied_to_slots_that_compute_ahead() {
     let mut scene = Scene::new();

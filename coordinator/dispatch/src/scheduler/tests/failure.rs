@@ -142,10 +142,10 @@ fn a_worker_that_does_not_end_an_overdue_job_loses_it() {
     assert_eq!(scene.cancelled, [(WorkerId(1), attempt)]);
 }
 
-/// Checks, on clusters of many kinds, that jobs that kill their worker cost at most four workers each and
-/// that no other job fails.
+/// Checks, on clusters of many kinds, that jobs that kill their first workers cost these alone and that every job
+/// is done in the end.
 #[test]
-fn jobs_that_kill_their_workers_are_found_whatever_else_those_held() {
+fn jobs_that_kill_their_workers_are_done_in_the_end_whatever_else_those_held() {
     const KILLERS: &[u64] = &[3, 11, 12];
     for seed in 1..=60 {
         let setting = ClusterSetting {
@@ -158,14 +158,10 @@ fn jobs_that_kill_their_workers_are_found_whatever_else_those_held() {
         let mut cluster = Cluster::new(setting);
         cluster.run(&mut Generations::new(80, 1), Duration::from_hours(1));
         for (job, outcome) in &cluster.results {
-            let expected = if KILLERS.contains(job) {
-                Outcome::Failed(Failure::Lost { workers: 4 })
-            } else {
-                Outcome::Done(Answer::Nothing(vec![1]))
-            };
+            let expected = Outcome::Done(Answer::Nothing(vec![1]));
             assert_eq!(*outcome, expected, "job {job}, seed {seed}");
         }
         let lost = cluster.core.snapshot(cluster.now).lost;
-        assert!((4..=12).contains(&lost), "seed {seed}: {lost} workers");
+        assert!((6..=18).contains(&lost), "seed {seed}: {lost} workers");
     }
 }

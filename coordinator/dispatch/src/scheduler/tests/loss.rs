@@ -89,9 +89,10 @@ fn connections_that_broke_while_the_coordinator_stood_still_are_no_losses() {
     }
 }
 
-/// Checks that a job whose workers are lost runs alone, so that no other job can be blamed or harmed.
+/// Checks that a job whose workers are lost runs alone, so that no other job can be blamed or harmed, and waits
+/// for a new worker after two more losses.
 #[test]
-fn a_job_that_killed_two_workers_runs_alone_and_two_more_are_the_end() {
+fn a_job_that_killed_two_workers_runs_alone_and_after_two_more_on_new_ones() {
     let mut scene = Scene::new();
     scene.submit(0..1);
     for worker in 1..=2 {
@@ -118,13 +119,75 @@ fn a_job_that_killed_two_workers_runs_alone_and_two_more_are_the_end() {
     assert_eq!(scene.given(), [], "it waits for a worker of its own");
     scene.join(5, 1);
     assert_eq!(scene.given()[0].1.job, JobId(0));
+    scene.now += Duration::from_millis(1);
     scene.tell(Input::Disconnected {
         worker: WorkerId(5),
     });
-    assert_eq!(
-        scene.delivered,
-        [(0, Outcome::Failed(Failure::Lost { workers: 4 }))]
-    );
+    assert_eq!(scene.delivered, [], "a loss is no result");
+    let waits = |notice: &&Notice| {
+        matches!(
+            notice,
+            Notice::AwaitsWorker {
+                job: JobId(0),
+                losses: 4,
+                ..
+            }
+        )
+    };
+    assert_eq!(scene.notices().into_iter().filter(waits).count(), 1);
+    // the worker that was there all the time goes on with the others and does not get it
+    let others = scene.core.members[&WorkerId(4)].leases.clone();
+    for lease in others {
+        scene.finish(4, lease.attempt);
+    }
+    for (to, attempt) in scene.given() {
+        assert_eq!(to, 4);
+        assert_ne!(attempt.job, JobId(0));
+        scene.finish(4, attempt);
+    }
+    scene.given();
+    scene.join(6, 1);
+    let (to, attempt) = scene.given()[0];
+    assert_eq!((to, attempt.job), (6, JobId(0)), "one that joined later");
+    scene.finish(6, attempt);
+    let done = Outcome::Done(Answer::Nothing(vec![1]));
+    assert!(scene.delivered.contains(&(0, done)));
+}
+
+/// Checks that a run ends, without a result, after the pause limit if only jobs are left that wait for a new
+/// worker, and that the time counts from the last result.
+#[test]
+fn a_run_that_waits_for_new_workers_ends_after_the_pause_limit() {
+    let mut scene = Scene::new();
+    scene.core.options.policy.pause_limit = Duration::from_mins(1);
+    scene.submit(0..1);
+    for worker in 1..=4 {
+        scene.join(worker, 1);
+        scene.now += Duration::from_millis(1);
+        scene.tell(Input::Disconnected {
+            worker: WorkerId(worker),
+        });
+    }
+    let stopped = |scene: &Scene| {
+        let mut other = scene.other.iter();
+        other.any(|command| matches!(command, Command::Stop(StopReason::WorkersLost { .. })))
+    };
+    scene.wait(50, &[]);
+    // another job is computed: the run makes progress
+    scene.join(5, 1);
+    let (to, attempt) = scene.given().pop().unwrap();
+    assert_eq!((to, attempt.job), (5, JobId(0)));
+    scene.wait(20, &[5]);
+    assert!(!stopped(&scene), "it is being computed");
+    scene.tell(Input::Disconnected {
+        worker: WorkerId(5),
+    });
+    scene.wait(1, &[]);
+    assert!(stopped(&scene));
+    assert_eq!(scene.delivered, []);
+    let stops = scene.other.iter();
+    let stops = stops.filter(|command| matches!(command, Command::Stop(_)));
+    assert_eq!(stops.count(), 1);
 }
 
 /// Checks that a quarantined job gets a worker to itself while other jobs keep coming. Regression: the job
@@ -185,21 +248,18 @@ fn what_waited_on_lost_workers_is_suspected_too_and_clears_itself_alone() {
         let given = scene.given();
         assert_eq!(given.len(), 1, "alone: {given:?}");
         assert_eq!(given[0].1.job, JobId(0));
+        scene.now += Duration::from_millis(1);
         scene.tell(Input::Disconnected {
             worker: WorkerId(worker),
         });
     }
-    assert_eq!(
-        scene.delivered,
-        [(0, Outcome::Failed(Failure::Lost { workers: 4 }))]
-    );
     scene.join(5, 1);
-    let (_, innocent) = scene.given()[0];
-    scene.finish(5, innocent);
-    assert_eq!(
-        scene.delivered[1],
-        (1, Outcome::Done(Answer::Nothing(vec![1])))
-    );
+    let (_, first) = scene.given()[0];
+    scene.finish(5, first);
+    let (_, second) = scene.given()[0];
+    scene.finish(5, second);
+    let done = Outcome::Done(Answer::Nothing(vec![1]));
+    assert_eq!(scene.delivered, [(0, done.clone()), (1, done)]);
 }
 
 /// Checks that a job moved to an idle worker is still a suspect when the first worker is lost, since that
@@ -312,6 +372,33 @@ fn nobody_gets_what_those_who_outlived_the_coordinator_may_hold() {
     assert_eq!(scene.given().len(), 4);
 }
 
+/// Checks that parts of divided jobs of an earlier coordinator process are forgotten once the wait for its workers
+/// ends. Regression: a worker went on computing such a part, and sent its result again and again.
+#[test]
+fn parts_that_nobody_requests_after_a_restart_are_cancelled_and_acknowledged() {
+    let mut scene = Scene::with(JobSet::default(), 2);
+    scene.core.options.expected = [WorkerId(1)].into();
+    let old = |job| Attempt {
+        job: JobId(PART | job),
+        attempt: AttemptId(1 << 16),
+    };
+    scene.announce(1, 3, "m");
+    scene.beat(1, &[old(1), old(2)]);
+    scene.finish(1, old(3));
+    assert_eq!((scene.cancelled.len(), scene.acknowledged.len()), (0, 0));
+    // one is requested again
+    let (id, again) = (JobId(PART | 2), job(PART | 2));
+    scene.tell(Input::Submit { id, job: again });
+    scene.wait(4, &[]);
+    scene.beat(1, &[old(1), old(2)]);
+    assert_eq!(scene.cancelled, [(WorkerId(1), old(1))]);
+    scene.finish(1, old(3));
+    assert_eq!(scene.acknowledged, [(WorkerId(1), old(3))]);
+    assert_eq!(scene.core.unclaimed.bytes(), 0);
+    scene.finish(1, old(2));
+    assert_eq!(scene.delivered.len(), 1);
+}
+
 /// Checks that the reason of a loss distinguishes a process that ended at once from one that fell silent
 /// first.
 #[test]
@@ -334,6 +421,7 @@ fn the_reason_of_a_loss_tells_an_end_from_a_silence() {
             | Notice::OtherVersion { .. }
             | Notice::NoWorker { .. }
             | Notice::Quarantined { .. }
+            | Notice::AwaitsWorker { .. }
             | Notice::GivenUp { .. }
             | Notice::Stalled { .. } => None,
         });
