@@ -6,6 +6,7 @@
     clippy::unwrap_used,
     reason = "helpers of a test suite: to panic is to fail the test"
 )]
+mod ended;
 mod machines;
 mod plans;
 mod refusals;
@@ -23,7 +24,8 @@ use std::{
 use tests::process::{coordinator_program, free_quic_locator};
 
 /// Shell script that replaces ssh. Depending on the host name, it fails with a message of the real ssh, or
-/// simulates an old C library, another processor or a full disk.
+/// simulates an old C library, another processor, a full disk or
+/// a shell that hangs when workers are to be ended.
 const SSH: &str = r#"#!/bin/sh
 while :; do
   case "$1" in
@@ -51,6 +53,14 @@ other)
   printf '#!/bin/sh\necho Linux mips\n' > "$home/uname"
   chmod +x "$home/uname"
   PATH=$home:$PATH
+  ;;
+hanging)
+  if [ "$2" = 'sh -s' ]; then
+    script=$(cat)
+    case "$script" in *'for folder in'*) exec sleep 600 ;; esac
+    printf '%s\n' "$script" | HOME=$home sh -s
+    exit
+  fi
   ;;
 full)
   HOME=$home exec unshare -m sh -c 'mount -t tmpfs -o size=1m none "$HOME" && exec sh -c "$1"' sh "$2"

@@ -18,7 +18,7 @@ const LIMIT: Duration = Duration::from_mins(1);
 const PORTS: [u16; 2] = [2201, 2202];
 
 /// Writes the shipped case with long cylinders, so that a simulation takes some 25 ms.
-fn make_case(site: &Site) {
+pub(super) fn make_case(site: &Site) {
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
     let mut copy = Command::new("cp");
     copy.arg("-r").arg(&shipped).arg(site.path("case"));

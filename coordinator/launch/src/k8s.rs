@@ -1,7 +1,7 @@
 //! Workers on Kubernetes: a Deployment whose pods connect to the coordinator, a `NetworkPolicy` that forbids
 //! all other traffic but DNS, and a Secret with the keys, which `kubectl` creates from the folder.
 use super::{
-    plan::{LaunchPlan, PlanPart, PlanStep, StepInput},
+    plan::{LaunchPlan, PlanPart, PlanStep, STEP, StepInput},
     shell::{line, settings},
     worker_options::WorkerOptions,
 };
@@ -99,6 +99,7 @@ fn apply(what: &str, namespace: &str, input: StepInput) -> PlanStep {
         input,
         only_if: None,
         asks: false,
+        limit: STEP,
         remedy: "see what `kubectl auth can-i create deployments` and `kubectl config \
                  current-context` say"
             .to_owned(),

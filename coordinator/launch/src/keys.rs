@@ -5,7 +5,7 @@
 //! already accepts.
 use super::{
     host::Host,
-    plan::{PlanStep, StepInput},
+    plan::{PlanStep, STEP, StepInput},
 };
 use link::keys::{CA_KEY, KeyRole, Keys, pool};
 use std::{
@@ -91,6 +91,7 @@ pub fn assign(folder: &Path, hosts: &[Host]) -> Result<(Vec<String>, Vec<PlanSte
                 input: StepInput::Nothing,
                 only_if: None,
                 asks: false,
+                limit: STEP,
                 remedy: "see what `horsehead keys check DIR` says of the folder".to_owned(),
             },
         );

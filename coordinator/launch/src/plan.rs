@@ -1,9 +1,12 @@
 //! Launch plan as plain data, and its rendering as a shell script.
 use super::shell::line;
-use std::{fmt, path::PathBuf};
+use std::{fmt, path::PathBuf, time::Duration};
 
 /// Heredoc delimiter in a printed plan.
 const END: &str = "HORSEHEAD_END";
+
+/// Maximum time for a command of a launch plan that transfers little and waits for nothing.
+pub(super) const STEP: Duration = Duration::from_mins(2);
 
 /// Standard input of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,6 +45,8 @@ pub enum PlanStep {
         only_if: Option<String>,
         /// Whether the command's output decides which later steps run (see [`PlanStep::Run::only_if`]).
         asks: bool,
+        /// Maximum time for the command, after which it is killed and counts as failed.
+        limit: Duration,
         /// Advice to the user if the command fails.
         remedy: String,
     },

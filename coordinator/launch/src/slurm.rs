@@ -1,6 +1,6 @@
 //! Workers on Slurm: one per node of an allocation, started by one batch script passed to `sbatch`.
 use super::{
-    plan::{LaunchPlan, PlanPart, PlanStep, StepInput},
+    plan::{LaunchPlan, PlanPart, PlanStep, STEP, StepInput},
     program::Program,
     shell::{line, lines, settings},
     worker_options::WorkerOptions,
@@ -50,6 +50,7 @@ pub fn up(
                 input: StepInput::Text(script(order, program, name)),
                 only_if: None,
                 asks: false,
+                limit: STEP,
                 remedy: format!(
                     "check the partitions with `sinfo`; pass further options with --sbatch-arg (command: {})",
                     line(&command)

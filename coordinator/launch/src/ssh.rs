@@ -6,16 +6,16 @@
 mod script;
 
 use super::{
-    execute::{self, LaunchError},
+    execute::{self, Cancellation, LaunchError},
     host::Host,
     keys,
-    plan::{LaunchPlan, PlanPart, PlanStep, StepInput},
+    plan::{LaunchPlan, PlanPart, PlanStep, STEP, StepInput},
     program::Program,
     shell::line,
     worker_options::WorkerOptions,
 };
 use link::keys::{CA, WORKER};
-use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 use support::Problem;
 
 /// Options of every ssh call: no prompts at the terminal, and a timeout for hosts that do not respond.
@@ -25,6 +25,11 @@ const OPTIONS: [&str; 4] = [
     "ServerAliveInterval=5",
     "ServerAliveCountMax=3",
 ];
+
+/// Maximum time for copying a worker program to a host.
+const COPY: Duration = Duration::from_mins(15);
+/// Maximum time for ending the workers of a host, which is part of ending a command.
+const DOWN: Duration = Duration::from_secs(30);
 
 /// Plans one worker per host, each with the program for its architecture and its own keys, and a check
 /// lasting up to `wait_s` seconds that the worker takes part (0: no check).
@@ -82,6 +87,7 @@ fn part(
         input: StepInput::Text(script::probe(programs)),
         only_if: None,
         asks: true,
+        limit: STEP,
         remedy: "name a program for it with --worker-program ARCH=PATH; deploy/portable.sh builds \
                  one for older systems"
             .to_owned(),
@@ -92,6 +98,7 @@ fn part(
         input: StepInput::File(program.path.clone()),
         only_if: Some(format!("need {}", program.machine)),
         asks: false,
+        limit: COPY,
         remedy: "make room in its ~/.cache/horsehead, or set XDG_CACHE_HOME there".to_owned(),
     }));
     if let Some(keys) = &order.tls {
@@ -103,6 +110,7 @@ fn part(
             input: StepInput::Command(tar.map(str::to_owned).to_vec()),
             only_if: None,
             asks: false,
+            limit: STEP,
             remedy: format!("see what `horsehead keys check {from}` says; the host needs tar"),
         });
     }
@@ -118,6 +126,7 @@ fn part(
         input: StepInput::Text(script::start(order, folder, programs)),
         only_if: None,
         asks: false,
+        limit: STEP,
         remedy: format!("see {}", log_command(host)),
     });
     if wait_s > 0 {
@@ -127,6 +136,7 @@ fn part(
             input: StepInput::Text(script::watch(folder, wait_s)),
             only_if: None,
             asks: false,
+            limit: Duration::from_secs(wait_s) + STEP,
             remedy: format!(
                 "it was started; its coordinator must run and be reached at {} from there. See {}",
                 order.connect,
@@ -184,6 +194,7 @@ pub fn down(hosts: &[Host], which: EndedWorkers<'_>) -> LaunchPlan {
             input: StepInput::Text(script::end(&mark, owner)),
             only_if: None,
             asks: false,
+            limit: DOWN,
             remedy: "its workers end by themselves only with --idle-timeout".to_owned(),
         }],
     });
@@ -204,9 +215,10 @@ pub fn our_address(host: &Host) -> Result<String, LaunchError> {
         input: StepInput::Text("echo \"${SSH_CONNECTION%% *}\"\n".to_owned()),
         only_if: None,
         asks: true,
+        limit: STEP,
         remedy: "name the address with --advertise".to_owned(),
     };
-    execute::run(&host.to_string(), &[step], &AtomicBool::new(false)).and_then(|address| {
+    execute::run(&host.to_string(), &[step], &Cancellation::default()).and_then(|address| {
         if address.is_empty() {
             return Err(LaunchError {
                 place: host.to_string(),

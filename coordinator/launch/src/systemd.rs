@@ -1,6 +1,6 @@
 //! Launcher of a worker on this machine as a unit of the user's systemd, restarted with the machine.
 use super::{
-    plan::{LaunchPlan, PlanPart, PlanStep, StepInput},
+    plan::{LaunchPlan, PlanPart, PlanStep, STEP, StepInput},
     program::Program,
     shell::{line, settings},
     worker_options::WorkerOptions,
@@ -43,6 +43,7 @@ pub fn up(
         input: StepInput::Nothing,
         only_if: None,
         asks: false,
+        limit: STEP,
         remedy: "see that `systemctl --user status` works here; deploy/systemd has a unit for the \
                  whole machine"
             .to_owned(),

@@ -28,7 +28,7 @@ mod write;
 
 pub use error::JournalError;
 pub use follow::{Growth, JournalFollower};
-pub use open::{Journal, OpenedRun};
+pub use open::{Journal, OpenedRun, discard};
 pub use read::{Damage, JournalEntry, ReadReport, describe_damage, fold};
 pub use record::{FILE, HEAD, LOCK, MARK};
 pub use recording::{JournalSnapshot, numbers};

@@ -307,6 +307,25 @@ impl Drop for RunLock {
     }
 }
 
+/// Deletes the folder of a run that no coordinator works on; a missing folder is no error.
+///
+/// # Errors
+/// [`JournalError::Locked`] if a coordinator works on the run, [`JournalError::Io`] if the folder cannot be deleted.
+pub fn discard(folder: &Path) -> Result<(), JournalError> {
+    if !folder.exists() {
+        return Ok(());
+    }
+    let _locks = [
+        lock(folder, &folder.join(LOCK))?,
+        lock(folder, &folder.join(FILE))?,
+    ];
+    std::fs::remove_dir_all(folder).map_err(|source| JournalError::Io {
+        doing: "delete",
+        path: folder.to_owned(),
+        source,
+    })
+}
+
 /// Opens or creates a file of a run folder and locks it.
 fn lock(folder: &Path, path: &Path) -> Result<RunLock, JournalError> {
     let failed = |source: io::Error| JournalError::Io {

@@ -375,6 +375,17 @@ fn a_run_whose_lock_file_was_deleted_stays_locked() {
     ));
 }
 
+#[test]
+fn a_run_in_use_is_not_discarded() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = open(folder.path()).unwrap();
+    let error = discard(folder.path()).unwrap_err();
+    assert!(matches!(error, JournalError::Locked { .. }), "{error}");
+    drop(own);
+    discard(folder.path()).unwrap();
+    assert!(!folder.path().exists());
+}
+
 /// Checks that nothing is acknowledged once another file stands at the journal's path.
 #[test]
 fn a_journal_that_was_replaced_is_noticed() {

@@ -146,7 +146,7 @@ impl Row {
             });
         };
         let result = json(&folder.join(RESULT)).unwrap_or(Value::Null);
-        let state = if is_locked(&folder) {
+        let state = if is_locked(folder) {
             "running"
         } else if result.is_null() {
             "stopped"

@@ -1,21 +1,35 @@
 //! Handling of Ctrl-C: the first stops the run cleanly, the second exits at once.
 use crate::cli::output::{problem::INTERRUPTED, terminal};
+use std::{sync::OnceLock, thread};
 use study::Stop;
 use tokio::sync::watch;
 
-/// Starts listening for Ctrl-C and SIGTERM; requires a running asynchronous runtime. The returned value
-/// becomes true with the first signal; the second ends the process.
+/// Returns a value that becomes true with the first Ctrl-C or SIGTERM that this process receives after the first
+/// call; the second signal ends the process, whatever it does by then.
 pub(crate) fn listen() -> Stop {
-    let (sender, stop) = watch::channel(false);
-    tokio::spawn(async move {
-        signal().await;
-        terminal::tell("stopping cleanly; press Ctrl-C again to stop at once");
-        // whoever listened may be busy ending the run, which may have to wait for a full disk
-        sender.send_replace(true);
-        signal().await;
-        leave();
-    });
-    stop
+    static STOP: OnceLock<Stop> = OnceLock::new();
+    let start = || {
+        let (sender, stop) = watch::channel(false);
+        // a thread and a runtime of its own: signals are heard until the process ends
+        thread::spawn(move || {
+            let mut runtime = tokio::runtime::Builder::new_current_thread();
+            match runtime.enable_all().build() {
+                Ok(runtime) => runtime.block_on(hear(sender)),
+                Err(error) => tracing::warn!("interrupts end this program at once: {error}"),
+            }
+        });
+        stop
+    };
+    STOP.get_or_init(start).clone()
+}
+
+async fn hear(sender: watch::Sender<bool>) {
+    signal().await;
+    terminal::tell("stopping cleanly; press Ctrl-C again to stop at once");
+    // whoever listened may be busy ending the run, which may have to wait for a full disk
+    sender.send_replace(true);
+    signal().await;
+    leave();
 }
 
 #[expect(

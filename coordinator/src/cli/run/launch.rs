@@ -3,7 +3,7 @@
 //! By default, the run listens on port 7447 of every interface, at the address of this machine that a host
 //! reports for its SSH connection, with keys kept in the run folder; a restarted run therefore has the same
 //! address and keys for its workers.
-use super::folder::KEYS;
+use super::{folder::KEYS, interrupt};
 use crate::cli::{
     argument::{listening::RemoteAccess, workers::RemoteChoice},
     output::{problem::Problem, terminal},
@@ -11,7 +11,7 @@ use crate::cli::{
 use dispatch::runtime::locate::worker_program;
 use launch::{
     Host, LaunchPlan, Program, WorkerOptions,
-    execute::{LaunchError, execute_plan},
+    execute::{Cancellation, LaunchError, execute_plan},
     ssh::{self, EndedWorkers},
 };
 use link::{
@@ -23,9 +23,10 @@ use std::{
     path::Path,
     sync::{
         Arc,
-        atomic::{AtomicBool, AtomicUsize, Ordering},
+        atomic::{AtomicUsize, Ordering},
     },
     thread::{self, JoinHandle},
+    time::Duration,
 };
 
 /// Default listening address of a run that launches its own workers.
@@ -38,6 +39,9 @@ const WAIT_S: u64 = 30;
 /// because this process was killed.
 const IDLE_S: u64 = 600;
 
+/// Interval at which the end of the launched workers is looked for.
+const POLL: Duration = Duration::from_millis(50);
+
 /// Workers on other hosts that are launched together with a run and stopped with it.
 #[derive(Debug)]
 pub(crate) struct Launch {
@@ -47,8 +51,8 @@ pub(crate) struct Launch {
     programs: Vec<Program>,
     /// Listening address and keys of the run, through which the launched workers connect.
     pub(crate) endpoint: RemoteAccess,
-    /// Flag that stops the launching: once set, no further step of the plan begins.
-    cancelled: Arc<AtomicBool>,
+    /// Cancellation of the launching and of the ending of workers.
+    cancelled: [Arc<Cancellation>; 2],
     /// Thread that launches the workers; `None` before [`Launch::up`].
     launching: Option<JoinHandle<()>>,
 }
@@ -88,7 +92,7 @@ impl Launch {
             options: order,
             programs: programs(&workers.launch.worker_program)?,
             endpoint: door,
-            cancelled: Arc::default(),
+            cancelled: Default::default(),
             launching: None,
         }))
     }
@@ -98,7 +102,7 @@ impl Launch {
     pub(crate) fn up(&mut self) -> anyhow::Result<()> {
         let plan = ssh::up(&self.options, &self.hosts, &self.programs, WAIT_S);
         let plan = plan?;
-        let cancelled = Arc::clone(&self.cancelled);
+        let [cancelled, _] = self.cancelled.clone();
         let launching = thread::Builder::new()
             .name("launch".to_owned())
             .spawn(move || {
@@ -110,24 +114,54 @@ impl Launch {
         Ok(())
     }
 
-    /// Stops all launched workers, including those that are still being started.
+    /// Ends the workers that [`Self::up`] launched, including those that are still being started; an interrupt
+    /// ends the wait for them. Without `up` nothing is ended: another process of the run may have launched workers.
+    ///
+    /// Blocks for at most the limits of its steps.
     pub(crate) fn down(mut self) {
-        self.cancelled.store(true, Ordering::Relaxed);
-        let is_launching = |launching: &JoinHandle<()>| !launching.is_finished();
-        let launching = self.launching.take().filter(is_launching);
+        let Some(launching) = self.launching.take() else {
+            return;
+        };
+        let cancelled = self.cancelled.clone();
+        let stop = interrupt::listen();
+        // whoever interrupted the run itself waits for its end, and may interrupt that, too
+        let was_interrupted = *stop.borrow();
+        let ended = thread::spawn(move || self.end(&launching));
+        while !ended.is_finished() {
+            if !was_interrupted && *stop.borrow() {
+                cancelled.iter().for_each(|plan| plan.kill());
+            }
+            thread::sleep(POLL);
+        }
+        let ended = ended.join().map(|ended| {
+            anyhow::ensure!(!cancelled[1].is_killed(), "interrupted");
+            ended
+        });
+        match ended {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => tracing::warn!(
+                "workers on other hosts could not be stopped and end by themselves after {IDLE_S} s: {error}"
+            ),
+            Err(_) => tracing::error!("the thread that ends workers panicked"),
+        }
+    }
+
+    /// Executes the plan that ends the launched workers.
+    fn end(&self, launching: &JoinHandle<()>) -> anyhow::Result<()> {
+        let [up, ending] = &self.cancelled;
+        let was_launching = !launching.is_finished();
+        up.finish();
         let down = ssh::down(&self.hosts, EndedWorkers::OwnedBy(&self.options));
         // whoever waits for a worker to take part goes on once its process has ended
-        let mut ended = execute(&down);
-        if let Some(launching) = launching {
-            // a step that had begun may have started a worker behind that
-            drop(launching.join());
-            ended = execute(&down);
+        let ended = execute_plan_until(&down, ending);
+        if !was_launching {
+            return ended;
         }
-        if let Err(error) = ended {
-            tracing::warn!(
-                "workers on other hosts could not be stopped and end by themselves after {IDLE_S} s: {error}"
-            );
+        while !launching.is_finished() && !up.is_killed() {
+            thread::sleep(POLL);
         }
+        // a step that had begun may have started a worker behind that
+        execute_plan_until(&down, ending)
     }
 }
 
@@ -159,12 +193,11 @@ fn owner(run: &Path) -> std::io::Result<String> {
 
 /// Executes a plan for launching workers and prints the outcome at each host.
 pub(crate) fn execute(plan: &LaunchPlan) -> anyhow::Result<()> {
-    execute_plan_until(plan, &AtomicBool::new(false))
+    execute_plan_until(plan, &Cancellation::default())
 }
 
-/// Executes a plan for launching workers like [`execute`], but begins no further step once `cancelled` is
-/// set.
-fn execute_plan_until(plan: &LaunchPlan, cancelled: &AtomicBool) -> anyhow::Result<()> {
+/// Executes a plan for launching workers like [`execute`], until it is cancelled.
+fn execute_plan_until(plan: &LaunchPlan, cancelled: &Cancellation) -> anyhow::Result<()> {
     let failed = AtomicUsize::new(0);
     execute_plan(plan, cancelled, &|part, ended| match ended {
         Ok(()) => terminal::tell(&format!("{}: {}", part.place, part.success_message)),

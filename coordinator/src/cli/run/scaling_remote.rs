@@ -10,16 +10,21 @@ use super::{
     manifest::RunIdentity as _,
     scaling::{Measured, ScalingRun, ScalingSettings, Searched, file},
 };
-use crate::cli::{argument::workers::RemoteChoice, output::terminal};
+use crate::cli::{
+    argument::workers::RemoteChoice,
+    output::{problem::Problem, terminal},
+};
 use anyhow::Context as _;
-use dispatch::runtime::{
-    self,
-    control::{messages::ControlRequest, send_request},
+use dispatch::{
+    journal,
+    runtime::{
+        self,
+        control::{messages::ControlRequest, send_request},
+    },
 };
 use protocol::{id::JobId, job::Job};
 use std::{
     collections::VecDeque,
-    fs,
     path::PathBuf,
     time::{Duration, Instant},
 };
@@ -107,9 +112,10 @@ impl RemoteWorkers {
         stop: &mut Stop,
     ) -> anyhow::Result<Self> {
         let journal = scale.run.folder.file(JOURNAL);
-        if journal.exists() {
-            fs::remove_dir_all(&journal).with_context(|| journal.display().to_string())?;
-        }
+        journal::discard(&journal).map_err(|error| Problem {
+            message: error.to_string(),
+            remedy: "wait for it, or choose another folder with --run DIR".to_owned(),
+        })?;
         let mut launch = Launch::prepare(remote, scale.run.folder.path())?;
         let network = launch.as_ref().map_or(&remote.door, |own| &own.endpoint);
         let options = Options {

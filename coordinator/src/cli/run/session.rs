@@ -20,6 +20,17 @@ pub(crate) struct Session {
     started: Instant,
     /// Dashboard of the run, which ends with the command, after the result is written.
     dashboard: RefCell<Option<AttachedDashboard>>,
+    /// Workers that this command launched on other hosts; they are ended with the command, after the result is
+    /// written.
+    launched: RefCell<Option<Launch>>,
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        if let Some(launch) = self.launched.take() {
+            launch.down();
+        }
+    }
 }
 
 impl Session {
@@ -28,6 +39,7 @@ impl Session {
             workers: workers.clone(),
             started: Instant::now(),
             dashboard: RefCell::new(None),
+            launched: RefCell::new(None),
         }
     }
 
@@ -85,9 +97,7 @@ impl Session {
             closed?;
             Ok(done)
         });
-        if let Some(launch) = launch {
-            launch.down();
-        }
+        *self.launched.borrow_mut() = launch;
         done.inspect_err(|error| {
             if can_go_on(error) {
                 terminal::tell(&format!(
