@@ -129,7 +129,9 @@ impl Launch {
         let ended = thread::spawn(move || self.end(&launching));
         while !ended.is_finished() {
             if !was_interrupted && *stop.borrow() {
-                cancelled.iter().for_each(|plan| plan.kill());
+                for plan in &cancelled {
+                    plan.kill();
+                }
             }
             thread::sleep(POLL);
         }

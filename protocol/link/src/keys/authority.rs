@@ -13,8 +13,8 @@ use rcgen::{
 };
 use rustls::pki_types::{CertificateDer, pem::PemObject};
 use std::{
-    fs::{self, OpenOptions},
-    io::Write,
+    fs::{self, File, OpenOptions},
+    io::{self, Write},
     os::unix::fs::{DirBuilderExt, OpenOptionsExt},
     path::{Path, PathBuf},
     time::{Duration, SystemTime, UNIX_EPOCH},
@@ -199,10 +199,7 @@ impl Authority {
         let [certificate, key] = WORKER.map(|file| folder.join(file));
         save(&self.pair_for_worker(name, valid)?, &certificate, &key)?;
         write(&folder.join(CA), &self.pem, Open::All)?;
-        let mut names = fs::read_to_string(&list).unwrap_or_default();
-        names.push_str(name);
-        names.push('\n');
-        fs::write(&list, names).map_err(|error| KeyError::Make {
+        add_name(&list, name).map_err(|error| KeyError::Make {
             path: list,
             reason: error.to_string(),
         })?;
@@ -228,6 +225,34 @@ impl Authority {
 /// Creates a certificate authority that is kept in memory only.
 pub(crate) fn for_memory() -> Result<Authority, KeyError> {
     Authority::generate(Path::new("the inner certificates"))
+}
+
+/// Adds a line to the list of workers. The list is replaced as a whole, since coordinators read it meanwhile, and
+/// under a lock of its folder, since several processes may add names at the same time.
+fn add_name(list: &Path, name: &str) -> io::Result<()> {
+    let list = fs::canonicalize(list).unwrap_or_else(|_| list.to_owned());
+    let folder = list.parent().filter(|path| !path.as_os_str().is_empty());
+    let folder = File::open(folder.unwrap_or(Path::new(".")))?;
+    folder.lock()?;
+    let mut names = match fs::read_to_string(&list) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
+        read => read?,
+    };
+    if !names.is_empty() && !names.ends_with('\n') {
+        names.push('\n');
+    }
+    names.push_str(name);
+    names.push('\n');
+    let new = list.with_extension("new");
+    let mut file = File::create(&new)?;
+    if let Ok(there) = fs::metadata(&list) {
+        file.set_permissions(there.permissions())?;
+    }
+    file.write_all(names.as_bytes())?;
+    file.sync_all()?;
+    fs::rename(&new, &list)?;
+    // a child that is being started may hold the folder open for a moment
+    folder.unlock()
 }
 
 fn save((certificate, key): &(String, String), to: &Path, key_to: &Path) -> Result<(), KeyError> {
