@@ -49,7 +49,7 @@ fn what_went_wrong_is_said_in_the_programs_own_words() {
 fn what_hangs_is_ended_with_all_that_it_has_started() {
     // a process of another session, without parent and without environment
     let program =
-        "(setsid env -i /bin/sh -c 'echo $$ > '$PWD'/../../pid; sleep 600' &) ; sleep 600\n";
+        "(setsid env -i /bin/sh -c 'echo $$ > '$PWD'/../../../pid; sleep 600' &) ; sleep 600\n";
     let rig = Rig::shell(program, "");
     rig.limit("wall_s = 3600.0", "wall_s = 1.0");
     let began = Instant::now();
@@ -75,7 +75,7 @@ fn what_writes_without_end_is_ended() {
 
 #[test]
 fn what_the_program_calls_a_verdict_is_not_tried_again() {
-    let program = "echo run >> ../../count\nexit 3\n";
+    let program = "echo run >> ../../../count\nexit 3\n";
     let rig = Rig::shell(program, "verdicts = { 3 = \"diverged\" }");
     let shown = rig.run(&["simulate", "case", "--output", "json"]);
     let text = String::from_utf8_lossy(&shown.stdout).into_owned();

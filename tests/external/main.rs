@@ -11,3 +11,4 @@ mod bench;
 mod joint;
 mod pest;
 mod rig;
+mod stranger;

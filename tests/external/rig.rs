@@ -61,6 +61,11 @@ impl Rig {
 
     /// Runs the coordinator with these arguments in the test folder, with two workers.
     pub(crate) fn run(&self, words: &[&str]) -> Output {
+        self.command(words).output().unwrap()
+    }
+
+    /// Returns a command that runs the coordinator as [`Self::run`].
+    pub(crate) fn command(&self, words: &[&str]) -> Command {
         let mut command = Command::new(tests::process::coordinator_program());
         command
             .args(words)
@@ -69,7 +74,7 @@ impl Rig {
             .env("HORSEHEAD_WORKERS", "2")
             .env("TMPDIR", self.0.path())
             .current_dir(self.0.path());
-        command.output().unwrap()
+        command
     }
 
     /// Runs a coordinator command, asserts success, and returns its standard output.
@@ -102,13 +107,13 @@ impl Rig {
         fs::write(path, text.replace(from, to)).unwrap();
     }
 
-    /// Returns the names of evaluations' temporary folders that were not removed.
+    /// Returns the paths, in the test folder, of evaluations' temporary folders that were not removed.
     pub(crate) fn left(&self) -> Vec<String> {
-        let entries = fs::read_dir(self.0.path()).unwrap();
+        let own = format!("horsehead-{}", rustix::process::geteuid().as_raw());
+        let entries = fs::read_dir(self.file(&own)).into_iter().flatten();
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-        names
-            .filter(|name| name.starts_with("horsehead-") && !name.contains(".lock"))
-            .collect()
+        let left = names.filter(|name| !name.ends_with(".lock"));
+        left.map(|name| format!("{own}/{name}")).collect()
     }
 
     /// Returns whether a folder contains files left by an evaluation.

@@ -1,7 +1,7 @@
 //! Models that are external programs: input files, a process, output files.
 //!
 //! ```text
-//! values -> templates (fill) -> folder (scratch) -> process (run) -> output files -> curves (gather)
+//! values -> templates (fill) -> folder (scratch, in own_folder) -> process (run) -> output files -> curves (gather)
 //!                                                                \-> files of a failed run (leftover_files)
 //! ```
 //!
@@ -12,6 +12,7 @@ mod fill;
 mod gather;
 mod leftover_files;
 mod model;
+mod own_folder;
 mod run;
 mod scratch;
 mod simulator;
@@ -23,7 +24,7 @@ pub use simulator::Externals;
 pub(crate) fn remove_abandoned() {
     // without a list nothing was ever started here
     let allowed = exchange::allow::read(&exchange::allow::path()).unwrap_or_default();
-    let places = allowed.entry.values().map(scratch::place);
+    let places = allowed.entry.values().map(scratch::parent);
     let places: std::collections::BTreeSet<std::path::PathBuf> = places.collect();
     for place in places {
         scratch::clean(&place);

@@ -81,7 +81,7 @@ impl Prepared {
             });
             Ok((*status, word?))
         };
-        let place = scratch::place(&entry);
+        let place = scratch::parent(&entry);
         scratch::clean(&place);
         Ok(Self {
             templates: Templates::new(&external.fills).map_err(wrong("model.inputs"))?,

@@ -1,6 +1,6 @@
 //! Runs an external program once: starts it within its limits, monitors it, and ends it with all processes it
 //! started.
-use super::scratch::Scratch;
+use super::{own_folder, scratch::Scratch};
 use crate::process_tree;
 use exchange::allow::AllowEntry;
 use protocol::job::Failure;
@@ -222,7 +222,7 @@ pub(super) struct RunPermit {
 impl RunPermit {
     /// Waits until another process of the program may run; returns `None` if its entry sets no limit.
     pub(super) fn acquire(
-        place: &Path,
+        parent: &Path,
         name: &str,
         entry: &AllowEntry,
     ) -> io::Result<Option<Self>> {
@@ -231,9 +231,11 @@ impl RunPermit {
         let Some(places) = entry.max_concurrent() else {
             return Ok(None);
         };
+        // locks are those of this user's processes: a stranger's cannot hold them up
+        let place = own_folder::below(parent)?;
         loop {
             for number in 0..places {
-                let path = place.join(format!("horsehead-{name}.{number}.lock"));
+                let path = place.join(format!("{name}.{number}.lock"));
                 let mut options = fs::OpenOptions::new();
                 let file = options.create(true).append(true).open(path)?;
                 if file.try_lock().is_ok() {

@@ -1,25 +1,31 @@
-//! Working folder of one evaluation: created, filled with the case's files, removed.
+//! Working folder of one evaluation: created in this user's own folder, filled with the case's files, removed.
 //!
 //! A file in the folder stays locked while its process lives. The folder of a killed process is thereby
 //! recognised in any PID namespace, and removed by the next process.
+use super::own_folder::{self, OpenFolder};
 use exchange::allow::AllowEntry;
 use protocol::file::{File, is_below};
 use std::{
+    ffi::{CStr, CString, OsStr},
     fs::{self, OpenOptions},
     io,
-    os::unix::fs::{DirBuilderExt, OpenOptionsExt},
+    os::unix::{
+        ffi::OsStrExt,
+        fs::{DirBuilderExt, OpenOptionsExt},
+    },
     path::{Path, PathBuf},
     process,
     sync::atomic::{AtomicU64, Ordering},
-    time::Duration,
+    time::{Duration, SystemTime, UNIX_EPOCH},
 };
 
-const PREFIX: &str = "horsehead-";
+const PREFIX: &str = "run-";
 
-/// Name of the file in a working folder that is locked while the folder is in use. `KEPT` is the name of the
-/// file that marks a folder to be kept for inspection.
+/// Name of the file in a working folder that is locked while the folder is in use.
 pub(super) const LOCK: &str = "lock";
-const KEPT: &str = "kept";
+const LOCK_NAME: &CStr = c"lock";
+/// Name of the file that marks a working folder to be kept for inspection.
+const KEPT: &CStr = c"kept";
 /// Name of the subfolder of a working folder in which the program runs.
 pub(super) const WORK: &str = "work";
 /// Age up to which a working folder without a lock file counts as still being created.
@@ -38,14 +44,15 @@ pub(super) struct Scratch {
     kept: bool,
 }
 
-/// Returns the directory in which the working folders for an allowed program are created.
-pub(super) fn place(entry: &AllowEntry) -> PathBuf {
+/// Returns the parent of the own folder in which the working folders for an allowed program are created.
+pub(super) fn parent(entry: &AllowEntry) -> PathBuf {
     entry.folder.clone().unwrap_or_else(std::env::temp_dir)
 }
 
 impl Scratch {
-    /// Creates a new working folder and locks it.
-    pub(super) fn new(place: &Path) -> io::Result<Self> {
+    /// Creates a new working folder in the own folder below `parent` and locks it.
+    pub(super) fn new(parent: &Path) -> io::Result<Self> {
+        let place = own_folder::below(parent)?;
         let make = |path: &Path| fs::DirBuilder::new().mode(0o700).create(path);
         let root = loop {
             let number = NUMBER.fetch_add(1, Ordering::Relaxed);
@@ -128,7 +135,10 @@ impl Scratch {
     pub(super) fn keep(&mut self) -> &Path {
         self.kept = true;
         // a sign for whoever cleans up
-        drop(fs::write(self.root.join(KEPT), ""));
+        drop(fs::write(
+            self.root.join(OsStr::from_bytes(KEPT.to_bytes())),
+            "",
+        ));
         &self.root
     }
 }
@@ -154,51 +164,43 @@ fn bytes(folder: &Path) -> u64 {
     each.sum()
 }
 
-/// Removes the folders of processes that no longer exist.
-pub(super) fn clean(place: &Path) {
-    let entries = fs::read_dir(place).into_iter().flatten().flatten();
-    for entry in entries {
-        let name = entry.file_name();
-        let is_ours = name.to_str().is_some_and(|name| {
-            let numbers = name
-                .strip_prefix(PREFIX)
-                .and_then(|rest| rest.split_once('-'));
-            numbers.is_some_and(|(owner, number)| {
-                [owner, number]
-                    .iter()
-                    .all(|part| part.parse::<u64>().is_ok())
-            })
-        });
-        let path = entry.path();
-        if is_ours && !path.join(KEPT).exists() && is_abandoned(&path) {
-            // another user's stays
-            drop(remove(&path));
+/// Removes the folders of processes that no longer exist from the own folder below `parent`.
+pub(super) fn clean(parent: &Path) {
+    let Ok(own) = own_folder::below(parent).and_then(|path| OpenFolder::open(&path)) else {
+        return;
+    };
+    let names = own.names(|name| name.to_bytes().starts_with(PREFIX.as_bytes()));
+    for name in names.unwrap_or_default() {
+        let is_left = own
+            .folder(&name)
+            .is_ok_and(|folder| !folder.has(KEPT) && is_abandoned(&folder));
+        if is_left {
+            // it is tried again by the next process
+            drop(own.remove(&name, LOCK_NAME));
         }
     }
 }
 
-/// Removes a folder, its lock file last: if this process is killed meanwhile, the next one still recognises
-/// the folder as abandoned.
+/// Removes a working folder.
 fn remove(root: &Path) -> io::Result<()> {
-    for entry in fs::read_dir(root)? {
-        let entry = entry?;
-        if entry.file_type()?.is_dir() {
-            fs::remove_dir_all(entry.path())?;
-        } else if entry.file_name() != LOCK {
-            fs::remove_file(entry.path())?;
-        }
-    }
-    fs::remove_dir_all(root)
+    let (Some(own), Some(name)) = (root.parent(), root.file_name()) else {
+        return Err(io::ErrorKind::NotFound.into());
+    };
+    let name = CString::new(name.as_bytes())?;
+    OpenFolder::open(own)?.remove(&name, LOCK_NAME)
 }
 
 /// Returns whether a working folder is abandoned: its lock is free, or it has no lock file and is not new.
-fn is_abandoned(folder: &Path) -> bool {
-    if let Ok(lock) = fs::File::open(folder.join(LOCK)) {
+fn is_abandoned(folder: &OpenFolder) -> bool {
+    if let Ok(lock) = folder.file(LOCK_NAME) {
         return lock.try_lock().is_ok();
     }
-    let made = fs::metadata(folder).and_then(|found| found.modified()).ok();
-    let age = made.and_then(|made| made.elapsed().ok());
-    age.is_some_and(|age| age > NEW)
+    let made = folder.attributes().map(|found| found.st_mtime);
+    let now = SystemTime::now().duration_since(UNIX_EPOCH);
+    let (Ok(made), Ok(now)) = (made.map(u64::try_from), now) else {
+        return false;
+    };
+    made.is_ok_and(|made| now.saturating_sub(Duration::from_secs(made)) > NEW)
 }
 
 #[cfg(test)]
@@ -224,17 +226,13 @@ mod tests {
     #[test]
     fn what_a_killed_process_left_is_removed_and_what_is_kept_stays() {
         let place = tempfile::tempdir().unwrap();
+        let own_folder = own_folder::below(place.path()).unwrap();
         let make = |name: &str| {
-            let path = place.path().join(name);
+            let path = own_folder.join(name);
             fs::create_dir(&path).unwrap();
             path
         };
-        let [left, kept, other, new] = [
-            make("horsehead-7-0"),
-            make("horsehead-7-1"),
-            make("horsehead-x"),
-            make("horsehead-7-2"),
-        ];
+        let [left, kept, other, new] = ["run-7-0", "run-7-1", "x", "run-7-2"].map(make);
         for folder in [&left, &kept] {
             fs::write(folder.join(LOCK), "").unwrap();
         }
