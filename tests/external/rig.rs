@@ -112,7 +112,7 @@ impl Rig {
         let own = format!("horsehead-{}", rustix::process::geteuid().as_raw());
         let entries = fs::read_dir(self.file(&own)).into_iter().flatten();
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-        let left = names.filter(|name| !name.ends_with(".lock"));
+        let left = names.filter(|name| !name.contains(".lock"));
         left.map(|name| format!("{own}/{name}")).collect()
     }
 
