@@ -350,7 +350,7 @@ const MISTAKES: &[Mistake] = &[
         |_| {},
         "calibrate case --listen 127.0.0.1",
         2,
-        &["127.0.0.1", "tcp/127.0.0.1:7447"],
+        &["127.0.0.1", "quic/HOST:7447"],
     ),
     (
         "a folder that exists already",

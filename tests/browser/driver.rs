@@ -10,7 +10,7 @@ use std::{
     thread,
     time::{Duration, Instant},
 };
-use tests::process::{Process, free_locator, wait_until};
+use tests::process::{Process, free_tcp_locator, wait_until};
 use tokio::runtime::Runtime;
 
 /// Longest wait for something to appear on a page.
@@ -41,7 +41,7 @@ impl Browser {
             return None;
         }
         let folder = tempfile::tempdir().unwrap();
-        let locator = free_locator();
+        let locator = free_tcp_locator();
         let (_, port) = locator.rsplit_once(':').unwrap();
         let port: u16 = port.parse().unwrap();
         let mut command = Command::new("chromedriver");

@@ -75,7 +75,7 @@ fn a_killed_coordinator_goes_on_where_it_was() {
 #[test]
 fn a_killed_coordinator_leaves_no_process_behind() {
     let folder = tempfile::tempdir().unwrap();
-    let mut process = coordinator(folder.path(), "tcp/127.0.0.1:0", 100_000, 2);
+    let mut process = coordinator(folder.path(), &free_locator(), 100_000, 2);
     let mut lines = BufReader::new(process.output()).lines();
     for _ in 0..20 {
         lines.next().unwrap().unwrap();

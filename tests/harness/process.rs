@@ -6,7 +6,10 @@ use std::{
     net::{Ipv4Addr, TcpListener, UdpSocket},
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
-    sync::atomic::{AtomicU32, Ordering},
+    sync::{
+        OnceLock,
+        atomic::{AtomicU32, Ordering},
+    },
     thread,
     time::{Duration, Instant},
 };
@@ -34,11 +37,26 @@ pub fn coordinator_program() -> PathBuf {
     program
 }
 
+/// Returns the locator of a Unix socket in a new folder of the test process's own.
+///
+/// # Panics
+/// If no folder can be made.
+pub fn free_locator() -> String {
+    static NUMBER: AtomicU32 = AtomicU32::new(0);
+    static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
+    let folder = FOLDER.get_or_init(|| tempfile::tempdir().expect("a folder"));
+    let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+    format!(
+        "unix/{}",
+        folder.path().join(format!("{number}/bus")).display()
+    )
+}
+
 /// Returns a TCP locator with a free port on loopback.
 ///
 /// # Panics
 /// If the machine has no free port.
-pub fn free_locator() -> String {
+pub fn free_tcp_locator() -> String {
     free_port("tcp/127.0.0.1:0")
 }
 

@@ -18,7 +18,7 @@ use std::{
 };
 use tests::{
     keys::make,
-    process::{Process, free_locator, free_quic_locator, worker_program},
+    process::{Process, free_quic_locator, free_tcp_locator, worker_program},
 };
 
 /// Returns `length` pseudo-random bytes, different for each `n`.
@@ -92,7 +92,7 @@ fn rubbish_on_the_tcp_socket_costs_no_result() {
     let _others = MEASURING.blocking_read();
     let folder = tempfile::tempdir().unwrap();
     let log = folder.path().join("log");
-    let locator = free_locator();
+    let locator = free_tcp_locator();
     let mut command = Command::new(env!("CARGO_BIN_EXE_test-coordinator"));
     command.arg(folder.path().join("run"));
     command.args([&locator, "800", "10", "0"]);

@@ -13,7 +13,7 @@ use tests::{
     expect_results,
     keys::{make, raw_session},
     options,
-    process::{Process, free_locator, free_quic_locator, wait_until, worker_program},
+    process::{Process, free_quic_locator, free_tcp_locator, wait_until, worker_program},
 };
 
 /// Number of QUIC handshakes that the test begins and does not finish.
@@ -120,7 +120,7 @@ fn wait_until_closed(connections: Vec<TcpStream>) {
 async fn thousands_of_silent_connections_cost_little_and_no_result() {
     let _alone = MEASURING.write().await;
     let folder = tempfile::tempdir().unwrap();
-    let locator = free_locator();
+    let locator = free_tcp_locator();
     let mut dispatch = Dispatch::open(options(folder.path(), Some(&locator), 0))
         .await
         .unwrap();
@@ -187,7 +187,7 @@ async fn thousands_of_silent_connections_cost_little_and_no_result() {
 fn silent_connections_beyond_the_files_of_a_shell_keep_nobody_out() {
     let _others = MEASURING.blocking_read();
     let folder = tempfile::tempdir().unwrap();
-    let locator = free_locator();
+    let locator = free_tcp_locator();
     let mut command = Command::new("sh");
     command.args(["-c", "ulimit -Sn 200 && exec \"$0\" \"$@\""]);
     command.arg(env!("CARGO_BIN_EXE_test-coordinator"));
@@ -221,7 +221,7 @@ async fn idle_sessions_cost_their_keep_alives() {
     const TIME: Duration = Duration::from_secs(10);
     let _alone = MEASURING.write().await;
     let folder = tempfile::tempdir().unwrap();
-    let locator = free_locator();
+    let locator = free_tcp_locator();
     let mut command = Command::new(env!("CARGO_BIN_EXE_test-coordinator"));
     // one job and nobody to do it
     command.arg(folder.path()).args([&locator, "1", "0", "0"]);

@@ -13,8 +13,8 @@ use tests::{
     expect_results,
     keys::{make, raw_session},
     process::{
-        Process, children, coordinator_program, free_locator, free_quic_locator, wait_until,
-        worker_program,
+        Process, children, coordinator_program, free_locator, free_quic_locator, free_tcp_locator,
+        wait_until, worker_program,
     },
 };
 
@@ -208,16 +208,20 @@ async fn the_coordinator_says_why_it_refuses_a_connection() {
     }
 }
 
-/// Checks that a coordinator without certificates listens on loopback only.
+/// Checks that a coordinator listens nowhere without certificates unless it is told to.
 #[tokio::test(flavor = "multi_thread")]
-async fn only_loopback_is_listened_on_without_certificates() {
+async fn nothing_is_listened_on_without_certificates() {
     let folder = tempfile::tempdir().unwrap();
     let run = folder.path().join("run");
     for (locator, words) in [
         ("tcp/0.0.0.0:0", "say --insecure"),
+        ("tcp/127.0.0.1:0", "say --insecure"),
+        ("unix//tmp/bus", "other users can enter /tmp"),
         ("quic/127.0.0.1:0", "give --tls DIR"),
     ] {
-        let opened = Dispatch::open(tests::options(&run, Some(locator), 0)).await;
+        let mut options = tests::options(&run, Some(locator), 0);
+        options.insecure = false;
+        let opened = Dispatch::open(options).await;
         let error = opened.err().map(|error: DispatchError| error.to_string());
         assert!(
             error.as_ref().is_some_and(|text| text.contains(words)),
@@ -235,11 +239,12 @@ fn a_worker_says_what_keeps_it_from_its_coordinator() {
     make(&keys, &[]);
     let tls = keys.join("worker-01");
     let closed = free_quic_locator();
-    let plain = free_locator();
+    let (plain, socket) = (free_tcp_locator(), free_locator());
     for (locator, words) in [
         (closed.as_str(), "UDP port closed"),
         ("quic/no.such.host.invalid:7447", "cannot find the host"),
         (plain.as_str(), "TCP port closed"),
+        (socket.as_str(), "no coordinator listens on that socket"),
     ] {
         let log = folder.path().join("worker.log");
         let command = worker(locator, Some(tls.clone()), &["--slots", "1"]);

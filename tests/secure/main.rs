@@ -5,6 +5,7 @@
 )]
 mod access;
 mod admission;
+mod stranger;
 
 use dispatch::runtime::{Dispatch, DispatchOptions};
 use protocol::{id::JobId, job::Outcome};

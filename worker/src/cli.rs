@@ -20,14 +20,14 @@ pub const SLOT_MEMORY_MIB: u64 = 8192;
     args_conflicts_with_subcommands = true,
     subcommand_negates_reqs = true,
     after_help = "Examples:\n  \
-        horsehead-worker --connect tcp/127.0.0.1:7447\n  \
+        horsehead-worker --connect unix/sockets/bus\n  \
         horsehead-worker --connect quic/head.example:7447 --tls worker-01 --idle-timeout 600\n\n\
         Exit status: 0 ended normally, 1 could not work, 2 wrong command line, \
         3 refused by the coordinator, or certificates that do not fit.\n\
         HORSEHEAD_LOG sets what is logged, as in \"debug\" or \"worker=debug\"."
 )]
 pub struct Cli {
-    /// Address of the coordinator: tcp/HOST:PORT, or quic/HOST:PORT with certificates
+    /// Address of the coordinator: quic/HOST:PORT with certificates, or unix/PATH on this machine
     #[arg(
         long,
         value_name = "LOCATOR",

@@ -46,7 +46,7 @@ pub fn run(simulators: Simulators) -> ExitCode {
     };
     let filter = EnvFilter::try_from_env("HORSEHEAD_LOG").unwrap_or_else(|_| {
         EnvFilter::new(format!(
-            "warn,worker::program={own},worker::session={own},zenoh=off,zenoh_link=off,zenoh_transport=off"
+            "warn,worker::program={own},worker::session={own},zenoh=off"
         ))
     });
     tracing_subscriber::fmt()
@@ -109,7 +109,7 @@ fn serve(cli: &Cli, simulators: Simulators) -> anyhow::Result<ExitCode> {
             Ok(keys) => Some(keys),
             Err(error) => return Ok(refused(&status, &error)),
         },
-        (None, _) | (_, Protocol::Tcp) => None,
+        (None, _) | (_, Protocol::Unix | Protocol::Tcp) => None,
     };
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(2)

@@ -18,7 +18,7 @@ fn said(output: &Output) -> String {
 fn a_wrong_command_line_is_refused_in_words() {
     for (arguments, words) in [
         (&[][..], "--connect <LOCATOR>"),
-        (&["--connect", "nonsense"], "tcp/127.0.0.1:7447"),
+        (&["--connect", "nonsense"], "quic/HOST:7447"),
         (
             &["--connect", "tcp/127.0.0.1:7447", "--slots", "0"],
             "1..=4096",
@@ -43,7 +43,7 @@ fn help_shows_how_to_start_one() {
     for words in [
         "HORSEHEAD_CONNECT",
         "--idle-timeout",
-        "horsehead-worker --connect tcp/127.0.0.1:7447",
+        "horsehead-worker --connect unix/sockets/bus",
     ] {
         assert!(text.contains(words), "{words} is missing in {text}");
     }

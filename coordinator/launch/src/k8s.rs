@@ -175,7 +175,7 @@ fn deployment(
 /// Builds the network policy: no incoming connections; outgoing ones only to DNS and the coordinator.
 fn network_policy(order: &WorkerOptions) -> Value {
     let protocol = match order.connect.protocol {
-        link::locator::Protocol::Tcp => "TCP",
+        link::locator::Protocol::Unix | link::locator::Protocol::Tcp => "TCP",
         link::locator::Protocol::Quic => "UDP",
     };
     let mut coordinator =

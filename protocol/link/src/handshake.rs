@@ -7,7 +7,7 @@ use crate::{
     ConnectFailure, LinkError, OUT_OF_DATE,
     gate::terms::{ALPN_PROBE, CLOSE_OK, UNLISTED},
     keys::{Keys, provider},
-    locator::Locator,
+    locator::{Locator, Protocol},
 };
 use quinn::{ClientConfig, ConnectionError, Endpoint, VarInt, crypto::rustls::QuicClientConfig};
 use std::{
@@ -16,7 +16,10 @@ use std::{
     sync::Arc,
     time::Duration,
 };
-use tokio::{net::TcpStream, time::timeout};
+use tokio::{
+    net::{TcpStream, UnixStream},
+    time::timeout,
+};
 
 /// Maximum wait for an answer to the probe.
 const PROBE_TIMEOUT: Duration = Duration::from_secs(3);
@@ -27,22 +30,33 @@ const ALERTS: u64 = 0x100;
 /// TLS alert `no_application_protocol`, sent by a listener that does not know the probe's protocol.
 const NO_SUCH_PROTOCOL: u64 = 120;
 
-/// Checks by a TCP connection whether a coordinator listens at an address.
-pub(crate) async fn probe_tcp(to: &Locator) -> Result<(), LinkError> {
-    let address = resolve(to).await?;
+/// Checks by a connection whether a coordinator listens at a TCP address or on a Unix socket.
+pub(crate) async fn probe_plain(to: &Locator) -> Result<(), LinkError> {
     let silent = |how: ConnectFailure| LinkError::NoAnswer {
         locator: to.to_string(),
         how,
     };
-    match timeout(PROBE_TIMEOUT, TcpStream::connect(address)).await {
-        Ok(Ok(_)) => Ok(()),
-        Ok(Err(error)) if error.kind() == ErrorKind::ConnectionRefused => {
-            Err(silent(ConnectFailure::Closed { protocol: "TCP" }))
-        }
-        Ok(Err(error)) => Err(silent(ConnectFailure::Unreachable {
-            reason: error.to_string(),
+    let (tried, protocol) = if to.protocol == Protocol::Unix {
+        let connecting = UnixStream::connect(&to.host);
+        let tried = timeout(PROBE_TIMEOUT, connecting).await;
+        (tried.map(|ended| ended.map(drop)), "Unix socket")
+    } else {
+        let address = resolve(to).await?;
+        let tried = timeout(PROBE_TIMEOUT, TcpStream::connect(address)).await;
+        (tried.map(|ended| ended.map(drop)), "TCP")
+    };
+    match tried {
+        Ok(Ok(())) => Ok(()),
+        Ok(Err(error)) => Err(silent(match error.kind() {
+            ErrorKind::ConnectionRefused | ErrorKind::NotFound if to.protocol == Protocol::Unix => {
+                ConnectFailure::NoSocket
+            }
+            ErrorKind::ConnectionRefused => ConnectFailure::Closed { protocol },
+            _ => ConnectFailure::Unreachable {
+                reason: error.to_string(),
+            },
         })),
-        Err(_) => Err(silent(ConnectFailure::Dropped { protocol: "TCP" })),
+        Err(_) => Err(silent(ConnectFailure::Dropped { protocol })),
     }
 }
 

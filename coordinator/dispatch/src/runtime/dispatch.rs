@@ -4,7 +4,7 @@ use super::{
     divide,
     engine::{Engine, Request, RunSummary},
     error::DispatchError,
-    listen::{addresses, admissible, allow_connections, keys},
+    listen::{Addresses, addresses, admissible, allow_connections, keys},
     local::LocalWorkers,
     locate,
     options::DispatchOptions,
@@ -21,6 +21,7 @@ use protocol::{
     job::Job,
 };
 use std::sync::{Arc, Mutex, PoisonError};
+use tempfile::TempDir;
 use tokio::{
     sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel},
     task::JoinHandle,
@@ -42,6 +43,8 @@ pub struct Dispatch {
     recorded: usize,
     /// Control socket of the run; `None` if it could not be opened.
     control: Option<Control>,
+    /// Folder of the socket for local workers, deleted with this value; `None` if none was made.
+    _socket: Option<TempDir>,
 }
 
 impl Dispatch {
@@ -52,14 +55,18 @@ impl Dispatch {
     /// [`DispatchError::Link`] if the address cannot be listened on, [`DispatchError::Locate`] if there is no
     /// worker program, [`DispatchError::NoWorkers`] without any workers.
     pub async fn open(options: DispatchOptions) -> Result<Self, DispatchError> {
-        let (listen, local) = addresses(&options)?;
+        let Addresses {
+            listen,
+            local,
+            folder,
+        } = addresses(&options)?;
         allow_connections();
         // a folder that was made for a run that cannot begin would only be in the way
         for locator in &listen {
             admissible(locator, options.insecure)?;
         }
         let keys = keys(&options, &listen)?;
-        let program = match local {
+        let program = match &local {
             Some(_) => Some(locate::worker_program()?),
             None => None,
         };
@@ -75,15 +82,16 @@ impl Dispatch {
         };
         let link = ZenohCoordinator::open(link_options).await?;
         let listening = link.listening().to_vec();
-        let workers = match (local.and_then(|at| listening.get(at)), program) {
+        let workers = match (local, program) {
             (Some(locator), Some(program)) => {
                 let count = options.local_workers;
-                Some(LocalWorkers::start(program, &locator.from_here(), count)?)
+                Some(LocalWorkers::start(program, &locator, count)?)
             }
             _ => None,
         };
         let only_local = options.listen.is_none();
         let mut open = Self::begin(parts, link, workers, only_local, listening);
+        open._socket = folder;
         // a sender of its own would keep the run open for ever
         let requests = open.requests.downgrade();
         let ask = move |asked| {
@@ -136,6 +144,7 @@ impl Dispatch {
             listening,
             recorded,
             control: None,
+            _socket: None,
         }
     }
 

@@ -14,6 +14,9 @@ pub enum DispatchError {
     /// Error of the message bus between coordinator and workers.
     #[error(transparent)]
     Link(#[from] LinkError),
+    /// The socket for local workers cannot be made.
+    #[error("the socket for workers on this machine cannot be made: {0}")]
+    Socket(std::io::Error),
     /// The worker program is missing.
     #[error(transparent)]
     Locate(#[from] LocateError),

@@ -6,7 +6,8 @@ use link::{
     locator::{Locator, Protocol},
 };
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
-use std::net::{TcpListener, UdpSocket};
+use std::{env, fs::Permissions, io, os::unix::fs::PermissionsExt as _, path::PathBuf};
+use tempfile::TempDir;
 
 /// Number of open files to request; more is useless, since the link limits its connections.
 const FILES: u64 = 16 << 10;
@@ -28,19 +29,16 @@ pub(super) fn allow_connections() {
     }
 }
 
-/// Checks that listening on an address is permitted (encrypted, or insecure listening allowed) and possible,
+/// Checks that listening on an address is permitted (authenticated, or insecure listening allowed) and possible,
 /// before anything is created or started.
 pub(super) fn admissible(locator: &Locator, insecure: bool) -> Result<(), DispatchError> {
     locator.permit(insecure)?;
-    let at = (locator.bare_host(), locator.port);
-    let tried = match locator.protocol {
-        Protocol::Tcp => TcpListener::bind(at).map(drop),
-        Protocol::Quic => UdpSocket::bind(at).map(drop),
-    };
-    tried.map_err(|source| DispatchError::Listen {
-        locator: locator.to_string(),
-        source,
-    })
+    locator
+        .try_listen()
+        .map_err(|source| DispatchError::Listen {
+            locator: locator.to_string(),
+            source,
+        })
 }
 
 /// Reads and checks the key material if an address needs it.
@@ -58,18 +56,66 @@ pub(super) fn keys(
     Ok(Some(keys))
 }
 
-/// Returns the addresses to listen on, and the index of the address that local workers use.
-pub(super) fn addresses(
-    options: &DispatchOptions,
-) -> Result<(Vec<Locator>, Option<usize>), DispatchError> {
-    let loopback = || Locator::parse("tcp/127.0.0.1:0");
-    let listen = options.listen.as_deref().map(Locator::parse).transpose()?;
-    match (listen, options.local_workers) {
-        (None, 0) => Err(DispatchError::NoWorkers),
-        (None, _) => Ok((vec![loopback()?], Some(0))),
-        (Some(asked), 0) => Ok((vec![asked], None)),
-        (Some(asked), _) if asked.protocol == Protocol::Tcp => Ok((vec![asked], Some(0))),
-        // local workers need no certificates
-        (Some(asked), _) => Ok((vec![asked, loopback()?], Some(1))),
+/// Addresses of a run.
+pub(super) struct Addresses {
+    /// Addresses to listen on, that for other workers first.
+    pub(super) listen: Vec<Locator>,
+    /// Address of local workers: a Unix socket, for which they need no certificates.
+    pub(super) local: Option<Locator>,
+    /// Folder of the Unix socket, if it was made for this run.
+    pub(super) folder: Option<TempDir>,
+}
+
+/// Determines the addresses to listen on, and makes the folder of the Unix socket for local workers.
+pub(super) fn addresses(options: &DispatchOptions) -> Result<Addresses, DispatchError> {
+    let asked = options.listen.as_deref().map(Locator::parse).transpose()?;
+    if options.local_workers == 0 {
+        let listen = vec![asked.ok_or(DispatchError::NoWorkers)?];
+        let (local, folder) = (None, None);
+        return Ok(Addresses {
+            listen,
+            local,
+            folder,
+        });
     }
+    if let Some(asked) = asked.clone().filter(|at| at.protocol == Protocol::Unix) {
+        return Ok(Addresses {
+            listen: vec![asked.clone()],
+            local: Some(asked),
+            folder: None,
+        });
+    }
+    let (folder, local) = local_socket().map_err(DispatchError::Socket)?;
+    Ok(Addresses {
+        listen: asked.into_iter().chain([local.clone()]).collect(),
+        local: Some(local),
+        folder: Some(folder),
+    })
+}
+
+/// Makes a folder that other users cannot enter, below `$XDG_RUNTIME_DIR` or the folder for temporary files; returns
+/// it with the address of a Unix socket in it.
+///
+/// # Errors
+/// The error of the operating system for the last of these parents.
+pub fn local_socket() -> io::Result<(TempDir, Locator)> {
+    let runtime = env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
+    let usual = [runtime, Some(env::temp_dir()), Some(PathBuf::from("/tmp"))];
+    let mut last = io::Error::from(io::ErrorKind::NotFound);
+    for parent in usual.into_iter().flatten() {
+        let made = tempfile::Builder::new()
+            .prefix("horsehead-")
+            .permissions(Permissions::from_mode(0o700))
+            .tempdir_in(&parent)
+            .and_then(|folder| {
+                let path = std::path::absolute(folder.path().join("bus"))?;
+                let at = Locator::socket(&path).map_err(io::Error::other)?;
+                Ok((folder, at))
+            });
+        match made {
+            Ok(made) => return Ok(made),
+            Err(error) => last = error,
+        }
+    }
+    Err(last)
 }

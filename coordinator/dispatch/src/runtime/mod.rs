@@ -25,5 +25,6 @@ pub use dispatch::Dispatch;
 pub(crate) use divide::{DividedJobs, PartResult, anticipated_parts, part_count};
 pub use engine::RunSummary;
 pub use error::DispatchError;
+pub use listen::local_socket;
 pub use options::DispatchOptions;
 pub use protocol::event::{RunHeader, Spent};

@@ -19,6 +19,10 @@ pub(super) fn classify(error: &LinkError) -> Check {
                 Layer::Port,
                 "start the coordinator with --listen, and connect to the port that it prints",
             ),
+            ConnectFailure::NoSocket => (
+                Layer::Port,
+                "start the coordinator with --listen unix/PATH, and connect to the same path",
+            ),
             ConnectFailure::Unreachable { .. } => (
                 Layer::Route,
                 "`ip route get ADDRESS` says how this machine would go there; check the cable, the VPN and that \
@@ -30,6 +34,10 @@ pub(super) fn classify(error: &LinkError) -> Check {
                  quic/, TCP for tcp/",
             ),
         },
+        LinkError::Socket { .. } => (
+            Layer::Route,
+            "name a path of at most 107 bytes in a folder of your own that only you can enter (chmod 700)",
+        ),
         LinkError::NoKeys { .. } | LinkError::Keys(_) => (
             Layer::Certificate,
             "`horsehead keys new DIR --host NAME` makes certificates; a worker has the folder DIR/worker-01 of \

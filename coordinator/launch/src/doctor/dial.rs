@@ -48,6 +48,7 @@ pub async fn dial(to: &Locator, tls: Option<&Path>) -> Vec<Check> {
         }
     };
     let answers = match to.protocol {
+        Protocol::Unix => "the socket answers",
         Protocol::Tcp => "the port is open",
         Protocol::Quic => "both ends accept each other's certificate",
     };

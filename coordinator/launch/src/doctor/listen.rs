@@ -8,17 +8,13 @@ use link::{
     keys::{KeyRole, Keys},
     locator::{Locator, Protocol},
 };
-use std::{
-    io::ErrorKind,
-    net::{TcpListener, ToSocketAddrs as _, UdpSocket},
-    path::Path,
-};
+use std::{io::ErrorKind, net::ToSocketAddrs as _, path::Path};
 
 /// Checks the layers needed for a coordinator to listen at an address, in order, up to the first that fails.
 pub fn listen(at: &Locator, tls: Option<&Path>) -> Vec<Check> {
     let mut checks = Vec::new();
     match (at.protocol, tls) {
-        (Protocol::Tcp, _) => {}
+        (Protocol::Unix | Protocol::Tcp, _) => {}
         (Protocol::Quic, None) => {
             let locator = at.to_string();
             return vec![classify(&LinkError::NoKeys { locator })];
@@ -33,21 +29,26 @@ pub fn listen(at: &Locator, tls: Option<&Path>) -> Vec<Check> {
             Err(error) => return vec![classify(&error.into())],
         },
     }
+    if let Err(error) = at.permit(true) {
+        checks.push(classify(&error));
+        return checks;
+    }
     let host = (at.bare_host(), at.port);
-    let addresses = host.to_socket_addrs().map(Iterator::collect::<Vec<_>>);
+    let addresses = match at.protocol {
+        Protocol::Unix => Ok(at.host.clone()),
+        Protocol::Tcp | Protocol::Quic => host
+            .to_socket_addrs()
+            .map(|found| format!("{:?}", found.collect::<Vec<_>>())),
+    };
     match addresses.map_err(|error| error.to_string()) {
-        Ok(found) => checks.push(Check::good(Layer::Name, format!("{found:?}"))),
+        Ok(found) => checks.push(Check::good(Layer::Name, found)),
         Err(reason) => {
             let locator = at.to_string();
             checks.push(classify(&LinkError::UnknownHost { locator, reason }));
             return checks;
         }
     }
-    let bound = match at.protocol {
-        Protocol::Tcp => TcpListener::bind(host).map(drop),
-        Protocol::Quic => UdpSocket::bind(host).map(drop),
-    };
-    checks.push(match bound {
+    checks.push(match at.try_listen() {
         Ok(()) => Check::good(Layer::Port, "free to listen on"),
         Err(error) if error.kind() == ErrorKind::AddrNotAvailable => Check::bad(
             Layer::Route,

@@ -75,7 +75,7 @@ Examples:
     /// Act as many workers that are only sessions, for `bench dispatch --connections`.
     #[command(hide = true, after_help = format!("\
 Example:
-  horsehead bench sessions tcp/127.0.0.1:7447 64
+  horsehead bench sessions unix/sockets/bus 64
 
 {EXIT_CODES}"))]
     Sessions {
@@ -93,7 +93,7 @@ Example:
     /// input ends.
     #[command(hide = true, after_help = format!("\
 Example:
-  horsehead bench silent tcp/127.0.0.1:7447 5000
+  horsehead bench silent unix/sockets/bus 5000
 
 {EXIT_CODES}"))]
     Silent {

@@ -9,7 +9,7 @@ use crate::cli::{
     run::bus,
 };
 use clap::Args;
-use dispatch::runtime::locate::worker_program;
+use dispatch::runtime::{local_socket, locate::worker_program};
 use launch::doctor::{Check, Layer, dial, listen, program};
 use link::locator::Locator;
 use serde::Serialize;
@@ -76,7 +76,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let tls = arguments.tls.as_deref();
     // without an address, what runs on this machine alone needs
-    let here = Locator::parse("tcp/127.0.0.1:0").map_err(anyhow::Error::msg)?;
+    let (_folder, here) = local_socket()?;
     let (side, at) = match (&arguments.connect, &arguments.listen) {
         (_, Some(at)) => ("coordinator", at),
         (Some(at), None) => ("worker", at),

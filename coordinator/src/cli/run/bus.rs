@@ -151,16 +151,20 @@ fn crew(snapshot: Snapshot) -> WorkersSnapshot {
 /// Converts an error of opening a run to one with a remedy, mostly a corrected command line argument.
 fn refuse(error: &DispatchError) -> anyhow::Error {
     let help = match error {
-        DispatchError::NoWorkers => "for example --workers 2, or --listen tcp/127.0.0.1:7447",
+        DispatchError::NoWorkers => {
+            "for example --workers 2, or --listen quic/0.0.0.0:7447 --tls DIR"
+        }
         DispatchError::Listen { .. } => {
-            "choose another address or port, as --listen tcp/127.0.0.1:7447; port 0 takes any \
-             free one"
+            "choose another address or port, as --listen quic/0.0.0.0:7448; port 0 takes any free one"
         }
         DispatchError::Link(LinkError::Transport { .. }) => "choose another address with --listen",
         DispatchError::Link(LinkError::NoKeys { .. } | LinkError::Keys(_)) => {
             "`horsehead keys new DIR --host NAME` makes certificates; --tls DIR uses them"
         }
-        DispatchError::Link(_) => "for example --listen tcp/127.0.0.1:7447",
+        DispatchError::Link(_) => {
+            "for example --listen quic/0.0.0.0:7447 --tls DIR, or --listen unix/PATH"
+        }
+        DispatchError::Socket(_) => "set TMPDIR to a folder that can be written",
         DispatchError::Journal(JournalError::Io { .. }) => {
             "choose a folder that can be written, with --run DIR"
         }

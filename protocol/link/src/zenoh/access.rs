@@ -9,8 +9,8 @@ use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
 /// Returns the `access_control` section of the router's configuration; with `plain`, workers without
-/// certificates are admitted through TCP listeners, which are on loopback unless the user has allowed
-/// insecure ones.
+/// certificates are admitted through Unix sockets, which other users cannot reach, and through TCP listeners, which
+/// the user must have allowed.
 pub(super) fn control(owners: &BTreeSet<String>, plain: bool) -> Value {
     let mut rules = vec![
         rule("fetch-in", "ingress", &["query"], &[Grant::blob_queries()]),
@@ -52,7 +52,10 @@ pub(super) fn control(owners: &BTreeSet<String>, plain: bool) -> Value {
         );
     }
     if plain {
-        grant(NO_CERTIFICATE, json!({ "link_protocols": ["tcp"] }));
+        grant(
+            NO_CERTIFICATE,
+            json!({ "link_protocols": ["unixsock-stream", "tcp"] }),
+        );
     }
     json!({
         "enabled": true, "default_permission": "deny",

@@ -25,7 +25,7 @@ use zenoh::{Session, bytes::Encoding, sample::SampleKind};
 pub struct CoordinatorOptions {
     /// Addresses to listen on; a port of 0 is replaced by a free one.
     pub listen: Vec<Locator>,
-    /// Whether the coordinator may listen unencrypted on addresses that other machines can reach.
+    /// Whether the coordinator may listen on TCP addresses, which have neither encryption nor authentication.
     pub insecure: bool,
     /// Key material for QUIC, including the names of the workers that may join.
     pub keys: Option<Keys>,
@@ -54,11 +54,15 @@ impl ZenohCoordinator {
     /// Opens the coordinator's embedded router and starts to listen.
     ///
     /// # Errors
-    /// [`LinkError::Exposed`] or [`LinkError::NoKeys`] for addresses that may not be listened on as given;
+    /// [`LinkError::Exposed`], [`LinkError::Socket`] or [`LinkError::NoKeys`] for addresses that may not be listened on as given;
     /// [`LinkError::Transport`] if the address is taken.
     pub async fn open(options: CoordinatorOptions) -> Result<Self, LinkError> {
         // behind a gate, the router itself is at a port of our choice
-        let chosen = |at: &Locator| at.port == 0 || at.protocol == Protocol::Quic;
+        let chosen = |at: &Locator| match at.protocol {
+            Protocol::Unix => false,
+            Protocol::Tcp => at.port == 0,
+            Protocol::Quic => true,
+        };
         let mut left = if options.listen.iter().any(chosen) {
             CHOICES
         } else {
@@ -95,10 +99,11 @@ impl ZenohCoordinator {
             None => (common(&references, &json!({})), Vec::new()),
         };
         let at: Vec<String> = locators.iter().map(ToString::to_string).collect();
+        let endpoints: Vec<String> = locators.iter().map(Locator::endpoint).collect();
         config["mode"] = json!("router");
         config["connect"] = json!({ "endpoints": [] });
         if gates.is_empty() {
-            config["listen"]["endpoints"] = json!(at);
+            config["listen"]["endpoints"] = json!(endpoints);
         }
         config["listen"]["exit_on_failure"] = json!(true);
         config["listen"]["timeout_ms"] = json!(0);
@@ -177,8 +182,8 @@ fn behind_gates(locators: &[Locator], keys: &Keys) -> Result<(Value, Vec<Gate>),
     let inner = Arc::new(RouterConnector::make(router, &owners)?);
     let (mut endpoints, mut gates) = (vec![inside.to_string()], Vec::new());
     for at in locators {
-        if at.protocol == Protocol::Tcp {
-            endpoints.push(at.to_string());
+        if at.protocol != Protocol::Quic {
+            endpoints.push(at.endpoint());
             continue;
         }
         gates.push(Gate::open(at, keys, Arc::clone(&inner))?);

@@ -29,7 +29,7 @@ const PENDING: usize = 8192;
 /// Returns the zenoh configuration common to coordinator and worker.
 pub(super) fn common(locators: &[&Locator], tls: &Value) -> Value {
     // no other protocol than those asked for: a peer cannot choose a weaker one
-    let protocols: BTreeSet<&str> = locators.iter().map(|at| at.protocol.name()).collect();
+    let protocols: BTreeSet<&str> = locators.iter().map(|at| at.protocol.zenoh_name()).collect();
     json!({
         "scouting": { "multicast": { "enabled": false }, "gossip": { "enabled": false } },
         "adminspace": { "enabled": false },

@@ -53,7 +53,7 @@ impl ZenohWorker {
                 })
             })?
         } else {
-            handshake::probe_tcp(connect).await?;
+            handshake::probe_plain(connect).await?;
             WorkerName::anyone(process)
         };
         let tls = keys.map_or_else(|| json!({}), connecting);
@@ -61,7 +61,7 @@ impl ZenohWorker {
         config["mode"] = json!("client");
         config["listen"] = json!({ "endpoints": [] });
         config["connect"] = json!({
-            "endpoints": [connect.to_string()], "timeout_ms": 10_000, "exit_on_failure": false,
+            "endpoints": [connect.endpoint()], "timeout_ms": 10_000, "exit_on_failure": false,
             "retry": { "period_init_ms": 500, "period_max_ms": 2000, "period_increase_factor": 1.5 },
         });
         let session = open(&config, &format!("connect to {connect}")).await?;

@@ -91,8 +91,7 @@ fn slots_are_computed_slept_and_projected_and_rows_are_kept() {
 fn workers_that_come_by_themselves_are_waited_for() {
     let rig = Rig::new();
     let run = rig.path("run");
-    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr();
-    let address = format!("tcp/{}", port.unwrap());
+    let address = format!("unix/{}", rig.path("socket/bus"));
     let workers = [(); 2].map(|()| rig.worker(&address));
     let words = "sweep scaling CASE --presets least-squares --evaluations 30 --crews 0 --sleeping 0 \
                  --projected 80 --nodes 1,2";
@@ -128,7 +127,7 @@ fn searches_that_cannot_be_scaled_are_refused() {
     refused(&["--presets", "papier"], "possible values");
     refused(&["--crews", "0"], "there is nothing to measure on");
     refused(&["--nodes", "2"], "none can connect");
-    let listen = ["--listen", "tcp/127.0.0.1:0"];
+    let listen = ["--listen", "unix/socket/bus"];
     refused(&listen, "how many to wait for with --nodes");
     let hosts = ["--ssh", "a,b", "--nodes", "3"];
     refused(&hosts, "there are 2 hosts");

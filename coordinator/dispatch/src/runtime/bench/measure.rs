@@ -6,9 +6,10 @@ use super::{
     sessions::{Connections, Sessions},
     silent,
 };
-use crate::runtime::{dispatch::Dispatch, error::DispatchError, options::DispatchOptions};
+use crate::runtime::{dispatch::Dispatch, error::DispatchError, listen, options::DispatchOptions};
 use std::time::{Duration, Instant};
 use support::quantile;
+use tempfile::TempDir;
 use tokio::time::sleep;
 
 /// Maximum number of jobs run one at a time to measure the round trip.
@@ -35,17 +36,17 @@ pub async fn bench(
             (Dispatch::open(options).await?, Running::Local)
         }
         BenchWorkers::Connections => {
-            let any = match options.tls {
-                Some(_) => "quic/127.0.0.1:0",
-                None => "tcp/127.0.0.1:0",
-            };
-            options.listen = Some(any.to_owned());
+            let (folder, socket) = listen::local_socket().map_err(DispatchError::Socket)?;
+            options.listen = Some(match options.tls {
+                Some(_) => "quic/127.0.0.1:0".to_owned(),
+                None => socket.to_string(),
+            });
             let tls = options.tls.as_ref().map(|folder| folder.join(WORKER));
             let dispatch = Dispatch::open(options).await?;
             let at = dispatch.listening().into_iter().next().unwrap_or_default();
             let connections = Connections::start(plan.workers, &at, tls.as_deref());
             let connections = connections.map_err(DispatchError::Start)?;
-            (dispatch, Running::Connections(connections))
+            (dispatch, Running::Connections(connections, folder))
         }
         BenchWorkers::Sessions => {
             let mut crew = Running::Local;
@@ -111,7 +112,7 @@ pub async fn bench(
 enum Running {
     Local,
     #[expect(dead_code, reason = "held for its end")]
-    Connections(Connections),
+    Connections(Connections, TempDir),
     #[expect(dead_code, reason = "held for its end")]
     Sessions(Sessions),
 }

@@ -2,7 +2,7 @@
 //! on more slots than there are processors.
 use super::{meter::processor_time, sessions::Connections};
 use crate::{
-    runtime::{dispatch::Dispatch, error::DispatchError, options::DispatchOptions},
+    runtime::{dispatch::Dispatch, error::DispatchError, listen, options::DispatchOptions},
     simulated::JobSource,
 };
 use protocol::{event::Spent, id::JobId, job::Job};
@@ -27,7 +27,7 @@ pub struct SleepingJobsResult {
     pub spent: [Spent; 2],
 }
 
-/// Runs a source of jobs on a number of one-slot sessions over TCP on loopback; each job sleeps for the time
+/// Runs a source of jobs on a number of one-slot sessions over a Unix socket; each job sleeps for the time
 /// given by `takes`.
 ///
 /// # Errors
@@ -38,7 +38,8 @@ pub async fn sleep_through(
     source: &mut dyn JobSource,
     takes: &dyn Fn(u64) -> Duration,
 ) -> Result<SleepingJobsResult, DispatchError> {
-    options.listen = Some("tcp/127.0.0.1:0".to_owned());
+    let (folder, socket) = listen::local_socket().map_err(DispatchError::Socket)?;
+    options.listen = Some(socket.to_string());
     let mut dispatch = Dispatch::open(options).await?;
     let at = dispatch.listening().into_iter().next().unwrap_or_default();
     let sessions = Connections::start(slots, &at, None).map_err(DispatchError::Start)?;
@@ -72,7 +73,7 @@ pub async fn sleep_through(
         spent: [before.spent, dispatch.snapshot().spent],
     };
     dispatch.close().await?;
-    drop(sessions);
+    drop((sessions, folder));
     Ok(slept)
 }
 

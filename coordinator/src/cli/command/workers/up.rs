@@ -104,6 +104,18 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
 fn plan(arguments: &Arguments) -> Result<LaunchPlan, Problem> {
     let tls = match (arguments.connect.protocol, &arguments.tls) {
+        (Protocol::Unix, _) => {
+            return Err(Problem {
+                message: format!(
+                    "{} can be reached from this machine alone",
+                    arguments.connect
+                ),
+                remedy: format!(
+                    "give the coordinator a quic/ address; on this machine start horsehead-worker --connect {}",
+                    arguments.connect
+                ),
+            });
+        }
         (Protocol::Tcp, _) => None,
         (Protocol::Quic, Some(folder)) => Some(absolute(folder)),
         (Protocol::Quic, None) => {
