@@ -90,9 +90,9 @@ fn processor_s(process: Pid) -> f64 {
 
 /// Reads events until the connection ends.
 fn read_events(url: &str) {
-    let address = url.trim_start_matches("http://").trim_end_matches('/');
+    let (address, (_, token)) = (super::socket_address(url), url.split_once('?').unwrap());
     let mut stream = TcpStream::connect(address).unwrap();
-    let request = format!("GET /events HTTP/1.1\r\nHost: {address}\r\n\r\n");
+    let request = format!("GET /events?{token} HTTP/1.1\r\nHost: {address}\r\n\r\n");
     stream.write_all(request.as_bytes()).unwrap();
     let mut buffer = vec![0; 1 << 16];
     while stream.read(&mut buffer).is_ok_and(|length| length > 0) {}

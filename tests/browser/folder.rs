@@ -1,8 +1,8 @@
 //! A folder of runs of the oscillator: finished, diagnosed, stopped, damaged and foreign ones.
 use super::{
-    Site,
+    Site, below,
     driver::{Browser, LIMIT},
-    picture, shown,
+    picture, shown, socket_address,
 };
 use oscillator::{case_folder, effect::Effects};
 use rustix::process::Signal;
@@ -27,12 +27,13 @@ fn copy(from: &Path, to: &Path) {
 
 /// Returns the first line of the answer to a request.
 fn status(url: &str, request: &str) -> String {
-    let address = url.trim_start_matches("http://").trim_end_matches('/');
+    let address = socket_address(url);
     let mut stream = TcpStream::connect(address).unwrap();
     stream
         .set_read_timeout(Some(Duration::from_secs(10)))
         .unwrap();
-    let request = request.replace("ADDRESS", address);
+    let (_, token) = url.split_once('?').unwrap();
+    let request = request.replace("ADDRESS", address).replace("TOKEN", token);
     stream.write_all(request.as_bytes()).unwrap();
     let mut answer = vec![0; 200];
     let length = stream.read(&mut answer).unwrap();
@@ -66,7 +67,7 @@ fn a_folder_shows_finished_stopped_damaged_foreign_and_deleted_runs() {
     let line = told.lines().find(|line| line.starts_with("dashboard: "));
     let own = line.unwrap().trim_start_matches("dashboard: ");
     assert!(
-        TcpStream::connect(own.trim_start_matches("http://").trim_end_matches('/')).is_err(),
+        TcpStream::connect(socket_address(own)).is_err(),
         "{own} is still served"
     );
     stop_in_the_middle(&site);
@@ -92,7 +93,7 @@ fn a_folder_shows_finished_stopped_damaged_foreign_and_deleted_runs() {
     browser.wait_for_state("finished");
     assert!(browser.text("#summary").contains(&objective));
 
-    browser.open(&format!("{url}runs/named/"));
+    browser.open(&below(&url, "runs/named/"));
     browser.wait_for_state("finished");
     let verdict = browser.text("#verdict");
     let sizes = effect["parameters"].as_object().unwrap();
@@ -150,7 +151,7 @@ fn damage(site: &Site) {
 
 /// Checks the pages of a damaged run, of one of another version, and of one that is deleted under its page.
 fn shows_runs_in_trouble(browser: &Browser, site: &Site, url: &str) {
-    browser.open(&format!("{url}runs/damaged/"));
+    browser.open(&below(url, "runs/damaged/"));
     browser.wait_for_state("incomplete");
     let notices = browser.text("#notices");
     assert!(
@@ -159,13 +160,13 @@ fn shows_runs_in_trouble(browser: &Browser, site: &Site, url: &str) {
     );
     assert!(!browser.text("#convergence").is_empty());
 
-    browser.open(&format!("{url}runs/foreign/"));
+    browser.open(&below(url, "runs/foreign/"));
     browser.wait_for(
         "the other version is named",
         "return document.getElementById('sections').innerText.includes('is of version')",
     );
 
-    browser.open(&format!("{url}runs/stopped/"));
+    browser.open(&below(url, "runs/stopped/"));
     browser.wait_for_state("stopped");
     browser.wait_for(
         "its results are shown",
@@ -178,23 +179,31 @@ fn shows_runs_in_trouble(browser: &Browser, site: &Site, url: &str) {
 
 /// Checks the answers to requests that pages of other sites could make, or that would change something.
 fn refuses_requests(url: &str) {
-    let own = "GET / HTTP/1.1\r\nHost: ADDRESS\r\n\r\n";
+    let own = "GET /?TOKEN HTTP/1.1\r\nHost: ADDRESS\r\n\r\n";
     assert!(status(url, own).contains("200"));
     for (request, code) in [
         (
-            "POST / HTTP/1.1\r\nHost: ADDRESS\r\nContent-Length: 0\r\n\r\n",
+            "POST /?TOKEN HTTP/1.1\r\nHost: ADDRESS\r\nContent-Length: 0\r\n\r\n",
             "405",
         ),
-        ("GET / HTTP/1.1\r\nHost: other.example\r\n\r\n", "403"),
+        ("GET /?TOKEN HTTP/1.1\r\nHost: other.example\r\n\r\n", "403"),
         (
-            "GET /events HTTP/1.1\r\nHost: ADDRESS\r\nOrigin: http://other.example\r\n\r\n",
+            "GET /events?TOKEN HTTP/1.1\r\nHost: ADDRESS\r\nOrigin: http://other.example\r\n\r\n",
             "403",
         ),
         (
-            "GET /runs/..%2f..%2fetc/ HTTP/1.1\r\nHost: ADDRESS\r\n\r\n",
+            "GET /runs/..%2f..%2fetc/?TOKEN HTTP/1.1\r\nHost: ADDRESS\r\n\r\n",
             "404",
         ),
-        ("GET /runs/empty/ HTTP/1.1\r\nHost: ADDRESS\r\n\r\n", "404"),
+        (
+            "GET /runs/empty/?TOKEN HTTP/1.1\r\nHost: ADDRESS\r\n\r\n",
+            "404",
+        ),
+        ("GET / HTTP/1.1\r\nHost: ADDRESS\r\n\r\n", "403"),
+        (
+            "GET /individual/1?TOKEN HTTP/1.1\r\nHost: ADDRESS\r\nSec-Fetch-Site: same-site\r\n\r\n",
+            "403",
+        ),
     ] {
         let line = status(url, request);
         assert!(line.contains(code), "{request}: {line}");

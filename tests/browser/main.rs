@@ -8,6 +8,7 @@ mod costs;
 mod driver;
 mod folder;
 mod live;
+mod stranger;
 
 use serde_json::Value;
 use std::{
@@ -39,7 +40,10 @@ impl Site {
     /// Returns a `horsehead` command in the site's folder.
     fn command(&self, words: &[&str]) -> Command {
         let mut command = Command::new(coordinator_program());
-        command.args(words).current_dir(self.folder.path());
+        command
+            .args(words)
+            .current_dir(self.folder.path())
+            .env("XDG_STATE_HOME", self.path("state"));
         if let Some(worker) = &self.worker {
             command.env("HORSEHEAD_WORKER", worker);
         }
@@ -53,7 +57,8 @@ impl Site {
         output
     }
 
-    /// Starts the dashboard of a run or a folder; returns its process and address.
+    /// Starts the dashboard of a run or a folder; returns its process and the address that it prints, with the
+    /// token.
     fn dashboard(&self, path: &str) -> (Process, String) {
         let mut process = Process::logged(
             self.command(&["dashboard", path, "--port", "0"]),
@@ -69,6 +74,17 @@ impl Site {
         let file = self.path(run).join("result.json");
         serde_json::from_slice(&fs::read(file).unwrap()).unwrap()
     }
+}
+
+/// Returns the address of a page below the start page whose address the dashboard printed.
+fn below(url: &str, path: &str) -> String {
+    url.replace("/?", &format!("/{path}?"))
+}
+
+/// Returns the socket address in the address of a page.
+fn socket_address(url: &str) -> &str {
+    let rest = url.trim_start_matches("http://");
+    rest.split('/').next().unwrap()
 }
 
 /// Returns the path of a picture that a test leaves for people to look at.

@@ -25,7 +25,7 @@ use tests::{
     expect_results,
     keys::raw_session,
     options,
-    process::{Process, free_locator, wait_until},
+    process::{Process, free_tcp_locator, wait_until},
 };
 use worker::SIMULATORS;
 use zenoh::{Session, Wait};
@@ -117,7 +117,7 @@ fn announcement(digest: &str) -> Announcement {
 
 /// Opens a coordinator with one joined, correctly behaving worker.
 async fn stage(folder: &std::path::Path) -> (Dispatch, Process, String) {
-    let locator = free_locator();
+    let locator = free_tcp_locator();
     let dispatch = Dispatch::open(options(folder, Some(&locator), 0))
         .await
         .unwrap();

@@ -1,6 +1,6 @@
 //! Routes of the server, and the stream of changed sections.
 use super::{
-    access::{Hosts, guard},
+    access::{Access, guard},
     board::{PageReader, PageState, Rendered},
     page,
 };
@@ -43,16 +43,18 @@ pub trait Pages: Send + Sync + 'static {
     fn individual(&self, run: &str, number: u64) -> impl Future<Output = Option<String>> + Send;
 }
 
-/// Serves pages at a listening socket until `end` is completed.
+/// Serves pages at a listening socket, to requests that carry the token, until `end` is completed. The token is that
+/// of the query of the address which the user opens, `?token=TOKEN`, and consists of letters and digits.
 ///
 /// # Errors
 /// If the socket fails.
 pub async fn serve<P: Pages>(
     listener: TcpListener,
+    token: &str,
     pages: Arc<P>,
     end: impl Future<Output = ()> + Send + 'static,
 ) -> io::Result<()> {
-    let hosts = Hosts::of(listener.local_addr()?);
+    let access = Access::new(listener.local_addr()?, token);
     let routes = Router::new()
         .route("/", get(start::<P>))
         .route("/events", get(start_events::<P>))
@@ -62,7 +64,7 @@ pub async fn serve<P: Pages>(
         .route("/runs/{name}/individual/{number}", get(run_individual::<P>))
         .route("/page.js", get(script))
         .fallback(async || not_found("There is no such page."))
-        .layer(middleware::from_fn_with_state(hosts, guard))
+        .layer(middleware::from_fn_with_state(access, guard))
         .with_state(pages);
     let ended = async move {
         tokio::select! {

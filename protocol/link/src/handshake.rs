@@ -47,15 +47,17 @@ pub(crate) async fn probe_plain(to: &Locator) -> Result<(), LinkError> {
     };
     match tried {
         Ok(Ok(())) => Ok(()),
-        Ok(Err(error)) => Err(silent(match error.kind() {
-            ErrorKind::ConnectionRefused | ErrorKind::NotFound if to.protocol == Protocol::Unix => {
-                ConnectFailure::NoSocket
-            }
-            ErrorKind::ConnectionRefused => ConnectFailure::Closed { protocol },
-            _ => ConnectFailure::Unreachable {
-                reason: error.to_string(),
-            },
-        })),
+        Ok(Err(error)) => {
+            let is_refused = error.kind() == ErrorKind::ConnectionRefused;
+            let is_missing = error.kind() == ErrorKind::NotFound;
+            Err(silent(match to.protocol {
+                Protocol::Unix if is_refused || is_missing => ConnectFailure::NoSocket,
+                Protocol::Tcp if is_refused => ConnectFailure::Closed { protocol },
+                Protocol::Unix | Protocol::Tcp | Protocol::Quic => ConnectFailure::Unreachable {
+                    reason: error.to_string(),
+                },
+            }))
+        }
         Err(_) => Err(silent(ConnectFailure::Dropped { protocol })),
     }
 }

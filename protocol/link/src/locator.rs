@@ -163,7 +163,7 @@ impl Locator {
             Ok(()) | Err(_) => {}
         }
         let found = fs::metadata(folder).map_err(|error| wrong(error.to_string()))?;
-        if found.uid() == geteuid().as_raw() && found.mode() & 0o077 == 0 {
+        if found.uid() == geteuid().as_raw() && found.mode() & 0o777 == 0o700 {
             return Ok(());
         }
         let folder = folder.display();

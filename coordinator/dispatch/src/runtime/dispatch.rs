@@ -44,7 +44,7 @@ pub struct Dispatch {
     /// Control socket of the run; `None` if it could not be opened.
     control: Option<Control>,
     /// Folder of the socket for local workers, deleted with this value; `None` if none was made.
-    _socket: Option<TempDir>,
+    socket_folder: Option<TempDir>,
 }
 
 impl Dispatch {
@@ -91,7 +91,7 @@ impl Dispatch {
         };
         let only_local = options.listen.is_none();
         let mut open = Self::begin(parts, link, workers, only_local, listening);
-        open._socket = folder;
+        open.socket_folder = folder;
         // a sender of its own would keep the run open for ever
         let requests = open.requests.downgrade();
         let ask = move |asked| {
@@ -144,7 +144,7 @@ impl Dispatch {
             listening,
             recorded,
             control: None,
-            _socket: None,
+            socket_folder: None,
         }
     }
 
@@ -238,6 +238,9 @@ impl Dispatch {
         // an engine that has stopped needs no request
         drop(self.requests);
         drop(self.control);
-        self.engine.await.map_err(|_| DispatchError::Closed)
+        let ended = self.engine.await;
+        // only now: the link deletes its socket
+        drop(self.socket_folder);
+        ended.map_err(|_| DispatchError::Closed)
     }
 }

@@ -181,6 +181,8 @@ var horsehead = { parts: [] };
   document.addEventListener("DOMContentLoaded", function () {
     prepare(document);
     if (document.body.dataset.live) {
+      // the token is in a cookie by now, and need not stand in the address
+      if (location.search) { history.replaceState(null, "", location.pathname + location.hash); }
       follow();
       individuals();
     }

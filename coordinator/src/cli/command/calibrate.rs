@@ -91,7 +91,6 @@ fn examples() -> String {
         "\
 Examples:
   horsehead calibrate cases/cyjs10-5-37hb
-  horsehead calibrate cases/cyjs10-5-37hb --preset paper --seed 7 --listen quic/0.0.0.0:7447 --tls keys
   horsehead calibrate cases/cyjs10-5-37hb --preset paper --set encoding=gray --set population=40
   horsehead calibrate cases/cyjs10-5-37hb --listen quic/0.0.0.0:7447 --tls keys
   horsehead calibrate cases/cyjs10-5-37hb --ssh node1,node2

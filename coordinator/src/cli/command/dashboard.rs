@@ -1,6 +1,6 @@
 //! `horsehead dashboard`: shows runs in a browser, live and finished.
 use crate::cli::{
-    dashboard::{DEFAULT_PORT, FolderPages, RunPages, listen, listen_near},
+    dashboard::{DEFAULT_PORT, FolderPages, RunPages, listen, listen_near, token},
     output::{
         problem::{EXIT_CODES, Problem},
         terminal,
@@ -29,7 +29,8 @@ Examples:
   horsehead calibrate cases/cyjs10-5-37hb --dashboard
 
 No request changes a run, and only this machine is answered unless --address says otherwise.
-From another machine: ssh -L 7450:127.0.0.1:7450 HOST, then open http://127.0.0.1:7450/.
+The token in the printed address keeps other users of the machine out.
+From another machine: ssh -L 7450:127.0.0.1:7450 HOST, then open the printed address there.
 Ctrl-C ends the dashboard; runs go on.
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
@@ -43,8 +44,8 @@ pub(super) struct Arguments {
     /// Port to listen on; 0 for any free one.
     #[arg(long, value_name = "PORT", default_value_t = DEFAULT_PORT, env = "HORSEHEAD_PORT")]
     port: u16,
-    /// Address of this machine to listen on; any other than loopback lets every machine that reaches it see the
-    /// runs.
+    /// Address of this machine to listen on; at any other than loopback, token and runs travel unencrypted over the
+    /// network.
     #[arg(long, value_name = "IP", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST), env = "HORSEHEAD_ADDRESS")]
     address: IpAddr,
     /// End when standard input does, and show the run even before it has begun: for `--dashboard`.
@@ -76,14 +77,15 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         listen(arguments.address, arguments.port)?
     };
     let address = listener.local_addr()?;
-    let url = format!("http://{address}/");
+    let token = token()?;
+    let url = format!("http://{address}/?token={token}");
     terminal::write(&format!("{url}\n"))?;
     if !arguments.attached {
         terminal::tell("open this address in a browser; Ctrl-C ends the dashboard, and runs go on");
     }
     if !address.ip().is_loopback() {
         terminal::tell(
-            "warning: every machine that reaches this address can see the runs, without encryption",
+            "warning: the token and the runs travel without encryption: whoever overhears them can see the runs",
         );
     }
     if is_run {
@@ -92,15 +94,15 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let end = arguments
             .attached
             .then(|| input_end(move || own.has_ended()));
-        block_on(listener, pages, end)
+        block_on((listener, &token), pages, end)
     } else {
-        block_on(listener, Arc::new(FolderPages::begin(path)), None)
+        block_on((listener, &token), Arc::new(FolderPages::begin(path)), None)
     }
 }
 
-/// Serves pages until the user stops it, or `end` becomes true.
+/// Serves pages to browsers with the token until the user stops it, or `end` becomes true.
 fn block_on(
-    listener: TcpListener,
+    (listener, token): (TcpListener, &str),
     pages: Arc<impl Pages>,
     end: Option<Stop>,
 ) -> anyhow::Result<()> {
@@ -117,7 +119,7 @@ fn block_on(
                 None => drop(stop.wait_for(|stop| *stop).await),
             }
         };
-        serve(listener, pages, ended).await?;
+        serve(listener, token, pages, ended).await?;
         Ok(())
     })
 }

@@ -2,7 +2,7 @@
 //!
 //! `follow` repeats the study of a run on its growing journal; `sections` turns what is known so far into the
 //! sections of the report; `simulator` simulates individuals with a worker of the dashboard's own; `folder`
-//! lists the runs of a folder; `port` opens the listening socket; `attached` is the dashboard of `--dashboard`, in a
+//! lists the runs of a folder; `port` opens the listening socket; `token` is the secret that browsers show; `attached` is the dashboard of `--dashboard`, in a
 //! process of its own. Nothing is written into a run folder.
 mod attached;
 mod folder;
@@ -11,8 +11,10 @@ mod port;
 mod sections;
 mod simulator;
 mod state;
+mod token;
 
 pub(crate) use attached::AttachedDashboard;
 pub(crate) use folder::FolderPages;
 pub(crate) use follow::RunPages;
 pub(crate) use port::{DEFAULT_PORT, listen, listen_near};
+pub(crate) use token::token;

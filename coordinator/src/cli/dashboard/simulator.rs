@@ -4,7 +4,7 @@ use protocol::{case::Case, id::ContentHash};
 use report::Run;
 use std::{
     collections::BTreeMap,
-    sync::{Arc, Mutex, PoisonError, mpsc},
+    sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc},
     thread,
     time::Duration,
 };
@@ -18,6 +18,11 @@ const IDLE: Duration = Duration::from_mins(1);
 const MOST_IN_A_RUN: usize = 200;
 /// Maximum number of individuals whose curves are kept; 10 MB for the shipped machine.
 const MOST_KEPT: usize = 24;
+
+/// Maximum number of individuals that wait to be simulated.
+const MOST_WAITING: usize = 16;
+/// Maximum number of readers that wait for the same individual.
+const MOST_READERS: usize = 64;
 
 /// Result of simulating one individual: for each condition its index and the run.
 pub(super) type Simulated = Arc<Vec<(usize, Run)>>;
@@ -55,67 +60,120 @@ type Key = (ContentHash, Vec<u64>);
 struct Request {
     case: Arc<HashedCase>,
     genes: Vec<f64>,
-    answer: oneshot::Sender<Result<Simulated, String>>,
+}
+
+/// Readers that wait for the result of an individual.
+type Readers = Vec<oneshot::Sender<Result<Simulated, String>>>;
+
+/// Results and requests that the simulator and its thread share.
+#[derive(Default)]
+struct Shared {
+    kept: BTreeMap<Key, Simulated>,
+    /// Readers of the individuals that wait or are being simulated.
+    awaited: BTreeMap<Key, Readers>,
 }
 
 /// Simulator of individuals, which starts its worker with the first request and keeps the last results.
 #[derive(Clone)]
 pub(super) struct Simulator {
-    requests: mpsc::Sender<Request>,
-    kept: Arc<Mutex<BTreeMap<Key, Simulated>>>,
+    requests: mpsc::SyncSender<Request>,
+    shared: Arc<Mutex<Shared>>,
 }
 
 impl Simulator {
     /// Creates a simulator without a worker.
     pub(super) fn new() -> Self {
-        let (requests, asked) = mpsc::channel();
-        let kept = Arc::new(Mutex::new(BTreeMap::new()));
-        let own = Arc::clone(&kept);
-        thread::spawn(move || answer(&asked, &own));
-        Self { requests, kept }
+        let (simulator, asked) = Self::without_thread();
+        let shared = Arc::clone(&simulator.shared);
+        thread::spawn(move || answer(&asked, &shared));
+        simulator
+    }
+
+    /// Creates a simulator with the requests that its thread is to answer.
+    fn without_thread() -> (Self, mpsc::Receiver<Request>) {
+        let (requests, asked) = mpsc::sync_channel(MOST_WAITING);
+        let shared = Arc::default();
+        (Self { requests, shared }, asked)
     }
 
     /// Returns the kept result of an individual.
     pub(super) fn known(&self, case: &HashedCase, genes: &[f64]) -> Option<Simulated> {
-        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.get(&case.key(genes)).cloned()
+        lock(&self.shared).kept.get(&case.key(genes)).cloned()
     }
 
     /// Requests the simulation of an individual under all conditions; the answer arrives on the returned
-    /// channel.
+    /// channel. Requests for the same individual are answered by one simulation, and one that nobody waits for any
+    /// longer is dropped.
     pub(super) fn simulate(&self, case: &Arc<HashedCase>, genes: &[f64]) -> Awaited {
         let (answer, receiver) = oneshot::channel();
-        if let Some(known) = self.known(case, genes) {
-            drop(answer.send(Ok(known)));
+        let key = case.key(genes);
+        let mut shared = lock(&self.shared);
+        if let Some(known) = shared.kept.get(&key) {
+            drop(answer.send(Ok(Arc::clone(known))));
             return receiver;
         }
-        let request = Request {
+        let is_new = !shared.awaited.contains_key(&key);
+        let request = || Request {
             case: Arc::clone(case),
             genes: genes.to_vec(),
-            answer,
         };
-        // without its thread the request is dropped, which its receiver sees
-        drop(self.requests.send(request));
+        if is_new && self.requests.try_send(request()).is_err() {
+            let message = "too many individuals are waiting to be simulated; choose it again later";
+            drop(answer.send(Err(message.to_owned())));
+            return receiver;
+        }
+        let readers = shared.awaited.entry(key).or_default();
+        readers.retain(|reader| !reader.is_closed());
+        if readers.len() < MOST_READERS {
+            readers.push(answer);
+        }
         receiver
     }
 }
 
-fn keep(kept: &Mutex<BTreeMap<Key, Simulated>>, key: Key, result: Simulated) {
-    let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
-    if kept.len() >= MOST_KEPT {
-        kept.pop_first();
+fn lock(shared: &Mutex<Shared>) -> MutexGuard<'_, Shared> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Shared {
+    fn keep(&mut self, key: Key, result: Simulated) {
+        if self.kept.len() >= MOST_KEPT {
+            self.kept.pop_first();
+        }
+        self.kept.insert(key, result);
     }
-    kept.insert(key, result);
+
+    /// Returns whether a reader still waits for an individual; forgets the request otherwise.
+    fn is_awaited(&mut self, key: &Key) -> bool {
+        let readers = self.awaited.get(key);
+        let is_awaited = readers.is_some_and(|all| all.iter().any(|reader| !reader.is_closed()));
+        if !is_awaited {
+            self.awaited.remove(key);
+        }
+        is_awaited
+    }
+
+    /// Answers all readers of an individual.
+    fn answer(&mut self, key: &Key, result: &Result<Simulated, String>) {
+        for reader in self.awaited.remove(key).into_iter().flatten() {
+            // who has left hears nothing
+            drop(reader.send(result.clone()));
+        }
+    }
 }
 
 /// Answers requests until the simulator is dropped; those for one case in a row share a worker.
-fn answer(asked: &mpsc::Receiver<Request>, kept: &Mutex<BTreeMap<Key, Simulated>>) {
+fn answer(asked: &mpsc::Receiver<Request>, shared: &Mutex<Shared>) {
     let mut next = None;
     while let Some(first) = next.take().or_else(|| asked.recv().ok()) {
-        let case = Arc::clone(&first.case);
+        let (case, key) = (Arc::clone(&first.case), first.case.key(&first.genes));
+        if !lock(shared).is_awaited(&key) {
+            continue;
+        }
         let mut waiting = Some(first);
         let done = with_temporary_run(&case.case, "dashboard", 1, async |bus, stop| {
-            for number in 0..MOST_IN_A_RUN {
+            let mut number = 0;
+            while number < MOST_IN_A_RUN {
                 let request = match waiting.take() {
                     Some(request) => request,
                     None => match asked.recv_timeout(IDLE) {
@@ -127,31 +185,27 @@ fn answer(asked: &mpsc::Receiver<Request>, kept: &Mutex<BTreeMap<Key, Simulated>
                     next = Some(request);
                     return Ok(());
                 }
-                // asked for by several readers
-                let own = case.key(&request.genes);
-                let known = {
-                    let kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
-                    kept.get(&own).cloned()
-                };
-                let result = if let Some(known) = known {
-                    Ok(known)
-                } else {
-                    let wanted = wanted(&case.case, number, &request.genes);
-                    match study::compare(bus, &case.case, &wanted, stop).await {
-                        Ok(compared) => Ok(Arc::new(runs(&compared))),
-                        Err(error @ StudyError::Interrupted) => return Err(error),
-                        Err(error) => Err(error.to_string()),
-                    }
-                };
-                if let Ok(result) = &result {
-                    keep(kept, own, Arc::clone(result));
+                let key = case.key(&request.genes);
+                if !lock(shared).is_awaited(&key) {
+                    continue;
                 }
-                drop(request.answer.send(result));
+                let wanted = wanted(&case.case, number, &request.genes);
+                number += 1;
+                let result = match study::compare(bus, &case.case, &wanted, stop).await {
+                    Ok(compared) => Ok(Arc::new(runs(&compared))),
+                    Err(error @ StudyError::Interrupted) => return Err(error),
+                    Err(error) => Err(error.to_string()),
+                };
+                let mut shared = lock(shared);
+                if let Ok(result) = &result {
+                    shared.keep(key.clone(), Arc::clone(result));
+                }
+                shared.answer(&key, &result);
             }
             Ok(())
         });
-        if let (Err(error), Some(request)) = (done, waiting) {
-            drop(request.answer.send(Err(format!("{error:#}"))));
+        if let Err(error) = done {
+            lock(shared).answer(&key, &Err(format!("{error:#}")));
         }
     }
 }
@@ -177,4 +231,36 @@ fn runs(compared: &[study::Compared]) -> Vec<(usize, Run)> {
         ))
     });
     runs.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Checks that requests for the same individual are merged, that the number of those that wait is limited, and that
+    /// one whose readers have left is dropped. Regression: every request was queued and simulated.
+    #[test]
+    fn requests_are_merged_limited_and_dropped_with_their_readers() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../cases/cyjs10-5-37hb");
+        let loaded = case::load(std::path::Path::new(folder), &case::Overrides::default()).unwrap();
+        let case = HashedCase::new(&loaded).unwrap();
+        let (simulator, asked) = Simulator::without_thread();
+        let mut first = simulator.simulate(&case, &[0.0]);
+        let same = simulator.simulate(&case, &[0.0]);
+        let more = MOST_WAITING - 1;
+        let others: Vec<Awaited> = (1..=more)
+            .map(|number| simulator.simulate(&case, &[number as f64]))
+            .collect();
+        let refused = simulator.simulate(&case, &[-1.0]).blocking_recv().unwrap();
+        assert!(refused.unwrap_err().contains("too many"));
+        assert_eq!(asked.try_iter().count(), MOST_WAITING, "two are one");
+        let is_awaited = |gene: f64| lock(&simulator.shared).is_awaited(&case.key(&[gene]));
+        drop(same);
+        assert!(is_awaited(0.0) && is_awaited(1.0));
+        drop(others);
+        assert!(!is_awaited(1.0) && is_awaited(0.0));
+        let key = case.key(&[0.0]);
+        lock(&simulator.shared).answer(&key, &Err("it fails".to_owned()));
+        assert_eq!(first.try_recv().unwrap().unwrap_err(), "it fails");
+    }
 }
