@@ -69,7 +69,9 @@ proptest! {
         let report = is_read_or_reported(folder.path(), &bytes);
         let sound = stretches.iter().filter(|one| matches!(one, Stretch::Sound(_)));
         // rubbish that looks like the beginning of a record may only swallow what it really holds
-        prop_assert!(report.records >= sound.count() as u64 || !report.damage.is_empty());
+        prop_assert!(report.is_none_or(|report| {
+            report.records >= sound.count() as u64 || !report.damage.is_empty()
+        }));
     }
 
     #[test]

@@ -20,6 +20,7 @@ mod open;
 mod read;
 mod record;
 mod recording;
+mod recovered;
 #[cfg(test)]
 pub(crate) mod sample;
 #[cfg(test)]
@@ -29,7 +30,10 @@ mod write;
 pub use error::JournalError;
 pub use follow::{Growth, JournalFollower};
 pub use open::{Journal, OpenedRun, discard};
+pub(crate) use read::fold_medium;
 pub use read::{Damage, JournalEntry, ReadReport, describe_damage, fold};
+pub(crate) use record::record;
 pub use record::{FILE, HEAD, LOCK, MARK};
 pub use recording::{JournalSnapshot, numbers};
+pub(crate) use recovered::RecoveredRun;
 pub use write::WriterReport;

@@ -4,8 +4,9 @@ use super::{
     error::JournalError,
     head,
     index::Results,
-    read::{JournalEntry, ReadReport, fold},
+    read::{ReadReport, fold},
     record::{FILE, LOCK, record},
+    recovered::{RecoveredRun, damaged_bytes},
     write::{NamedFile, Writer, WriterReport, is_at},
 };
 use protocol::{
@@ -14,7 +15,7 @@ use protocol::{
     proof::ReferenceResult,
 };
 use std::{
-    collections::{BTreeMap, BTreeSet},
+    collections::BTreeSet,
     fs::{File, OpenOptions, TryLockError},
     io::{self, Seek, SeekFrom, Write},
     path::{Path, PathBuf},
@@ -29,17 +30,6 @@ use std::{
 /// Maximum length of an unreadable journal that still counts as a truncated first record (bytes). A longer
 /// file is taken for something other than a journal and left untouched.
 const MAX_UNFINISHED_BYTES: u64 = 4096;
-
-/// Minimum length of the record that a coordinator process writes when it opens the journal (bytes); bounds
-/// how many such records a damaged stretch may have held.
-const MIN_OPENED_BYTES: u64 = 20;
-
-/// Maximum number of epochs (numbers of coordinator processes) skipped because their opening records may be
-/// lost in damaged stretches.
-const MOST_HIDDEN: u64 = 1000;
-
-/// Number of later coordinator processes of the run after which an absent worker is no longer expected back.
-const MAX_ABSENT_EPOCHS: u32 = 8;
 
 /// State of a run as read from its journal at opening.
 #[derive(Clone, Debug)]
@@ -215,60 +205,6 @@ impl Drop for Journal {
     fn drop(&mut self) {
         self.close();
     }
-}
-
-/// State of a run, accumulated from the events of its journal.
-#[derive(Default)]
-struct RecoveredRun {
-    begun: Option<(RunId, RunHeader)>,
-    epoch: u32,
-    model_digest: Option<String>,
-    proof: Option<ReferenceResult>,
-    /// Workers that joined the run and did not leave, with the coordinator process (epoch) that they joined.
-    present: BTreeMap<WorkerId, u32>,
-    results: Vec<(JobId, u64)>,
-}
-
-impl RecoveredRun {
-    fn apply(&mut self, entry: JournalEntry, event: Event) {
-        match event {
-            Event::Begun { run, header } => self.begun = self.begun.take().or(Some((run, header))),
-            Event::Opened { epoch, .. } => {
-                self.epoch = self.epoch.max(epoch);
-                self.present
-                    .retain(|_, joined| *joined + MAX_ABSENT_EPOCHS >= epoch);
-            }
-            Event::Joined {
-                worker,
-                model_digest,
-                ..
-            } => {
-                self.model_digest.get_or_insert(model_digest);
-                self.present.insert(worker, self.epoch);
-            }
-            Event::Left { worker, .. } => drop(self.present.remove(&worker)),
-            // all were told to forget the run
-            Event::Closed => self.present.clear(),
-            Event::Proved { proof } => {
-                self.proof.get_or_insert(proof);
-            }
-            Event::Finished(finished) => self.results.push((finished.job(), entry.at)),
-            Event::Asked { .. } | Event::Accounted(_) => {}
-        }
-    }
-
-    /// Returns a number for this coordinator process (epoch) that no earlier process of the run has used:
-    /// identifiers of attempts contain it, and workers of a lost process may still hold attempts.
-    fn next_epoch(&self, report: &ReadReport) -> u32 {
-        let damaged = damaged_bytes(report)
-            .div_ceil(MIN_OPENED_BYTES)
-            .min(MOST_HIDDEN);
-        self.epoch + 1 + u32::try_from(damaged).unwrap_or(0)
-    }
-}
-
-fn damaged_bytes(report: &ReadReport) -> u64 {
-    report.damage.iter().map(|damage| damage.bytes).sum()
 }
 
 /// Returns the identifier of the journal's run; `None` if the run has not begun.

@@ -17,7 +17,7 @@ pub const MARK: [u8; 4] = [b'H', b'H', b'J', b'0' + VERSION];
 pub(super) const RECORD_HEADER: usize = 12;
 
 /// Encodes an event as a journal record: header and body.
-pub(super) fn record(event: &Event) -> Result<Vec<u8>, wire::WireError> {
+pub(crate) fn record(event: &Event) -> Result<Vec<u8>, wire::WireError> {
     let body = wire::encode(event)?;
     let length = u32::try_from(body.len()).map_err(|_| wire::WireError::TooLong {
         bytes: body.len(),

@@ -169,10 +169,7 @@ impl Dispatch {
             self.divisible.push((id, job));
             return Ok(());
         }
-        let asked = Request::Submit {
-            id,
-            job: Box::new(job),
-        };
+        let asked = Request::Submit(vec![(id, job)]);
         self.requests.send(asked).map_err(|_| DispatchError::Closed)
     }
 
@@ -198,7 +195,7 @@ impl Dispatch {
             return Ok(());
         }
         let jobs = std::mem::take(&mut self.divisible);
-        let asked = self.requests.send(Request::SubmitDivisible(jobs));
+        let asked = self.requests.send(Request::Submit(jobs));
         asked.map_err(|_| DispatchError::Closed)
     }
 

@@ -5,7 +5,7 @@ use super::{
         PendingRequest,
         messages::{ControlReply, ControlRequest},
     },
-    divide::{self, DividedJobs, PartResult},
+    coordination::Coordination,
     error::DispatchError,
     local::{LocalEvent, LocalWorkers},
     parts::Parts,
@@ -14,13 +14,13 @@ use super::{
 };
 use crate::{
     journal::{Journal, WriterReport},
-    scheduler::{Command, Completed, ConnectedWorker, Core, Input, Snapshot, is_part},
+    scheduler::{Command, Completed, ConnectedWorker, Input, Snapshot},
 };
 use link::{CoordinatorEnd, LinkEvent};
 use protocol::{
-    event::{Event, Finished},
+    event::Event,
     id::{JobId, RunId, WorkerId},
-    job::{Job, Outcome},
+    job::Job,
     key::Lane,
     message::{FromWorker, ToWorker},
     wire::{self, FrameKind, WireError},
@@ -48,12 +48,8 @@ const LAST_WRITE: Duration = Duration::from_secs(1);
 /// Request of the run's owner to the engine.
 #[derive(Debug)]
 pub(super) enum Request {
-    Submit {
-        id: JobId,
-        job: Box<Job>,
-    },
-    /// Jobs with derivatives, submitted together, which may be divided into parts.
-    SubmitDivisible(Vec<(JobId, Job)>),
+    /// Jobs submitted together; those with derivatives may be divided into parts.
+    Submit(Vec<(JobId, Job)>),
     /// Replaces the jobs that the run will probably submit next, likeliest first.
     Anticipate(Vec<Job>),
     /// Request that arrived on the control socket.
@@ -84,8 +80,7 @@ struct Pause {
 
 pub(super) struct Engine<L> {
     run: RunId,
-    core: Core,
-    divided: DividedJobs,
+    coordination: Coordination,
     journal: Journal,
     said: UnboundedReceiver<WriterReport>,
     link: L,
@@ -127,8 +122,7 @@ impl<L: CoordinatorEnd> Engine<L> {
         let begun = Instant::now();
         Self {
             run,
-            core,
-            divided: DividedJobs::default(),
+            coordination: Coordination::new(core),
             journal,
             said,
             link,
@@ -153,8 +147,7 @@ impl<L: CoordinatorEnd> Engine<L> {
             let pause_ends = self.pause_ends();
             tokio::select! {
                 request = requests.recv() => match request {
-                    Some(Request::Submit { id, job }) => self.submit(id, *job),
-                    Some(Request::SubmitDivisible(jobs)) => self.submit_divisible(jobs),
+                    Some(Request::Submit(jobs)) => self.submit(jobs),
                     Some(Request::Anticipate(jobs)) => self.anticipate(jobs),
                     Some(Request::Control((question, to))) => {
                         let reply = self.ask(&question);
@@ -219,59 +212,18 @@ impl<L: CoordinatorEnd> Engine<L> {
         }
     }
 
-    fn submit(&mut self, id: JobId, job: Job) {
-        if self.is_new(id, &job) && !self.claim(id, &job) {
-            self.handle(Input::Submit { id, job });
-        }
+    /// Submits jobs; results that the journal already holds are delivered at once.
+    fn submit(&mut self, jobs: Vec<(JobId, Job)>) {
+        let new = jobs.into_iter().filter(|(id, job)| self.is_new(*id, job));
+        let new: Vec<(JobId, Job)> = new.collect();
+        let commands = self.coordination.submit(new, self.begun.elapsed());
+        self.execute(commands);
     }
 
     /// Replaces the anticipated jobs, which idle slots compute ahead.
     fn anticipate(&mut self, jobs: Vec<Job>) {
-        let change = self.divided.anticipate(jobs, self.core.idle_slots());
-        if !change.withdrawn.is_empty() {
-            let jobs = change.withdrawn;
-            self.handle(Input::Withdraw { jobs });
-        }
-        for (id, job) in change.parts {
-            self.handle(Input::Anticipate { id, job });
-        }
-    }
-
-    /// Makes a submitted job of an anticipated one with the same content; returns whether there is one.
-    fn claim(&mut self, id: JobId, job: &Job) -> bool {
-        let Some(jobs) = self.divided.claim(id, job) else {
-            return false;
-        };
-        let work = job.work_hash();
-        self.record(Event::Asked { job: id, work });
-        self.handle(Input::Claim { jobs });
-        let result = self.divided.join_finished(id);
-        self.take_joined(result);
-        true
-    }
-
-    /// Submits jobs with derivatives, divided into as many parts as there are idle slots for them.
-    fn submit_divisible(&mut self, jobs: Vec<(JobId, Job)>) {
-        let new = jobs.into_iter().filter(|(id, job)| self.is_new(*id, job));
-        let mut new: Vec<(JobId, Job)> = new.collect();
-        new.retain(|(id, job)| !self.claim(*id, job));
-        let (count, idle) = (new.len(), self.core.idle_slots());
-        for (id, job) in new {
-            let columns = match &job {
-                Job::Simulate(spec) => spec.columns.len(),
-                Job::Own { .. } | Job::Describe | Job::Nothing { .. } => 0,
-            };
-            let work = job.work_hash();
-            let parts = self
-                .divided
-                .divide(id, job, divide::part_count(columns, count, idle));
-            if parts.len() > 1 {
-                self.record(Event::Asked { job: id, work });
-            }
-            for (id, job) in parts {
-                self.handle(Input::Submit { id, job });
-            }
-        }
+        let commands = self.coordination.anticipate(jobs, self.begun.elapsed());
+        self.execute(commands);
     }
 
     /// Returns whether a submitted job has no result in the journal; if it has one, delivers that.
@@ -295,9 +247,12 @@ impl<L: CoordinatorEnd> Engine<L> {
 
     /// Answers a request from the control socket, draining workers as requested.
     fn ask(&mut self, question: &ControlRequest) -> ControlReply {
-        let mut crew = self.core.worker_statuses(self.begun.elapsed());
+        let mut crew = self
+            .coordination
+            .core()
+            .worker_statuses(self.begun.elapsed());
         for (job, _) in crew.iter_mut().flat_map(|worker| &mut worker.jobs) {
-            *job = self.divided.submitted_id(*job);
+            *job = self.coordination.submitted_id(*job);
         }
         let own_host = rustix::system::uname();
         let is_local = |worker: &ConnectedWorker| {
@@ -339,7 +294,6 @@ impl<L: CoordinatorEnd> Engine<L> {
     fn appended(&mut self, appended: WriterReport) {
         match appended {
             WriterReport::Stored(jobs) => {
-                let jobs = self.divided.stored(jobs);
                 self.handle(Input::Stored { jobs });
             }
             WriterReport::Paused(why) => {
@@ -382,64 +336,27 @@ impl<L: CoordinatorEnd> Engine<L> {
     }
 
     fn handle(&mut self, input: Input) {
+        let commands = self.coordination.handle(input, self.begun.elapsed());
+        self.execute(commands);
+    }
+
+    fn execute(&mut self, commands: Vec<Command>) {
         self.stale_at
             .get_or_insert_with(|| tokio::time::Instant::now() + FRESH);
-        for command in self.core.handle(input, self.begun.elapsed()) {
+        for command in commands {
             match command {
                 Command::Send { to, message } => self.send(to, &message),
-                Command::Store(finished) if is_part(finished.job()) => {
-                    self.finish_part(*finished);
-                }
                 Command::Store(finished) => self.record(Event::Finished(finished)),
-                // the whole job was recorded
-                Command::Record(Event::Asked { job, .. }) if is_part(job) => {}
                 Command::Record(event) => self.record(event),
-                Command::Deliver(completed) => {
-                    if let Some(workers) = &self.workers {
-                        workers.note_result();
-                    }
-                    if is_part(completed.id) {
-                        self.deliver_part(&completed);
-                    } else {
-                        self.give(Ok(completed));
-                    }
-                }
+                Command::Deliver(completed) => self.give(Ok(completed)),
                 Command::Notice(notice) if notice.is_routine() => tracing::info!("{notice}"),
                 Command::Notice(notice) => tracing::warn!("{notice}"),
                 Command::Stop(stop) => self.give(Err(stop.into())),
             }
         }
-    }
-
-    /// Takes the result of a part of a divided job; once the job is complete, records and delivers its result.
-    fn finish_part(&mut self, result: Finished) {
-        let part = result.job();
-        match self.divided.finish(result) {
-            PartResult::Discarded => self.handle(Input::Stored { jobs: vec![part] }),
-            joined @ (PartResult::Awaited | PartResult::Joined(_)) => self.take_joined(joined),
-        }
-    }
-
-    /// Records and delivers the result of a divided job, if it is complete.
-    fn take_joined(&mut self, result: PartResult) {
-        if let PartResult::Joined(whole) = result {
-            self.give(Ok(Completed {
-                id: whole.job(),
-                cost: whole.cost,
-                outcome: whole.outcome.clone(),
-                replayed: false,
-            }));
-            self.record(Event::Finished(whole));
-        }
-    }
-
-    /// Delivers the failure of a part that is not stored as that of its job; results that are stored are handled
-    /// with their storing.
-    fn deliver_part(&mut self, part: &Completed) {
-        let not_stored =
-            matches!(&part.outcome, Outcome::Failed(failure) if divide::is_not_stored(failure));
-        if let Some(failed) = not_stored.then(|| self.divided.fail(part)).flatten() {
-            self.give(Ok(failed));
+        let results = self.coordination.core().results();
+        if let Some(workers) = &self.workers {
+            workers.note_results(results);
         }
     }
 
@@ -471,7 +388,7 @@ impl<L: CoordinatorEnd> Engine<L> {
 
     fn show(&mut self) {
         self.stale_at = None;
-        let snapshot = self.core.snapshot(self.begun.elapsed());
+        let snapshot = self.coordination.core().snapshot(self.begun.elapsed());
         *self.shown.lock().unwrap_or_else(PoisonError::into_inner) = snapshot;
     }
 
@@ -481,13 +398,13 @@ impl<L: CoordinatorEnd> Engine<L> {
         let mut ends = tokio::time::Instant::now() + LAST_WRITE;
         let mut ticks = interval(TICK);
         let mut told = false;
-        while self.core.unstored() > 0 && !self.given_up {
+        while self.coordination.core().unstored() > 0 && !self.given_up {
             if self.paused.is_some() && !mem::replace(&mut told, true) {
                 tracing::error!(
                     "the run ends once its last {} results are written: free space on the disk. A second \
                      interrupt ends it without them; workers then keep them for the next start of \
                      the run, and missing ones are computed again",
-                    self.core.unstored()
+                    self.coordination.core().unstored()
                 );
             }
             let pause_ends = self.pause_ends();
@@ -521,7 +438,7 @@ impl<L: CoordinatorEnd> Engine<L> {
         self.handle(Input::Close);
         self.record(Event::Closed);
         let now = self.begun.elapsed();
-        let last = self.core.snapshot(now);
+        let last = self.coordination.core().snapshot(now);
         let workers = self.workers.take();
         let mut journal = self.journal;
         let ended = tokio::task::spawn_blocking(move || drop(workers));

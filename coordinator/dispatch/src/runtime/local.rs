@@ -128,9 +128,9 @@ impl LocalWorkers {
         }
     }
 
-    /// Counts a result of the run; results show that restarting local workers is worthwhile.
-    pub(super) fn note_result(&self) {
-        self.results.fetch_add(1, Ordering::Relaxed);
+    /// Notes the number of results so far; results show that restarting local workers is worthwhile.
+    pub(super) fn note_results(&self, results: u64) {
+        self.results.store(results, Ordering::Relaxed);
     }
 
     /// Returns whether a process of this machine is one of the local workers.

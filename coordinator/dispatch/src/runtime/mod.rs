@@ -4,6 +4,7 @@
 //! that a caller busy with computations delays no worker.
 mod bench;
 pub mod control;
+mod coordination;
 mod dispatch;
 mod divide;
 mod engine;
@@ -21,8 +22,9 @@ pub use bench::{
     BenchPlan, BenchResult, BenchWorkers, SilentPlan, SilentResult, SilentStage,
     SleepingJobsResult, bench, connect, keep_silent, processor_time, sleep_through,
 };
+pub(crate) use coordination::Coordination;
 pub use dispatch::Dispatch;
-pub(crate) use divide::{DividedJobs, PartResult, anticipated_parts, part_count};
+pub(crate) use divide::{anticipated_parts, part_count};
 pub use engine::RunSummary;
 pub use error::DispatchError;
 pub use listen::local_socket;

@@ -7,8 +7,16 @@ use super::{
 use protocol::id::{JobId, WorkerId};
 use std::time::Duration;
 
-/// Assigns queued jobs, lowest id first, to the least loaded workers.
+/// Assigns queued jobs to the least loaded workers: first those that must run alone, for which a worker is kept free,
+/// then the others, lowest id first.
 pub(super) fn assign(core: &mut Core, now: Duration) {
+    let alone: Vec<JobId> = core.suspects.intersection(&core.queue).copied().collect();
+    for job in alone {
+        if let Some(worker) = pick(core, job) {
+            core.queue.remove(&job);
+            lease(core, worker, job, now);
+        }
+    }
     let mut passed_over = Vec::new();
     while let Some(job) = core.queue.pop_first() {
         if let Some(worker) = pick(core, job) {
@@ -87,7 +95,7 @@ pub(super) fn most_idle(core: &Core, suits: impl Fn(WorkerId) -> bool) -> Option
 
 /// Returns the worker reserved for the first queued job that must run alone and that a worker may have: the
 /// least loaded such worker, which gets no new jobs meanwhile.
-fn reserved(core: &Core) -> Option<WorkerId> {
+pub(super) fn reserved(core: &Core) -> Option<WorkerId> {
     let waiting = core.suspects.iter().filter_map(|job| {
         // a suspect that is only anticipated runs nowhere
         let pending = core.jobs.get(job)?;

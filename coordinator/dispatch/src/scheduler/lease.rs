@@ -95,7 +95,10 @@ pub(super) fn requeue(core: &mut Core, worker: WorkerId, job: JobId) {
     if let Some(pending) = core.jobs.get_mut(&job) {
         pending.holders.retain(|holder| *holder != worker);
         if pending.holders.is_empty() && core.anticipated.contains(&job) {
-            core.anticipated_queue.push_front(job);
+            // a job that was taken from the worker before may wait already
+            if !core.anticipated_queue.contains(&job) {
+                core.anticipated_queue.push_front(job);
+            }
         } else if pending.holders.is_empty() {
             core.queue.insert(job);
         }

@@ -25,6 +25,8 @@ mod drain;
 mod failures;
 mod inbox;
 mod input;
+#[cfg(test)]
+mod invariants;
 mod job_set;
 mod lease;
 mod member;

@@ -16,14 +16,16 @@ pub(super) fn reconcile(core: &mut Core, from: WorkerId, beat: &Heartbeat, now: 
     let computing = beat.running.iter().chain(&beat.waiting);
     for attempt in computing.clone() {
         let job = attempt.job;
-        let leased = core
-            .members
-            .get(&from)
-            .is_some_and(|member| member.holds(job));
-        if leased {
+        let Some(member) = core.members.get(&from) else {
+            return;
+        };
+        if member.holds(job) {
             continue;
         }
-        if core.has_finished(job) || core.is_orphan(job) {
+        // the worker has not heard yet that the attempt was withdrawn, or this heartbeat is older than that: it
+        // cannot keep it
+        let is_revoked = member.revoked.iter().any(|(revoked, _)| revoked == attempt);
+        if is_revoked || core.has_finished(job) || core.is_orphan(job) {
             core.send(from, ToWorker::Cancel(*attempt));
         } else if let Some(member) = core.members.get_mut(&from) {
             member.claims.push(*attempt);

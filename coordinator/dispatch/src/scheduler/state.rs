@@ -227,6 +227,11 @@ impl Core {
         self.jobs.len() - self.queue.len() - self.anticipated_queue.len()
     }
 
+    /// Returns the number of results that workers have delivered and this process has accepted.
+    pub const fn results(&self) -> u64 {
+        self.counts.succeeded
+    }
+
     /// Returns the number of accepted results not yet stored.
     pub fn unstored(&self) -> usize {
         self.storing.len()

@@ -2,8 +2,12 @@
 //!
 //! Every delay, speed, fault and computing time is drawn from a seed, so that a run of hours takes a fraction
 //! of a second and is reproducible. The tests of the core use it, and so do projections of how a search
-//! scales.
+//! scales. With a journal, the coordinator can be killed and started again; `faults` draws faults of all kinds and
+//! checks the invariants of the scheduler after every step.
 mod event;
+#[cfg(test)]
+mod faults;
+mod journal;
 mod source;
 mod worker;
 
@@ -12,16 +16,19 @@ pub use source::{Generations, JobSource, SimulatedDerivatives, SimulatedSearch, 
 pub use worker::{Running, SimulatedWorker, cost, outcome};
 
 use crate::{
-    runtime::{DividedJobs, PartResult},
-    scheduler::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, StopReason, is_part},
+    runtime::Coordination,
+    scheduler::{
+        Command, Core, CoreOptions, Input, JobSet, Notice, Policy, Snapshot, StopReason, is_part,
+    },
 };
 use event::ClusterEvent;
+use journal::{RUN, SimulatedJournal};
 use protocol::{
     announce::{Announcement, ModelDescriptor},
     case::Reproducibility,
-    event::Event,
-    id::{ContentHash, JobId, RunId, WorkerId},
-    job::{Job, Outcome},
+    event::{Event, Finished},
+    id::{ContentHash, JobId, WorkerId},
+    job::{Failure, Job, Outcome},
     message::{Attempt, Done, FromWorker, ToWorker},
     proof::ReferenceResult,
     wire,
@@ -39,6 +46,28 @@ pub const MODEL: &str = "model";
 pub const CASE: ContentHash = ContentHash([7; 32]);
 /// Result of the reference individual by which every simulated worker proves its numerics.
 pub const PROOF: ReferenceResult = ReferenceResult::Bits(ContentHash([8; 32]));
+
+/// Returns the options of the core of a new run.
+fn options(policy: Policy) -> CoreOptions {
+    CoreOptions {
+        run: RUN,
+        epoch: 1,
+        case: CASE,
+        case_bytes: 1,
+        model: MODEL.to_owned(),
+        model_digest: None,
+        repeats: Reproducibility::Bits,
+        proof: None,
+        finished: JobSet::default(),
+        expected: BTreeSet::new(),
+        policy,
+    }
+}
+
+/// Returns whether a job has no result because workers refused it.
+const fn is_refused(outcome: &Outcome) -> bool {
+    matches!(outcome, Outcome::Failed(Failure::Refused { .. }))
+}
 
 /// Number of workers that a job kills before it is done.
 pub const KILLS: u32 = 6;
@@ -107,10 +136,39 @@ impl ClusterSetting {
     }
 }
 
+/// Time after which the transport notices that a worker cannot be reached.
+const UNREACHABLE: Duration = Duration::from_secs(3);
+/// Time after which a coordinator that was killed is started again.
+const DOWN: Duration = Duration::from_secs(4);
+/// Time between two attempts to write to a full disk.
+const RETRY: Duration = Duration::from_secs(1);
+
+/// State of the coordinator process.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Process {
+    /// It was killed.
+    Ended,
+    /// It was started, and the source has not begun again yet.
+    Started,
+    Running,
+}
+
 /// Simulated coordinator with its workers.
 pub struct Cluster {
-    /// Scheduler core of the coordinator.
-    pub core: Core,
+    coordination: Coordination,
+    /// Time limits and retry limits of the coordinator.
+    pub(crate) policy: Policy,
+    /// Journal of the coordinator; `None` if it is never killed.
+    journal: Option<SimulatedJournal>,
+    /// Results in the journal when the coordinator was started.
+    recorded: BTreeMap<JobId, Finished>,
+    /// Number of coordinator processes so far.
+    pub(crate) processes: u32,
+    process: Process,
+    /// Workers to and from which messages are lost.
+    cut_off: BTreeSet<WorkerId>,
+    /// Whether the result of the reference individual is known, so that one that differs is refused.
+    is_proved: bool,
     /// Current simulated time.
     pub now: Duration,
     setting: ClusterSetting,
@@ -122,10 +180,12 @@ pub struct Cluster {
     stopped: Option<StopReason>,
     /// Simulated time at which the coordinator has finished handling all results that have arrived.
     free_at: Duration,
-    /// Anticipated jobs of the source.
-    divided: DividedJobs,
-    /// Numbers in the source of the anticipated jobs, by their ids in the core.
+    /// Numbers in the source of the anticipated jobs, by their contents, and by their ids in the core once workers
+    /// have them.
+    numbers: BTreeMap<ContentHash, u64>,
     anticipated: BTreeMap<JobId, u64>,
+    /// Whether the journal cannot be written.
+    is_paused: bool,
     events: BTreeMap<(Duration, u64), ClusterEvent>,
     sequence: u64,
     workers: BTreeMap<WorkerId, SimulatedWorker>,
@@ -148,29 +208,25 @@ pub struct Cluster {
 impl Cluster {
     /// Creates a cluster whose workers are about to announce themselves.
     pub fn new(setting: ClusterSetting) -> Self {
-        let core = Core::new(CoreOptions {
-            run: RunId(1),
-            epoch: 1,
-            case: CASE,
-            case_bytes: 1,
-            model: MODEL.to_owned(),
-            model_digest: None,
-            repeats: Reproducibility::Bits,
-            proof: None,
-            finished: JobSet::default(),
-            expected: BTreeSet::new(),
-            policy: Policy::default(),
-        });
+        let policy = Policy::default();
         let mut cluster = Self {
-            core,
+            coordination: Coordination::new(Core::new(options(policy.clone()))),
+            policy,
+            journal: None,
+            recorded: BTreeMap::new(),
+            processes: 1,
+            process: Process::Running,
+            cut_off: BTreeSet::new(),
+            is_proved: false,
             now: Duration::ZERO,
             setting,
             job_durations: None,
             charged: BTreeSet::new(),
             stopped: None,
             free_at: Duration::ZERO,
-            divided: DividedJobs::default(),
+            numbers: BTreeMap::new(),
             anticipated: BTreeMap::new(),
+            is_paused: false,
             events: BTreeMap::new(),
             sequence: 0,
             workers: BTreeMap::new(),
@@ -187,6 +243,37 @@ impl Cluster {
         }
         cluster.schedule(Duration::ZERO, ClusterEvent::Tick);
         cluster
+    }
+
+    /// Gives the coordinator a journal, so that it can be killed, and a policy.
+    #[cfg(test)]
+    pub(crate) fn keep_journal(&mut self, policy: Policy) {
+        self.policy = policy;
+        self.journal = Some(SimulatedJournal::default());
+        self.open();
+        self.process = Process::Running;
+    }
+
+    /// Returns the bytes of the journal.
+    #[cfg(test)]
+    pub(crate) fn journal_bytes(&self) -> &[u8] {
+        self.journal.as_ref().map_or(&[], |journal| &journal.disk)
+    }
+
+    /// Returns the scheduler core of the coordinator.
+    pub(crate) const fn core(&self) -> &Core {
+        self.coordination.core()
+    }
+
+    /// Returns the scheduler core of the coordinator for changes by a test.
+    #[cfg(test)]
+    pub(crate) const fn core_mut(&mut self) -> &mut Core {
+        self.coordination.core_mut()
+    }
+
+    /// Returns a snapshot of the scheduler's state.
+    pub fn snapshot(&self) -> Snapshot {
+        self.core().snapshot(self.now)
     }
 
     /// Schedules a fault at the simulated time `at` for the worker with index `place`; a replacement worker
@@ -210,7 +297,21 @@ impl Cluster {
     /// reorder messages; the message may be lost or duplicated.
     fn send(&mut self, what: ClusterEvent) {
         let first = self.sequence;
-        if self.unit(2, first) < self.setting.loss {
+        let is_cut_off = match &what {
+            ClusterEvent::Up(worker, _) | ClusterEvent::Down(worker, _) => {
+                self.cut_off.contains(worker)
+            }
+            ClusterEvent::Heard(..)
+            | ClusterEvent::End(..)
+            | ClusterEvent::Beat(_)
+            | ClusterEvent::Tick
+            | ClusterEvent::Stored(_)
+            | ClusterEvent::Flush
+            | ClusterEvent::Unreachable(_)
+            | ClusterEvent::Start
+            | ClusterEvent::Fault(..) => false,
+        };
+        if is_cut_off || self.unit(2, first) < self.setting.loss {
             self.sequence += 1;
             return;
         }
@@ -222,20 +323,24 @@ impl Cluster {
         self.schedule(delay, what);
     }
 
-    fn start(&mut self, place: u64) {
+    fn start(&mut self, place: u64) -> WorkerId {
         let slow = self.setting.slow_one_in;
         let id = WorkerId(place + 1000 * self.sequence + 1);
         let is_slow = slow > 0 && place.is_multiple_of(slow);
         let slowness = if is_slow { 2.0 } else { 1.0 };
         let worker = SimulatedWorker::new(place, self.setting.slots, slowness);
         self.workers.insert(id, worker);
+        self.announce(id);
+        self.schedule(Duration::from_millis(5), ClusterEvent::Beat(id));
+        id
+    }
+
+    /// Sends the announcement of a worker.
+    fn announce(&mut self, id: WorkerId) {
         let mut announcement = announcement("m");
         announcement.slots = u32::try_from(self.setting.slots).expect("few");
-        self.send(ClusterEvent::Up(
-            id,
-            FromWorker::Announce(Box::new(announcement)),
-        ));
-        self.schedule(Duration::from_millis(5), ClusterEvent::Beat(id));
+        let message = FromWorker::Announce(Box::new(announcement));
+        self.send(ClusterEvent::Up(id, message));
     }
 
     /// Returns the computing time of a job on a worker of normal speed, which depends on the job alone.
@@ -254,8 +359,24 @@ impl Cluster {
     /// `limit`.
     ///
     /// # Panics
-    /// If the source still needs results at that time, or the core violates an invariant.
+    /// If the source still needs results at that time, or the core stops the run.
     pub fn run(&mut self, source: &mut dyn JobSource, limit: Duration) {
+        self.run_checked(source, limit, |cluster| {
+            assert!(cluster.stopped.is_none(), "{:?}", cluster.stopped);
+        });
+    }
+
+    /// Runs the cluster like [`Self::run`] and calls `check` after every step. A coordinator with a journal that the
+    /// core stops, or that cannot get a result, is started again.
+    ///
+    /// # Panics
+    /// If the source still needs results at the time `limit`.
+    pub(crate) fn run_checked(
+        &mut self,
+        source: &mut dyn JobSource,
+        limit: Duration,
+        mut check: impl FnMut(&Self),
+    ) {
         self.submit(source);
         while !source.is_done() {
             let ((time, _), what) = self.events.pop_first().expect("there is always a tick");
@@ -263,60 +384,66 @@ impl Cluster {
                 time < limit,
                 "{} results: {:?}",
                 self.results.len(),
-                self.core.snapshot(time)
+                self.core().snapshot(time)
             );
             self.now = time;
             self.process_event(what);
-            assert!(self.stopped.is_none(), "{:?}", self.stopped);
-            if !self.undelivered_outcomes.is_empty() {
+            if self.journal.is_some() && self.stopped.take().is_some() {
+                self.crash(0);
+            }
+            check(self);
+            if self.process == Process::Started {
+                self.process = Process::Running;
+                self.results.clear();
+                assert!(source.restart(), "the source cannot begin again");
+                self.submit(source);
+            }
+            while !self.undelivered_outcomes.is_empty() && self.is_up() {
                 for (job, outcome) in mem::take(&mut self.undelivered_outcomes) {
+                    if self.journal.is_some() && is_refused(&outcome) {
+                        // the command ends, and the user repeats it
+                        self.crash(0);
+                        break;
+                    }
                     source.tell(job.0, &outcome);
                     let twice = self.results.insert(job.0, outcome);
                     assert_eq!(twice, None, "job {job} was delivered twice");
                 }
-                self.submit(source);
+                if self.is_up() {
+                    self.submit(source);
+                }
             }
         }
     }
 
     fn submit(&mut self, source: &mut dyn JobSource) {
-        for (id, job) in source.ask(self.core.idle_slots()) {
+        let mut new = Vec::new();
+        for (id, job) in source.ask(self.core().idle_slots()) {
             let id = JobId(id);
-            let Some(jobs) = self.divided.claim(id, &job) else {
-                self.tell_core(Input::Submit { id, job });
-                continue;
-            };
-            self.tell_core(Input::Claim { jobs });
-            let result = self.divided.join_finished(id);
-            self.take_joined(result);
+            match self.recorded.get(&id) {
+                Some(finished) => {
+                    assert_eq!(finished.work, job.work_hash(), "job {id}");
+                    let outcome = finished.outcome.clone();
+                    self.undelivered_outcomes.push((id, outcome));
+                }
+                None => new.push((id, job)),
+            }
         }
-        let idle = self.core.idle_slots();
+        let commands = self.coordination.submit(new, self.now);
+        self.execute(commands);
+        let idle = self.core().idle_slots();
         let (numbers, jobs): (Vec<u64>, Vec<Job>) = source.anticipate(idle).into_iter().unzip();
-        let numbers: BTreeMap<ContentHash, u64> =
-            jobs.iter().map(Job::work_hash).zip(numbers).collect();
-        let change = self.divided.anticipate(jobs, idle);
-        if !change.withdrawn.is_empty() {
-            let jobs = change.withdrawn;
-            self.tell_core(Input::Withdraw { jobs });
-        }
-        for (id, job) in change.parts {
-            let number = numbers.get(&job.work_hash()).copied();
-            self.anticipated.insert(id, number.unwrap_or_default());
-            self.tell_core(Input::Anticipate { id, job });
-        }
-    }
-
-    /// Delivers and stores the result of an anticipated job that has been submitted.
-    fn take_joined(&mut self, result: PartResult) {
-        if let PartResult::Joined(whole) = result {
-            let id = whole.job();
-            self.undelivered_outcomes.push((id, whole.outcome));
-            self.schedule(STORING, ClusterEvent::Stored(vec![id]));
-        }
+        let works = jobs.iter().map(Job::work_hash);
+        self.numbers.extend(works.zip(numbers));
+        let commands = self.coordination.anticipate(jobs, self.now);
+        self.execute(commands);
     }
 
     fn process_event(&mut self, what: ClusterEvent) {
         match what {
+            // nobody is there to hear it
+            ClusterEvent::Up(..) | ClusterEvent::Heard(..) | ClusterEvent::Stored(_)
+                if !self.is_up() => {}
             ClusterEvent::Up(from, FromWorker::Done(done)) => {
                 // what is said again while it waits costs next to nothing
                 let busy = !self.setting.handling.is_zero();
@@ -331,14 +458,18 @@ impl Cluster {
             ClusterEvent::Up(from, message) | ClusterEvent::Heard(from, message) => {
                 self.tell_core(Input::Message { from, message });
             }
-            ClusterEvent::Stored(jobs) => {
-                let jobs = self.divided.stored(jobs);
-                self.tell_core(Input::Stored { jobs });
-            }
+            ClusterEvent::Stored(jobs) => self.tell_core(Input::Stored { jobs }),
+            ClusterEvent::Flush => self.flush(),
             ClusterEvent::Tick => {
                 self.tell_core(Input::Tick);
                 self.schedule(Duration::from_millis(250), ClusterEvent::Tick);
             }
+            ClusterEvent::Unreachable(worker) => {
+                if self.cut_off.contains(&worker) {
+                    self.tell_core(Input::Disconnected { worker });
+                }
+            }
+            ClusterEvent::Start => self.open(),
             ClusterEvent::Fault(place, fault) => self.apply_fault(place, fault),
             ClusterEvent::Down(id, _) | ClusterEvent::End(id, _) | ClusterEvent::Beat(id) => {
                 match self.workers.get_mut(&id) {
@@ -350,33 +481,144 @@ impl Cluster {
         }
     }
 
+    /// Writes the journal; on a full disk it is tried again.
+    fn flush(&mut self) {
+        let is_up = self.is_up();
+        let Some(journal) = self.journal.as_mut().filter(|_| is_up) else {
+            return;
+        };
+        if let Some(jobs) = journal.flush() {
+            if mem::take(&mut self.is_paused) {
+                self.tell_core(Input::Writable(true));
+            }
+            if !jobs.is_empty() {
+                self.tell_core(Input::Stored { jobs });
+            }
+            return;
+        }
+        if !mem::replace(&mut self.is_paused, true) {
+            self.tell_core(Input::Writable(false));
+        }
+        self.schedule(RETRY, ClusterEvent::Flush);
+    }
+
+    /// Returns whether there is a coordinator process.
+    fn is_up(&self) -> bool {
+        self.process != Process::Ended
+    }
+
+    /// Kills the coordinator as [`Fault::Crash`] does.
+    fn crash(&mut self, number: usize) {
+        let is_up = self.is_up();
+        let Some(journal) = self.journal.as_mut().filter(|_| is_up) else {
+            return;
+        };
+        journal.crash(number);
+        self.process = Process::Ended;
+        self.stopped = None;
+        self.undelivered_outcomes.clear();
+        self.events
+            .retain(|_, what| !matches!(what, ClusterEvent::Flush | ClusterEvent::Start));
+        self.schedule(DOWN, ClusterEvent::Start);
+    }
+
+    /// Starts a coordinator process, which reads the journal.
+    fn open(&mut self) {
+        let Some(journal) = self.journal.as_mut() else {
+            return;
+        };
+        let opened = journal.open();
+        let core = Core::new(CoreOptions {
+            epoch: opened.epoch,
+            model_digest: opened.run.model_digest,
+            proof: opened.run.proof,
+            finished: opened.results.keys().copied().collect(),
+            expected: opened.run.present.into_keys().collect(),
+            ..options(self.policy.clone())
+        });
+        self.coordination = Coordination::new(core);
+        self.recorded = opened.results;
+        self.processes += 1;
+        (self.process, self.is_paused) = (Process::Started, false);
+        self.anticipated.clear();
+        self.charged.clear();
+    }
+
     fn apply_fault(&mut self, place: u64, fault: Fault) {
-        let found = self
-            .workers
-            .iter()
-            .find(|(_, worker)| worker.place == place);
-        let id = *found.expect("a place is filled").0;
-        let worker = self.workers.get_mut(&id).expect("just found");
-        match fault {
-            Fault::Freeze => worker.frozen = true,
-            Fault::Thaw => {
-                worker.frozen = false;
-                for what in mem::take(&mut worker.deferred_events) {
-                    self.schedule(Duration::ZERO, what);
+        let mut workers = self.workers.iter();
+        let found = workers.find(|(_, worker)| worker.place == place);
+        let id = found.map(|(id, _)| *id);
+        match (fault, id) {
+            (Fault::FillDisk | Fault::FreeDisk, _) => {
+                if let Some(journal) = &mut self.journal {
+                    journal.is_full = fault == Fault::FillDisk;
                 }
             }
-            Fault::Kill => {
-                let dead = self.workers.remove(&id).expect("just found");
-                // what it said last dies with it
-                self.events
-                    .retain(|_, what| !matches!(what, ClusterEvent::Up(from, _) | ClusterEvent::Heard(from, _) if *from == id));
-                for running in &dead.running {
-                    self.computed += self.now.saturating_sub(running.begun);
+            (Fault::Crash(number), _) => self.crash(number),
+            (Fault::Return, Some(id)) => {
+                let is_sound = self.workers.get(&id).is_some_and(|worker| {
+                    worker.proof == PROOF && !worker.refuses && !worker.frozen && !worker.drained
+                });
+                if !is_sound || self.cut_off.contains(&id) {
+                    self.kill(id);
+                    self.start(place);
                 }
-                self.tell_core(Input::Disconnected { worker: id });
+            }
+            (Fault::Return, None) => drop(self.start(place)),
+            // a place that is empty has no faults
+            (_, None) => {}
+            (Fault::Kill, Some(id)) => {
+                self.kill(id);
                 self.start(place);
             }
+            (Fault::Vanish, Some(id)) => self.kill(id),
+            (Fault::Differ, Some(id)) => {
+                self.kill(id);
+                let new = self.start(place);
+                // the first result of a run is that of a sound worker
+                if let Some(worker) = self.workers.get_mut(&new).filter(|_| self.is_proved) {
+                    worker.proof = ReferenceResult::Bits(ContentHash([9; 32]));
+                }
+            }
+            (Fault::Partition, Some(id)) => {
+                self.cut_off.insert(id);
+                self.schedule(UNREACHABLE, ClusterEvent::Unreachable(id));
+            }
+            (Fault::Heal, Some(id)) => drop(self.cut_off.remove(&id)),
+            (Fault::Drain(how), Some(worker)) => {
+                if let Some(worker) = self.workers.get_mut(&worker) {
+                    worker.drained = true;
+                }
+                self.tell_core(Input::Drain { worker, how });
+            }
+            (Fault::Freeze | Fault::Thaw | Fault::Refuse, Some(id)) => {
+                let Some(worker) = self.workers.get_mut(&id) else {
+                    return;
+                };
+                worker.refuses |= fault == Fault::Refuse;
+                worker.frozen |= fault == Fault::Freeze;
+                if fault == Fault::Thaw {
+                    worker.frozen = false;
+                    for what in mem::take(&mut worker.deferred_events) {
+                        self.schedule(Duration::ZERO, what);
+                    }
+                }
+            }
         }
+    }
+
+    /// Terminates a worker; what it said last dies with it, and the transport reports the loss.
+    fn kill(&mut self, id: WorkerId) {
+        let Some(dead) = self.workers.remove(&id) else {
+            return;
+        };
+        self.events
+            .retain(|_, what| !matches!(what, ClusterEvent::Up(from, _) | ClusterEvent::Heard(from, _) if *from == id));
+        for running in &dead.running {
+            self.computed += self.now.saturating_sub(running.begun);
+        }
+        self.cut_off.remove(&id);
+        self.tell_core(Input::Disconnected { worker: id });
     }
 
     fn work(&mut self, id: WorkerId, what: ClusterEvent) {
@@ -397,7 +639,7 @@ impl Cluster {
                 }
             }
             ClusterEvent::Beat(_) => {
-                let beat = worker.beat(Some(CASE), PROOF);
+                let beat = worker.beat(Some(CASE), worker.proof.clone());
                 let again: Vec<Done> = worker.outbox.values().cloned().collect();
                 self.send(ClusterEvent::Up(id, FromWorker::Beat(beat)));
                 for done in again {
@@ -405,19 +647,21 @@ impl Cluster {
                 }
                 self.schedule(Duration::from_secs(1), ClusterEvent::Beat(id));
             }
-            ClusterEvent::Down(_, ToWorker::Identify) => {
-                let mut announcement = announcement("m");
-                announcement.slots = u32::try_from(worker.slots).expect("few");
-                self.send(ClusterEvent::Up(
-                    id,
-                    FromWorker::Announce(Box::new(announcement)),
-                ));
+            ClusterEvent::Down(_, ToWorker::Identify) => self.announce(id),
+            // the process ends, and another one is started in its place
+            ClusterEvent::Down(_, ToWorker::Refused { .. }) => {
+                let place = worker.place;
+                self.kill(id);
+                self.start(place);
             }
             ClusterEvent::Down(..)
             | ClusterEvent::Up(..)
             | ClusterEvent::Heard(..)
             | ClusterEvent::Tick
             | ClusterEvent::Stored(_)
+            | ClusterEvent::Flush
+            | ClusterEvent::Unreachable(_)
+            | ClusterEvent::Start
             | ClusterEvent::Fault(..) => {}
         }
         self.fill(id);
@@ -442,19 +686,36 @@ impl Cluster {
     }
 
     fn tell_core(&mut self, input: Input) {
+        if self.is_up() {
+            let commands = self.coordination.handle(input, self.now);
+            self.execute(commands);
+        }
+    }
+
+    fn execute(&mut self, commands: Vec<Command>) {
         let mut storing = Vec::new();
-        for command in self.core.handle(input, self.now) {
+        for command in commands {
             match command {
-                Command::Send { to, message } => self.send(ClusterEvent::Down(to, message)),
-                Command::Store(finished) if is_part(finished.job()) => {
-                    let result = self.divided.finish(*finished);
-                    self.take_joined(result);
+                Command::Send { to, message } => {
+                    if let ToWorker::Run(order) = &message
+                        && is_part(order.attempt.job)
+                        && let Some(number) = self.numbers.get(&order.job.work_hash())
+                    {
+                        self.anticipated.insert(order.attempt.job, *number);
+                    }
+                    self.send(ClusterEvent::Down(to, message));
                 }
-                Command::Store(finished) => storing.push(finished.job()),
-                Command::Deliver(done) if is_part(done.id) => {}
+                Command::Store(finished) if self.journal.is_none() => storing.push(finished.job()),
+                Command::Store(finished) => self.append(&Event::Finished(finished)),
                 Command::Deliver(done) => self.undelivered_outcomes.push((done.id, done.outcome)),
-                Command::Record(event @ Event::Accounted(_)) => self.accounts.push(event),
-                Command::Record(_) => {}
+                Command::Record(event @ Event::Accounted(_)) => {
+                    self.append(&event);
+                    self.accounts.push(event);
+                }
+                Command::Record(event) => {
+                    self.is_proved |= matches!(event, Event::Proved { .. });
+                    self.append(&event);
+                }
                 Command::Notice(notice) => self.notices.push(notice),
                 Command::Stop(stop) => self.stopped = Some(stop),
             }
@@ -464,10 +725,19 @@ impl Cluster {
         }
     }
 
+    /// Queues an event for the journal, if there is one.
+    fn append(&mut self, event: &Event) {
+        if let Some(journal) = &mut self.journal
+            && journal.append(event)
+        {
+            self.schedule(STORING, ClusterEvent::Flush);
+        }
+    }
+
     /// Returns the share of all slot time that went into accepted results.
     pub fn capacity_used(&self) -> f64 {
         let slots = self.setting.workers * self.setting.slots as u64;
         let all = self.now.as_secs_f64() * slots as f64;
-        self.core.snapshot(self.now).spent.useful_us as f64 / 1e6 / all
+        self.snapshot().spent.useful_us as f64 / 1e6 / all
     }
 }

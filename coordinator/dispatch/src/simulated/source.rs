@@ -25,6 +25,11 @@ pub trait JobSource {
     fn anticipate(&mut self, _idle: usize) -> Vec<(u64, Job)> {
         Vec::new()
     }
+    /// Goes back to the beginning, because a new coordinator process asks for all jobs again; returns whether the
+    /// source can do so.
+    fn restart(&mut self) -> bool {
+        false
+    }
     /// Passes the outcome of a job to the source.
     fn tell(&mut self, id: u64, outcome: &Outcome);
     /// Returns whether the source needs no more results.

@@ -1,8 +1,8 @@
 //! Simulated worker: jobs held, and reactions to messages.
-use super::event::ClusterEvent;
+use super::{PROOF, event::ClusterEvent};
 use protocol::{
     id::ContentHash,
-    job::{Answer, Failure, Job, Outcome},
+    job::{Answer, Column, Counters, Derivative, Evaluation, Failure, Job, Outcome, Per, Verdict},
     message::{Assignment, Attempt, Cost, Done, Heartbeat},
     proof::ReferenceResult,
 };
@@ -37,14 +37,38 @@ pub const fn cost(wall_us: u64) -> Cost {
     }
 }
 
-/// Returns the outcome of a `Nothing` job; jobs of other kinds are refused.
+/// Returns the outcome of a `Nothing` job, or of a simulation with a residual, whose fitness and derivatives follow
+/// from the content of the job; jobs of other kinds are refused.
 pub fn outcome(job: &Job) -> Outcome {
+    let number = |content: &[u8]| {
+        let [a, b, c, d, ..] = ContentHash::of(content).0;
+        u32::from_le_bytes([a, b, c, d])
+    };
     match job {
         Job::Nothing { reply_bytes, .. } => {
             Outcome::Done(Answer::Nothing(vec![1; *reply_bytes as usize]))
         }
-        Job::Simulate(_) | Job::Own { .. } | Job::Describe => Outcome::Failed(Failure::Refused {
-            reason: "a simulated worker computes only jobs of kind Nothing".to_owned(),
+        Job::Simulate(spec) => {
+            let genes = spec.individual.genes.iter();
+            let genes: Vec<u8> = genes.flat_map(|gene| gene.to_le_bytes()).collect();
+            let column = |column: &Column| {
+                let content = [&genes[..], column.name.as_bytes()].concat();
+                Derivative::Curves {
+                    per: Per::Decade,
+                    curves: vec![vec![number(&content) as f32]],
+                }
+            };
+            Outcome::Done(Answer::Scored(Evaluation {
+                verdict: Verdict::Complete,
+                fitness: f64::from(number(&genes)),
+                channels: Vec::new(),
+                residual: vec![1.0],
+                columns: spec.columns.iter().map(column).collect(),
+                counters: Counters::default(),
+            }))
+        }
+        Job::Own { .. } | Job::Describe => Outcome::Failed(Failure::Refused {
+            reason: "a simulated worker computes no jobs of this kind".to_owned(),
         }),
     }
 }
@@ -67,6 +91,12 @@ pub struct SimulatedWorker {
     pub frozen: bool,
     /// Events deferred while the worker is frozen.
     pub(super) deferred_events: Vec<ClusterEvent>,
+    /// Whether the simulated worker was drained.
+    pub(super) drained: bool,
+    /// Whether the simulated worker refuses all jobs.
+    pub(super) refuses: bool,
+    /// Result of the reference individual on the simulated worker.
+    pub(super) proof: ReferenceResult,
 }
 
 impl SimulatedWorker {
@@ -82,6 +112,9 @@ impl SimulatedWorker {
             settled: BTreeSet::new(),
             frozen: false,
             deferred_events: Vec::new(),
+            drained: false,
+            refuses: false,
+            proof: PROOF,
         }
     }
 
@@ -126,7 +159,12 @@ impl SimulatedWorker {
             attempt,
             work: running.job.work_hash(),
             cost: cost(u64::try_from(wall.as_micros()).unwrap_or(u64::MAX)),
-            outcome: outcome(&running.job),
+            outcome: if self.refuses {
+                let reason = "this worker refuses all jobs".to_owned();
+                Outcome::Failed(Failure::Refused { reason })
+            } else {
+                outcome(&running.job)
+            },
         };
         self.outbox.insert(attempt, done.clone());
         Some(done)

@@ -99,7 +99,7 @@ pub fn project(
         factors,
     });
     cluster.run(&mut source, LIMIT);
-    let spent = cluster.core.snapshot(cluster.now).spent;
+    let spent = cluster.snapshot().spent;
     let evaluations = source.strategy.archive().entries().len() as u64;
     let (wall_s, handled) = (cluster.now.as_secs_f64(), cluster.results.len() as f64);
     ScalingRow {
@@ -240,7 +240,7 @@ mod tests {
                 factors: Rc::default(),
             });
             cluster.run(&mut source, LIMIT);
-            let spent = cluster.core.snapshot(cluster.now).spent;
+            let spent = cluster.snapshot().spent;
             (source.digest(), spent.speculative_us)
         };
         let (alone, _) = run(1, 0.0, 0);

@@ -22,6 +22,10 @@ const ACCEPT_MS: u64 = 4000;
 /// seven tenths (`tests/README.md`).
 const SESSIONS: usize = 1000;
 
+/// Number of batches of 64 kB that a link queues for a peer that does not read, before it holds up the sender of all
+/// frames: the buffer of a Unix socket takes only some 200 kB. The largest number that Zenoh allows.
+const QUEUED: usize = 16;
+
 /// Maximum number of connections waiting for their session. Large, because connections that never speak must
 /// not keep others out, and each costs little more than its socket.
 const PENDING: usize = 8192;
@@ -41,7 +45,9 @@ pub(super) fn common(locators: &[&Locator], tls: &Value) -> Value {
             },
             "link": {
                 "protocols": protocols,
-                "tx": { "lease": 3000, "keep_alive": 6 },
+                "tx": {
+                    "lease": 3000, "keep_alive": 6, "queue": { "size": { "data": QUEUED } },
+                },
                 "rx": { "max_message_size": 64 << 20 },
                 "tls": tls,
             },

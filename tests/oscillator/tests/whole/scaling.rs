@@ -4,7 +4,7 @@ use crate::{
     rig::{Rig, number},
 };
 use serde_json::Value;
-use std::{fs, net::TcpListener};
+use std::fs;
 
 fn rows(object: &Value) -> &[Value] {
     object["rows"].as_array().map_or(&[], Vec::as_slice)

@@ -10,7 +10,11 @@ use super::{
     plan::{SilentPlan, SilentResult, SilentStage},
 };
 use crate::runtime::{dispatch::Dispatch, error::DispatchError, listen::allow_connections};
-use link::{WorkerEnd as _, locator::Locator, zenoh::ZenohWorker};
+use link::{
+    WorkerEnd as _,
+    locator::{Locator, Protocol},
+    zenoh::ZenohWorker,
+};
 use std::{
     env, fs,
     io::{self, BufRead as _, BufReader, Read as _, Write as _},
@@ -23,7 +27,8 @@ use std::{
 };
 use support::quantile;
 use tokio::{
-    net::TcpStream,
+    io::{AsyncRead, AsyncReadExt as _},
+    net::{TcpStream, UnixStream},
     sync::{Notify, Semaphore},
     task::JoinSet,
     time::sleep,
@@ -182,7 +187,7 @@ impl Drop for Silent {
     }
 }
 
-/// Holds a number of silent connections or sessions to an address, over TCP, until standard input ends; a
+/// Holds a number of silent connections or sessions to an address, until standard input ends; a
 /// closed connection is reopened. Prints a line to standard output when all are open, and at the end the
 /// number of reopened connections.
 ///
@@ -223,9 +228,9 @@ pub async fn keep_silent(to: &Locator, silence: SilentStage, count: usize) -> io
     say(&opened.saturating_sub(count as u64).to_string())
 }
 
-/// Silent peer: a TCP connection or a bus session.
+/// Silent peer: a plain connection or a bus session.
 enum Held {
-    Connection(TcpStream),
+    Connection(Box<dyn AsyncRead + Send + Unpin>),
     Session(Box<ZenohWorker>),
 }
 
@@ -234,8 +239,13 @@ impl Held {
     async fn open(silence: SilentStage, to: &Locator, process: u64) -> Option<Self> {
         match silence {
             SilentStage::Connection => {
-                let address = format!("{}:{}", to.bare_host(), to.port);
-                Some(Self::Connection(TcpStream::connect(address).await.ok()?))
+                if to.protocol == Protocol::Unix {
+                    let connection = UnixStream::connect(&to.host).await.ok()?;
+                    return Some(Self::Connection(Box::new(connection)));
+                }
+                let address = (to.bare_host(), to.port);
+                let connection = TcpStream::connect(address).await.ok()?;
+                Some(Self::Connection(Box::new(connection)))
             }
             SilentStage::Session => {
                 let session = ZenohWorker::open(to, None, process).await.ok()?;
@@ -247,16 +257,13 @@ impl Held {
     /// Waits until the coordinator closes the connection; received data are discarded.
     async fn closed(self) {
         match self {
-            Self::Connection(connection) => {
+            Self::Connection(mut connection) => {
                 let mut piece = [0; 64];
-                while connection.readable().await.is_ok() {
-                    match connection.try_read(&mut piece) {
-                        Ok(0) => return,
-                        Ok(_) => {}
-                        Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
-                        Err(_) => return,
-                    }
-                }
+                while connection
+                    .read(&mut piece)
+                    .await
+                    .is_ok_and(|length| length > 0)
+                {}
             }
             Self::Session(mut session) => while session.receive().await.is_some() {},
         }

@@ -10,7 +10,7 @@ const LIMIT: Duration = Duration::from_hours(2);
 /// Returns the slot time of all workers of the cluster, after checking that its kinds of use add up to the
 /// connected time.
 fn balanced(cluster: &Cluster) -> Spent {
-    let spent = cluster.core.snapshot(cluster.now).spent;
+    let spent = cluster.snapshot().spent;
     let share = spent.sum_us() as f64 / spent.connected_us as f64;
     assert!((share - 1.0).abs() < 1e-3, "{share} of {spent:?}");
     spent
@@ -40,7 +40,7 @@ fn time_on_the_way_counts_as_starved() {
         delay: Duration::from_millis(400),
         ..ClusterSetting::even(4)
     });
-    policy_of_one.core.options.policy.jobs_per_slot = 1;
+    policy_of_one.core_mut().options.policy.jobs_per_slot = 1;
     policy_of_one.run(&mut Generations::new(100, 3), LIMIT);
     let spent = balanced(&policy_of_one);
     let computed = policy_of_one.computed.as_secs_f64();
@@ -68,8 +68,11 @@ fn accounts_of_all_workers_are_in_the_journal_and_are_the_same_as_the_live_one()
     let mut cluster = Cluster::new(ClusterSetting::even(3));
     cluster.fault(Duration::from_secs(20), 1, Fault::Kill);
     cluster.run(&mut Generations::new(30, 20), LIMIT);
-    let live = cluster.core.snapshot(cluster.now).spent;
-    let closing = cluster.core.handle(Input::Close, cluster.now);
+    let live = cluster.snapshot().spent;
+    let closing = {
+        let now = cluster.now;
+        cluster.core_mut().handle(Input::Close, now)
+    };
     let last = closing.into_iter().filter_map(|command| match command {
         Command::Record(event) => Some(event),
         Command::Send { .. }

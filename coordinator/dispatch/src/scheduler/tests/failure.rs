@@ -161,7 +161,7 @@ fn jobs_that_kill_their_workers_are_done_in_the_end_whatever_else_those_held() {
             let expected = Outcome::Done(Answer::Nothing(vec![1]));
             assert_eq!(*outcome, expected, "job {job}, seed {seed}");
         }
-        let lost = cluster.core.snapshot(cluster.now).lost;
+        let lost = cluster.snapshot().lost;
         assert!((6..=18).contains(&lost), "seed {seed}: {lost} workers");
     }
 }

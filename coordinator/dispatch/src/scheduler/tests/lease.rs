@@ -178,3 +178,30 @@ fn a_disk_that_falls_behind_holds_up_the_workers_and_does_not_fill_the_memory() 
     assert!(scene.given().len() >= 64, "it goes on");
     assert_eq!(scene.core.unstored(), 0);
 }
+
+/// Checks that a heartbeat from before the withdrawal of an attempt does not give the attempt back to its worker.
+/// Regression, found by the simulation with faults (seed 3570): the worker had cancelled the attempt, and its job was
+/// never computed.
+#[test]
+fn a_late_heartbeat_does_not_bring_a_withdrawn_attempt_back() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    let (id, anticipated) = (JobId(100), job(100));
+    scene.tell(Input::Anticipate {
+        id,
+        job: anticipated,
+    });
+    let (_, withdrawn) = scene.given()[0];
+    scene.submit(0..2);
+    assert_eq!(scene.cancelled, [(WorkerId(1), withdrawn)]);
+    let requested = scene.given();
+    assert_eq!(requested.len(), 2);
+    scene.tell(Input::Claim { jobs: vec![id] });
+    scene.beat(1, &[withdrawn]);
+    let leases = &scene.core.members[&WorkerId(1)].leases;
+    assert!(leases.iter().all(|lease| lease.attempt != withdrawn));
+    assert_eq!(scene.cancelled.len(), 2, "it may not have heard it");
+    scene.finish(1, requested[0].1);
+    let again = scene.given();
+    assert_eq!((again.len(), again[0].1.job), (1, id));
+}

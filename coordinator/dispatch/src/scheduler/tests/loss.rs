@@ -225,6 +225,44 @@ fn a_suspect_is_not_kept_waiting_by_jobs_that_keep_coming() {
     assert!(finished <= 4, "it waited for {finished} others");
 }
 
+/// Checks that a quarantined job gets the worker that is kept free for it also if it stands behind others in the queue.
+/// Regression, found by the simulation with faults (seed 14): the queue was not looked through, the only worker stayed
+/// idle for ever.
+#[test]
+fn a_suspect_behind_others_gets_the_worker_that_is_kept_for_it() {
+    let mut scene = Scene::new();
+    scene.submit(5..6);
+    for worker in 1..=2 {
+        scene.join(worker, 1);
+        assert_eq!(scene.given()[0].1.job, JobId(5));
+        scene.tell(Input::Disconnected {
+            worker: WorkerId(worker),
+        });
+    }
+    scene.submit(0..3);
+    scene.join(3, 1);
+    assert_eq!(scene.given()[0].1.job, JobId(5));
+}
+
+/// Checks that a job is queued once after the loss of a worker from which it was taken before. Regression, found by the
+/// simulation with faults (seed 88): it was queued twice, and a count of jobs fell below zero.
+#[test]
+fn an_anticipated_job_that_was_taken_away_is_queued_once() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    let (id, anticipated) = (JobId(100), job(100));
+    scene.tell(Input::Anticipate {
+        id,
+        job: anticipated,
+    });
+    scene.submit(0..1);
+    assert_eq!(scene.cancelled.len(), 1, "taken away for a requested job");
+    scene.tell(Input::Disconnected {
+        worker: WorkerId(1),
+    });
+    assert_eq!(scene.core.anticipated_queue.len(), 1);
+}
+
 /// Checks that jobs reported as waiting on a lost worker are suspects too, since results of the jobs before
 /// them may have been lost with the worker. Regression: a job that killed all workers was never given up.
 #[test]

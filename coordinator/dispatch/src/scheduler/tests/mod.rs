@@ -99,41 +99,7 @@ impl Scene {
                 | Command::Stop(_)) => self.other.push(other),
             }
         }
-        self.check();
-    }
-
-    /// Checks the invariants of the core that must hold after every step.
-    fn check(&self) {
-        for (id, pending) in &self.core.jobs {
-            let anticipated = self.core.anticipated.contains(id);
-            let queued = if anticipated {
-                self.core.anticipated_queue.contains(id)
-            } else {
-                self.core.queue.contains(id)
-            };
-            assert_eq!(
-                queued,
-                pending.holders.is_empty(),
-                "job {id} is queued or held"
-            );
-            assert!(
-                !self.core.has_finished(*id),
-                "job {id} is pending or finished"
-            );
-            let suspect = self.core.must_run_alone(pending);
-            assert_eq!(
-                suspect,
-                self.core.suspects.contains(id),
-                "job {id} is a suspect"
-            );
-            for holder in &pending.holders {
-                assert!(self.core.members[holder].holds(*id), "{holder} holds {id}");
-            }
-        }
-        for member in self.core.members.values() {
-            let most = self.core.options.policy.jobs_per_slot * member.slots();
-            assert!(member.leases.len() <= most, "more than {most} outstanding");
-        }
+        self.core.check_invariants();
     }
 
     fn hear(&mut self, from: u64, message: FromWorker) {

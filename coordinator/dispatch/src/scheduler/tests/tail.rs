@@ -36,7 +36,7 @@ fn without_faults_copies_cost_at_most_five_percent() {
         };
         let mut cluster = Cluster::new(setting);
         cluster.run(&mut Generations::new(80, 25), LIMIT);
-        let snapshot = cluster.core.snapshot(cluster.now);
+        let snapshot = cluster.snapshot();
         let wasted = snapshot.spent.speculative_us as f64 / snapshot.spent.useful_us as f64;
         assert!(
             wasted <= 0.05,
@@ -63,7 +63,7 @@ fn a_frozen_worker_does_not_hold_up_its_generation() {
         frozen.now,
         clean.now
     );
-    assert!(frozen.core.snapshot(frozen.now).copies >= 1);
+    assert!(frozen.snapshot().copies >= 1);
 }
 
 /// Checks that the slower of two copies is cancelled as soon as the first result is accepted.

@@ -70,7 +70,7 @@ fn one_three_seven_and_forty_workers_with_delays_losses_and_kills_make_the_same_
         }
         let (digest, cluster) = run(&settings, cluster);
         assert_eq!(digest, expected, "{workers} workers, {loss} lost");
-        let snapshot = cluster.core.snapshot(cluster.now);
+        let snapshot = cluster.snapshot();
         // where many messages are lost, one may be killed before it has joined, another not be heard
         let killed = snapshot.lost == 10 || (loss > 0.0 && snapshot.lost > 5);
         assert!(killed && snapshot.repeated > 0, "{snapshot:?}");
