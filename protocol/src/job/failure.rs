@@ -20,7 +20,8 @@ pub enum Failure {
         /// Files left in the run's folder when the process ended.
         left: FailureFiles,
     },
-    /// The worker was lost on every attempt at the job, as often as the retry limit allows.
+    /// The worker was lost on every attempt at the job. Earlier versions recorded this as a result; it is read in
+    /// their journals, where such a job counts as not computed, and no longer made.
     Lost {
         /// Number of workers lost while they computed the job.
         workers: u32,

@@ -69,7 +69,7 @@ pub(super) fn withdraw(core: &mut Core, jobs: Vec<JobId>, now: Duration) {
 
 /// Gives idle slots anticipated jobs, in their order, if no requested job waits.
 pub(super) fn assign(core: &mut Core, now: Duration) {
-    if core.anticipated_queue.is_empty() || !core.queue.is_empty() {
+    if core.anticipated_queue.is_empty() || core.queued_jobs() > 0 {
         return;
     }
     let mut left = mem::take(&mut core.anticipated_queue);

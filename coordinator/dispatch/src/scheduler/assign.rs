@@ -8,17 +8,35 @@ use protocol::id::{JobId, WorkerId};
 use std::time::Duration;
 
 /// Assigns queued jobs to the least loaded workers: first those that must run alone, for which a worker is kept free,
-/// then the others, lowest id first.
+/// then the others, lowest id first, and at last those that wait for a new worker, which they may end.
 pub(super) fn assign(core: &mut Core, now: Duration) {
-    let alone: Vec<JobId> = core.suspects.intersection(&core.queue).copied().collect();
-    for job in alone {
+    let alone = core.suspects.intersection(&core.queue).copied();
+    let (waiting, alone): (Vec<JobId>, Vec<JobId>) =
+        alone.partition(|job| core.awaits_new_worker(*job));
+    assign_each(core, alone, now);
+    assign_others(core, now);
+    if core.queued_jobs() == 0 {
+        assign_each(core, waiting, now);
+    }
+}
+
+fn assign_each(core: &mut Core, jobs: Vec<JobId>, now: Duration) {
+    for job in jobs {
         if let Some(worker) = pick(core, job) {
             core.queue.remove(&job);
             lease(core, worker, job, now);
         }
     }
+}
+
+/// Assigns queued jobs that need not run alone.
+fn assign_others(core: &mut Core, now: Duration) {
     let mut passed_over = Vec::new();
     while let Some(job) = core.queue.pop_first() {
+        if core.suspects.contains(&job) {
+            passed_over.push(job);
+            continue;
+        }
         if let Some(worker) = pick(core, job) {
             lease(core, worker, job, now);
         } else {
@@ -26,9 +44,7 @@ pub(super) fn assign(core: &mut Core, now: Duration) {
                 continue;
             };
             // a job that only some workers may have must not hold up the others
-            let special = !pending.refused_by.is_empty()
-                || !pending.failed_at.is_empty()
-                || core.must_run_alone(pending);
+            let special = !pending.refused_by.is_empty() || !pending.failed_at.is_empty();
             passed_over.push(job);
             if !special {
                 break;
@@ -97,9 +113,10 @@ pub(super) fn most_idle(core: &Core, suits: impl Fn(WorkerId) -> bool) -> Option
 /// least loaded such worker, which gets no new jobs meanwhile.
 pub(super) fn reserved(core: &Core) -> Option<WorkerId> {
     let waiting = core.suspects.iter().filter_map(|job| {
-        // a suspect that is only anticipated runs nowhere
+        // one that is only anticipated runs nowhere, and one that waits for a new worker comes last
         let pending = core.jobs.get(job)?;
-        (pending.holders.is_empty() && !core.anticipated.contains(job)).then_some(pending)
+        let is_queued = pending.holders.is_empty() && !core.anticipated.contains(job);
+        (is_queued && !core.awaits_new_worker(*job)).then_some(pending)
     });
     let mut workers = waiting.filter_map(|job| {
         let ready = core

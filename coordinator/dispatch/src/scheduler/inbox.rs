@@ -42,7 +42,7 @@ impl Core {
         }
         drain::end_drained(self, now);
         if self.may_give_out() && membership::rejoin_finished(self, now) {
-            anticipated::make_room(self, self.queue.len(), now);
+            anticipated::make_room(self, self.queued_jobs(), now);
             assign::assign(self, now);
             stragglers::steal(self, now);
             anticipated::assign(self, now);

@@ -75,11 +75,12 @@ impl Core {
             };
             self.members.iter().find(is_free).map(|(id, _)| *id)
         };
-        for job in &self.queue {
+        let comes_last = |job: &JobId| self.queued_jobs() > 0 && self.awaits_new_worker(*job);
+        for job in self.queue.iter().filter(|job| !comes_last(job)) {
             assert_eq!(idle(job), None, "a worker is idle and job {job} waits");
         }
         let is_shared = |job: &&JobId| !self.must_run_alone(&self.jobs[*job]);
-        if self.queue.is_empty() {
+        if self.queued_jobs() == 0 {
             for job in self.anticipated_queue.iter().filter(is_shared) {
                 assert_eq!(idle(job), None, "a worker is idle and job {job} could run");
             }

@@ -13,8 +13,8 @@
 //! but acknowledged only once it is stored, so a worker forgets nothing that a crash of this process could
 //! lose.
 //!
-//! Each file depends only on those listed before it: the state (`state` over `member`, `slot_time`, `policy`,
-//! `times`, `failures`); `lease`; `result` and `roster`; `drain`, `admission_rules`, `admission` and
+//! Each file depends only on those listed before it: the state (`state` over `part`, `member`, `slot_time`,
+//! `policy`, `times`, `failures`); `lease`; `result` and `roster`; `drain`, `admission_rules`, `admission` and
 //! `reconcile`; `membership`; `assign`, `anticipated` and `stragglers`; and at the top `inbox`, which receives all inputs.
 mod admission;
 mod admission_rules;

@@ -247,7 +247,20 @@ impl Core {
 
     /// Returns whether idle slots wait only for running jobs: all requested jobs are dispatched.
     pub(super) fn waits_for_others(&self) -> bool {
-        self.queue.is_empty() && !self.jobs.is_empty() && self.may_give_out()
+        self.queued_jobs() == 0 && !self.jobs.is_empty() && self.may_give_out()
+    }
+
+    /// Returns whether a job waits for a worker that joins after the last loss of those that held it.
+    pub(super) fn awaits_new_worker(&self, job: JobId) -> bool {
+        let pending = self.jobs.get(&job);
+        pending.is_some_and(|own| own.failures.awaits_new_worker(&self.options.policy))
+    }
+
+    /// Returns the number of queued jobs but those that wait for a new worker, which come after all others.
+    pub(super) fn queued_jobs(&self) -> usize {
+        let wait = |job: &&JobId| self.awaits_new_worker(**job);
+        let waiting = self.suspects.intersection(&self.queue).filter(wait);
+        self.queue.len() - waiting.count()
     }
 
     /// Returns whether a pending job must run alone on a worker, because several workers that held it were

@@ -19,7 +19,7 @@ use std::{cmp::Reverse, time::Duration};
 
 /// Moves waiting jobs from busy workers to idle ones when the queue is empty.
 pub(super) fn steal(core: &mut Core, now: Duration) {
-    if !core.queue.is_empty() {
+    if core.queued_jobs() > 0 {
         return;
     }
     loop {

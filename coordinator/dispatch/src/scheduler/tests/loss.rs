@@ -154,6 +154,47 @@ fn a_job_that_killed_two_workers_runs_alone_and_after_two_more_on_new_ones() {
     assert!(scene.delivered.contains(&(0, done)));
 }
 
+/// Checks that a job that waits for a new worker comes after all others, so that it cannot end every new worker before
+/// those are computed, and holds up nothing else.
+#[test]
+fn a_job_that_waits_for_a_new_worker_comes_after_all_others() {
+    let mut scene = Scene::new();
+    scene.submit(0..1);
+    for worker in 1..=4 {
+        scene.join(worker, 1);
+        scene.now += Duration::from_millis(1);
+        scene.tell(Input::Disconnected {
+            worker: WorkerId(worker),
+        });
+    }
+    scene.given();
+    scene.submit(1..3);
+    scene.join(5, 1);
+    let jobs: Vec<u64> = scene.given().iter().map(|(_, it)| it.job.0).collect();
+    assert_eq!(jobs, [1, 2]);
+    // what idle slots do beside a job that waits
+    scene.tell(Input::Disconnected {
+        worker: WorkerId(5),
+    });
+    scene
+        .core
+        .jobs
+        .get_mut(&JobId(0))
+        .unwrap()
+        .failures
+        .last_loss = Duration::MAX;
+    scene.join(6, 3);
+    let (id, anticipated) = (JobId(100), job(100));
+    scene.tell(Input::Anticipate {
+        id,
+        job: anticipated,
+    });
+    let jobs: Vec<u64> = scene.given().iter().map(|(_, it)| it.job.0).collect();
+    assert_eq!(jobs, [1, 2, 100]);
+    scene.wait(2, &[6]);
+    assert!(scene.cancelled.iter().all(|(_, it)| it.job != id));
+}
+
 /// Checks that a run ends, without a result, after the pause limit if only jobs are left that wait for a new
 /// worker, and that the time counts from the last result.
 #[test]
@@ -297,7 +338,8 @@ fn what_waited_on_lost_workers_is_suspected_too_and_clears_itself_alone() {
     let (_, second) = scene.given()[0];
     scene.finish(5, second);
     let done = Outcome::Done(Answer::Nothing(vec![1]));
-    assert_eq!(scene.delivered, [(0, done.clone()), (1, done)]);
+    // first the one that fewer workers were lost over
+    assert_eq!(scene.delivered, [(1, done.clone()), (0, done)]);
 }
 
 /// Checks that a job moved to an idle worker is still a suspect when the first worker is lost, since that
