@@ -13,7 +13,7 @@ mod worker;
 
 pub use event::Fault;
 pub use source::{Generations, JobSource, SimulatedDerivatives, SimulatedSearch, job};
-pub use worker::{Running, SimulatedWorker, cost, outcome};
+pub use worker::{PROOF, Running, SimulatedWorker, cost, outcome};
 
 use crate::{
     runtime::Coordination,
@@ -44,8 +44,6 @@ use std::{
 pub const MODEL: &str = "model";
 /// Hash of the case that every simulated worker holds.
 pub const CASE: ContentHash = ContentHash([7; 32]);
-/// Result of the reference individual by which every simulated worker proves its numerics.
-pub const PROOF: ReferenceResult = ReferenceResult::Bits(ContentHash([8; 32]));
 
 /// Returns the options of the core of a new run.
 fn options(policy: Policy) -> CoreOptions {
