@@ -122,10 +122,8 @@ impl Coordination {
                 // the whole job was recorded
                 Command::Record(Event::Asked { job, .. }) if is_part(job) => {}
                 Command::Deliver(part) if is_part(part.id) => self.deliver_part(&part),
-                Command::Notice(mut notice) => {
-                    if let Notice::AwaitsWorker { job, .. } = &mut notice {
-                        *job = self.submitted_id(*job);
-                    }
+                Command::Notice(notice) => {
+                    let notice = self.of_submitted_jobs(notice);
                     self.commands.push(Command::Notice(notice));
                 }
                 Command::Stop(mut reason) => {
@@ -140,6 +138,30 @@ impl Coordination {
                 | Command::Deliver(_)) => self.commands.push(other),
             }
         }
+    }
+
+    /// Returns a notice with the ids of whole jobs in place of their parts.
+    fn of_submitted_jobs(&self, mut notice: Notice) -> Notice {
+        match &mut notice {
+            Notice::AwaitsWorker { job, .. } | Notice::GivenUp { job, .. } => {
+                *job = self.submitted_id(*job);
+            }
+            Notice::Quarantined { jobs, .. } => {
+                for job in &mut *jobs {
+                    *job = self.submitted_id(*job);
+                }
+                jobs.sort_unstable();
+                jobs.dedup();
+            }
+            Notice::Joined { .. }
+            | Notice::Left { .. }
+            | Notice::Lost { .. }
+            | Notice::Refused { .. }
+            | Notice::OtherVersion { .. }
+            | Notice::NoWorker { .. }
+            | Notice::Stalled { .. } => {}
+        }
+        notice
     }
 
     /// Takes the result of a part of a divided job; once the job is complete, stores and delivers its result.

@@ -6,7 +6,13 @@ use link::{
     locator::{Locator, Protocol},
 };
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
-use std::{env, fs::Permissions, io, os::unix::fs::PermissionsExt as _, path::PathBuf};
+use std::{
+    env,
+    fs::{self, Permissions},
+    io,
+    os::unix::fs::{MetadataExt as _, PermissionsExt as _},
+    path::PathBuf,
+};
 use tempfile::TempDir;
 
 /// Number of open files to request; more is useless, since the link limits its connections.
@@ -99,7 +105,13 @@ pub(super) fn addresses(options: &DispatchOptions) -> Result<Addresses, Dispatch
 /// # Errors
 /// The error of the operating system for the last of these parents.
 pub fn local_socket() -> io::Result<(TempDir, Locator)> {
+    // whoever owns a folder can replace what is in it
+    let is_own = |path: &PathBuf| {
+        let own = rustix::process::geteuid().as_raw();
+        fs::metadata(path).is_ok_and(|found| found.uid() == own)
+    };
     let runtime = env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
+    let runtime = runtime.filter(is_own);
     let usual = [runtime, Some(env::temp_dir()), Some(PathBuf::from("/tmp"))];
     let mut last = io::Error::from(io::ErrorKind::NotFound);
     for parent in usual.into_iter().flatten() {
