@@ -26,7 +26,7 @@ use std::{
         atomic::{AtomicUsize, Ordering},
     },
     thread::{self, JoinHandle},
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 /// Default listening address of a run that launches its own workers.
@@ -39,6 +39,8 @@ const WAIT_S: u64 = 30;
 /// because this process was killed.
 const IDLE_S: u64 = 600;
 
+/// Longest wait at the end of a run for a step that is still launching a worker.
+const LAST_STEP: Duration = Duration::from_secs(30);
 /// Interval at which the end of the launched workers is looked for.
 const POLL: Duration = Duration::from_millis(50);
 
@@ -159,7 +161,11 @@ impl Launch {
         if !was_launching {
             return ended;
         }
+        let until = Instant::now() + LAST_STEP;
         while !launching.is_finished() && !up.is_killed() {
+            if Instant::now() > until {
+                up.kill();
+            }
             thread::sleep(POLL);
         }
         // a step that had begun may have started a worker behind that
