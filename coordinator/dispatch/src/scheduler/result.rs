@@ -53,7 +53,7 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
         let mut leases = member.leases.iter();
         leases.any(|lease| lease.attempt == done.attempt)
     });
-    let (wall_us, kind) = (done.cost.wall_us, pending.job.kind());
+    let (attempt, wall_us, kind) = (done.attempt, done.cost.wall_us, pending.job.kind());
     let failure = if let Some(failure) = work_mismatch(pending, &done) {
         if !held {
             // an answer to another question, of another run: forget it
@@ -80,6 +80,10 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
     // a failure of an attempt that was taken away says nothing about the job
     if held {
         release(core, from, job, AttemptUse::Failed(wall_us));
+        // a heartbeat from before the failure must not bring the attempt back
+        if let Some(member) = core.members.get_mut(&from) {
+            member.revoked.push((attempt, now));
+        }
         failed(core, from, job, failure, now);
     }
 }
@@ -249,6 +253,15 @@ fn give_up(core: &mut Core, job: JobId, failure: Failure) {
     match failure {
         // another build or another case may do better: not a result of the run
         Failure::Refused { .. } | Failure::Misconfigured { .. } | Failure::Lost { .. } => {
+            let holders = core.jobs.get(&job).map(|own| own.holders.clone());
+            for holder in holders.unwrap_or_default() {
+                if let Some(member) = core.members.get_mut(&holder)
+                    && let Some(lease) = member.drop_lease(job, &core.clocks)
+                {
+                    member.attribute(&lease, AttemptUse::Speculative);
+                    core.send(holder, ToWorker::Cancel(lease.attempt));
+                }
+            }
             core.forget(job);
             deliver(core, job, cost, Outcome::Failed(failure));
         }

@@ -273,7 +273,10 @@ fn whatever_happens_a_run_ends_with_the_results_of_one_without_faults() {
                     *happened.entry(name).or_default() += 1;
                 }
             }
-            Err(_) => failed.push(seed),
+            Err(_) => {
+                eprintln!("seed {seed} fails");
+                failed.push(seed);
+            }
         }
     }
     eprintln!("seeds in which this happened: {happened:?}");

@@ -526,6 +526,8 @@ impl Cluster {
             return;
         };
         let opened = journal.open();
+        // a proof that was not written before a crash is that of the next worker
+        let is_proved = opened.run.proof.is_some();
         let core = Core::new(CoreOptions {
             epoch: opened.epoch,
             model_digest: opened.run.model_digest,
@@ -536,6 +538,7 @@ impl Cluster {
         });
         self.coordination = Coordination::new(core);
         self.recorded = opened.results;
+        self.is_proved = is_proved;
         self.processes += 1;
         (self.process, self.is_paused) = (Process::Started, false);
         self.anticipated.clear();

@@ -205,3 +205,24 @@ fn a_late_heartbeat_does_not_bring_a_withdrawn_attempt_back() {
     let again = scene.given();
     assert_eq!((again.len(), again[0].1.job), (1, id));
 }
+
+/// Checks the same for an attempt that failed at its worker. Regression, found by the simulation with faults: the worker
+/// held the ended attempt as a lease.
+#[test]
+fn a_late_heartbeat_does_not_bring_a_failed_attempt_back() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..1);
+    let (_, failed) = scene.given()[0];
+    scene.join(2, 1);
+    let reason = "no".to_owned();
+    scene.fail(1, failed, Failure::Refused { reason });
+    assert_eq!(scene.given()[0].0, 2);
+    scene.beat(1, &[failed]);
+    scene.tell(Input::Disconnected {
+        worker: WorkerId(2),
+    });
+    assert!(scene.core.members[&WorkerId(1)].leases.is_empty());
+    scene.join(3, 1);
+    assert_eq!(scene.given()[0].0, 3);
+}
