@@ -267,16 +267,13 @@ fn seeds() -> Range<u64> {
 fn whatever_happens_a_run_ends_with_the_results_of_one_without_faults() {
     let (mut failed, mut happened) = (Vec::new(), BTreeMap::<String, u64>::new());
     for seed in seeds() {
-        match catch_unwind(AssertUnwindSafe(|| run(seed))) {
-            Ok(names) => {
-                for name in names {
-                    *happened.entry(name).or_default() += 1;
-                }
+        if let Ok(names) = catch_unwind(AssertUnwindSafe(|| run(seed))) {
+            for name in names {
+                *happened.entry(name).or_default() += 1;
             }
-            Err(_) => {
-                eprintln!("seed {seed} fails");
-                failed.push(seed);
-            }
+        } else {
+            eprintln!("seed {seed} fails");
+            failed.push(seed);
         }
     }
     eprintln!("seeds in which this happened: {happened:?}");

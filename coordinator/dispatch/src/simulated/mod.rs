@@ -539,6 +539,12 @@ impl Cluster {
         self.coordination = Coordination::new(core);
         self.recorded = opened.results;
         self.is_proved = is_proved;
+        if !is_proved {
+            // the first result decides which workers are sound
+            for worker in self.workers.values_mut() {
+                worker.proof = PROOF;
+            }
+        }
         self.processes += 1;
         (self.process, self.is_paused) = (Process::Started, false);
         self.anticipated.clear();
