@@ -6,13 +6,14 @@ use tests::process::{Process, is_alive, wait_until};
 
 const LIMIT: Duration = Duration::from_mins(3);
 
-/// Arguments of a calibration on one host, whose folder is `run`.
-fn search(locator: &str, points: u32, host: &str) -> Vec<String> {
+/// Returns the command of a calibration on one host, whose folder is `run`.
+fn search(site: &Site, points: u32, host: &str) -> Command {
     let words = format!(
         "calibrate case --preset random --set points={points} --seed 5 --output json --workers 0 --run run \
-         --listen {locator} --tls keys --advertise 127.0.0.1 --ssh {host}"
+         --listen {} --tls keys --advertise 127.0.0.1 --ssh {host}",
+        site.locator
     );
-    words.split(' ').map(str::to_owned).collect()
+    site.command(&words.split(' ').collect::<Vec<&str>>())
 }
 
 /// Checks that a command that cannot begin, because the same command is running, ends no worker. Regression: it ended
@@ -21,9 +22,7 @@ fn search(locator: &str, points: u32, host: &str) -> Vec<String> {
 fn the_same_command_typed_twice_leaves_the_workers_of_the_first() {
     let site = Site::new(1);
     make_case(&site);
-    let words = search(&site.locator, 150, "a");
-    let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let mut first = Process::logged(site.command(&words), &site.path("first.log"));
+    let mut first = Process::logged(search(&site, 150, "a"), &site.path("first.log"));
     let begun = || {
         let listed = site.horsehead(&["workers", "list", "--run", "run", "--output", "json"]);
         let object: Value = serde_json::from_slice(&listed.stdout).unwrap_or_default();
@@ -31,7 +30,7 @@ fn the_same_command_typed_twice_leaves_the_workers_of_the_first() {
     };
     wait_until("the worker has results", LIMIT, begun);
     let worker = site.process("a", "worker-01");
-    let second = site.horsehead(&words);
+    let second = search(&site, 150, "a").output().unwrap();
     assert!(!second.status.success());
     assert!(errors(&second).contains("in use"), "{}", errors(&second));
     assert!(runs(&worker), "the worker of the first command has ended");
@@ -47,9 +46,7 @@ fn the_same_command_typed_twice_leaves_the_workers_of_the_first() {
 fn a_host_that_hangs_at_the_end_costs_no_result_and_an_interrupt_leaves_it() {
     let site = Site::new(1);
     make_case(&site);
-    let words = search(&site.locator, 20, "hanging");
-    let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let mut command = Process::logged(site.command(&words), &site.path("log"));
+    let mut command = Process::logged(search(&site, 20, "hanging"), &site.path("log"));
     let result = site.path("run/result.json");
     wait_until("the result is written", LIMIT, || result.exists());
     let worker = site.process("hanging", "worker-01");

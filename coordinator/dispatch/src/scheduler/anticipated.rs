@@ -4,7 +4,7 @@
 //! job, or withdrawn.
 use super::{
     assign::{may_have, most_idle},
-    lease::{lease, revoke},
+    lease::{cancel, lease, revoke},
     member::Member,
     result,
     slot_time::AttemptUse,
@@ -13,7 +13,7 @@ use super::{
 use protocol::{
     id::{JobId, WorkerId},
     job::Job,
-    message::{Attempt, ToWorker},
+    message::Attempt,
 };
 use std::{mem, time::Duration};
 
@@ -52,15 +52,11 @@ pub(super) fn withdraw(core: &mut Core, jobs: Vec<JobId>, now: Duration) {
             continue;
         };
         for holder in pending.holders {
-            let Some(member) = core.members.get_mut(&holder) else {
-                continue;
-            };
-            let Some(lease) = member.drop_lease(*job, &core.clocks) else {
-                continue;
-            };
-            member.attribute(&lease, AttemptUse::Speculative);
-            member.revoked.push((lease.attempt, now));
-            core.send(holder, ToWorker::Cancel(lease.attempt));
+            if let Some(attempt) = cancel(core, holder, *job)
+                && let Some(member) = core.members.get_mut(&holder)
+            {
+                member.revoked.push((attempt, now));
+            }
         }
     }
     // acknowledged as if stored, so that workers forget the results that they still hold

@@ -75,6 +75,16 @@ pub(super) fn release(core: &mut Core, worker: WorkerId, job: JobId, what: Attem
     requeue(core, worker, job);
 }
 
+/// Cancels the attempt of a worker at a job that is not pending any more, and books its slot time as speculative;
+/// returns the attempt, if the worker had one.
+pub(super) fn cancel(core: &mut Core, worker: WorkerId, job: JobId) -> Option<Attempt> {
+    let member = core.members.get_mut(&worker)?;
+    let lease = member.drop_lease(job, &core.clocks)?;
+    member.attribute(&lease, AttemptUse::Speculative);
+    core.send(worker, ToWorker::Cancel(lease.attempt));
+    Some(lease.attempt)
+}
+
 /// Takes a job from a worker that may have begun it: cancels the attempt, books its slot time under the given
 /// use and requeues the job.
 pub(super) fn revoke(

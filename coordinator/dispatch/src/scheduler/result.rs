@@ -3,7 +3,7 @@
 use super::{
     completed::Completed,
     input::Command,
-    lease::{COORDINATOR_ATTEMPT, adopt, release},
+    lease::{COORDINATOR_ATTEMPT, adopt, cancel, release},
     notice::{Notice, StopReason},
     slot_time::AttemptUse,
     state::{Core, Pending, millis},
@@ -124,28 +124,27 @@ fn accept(core: &mut Core, from: Option<WorkerId>, done: Done) {
         return;
     };
     for holder in pending.holders {
+        if Some(holder) != from {
+            cancel(core, holder, job);
+            continue;
+        }
         let Some(member) = core.members.get_mut(&holder) else {
             continue;
         };
         let Some(lease) = member.drop_lease(job, &core.clocks) else {
             continue;
         };
-        if Some(holder) == from {
-            if lease.sent_to_idle_slot {
-                let wall = Duration::from_micros(done.cost.wall_us);
-                let fresh = lease.held.saturating_sub(wall);
-                let before = core.latency.unwrap_or(fresh);
-                core.latency = Some((before * 7 + fresh) / 8);
-            }
-            if anticipated {
-                let spent = member.attribute(&lease, AttemptUse::Ahead(done.cost.wall_us));
-                core.computed_ahead.insert(job, (holder, spent));
-            } else {
-                member.attribute(&lease, AttemptUse::Useful(done.cost.wall_us));
-            }
+        if lease.sent_to_idle_slot {
+            let wall = Duration::from_micros(done.cost.wall_us);
+            let fresh = lease.held.saturating_sub(wall);
+            let before = core.latency.unwrap_or(fresh);
+            core.latency = Some((before * 7 + fresh) / 8);
+        }
+        if anticipated {
+            let spent = member.attribute(&lease, AttemptUse::Ahead(done.cost.wall_us));
+            core.computed_ahead.insert(job, (holder, spent));
         } else {
-            member.attribute(&lease, AttemptUse::Speculative);
-            core.send(holder, ToWorker::Cancel(lease.attempt));
+            member.attribute(&lease, AttemptUse::Useful(done.cost.wall_us));
         }
     }
     let waiting = from.map(|from| (from, done.attempt));
@@ -253,16 +252,10 @@ fn give_up(core: &mut Core, job: JobId, failure: Failure) {
     match failure {
         // another build or another case may do better: not a result of the run
         Failure::Refused { .. } | Failure::Misconfigured { .. } | Failure::Lost { .. } => {
-            let holders = core.jobs.get(&job).map(|own| own.holders.clone());
-            for holder in holders.unwrap_or_default() {
-                if let Some(member) = core.members.get_mut(&holder)
-                    && let Some(lease) = member.drop_lease(job, &core.clocks)
-                {
-                    member.attribute(&lease, AttemptUse::Speculative);
-                    core.send(holder, ToWorker::Cancel(lease.attempt));
-                }
+            let holders = core.forget(job).map(|own| own.holders);
+            for holder in holders.into_iter().flatten() {
+                cancel(core, holder, job);
             }
-            core.forget(job);
             deliver(core, job, cost, Outcome::Failed(failure));
         }
         Failure::Deadline { .. } | Failure::Crashed { .. } => {
