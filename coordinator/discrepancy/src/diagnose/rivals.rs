@@ -66,7 +66,8 @@ pub(crate) async fn rank<L: Laboratory>(
         let round = &mut diagnosis.rounds[at];
         round.set = set;
         if let Some(own) = exchanged {
-            round.ranked = count;
+            // chosen twice, chosen from as many pairs
+            round.ranked *= count;
             round.added = Some(own.id);
             answer = own.fit;
         }

@@ -21,8 +21,9 @@ pub(crate) fn decide(
         return None;
     }
     let lengths = [&base.fit, current, &best.fit].map(Fit::chi_squared);
-    // beside what was found: what leaves no more than noise lacks nothing that matters
-    let adequate = base.explains(current, thresholds.adequacy);
+    // beside what was found: what leaves no more than noise lacks nothing that matters; a noise that is only
+    // stated tells too little of that to make a significant effect negligible
+    let adequate = base.known().is_seen() && base.explains(current, thresholds.adequacy);
     let removed = removed(lengths, base.noise());
     if adequate && removed < thresholds.practical {
         round.reason = Some(format!(

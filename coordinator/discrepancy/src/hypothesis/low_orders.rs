@@ -14,9 +14,9 @@ use crate::record::whitened::WhitenedRecord;
 use protocol::announce::EffectDescriptor;
 use search::least_squares::LeastSquaresSettings;
 
-/// Highest harmonic order of the period that is compared: half the order of the lowest mode of a typical
-/// machine with ringing modes.
-const HIGHEST: usize = 30;
+/// Share of the orders of a record that count as low: a record that resolves a mode has orders well above
+/// it.
+const LOW: f64 = 0.25;
 /// Number of candidate effects that are refitted to the low orders.
 const REFITS: usize = 6;
 /// Number of refits to the low orders that are returned: the likeliest ones.
@@ -24,7 +24,8 @@ const LIKELIEST: usize = 2;
 
 /// Returns the models with one more effect, fitted to the low orders of the record, likeliest first; empty
 /// where no fit completes or some channel is not periodic. `current` is the model so far; fits start both
-/// from its unknowns and from the recommended values of the case. No order above `highest` is compared.
+/// from its unknowns and from the recommended values of the case. The lowest quarter of the `highest`
+/// compared orders counts as low.
 ///
 /// # Errors
 /// Returns an error if no worker is left to simulate, or the user stops the run.
@@ -38,7 +39,7 @@ pub async fn likeliest<L: Laboratory>(
     if !whole.metric.is_periodic() {
         return Ok(Vec::new());
     }
-    let highest = HIGHEST.min(highest);
+    let highest = (LOW * highest as f64).ceil() as usize;
     let low =
         WhitenedRecord::under_own_noise(whole.record.clone(), highest, whole.numerics.clone());
     let mut experiments = experiments.for_record(&low);

@@ -279,10 +279,15 @@ async fn climb<L: Laboratory>(
             .iter()
             .filter(|p| p.effect == k && p.typical)
             .collect();
-        for rung in RUNGS {
+        for (side, rung) in sides(&effects[k]).flat_map(|side| RUNGS.map(|rung| (side, rung))) {
             rungs.extend(own.iter().map(|probe| {
-                let [lower, upper] = bounds(&effects[k].parameters[probe.size]);
-                let end = if probe.amount < 0.0 { lower } else { upper };
+                let range = bounds(&effects[k].parameters[probe.size]);
+                // a size that has one side only stays on it
+                let end = if range[side] == 0.0 {
+                    range[1 - side]
+                } else {
+                    range[side]
+                };
                 Probe {
                     amount: end * rung,
                     column: None,
@@ -296,6 +301,23 @@ async fn climb<L: Laboratory>(
     take(experiments, fit, effects, &mut rungs, |_| true).await?;
     probes.extend(rungs);
     Ok(())
+}
+
+/// Returns the sides on which an effect's ladders stand: indices of the lower (0) or upper (1) bound of a
+/// size, both where some size may lie on either side of its absent value.
+fn sides(effect: &EffectDescriptor) -> std::ops::RangeInclusive<usize> {
+    let ranges: Vec<[f64; 2]> = sizes(effect)
+        .into_iter()
+        .map(|k| bounds(&effect.parameters[k]))
+        .collect();
+    if ranges
+        .iter()
+        .any(|[lower, upper]| *lower < 0.0 && *upper > 0.0)
+    {
+        0..=1
+    } else {
+        1..=1
+    }
 }
 
 /// Chooses another size for probes whose change of the curves was too large or too small, or whose simulation
@@ -354,7 +376,8 @@ fn judge(
             for probe in group {
                 start[probe.size] = probe.amount;
             }
-            rungs.push(((residual - change).norm_squared(), start));
+            // what recalibration explains of it tells nothing about the size
+            rungs.push((tangent.project(&(residual - change)).norm_squared(), start));
         }
         let found = score(residual, &signature, &positive, tangent);
         let better = best.as_ref().is_none_or(|(other, ..)| {
@@ -386,5 +409,82 @@ fn judge(
         signature,
         taken: group.iter().map(|probe| probe.parameters()).collect(),
         tries: tries.max(1),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::announce::{ParameterDescriptor, Place, Role, Sign};
+    use search::least_squares::{Linearized, Variable};
+
+    fn effect(lower: f64) -> EffectDescriptor {
+        EffectDescriptor {
+            id: "clearance".to_owned(),
+            title: String::new(),
+            joint: String::new(),
+            place: Place::Dynamics,
+            generic: false,
+            parameters: vec![ParameterDescriptor {
+                name: "size".to_owned(),
+                unit: "m".to_owned(),
+                scale: 1.0,
+                typical: 1.0,
+                absent: 0.0,
+                lower,
+                upper: 4.0,
+                sign: if lower < 0.0 {
+                    Sign::Either
+                } else {
+                    Sign::Positive
+                },
+                role: Role::Size,
+            }],
+        }
+    }
+
+    fn vector(values: [f64; 3]) -> DVector<f64> {
+        DVector::from_row_slice(&values)
+    }
+
+    /// Checks that the size that changes the curves as the record asks is tried first, whatever of its change
+    /// recalibration explains: 30 along recalibration and 6 along the effect, where a residual of 6 is left.
+    #[test]
+    fn a_ladder_ranks_its_sizes_by_what_recalibration_leaves() {
+        let free = Variable {
+            start: 0.0,
+            lower: -9.0,
+            upper: 9.0,
+            step: 0.1,
+            longest: f64::INFINITY,
+            prior: None,
+        };
+        let at = Linearized {
+            x: vec![0.0],
+            residual: DVector::zeros(3),
+            jacobian: DMatrix::from_columns(&[vector([1.0, 0.0, 0.0])]),
+        };
+        let tangent = Tangent::new(&at, &[free]);
+        let residual = vector([0.0, 6.0, 0.0]);
+        let rung = |amount: f64, change: [f64; 3]| Probe {
+            effect: 0,
+            shape: vec![0.0],
+            typical: false,
+            size: 0,
+            amount,
+            column: Some(vector(change) / amount),
+            exact: None,
+            settled: false,
+            rung: true,
+        };
+        let probes = [rung(1.0, [0.0, 2.0, 5.0]), rung(2.0, [30.0, 6.0, 0.0])];
+        let judged = judge(0, &effect(0.0), &probes, &residual, &tangent);
+        assert_eq!(judged.rungs, [[2.0], [1.0]]);
+    }
+
+    #[test]
+    fn a_ladder_stands_on_each_side_on_which_the_size_may_lie() {
+        assert_eq!(sides(&effect(-4.0)), 0..=1);
+        assert_eq!(sides(&effect(0.0)), 1..=1);
     }
 }

@@ -7,7 +7,7 @@
 use crate::record::basis::{ChannelGroup, smoothed};
 use crate::record::bins::{Bins, along};
 use crate::record::measured::Curves;
-use crate::record::noise::{Noise, NoiseSource};
+use crate::record::noise::{Noise, NoiseSource, widening};
 use crate::record::spectrum::Spectra;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -171,15 +171,18 @@ impl Metric {
         self.known
     }
 
-    /// Returns the degrees of freedom of the variance of each entry of a whitened vector; infinite where the
-    /// variance was not estimated from cycles.
-    pub fn freedoms(&self) -> DVector<f64> {
-        let mut out = DVector::zeros(self.len());
+    /// Returns the variance of each entry of a whitened vector of noise, given that the noise variances were
+    /// estimated from few cycles: that of Student's distribution with their degrees of freedom, at most
+    /// [`WIDEST`]; 1 where they were not estimated.
+    pub fn student_variances(&self) -> DVector<f64> {
+        let mut out = DVector::from_element(self.len(), 1.0);
         for block in &self.blocks {
             let width = block.parts() * block.rows();
             for (place, freedom) in block.freedoms.iter().enumerate() {
-                out.rows_mut(block.begin + width * place, width)
-                    .fill(*freedom);
+                if freedom.is_finite() {
+                    out.rows_mut(block.begin + width * place, width)
+                        .fill(widening(0.5 * freedom, 1.0));
+                }
             }
         }
         out

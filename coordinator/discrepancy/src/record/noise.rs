@@ -10,7 +10,7 @@ use crate::record::basis::{Basis, ChannelGroup, smoothed};
 use crate::record::measured::Record;
 use crate::record::scatter::unexplained;
 use crate::record::spectrum::{Orders, Spectra};
-use crate::thresholds::STATED;
+use crate::thresholds::{STATED, WIDEST};
 use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;
@@ -156,10 +156,11 @@ fn seen(
             }
             terms += freedom;
         }
-        (
-            shrink(sum / C::from(terms), 0.5 * parts * terms),
-            parts * terms,
-        )
+        let (mut covariance, coupled) = shrink(sum / C::from(terms), 0.5 * parts * terms);
+        if group.is_periodic() {
+            covariance *= C::from(widening(terms, coupled) / widening(terms, 1.0));
+        }
+        (covariance, parts * terms)
     };
     let slow = basis.slow();
     let beside = (0 < slow && slow < basis.places()).then(|| about(slow).0);
@@ -255,9 +256,21 @@ fn assumed(record: &Record, group: &ChannelGroup) -> Vec<DMatrix<C>> {
     (0..group.basis.places()).map(at).collect()
 }
 
+/// Returns the factor by which the inverse of a covariance of complex values, estimated from `terms` of them,
+/// exceeds the inverse of the true covariance in the mean (complex inverse Wishart distribution); `coupled` is
+/// the number of channels whose covariances are estimated together, 1 for a variance. At most [`WIDEST`].
+pub(crate) fn widening(terms: f64, coupled: f64) -> f64 {
+    if terms > coupled {
+        (terms / (terms - coupled)).min(WIDEST)
+    } else {
+        WIDEST
+    }
+}
+
 /// Shrinks a covariance towards its diagonal: slightly if `terms`, the number of averaged terms, is large,
-/// completely if it is small.
-fn shrink(mut covariance: DMatrix<C>, terms: f64) -> DMatrix<C> {
+/// completely if it is small. Returns it with the number of channels that it effectively couples: 1 if it is
+/// diagonal.
+fn shrink(mut covariance: DMatrix<C>, terms: f64) -> (DMatrix<C>, f64) {
     let channels = covariance.nrows() as f64;
     let keep = 1.0 - (2.0 * (channels + 1.0) / terms).clamp(0.1, 1.0);
     for i in 0..covariance.nrows() {
@@ -267,7 +280,7 @@ fn shrink(mut covariance: DMatrix<C>, terms: f64) -> DMatrix<C> {
             }
         }
     }
-    covariance
+    (covariance, 1.0 + (channels - 1.0) * keep * keep)
 }
 
 #[cfg(test)]

@@ -8,7 +8,6 @@
 use crate::record::measured::{Curves, Record};
 use crate::record::metric::Metric;
 use crate::record::noise::NoiseSource;
-use crate::thresholds::WIDEST;
 use nalgebra::{DMatrix, DVector};
 
 /// Whitened mean of a record, with the weights that express residuals in units of the record's own
@@ -83,14 +82,10 @@ pub(crate) fn divide_by_student_deviation(
     metric: &Metric,
     mut columns: DMatrix<f64>,
 ) -> DMatrix<f64> {
-    for (mut row, freedom) in columns.row_iter_mut().zip(metric.freedoms().iter()) {
-        let variance = if freedom.is_infinite() {
-            1.0
-        } else if *freedom > 2.0 {
-            (freedom / (freedom - 2.0)).min(WIDEST)
-        } else {
-            WIDEST
-        };
+    for (mut row, variance) in columns
+        .row_iter_mut()
+        .zip(metric.student_variances().iter())
+    {
         row /= variance.sqrt();
     }
     columns
