@@ -32,6 +32,7 @@ pub fn table(trials: &[Trial], unjudged: usize) -> std::result::Result<String, s
     table.line("---", "---", "---")?;
     table.singles()?;
     table.names()?;
+    table.in_part()?;
     table.others()?;
     table.sizes()?;
     let judged = trials.len();
@@ -121,6 +122,17 @@ impl<'a> Table<'a> {
         let wrong = self.trials.iter().map(Trial::false_names).sum();
         let all = self.trials.iter().map(|t| t.verdict.added().count()).sum();
         self.line("false names of all names", "<= 10 %", &share(wrong, all))
+    }
+
+    /// Writes how many names are said in part, and how many of the false ones.
+    fn in_part(&mut self) -> Result {
+        let named = |trial: &&Trial| trial.verdict.has_names();
+        let named: Vec<&Trial> = self.trials.iter().filter(named).collect();
+        let in_part = |trial: &Trial| trial.verdict.in_part;
+        self.share("named: said in part", "", &named, in_part)?;
+        let is_false = |trial: &&Trial| trial.false_names() > 0;
+        let wrong: Vec<&Trial> = named.into_iter().filter(is_false).collect();
+        self.share("a false name: said in part", "", &wrong, in_part)
     }
 
     fn others(&mut self) -> Result {

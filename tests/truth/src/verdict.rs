@@ -11,6 +11,9 @@ use std::path::Path;
 pub struct Verdict {
     /// Overall result of the diagnosis: `nothing_detected`, `named`, `ambiguous`, `unlisted` or `unresolved`.
     pub verdict: String,
+    /// Whether the verdict explains the record in part only.
+    #[serde(default)]
+    pub in_part: bool,
     /// Effects estimated by the diagnosis: those added to the model, then other members of their ambiguity
     /// sets (effects that the record cannot tell apart).
     #[serde(default)]

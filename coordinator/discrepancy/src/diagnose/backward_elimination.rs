@@ -69,8 +69,11 @@ async fn find_unpredictive<L: Laboratory>(
     let inputs = session.inputs;
     let thresholds = &inputs.thresholds;
     let tried = diagnosis.rounds.first().map_or(1, |r| r.candidates.len());
-    let mut experiments = session.experiments(Stage::Show);
     for (position, fit) in without {
+        if !session.lab.has_budget(Stage::Show) {
+            break;
+        }
+        let mut experiments = session.experiments(Stage::Show);
         let own = scores(&mut experiments, shown, [answer, &fit]).await?;
         let needed = [thresholds.prediction, own.needed(thresholds, 1, tried)];
         let id = &answer.model.added[position].id;

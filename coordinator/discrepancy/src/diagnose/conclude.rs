@@ -8,10 +8,13 @@ use crate::baseline::base::Baseline;
 use crate::baseline::session::Session;
 use crate::diagnose::claim::{claim, no_answer};
 use crate::diagnose::diagnosis::Diagnosis;
+use crate::diagnose::other_starts::fit_from_other_starts;
 use crate::diagnose::plausibility;
 use crate::diagnose::reason::{Rejection, left, reason, remarks};
-use crate::estimate::effect_size::{Estimate, estimates, refitted};
-use crate::estimate::force::ForceEstimate;
+use crate::diagnose::remainder::remainder;
+use crate::diagnose::settle::settle;
+use crate::diagnose::validate::{doubt_of_force, prove, replace_by_force, validate};
+use crate::estimate::effect_size::{Estimate, refitted};
 use crate::estimate::nuisances::nuisance_estimates;
 use crate::estimate::spread::{Spread, coloured};
 use crate::hypothesis::round::Round;
@@ -21,8 +24,7 @@ use crate::localisation::summary;
 use crate::model::fit::Fit;
 use crate::record::metric::Metric;
 use crate::record::noise::NoiseSource;
-use crate::validation::compare::{ValidationRecord, compare};
-use crate::validation::predictive::{rejection_reason, scores};
+use crate::validation::compare::ValidationRecord;
 use crate::verdict::{Findings, TestValidity, verdict};
 
 /// Computes estimates, validation and verdict of a diagnosis; `shown` are the records used for the
@@ -36,23 +38,11 @@ pub(crate) async fn conclude<L: Laboratory>(
     let (base, inputs) = (session.base, session.inputs);
     let claims = !answer.model.added.is_empty() || diagnosis.generic.is_some();
     let ground = ground(session, claims, diagnosis);
-    diagnosis.effects = estimates(&diagnosis.rounds, &answer, &base.record.metric);
-    prove(session, &answer, shown, diagnosis).await?;
-    let firm = matches!(ground, TestValidity::Valid | TestValidity::NoiseStated);
-    let predicted = predict(session, &answer, shown, diagnosis).await?;
-    let doubt = if firm {
-        predicted.or_else(|| doubt(base, &answer, diagnosis))
-    } else {
-        None
-    };
-    let (after, suspect) = if firm && doubt.is_none() {
-        (answer, None)
-    } else {
-        let suspect = withhold(diagnosis, !firm);
-        // what is not named is not shown as an answer, either
-        prove(session, &base.fit, shown, diagnosis).await?;
-        (base.fit.clone(), suspect)
-    };
+    let Settled {
+        after,
+        suspect,
+        doubt,
+    } = settled(session, (answer, ground), shown, diagnosis).await?;
     diagnosis.whiteness = Some([&base.fit, &after].map(|fit| summary::white(base, fit)));
     let mut experiments = session.experiments(Stage::Show);
     diagnosis.drifts = drifts(&mut experiments, &base.fit, inputs.others()).await?;
@@ -60,7 +50,13 @@ pub(crate) async fn conclude<L: Laboratory>(
         diagnosis.drifts_after = drifts(&mut experiments, &after, inputs.others()).await?;
     }
     let thresholds = &inputs.thresholds;
-    let misfit = !base.explains(&after, thresholds.adequacy);
+    let misfit = if base.explains(&after, thresholds.adequacy) {
+        let mut left = diagnosis.remainder.left.iter();
+        left.next()
+            .map(|left| left.words(&inputs.condition(left.condition)))
+    } else {
+        Some(left(base, &after))
+    };
     let rejection = Rejection {
         names: diagnosis
             .rounds
@@ -68,13 +64,13 @@ pub(crate) async fn conclude<L: Laboratory>(
             .is_some_and(|r| r.p_value < thresholds.alpha),
         suspect,
         doubt,
-        left: misfit.then(|| left(base, &after)),
+        left: misfit,
     };
     let seen = diagnosis.localisation.as_ref();
     let maps = seen.is_some_and(|seen| seen.rejects(thresholds.alpha));
     let findings = Findings {
         ground,
-        rejected: rejection.names || misfit || maps,
+        rejected: rejection.names || rejection.left.is_some() || maps,
         added: after.model.added.len(),
         rivals: diagnosis
             .rounds
@@ -114,6 +110,62 @@ pub(crate) async fn conclude<L: Laboratory>(
     Ok(())
 }
 
+/// Answer after its validation.
+struct Settled {
+    /// Model of the answer: without effects if none is named.
+    after: Fit,
+    /// Description of the effects that were found but are not named.
+    suspect: Option<String>,
+    /// Reason why they are not named, although the basis of the tests is reliable.
+    doubt: Option<String>,
+}
+
+/// Fits an answer to convergence and validates it; withdraws from the diagnosis what does not hold.
+async fn settled<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    (answer, ground): (Fit, TestValidity),
+    shown: &[ValidationRecord<'_>],
+    diagnosis: &mut Diagnosis,
+) -> Result<Settled, L::Error> {
+    let base = session.base;
+    let firm = matches!(ground, TestValidity::Valid | TestValidity::NoiseStated);
+    let mut answer = settle(session, answer).await?;
+    let mut doubt = validate(session, &answer, shown, diagnosis).await?;
+    if firm
+        && doubt.is_some()
+        && let Some(other) = fit_from_other_starts(session, &answer, &diagnosis.rounds).await?
+    {
+        answer = settle(session, other).await?;
+        doubt = validate(session, &answer, shown, diagnosis).await?;
+    }
+    if firm && let Some(without) = replace_by_force(session, &answer, diagnosis).await? {
+        answer = without;
+        doubt = validate(session, &answer, shown, diagnosis).await?;
+    }
+    let of_force = doubt_of_force(session, &answer, shown, diagnosis).await?;
+    let mut suspects = Vec::new();
+    if !firm || of_force.is_some() {
+        suspects.extend(withhold_force(diagnosis));
+    }
+    let doubt = doubt.or_else(|| implausible(base, &answer, diagnosis));
+    if !firm || doubt.is_some() {
+        suspects.extend(withhold_effects(diagnosis));
+        // what is not named is not shown as an answer, either
+        prove(session, &base.fit, shown, diagnosis).await?;
+        answer = base.fit.clone();
+    }
+    let (own, rows) = match (&diagnosis.generic, &diagnosis.force) {
+        (Some(_), Some(force)) => (&force.fit, &force.rows),
+        _ => (&answer, &diagnosis.rows),
+    };
+    diagnosis.remainder = remainder(session, own, shown, rows).await?;
+    Ok(Settled {
+        after: answer,
+        suspect: (!suspects.is_empty()).then(|| suspects.join(" and ")),
+        doubt: doubt.or(of_force).filter(|_| firm),
+    })
+}
+
 /// Returns the sizes of all effects that were refitted in a round, each from its own refit, named or not.
 fn sizes(round: &Round, metric: &Metric) -> Vec<Estimate> {
     let ids = round.refits.iter().map(|own| &own.id);
@@ -138,46 +190,9 @@ fn ground<L>(session: &Session<'_, L>, claims: bool, diagnosis: &Diagnosis) -> T
     }
 }
 
-/// Scores an answer on data excluded from the fit against the model without effects, stores the scores in the
-/// diagnosis, and returns the reason why the answer is not named if it does not predict. The predictive value
-/// of each effect in addition to the others is tested earlier.
-async fn predict<L: Laboratory>(
-    session: &mut Session<'_, L>,
-    answer: &Fit,
-    shown: &[ValidationRecord<'_>],
-    diagnosis: &mut Diagnosis,
-) -> Result<Option<String>, L::Error> {
-    let (base, thresholds) = (session.base, &session.inputs.thresholds);
-    let added = &answer.model.added;
-    if added.is_empty() {
-        return Ok(None);
-    }
-    let ids: Vec<&str> = added.iter().map(|own| &*own.id).collect();
-    let ids = ids.join(" with ");
-    if !session.lab.has_budget(Stage::Show) {
-        return Ok(Some(format!(
-            "{ids} explains the fitted data, but the budget for validation on other data is used up"
-        )));
-    }
-    let mut experiments = session.experiments(Stage::Show);
-    let whole = scores(&mut experiments, shown, [answer, &base.fit]).await?;
-    diagnosis.prediction.clone_from(&whole.records);
-    let tried = diagnosis.rounds.first().map_or(1, |r| r.candidates.len());
-    // a name that what took no part has chosen needs as many times more as it chose from
-    let rounds = diagnosis.rounds.iter();
-    let kept = rounds.filter(|round| round.added.is_some());
-    let chosen: f64 = kept.map(|round| libm::log(round.ranked as f64)).sum();
-    let needed = whole.needed(thresholds, added.len(), tried) + chosen;
-    Ok(rejection_reason(
-        &ids,
-        &whole,
-        [thresholds.prediction, needed],
-        session.inputs,
-    ))
-}
-
-/// Returns the reason why an answer is not named, if there is one.
-fn doubt(base: &Baseline, answer: &Fit, diagnosis: &Diagnosis) -> Option<String> {
+/// Returns the reason why the sizes or the ambiguity sets of an answer are none that can be named, if there is
+/// one.
+fn implausible(base: &Baseline, answer: &Fit, diagnosis: &Diagnosis) -> Option<String> {
     let sets = || {
         let mut rounds = diagnosis.rounds.iter();
         rounds.find_map(|round| no_answer(base, round))
@@ -185,48 +200,27 @@ fn doubt(base: &Baseline, answer: &Fit, diagnosis: &Diagnosis) -> Option<String>
     plausibility::doubt(&claim(answer, &diagnosis.effects)).or_else(sets)
 }
 
-/// Withdraws the added effects from the answer of a diagnosis, and the generic force as well if `force_too`;
-/// returns a description of what was withdrawn.
-fn withhold(diagnosis: &mut Diagnosis, force_too: bool) -> Option<String> {
-    let nats = |id: &str, nats: f64| format!("{id}, at {nats:.0} nats");
+fn suspect(id: &str, nats: f64) -> String {
+    format!("{id}, at {nats:.0} nats")
+}
+
+/// Withdraws the added effects from the answer of a diagnosis; returns a description of each.
+fn withhold_effects(diagnosis: &mut Diagnosis) -> Vec<String> {
     let mut suspects = Vec::new();
     for round in &mut diagnosis.rounds {
         let Some(id) = round.added.clone() else {
             continue;
         };
         let own = diagnosis.effects.iter().find(|effect| effect.id == id);
-        suspects.push(nats(&id, own.map_or(f64::NAN, |own| own.ln_evidence)));
+        suspects.push(suspect(&id, own.map_or(f64::NAN, |own| own.ln_evidence)));
         round.withdraw(format!("{id} is the likeliest effect, but it is not named"));
     }
-    if force_too && diagnosis.generic.take().is_some() {
-        let force = diagnosis.force.as_ref();
-        let said =
-            |force: &ForceEstimate| nats(&format!("a force {}", force.id), force.ln_evidence);
-        suspects.extend(force.map(said));
-    }
-    (!suspects.is_empty()).then(|| suspects.join(" and "))
+    suspects
 }
 
-/// Computes the misfit to each record before and after adding effects: for the answer, its best rejected
-/// rival and the generic force.
-async fn prove<L: Laboratory>(
-    session: &mut Session<'_, L>,
-    after: &Fit,
-    shown: &[ValidationRecord<'_>],
-    diagnosis: &mut Diagnosis,
-) -> Result<(), L::Error> {
-    let base = session.base;
-    let mut experiments = session.experiments(Stage::Show);
-    let before = &base.fit;
-    diagnosis.rows = compare(&mut experiments, shown, before, after).await?;
-    diagnosis.rival = None;
-    let rival = diagnosis.rejected().map(|(_, rival)| rival.clone());
-    if let Some(rival) = rival {
-        let rows = compare(&mut experiments, shown, before, &rival.fit).await?;
-        diagnosis.rival = Some((rival.id, rows));
-    }
-    if let Some(force) = &mut diagnosis.force {
-        force.rows = compare(&mut experiments, shown, before, &force.fit).await?;
-    }
-    Ok(())
+/// Withdraws the generic force from the answer of a diagnosis; returns a description of it.
+fn withhold_force(diagnosis: &mut Diagnosis) -> Option<String> {
+    diagnosis.generic.take()?;
+    let force = diagnosis.force.as_ref()?;
+    Some(suspect(&format!("a force {}", force.id), force.ln_evidence))
 }

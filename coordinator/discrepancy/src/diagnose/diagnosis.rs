@@ -1,5 +1,6 @@
 //! Result of a diagnosis with all intermediate results.
 use crate::baseline::discretisation_check::Preflight;
+use crate::diagnose::remainder::{Remainder, percent};
 use crate::estimate::absorbed::Absorbed;
 use crate::estimate::effect_size::Estimate;
 use crate::estimate::experiment_design::IndistinguishablePair;
@@ -8,6 +9,7 @@ use crate::estimate::limit::Limit;
 use crate::estimate::nuisances::NuisanceEstimate;
 use crate::hypothesis::refit::Refitted;
 use crate::hypothesis::round::Round;
+use crate::inputs::Inputs;
 use crate::laboratory::Stage;
 use crate::localisation::parameter_drift::shifts::ParameterDrift;
 use crate::localisation::summary::Localisation;
@@ -24,6 +26,8 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// Reason of the verdict in one sentence, where it needs one.
     pub reason: Option<String>,
+    /// Share of the gap that the answer explains, and what it leaves.
+    pub remainder: Remainder,
     /// Added effects, then the other members of their ambiguity sets.
     pub effects: Vec<Estimate>,
     /// Rounds of hypothesis tests.
@@ -79,6 +83,39 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
+    /// Returns whether the verdict makes a claim that is not the whole answer: more than noise is left on some
+    /// record, or a stage whose comparisons the verdict rests on used up its budget. Where no more than noise is
+    /// left, the way into another minimum and the localisation could not add anything.
+    pub fn is_in_part(&self) -> bool {
+        let claims = match self.verdict {
+            Verdict::Named | Verdict::Ambiguous | Verdict::Unlisted => true,
+            Verdict::NothingDetected | Verdict::Unresolved => false,
+        };
+        let mut ran_out = self.ran_out.iter();
+        let stopped = ran_out.any(|stage| !matches!(stage, Stage::Where | Stage::Basin));
+        claims && (stopped || !self.remainder.left.is_empty())
+    }
+
+    /// Describes in words what the answer explains, what it leaves and where, and which stages used up their
+    /// budget.
+    pub(crate) fn completeness(&self, inputs: &Inputs) -> String {
+        /// Number of records on which the remaining residual is described.
+        const DESCRIBED: usize = 2;
+        let explained = self.remainder.explained.iter();
+        let explained = explained.map(|share| format!("explains {} of the gap", percent(*share)));
+        let left = self.remainder.left.iter().take(DESCRIBED);
+        let left = left.map(|left| left.words(&inputs.condition(left.condition)));
+        let stages = self.ran_out.iter().filter(|stage| **stage != Stage::Where);
+        let stages = stages.map(|stage| {
+            format!(
+                "the stage \"{}\" used up its budget of simulations",
+                stage.name()
+            )
+        });
+        let parts: Vec<String> = explained.chain(left).chain(stages).collect();
+        parts.join("; ")
+    }
+
     /// Returns the best refit whose effect was neither added in any round nor is a member of an ambiguity
     /// set, with the first round in which an effect was added.
     pub fn rejected(&self) -> Option<(&Round, &Refitted)> {
@@ -99,6 +136,7 @@ impl Diagnosis {
         Self {
             verdict: Verdict::Unresolved,
             reason: Some(reason.to_owned()),
+            remainder: Remainder::default(),
             effects: Vec::new(),
             rounds: Vec::new(),
             sizes: Vec::new(),

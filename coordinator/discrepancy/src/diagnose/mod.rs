@@ -6,10 +6,14 @@ mod claim;
 mod conclude;
 mod correlation;
 pub(crate) mod diagnosis;
+mod other_starts;
 mod plausibility;
 mod reason;
+mod remainder;
 mod rivals;
 mod rounds;
+mod settle;
+mod validate;
 
 pub use crate::estimate::absorbed::Absorbed;
 pub use crate::estimate::effect_size::{Estimate, ParameterEstimate};
@@ -20,6 +24,7 @@ pub use crate::estimate::nuisances::NuisanceEstimate;
 pub use crate::hypothesis::round::Round;
 pub use crate::inputs::Inputs;
 pub use diagnosis::Diagnosis;
+pub use remainder::{Left, Remainder};
 
 use crate::baseline::budget::Budgeted;
 use crate::baseline::establish::establish;
@@ -49,6 +54,9 @@ pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Dia
             )
         }));
     diagnosis.ran_out = counted.ran_out().to_vec();
+    if diagnosis.is_in_part() {
+        diagnosis.reason = Some(diagnosis.completeness(inputs));
+    }
     Ok(diagnosis)
 }
 

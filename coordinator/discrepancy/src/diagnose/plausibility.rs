@@ -27,7 +27,7 @@ pub(crate) struct Size {
 impl Size {
     /// Returns whether the interval contains the absent value, or the size is within the tolerance of an
     /// instrument.
-    fn may_be_nothing(&self) -> bool {
+    pub(crate) fn may_be_nothing(&self) -> bool {
         let [low, high] = self.interval;
         let holds = low <= self.absent && self.absent <= high;
         let usual = |sd: f64| (self.value - self.absent).abs() <= WITHIN * sd;

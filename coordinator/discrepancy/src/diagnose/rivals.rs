@@ -85,15 +85,19 @@ async fn merits<L: Laboratory>(
 ) -> Result<Vec<Ranked>, L::Error> {
     let (answer, _) = at;
     let rivals = swapped(session, at, round).await?;
-    let mut experiments = session.experiments(Stage::Show);
     let mut ranked = Vec::new();
     for (id, fit) in rivals {
-        let own = scores(&mut experiments, shown, [&fit, answer]).await?;
-        if !own.failed.is_empty() {
-            continue;
+        // without a score only the fitted data tell a rival apart
+        let mut predicted = 0.0;
+        if session.lab.has_budget(Stage::Show) {
+            let mut experiments = session.experiments(Stage::Show);
+            let own = scores(&mut experiments, shown, [&fit, answer]).await?;
+            if !own.failed.is_empty() {
+                continue;
+            }
+            let held_out = own.records.iter().all(|one| one.part != DataRole::LeftOut);
+            predicted = own.together.filter(|_| held_out).unwrap_or(0.0);
         }
-        let held_out = own.records.iter().all(|one| one.part != DataRole::LeftOut);
-        let predicted = own.together.filter(|_| held_out).unwrap_or(0.0);
         let dispersion = fit.dispersion().min(answer.dispersion());
         let evidence = (fit.log_evidence() - answer.log_evidence()) / dispersion;
         let merit = evidence + predicted;

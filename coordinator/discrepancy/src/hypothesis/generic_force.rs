@@ -29,6 +29,24 @@ struct Form<'a> {
     p_value: f64,
 }
 
+impl Form<'_> {
+    /// Returns the test statistic less two nats' worth of `chi^2` for each amplitude: a harmonic has two to
+    /// choose.
+    fn merit(&self) -> f64 {
+        self.statistic - 2.0 * self.parts.len() as f64
+    }
+
+    /// Returns the force as a challenger, from its refit and the fit without it.
+    fn challenger(&self, without: &Fit, fit: Fit) -> Challenger {
+        Challenger {
+            id: self.parts[0].effect.id.clone(),
+            removed: without.chi_squared() - fit.chi_squared(),
+            log_evidence: fit.log_evidence(),
+            fit,
+        }
+    }
+}
+
 /// Generic force that explains the residual better than every named effect.
 #[derive(Clone, Debug)]
 pub(crate) struct Challenger {
@@ -71,9 +89,7 @@ pub(crate) async fn challenge<L: Laboratory>(
             && form.statistic > named + thresholds.generic_gain
             && !is_listed(form, &round.candidates, thresholds.alike, &tangent)
     });
-    // a harmonic has two amplitudes to choose: two nats' worth of chi^2 each
-    let merit = |form: &Form<'_>| form.statistic - 2.0 * form.parts.len() as f64;
-    forms.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
+    forms.sort_by(|a, b| b.merit().total_cmp(&a.merit()));
     forms.truncate(TRIED);
     let starts = forms.iter().map(|form| started(current, form)).collect();
     let mut experiments = session.experiments(Stage::Refit);
@@ -88,22 +104,77 @@ pub(crate) async fn challenge<L: Laboratory>(
     Ok(best.and_then(|(form, fit)| {
         let named_best = best_name.map_or(f64::INFINITY, Fit::dispersion);
         let scale = fit.dispersion().min(named_best).min(current.dispersion());
-        let removed = current.chi_squared() - fit.chi_squared();
-        let log_evidence = fit.log_evidence();
+        let own = form.challenger(current, fit);
+        let (removed, fit) = (own.removed, &own.fit);
         let margin = thresholds.generic_gain * scale;
         let noise =
             |left: f64| base.is_noise(left, fit.tangent().parameters(), thresholds.adequacy);
         let clears = noise(fit.chi_squared()) && !noise(left);
         let beats = removed > thresholds.generic_factor * named + margin
             || (clears && removed > named + margin);
-        let beats = beats && log_evidence - evidence > thresholds.gain * scale;
-        beats.then(|| Challenger {
-            id: form.parts[0].effect.id.clone(),
-            removed,
-            log_evidence,
-            fit,
-        })
+        let beats = beats && own.log_evidence - evidence > thresholds.gain * scale;
+        beats.then_some(own)
     }))
+}
+
+/// Model from which an effect of the answer was removed, and the generic force that takes its place.
+pub(crate) struct Replacement {
+    /// Fit without the effect and without the force.
+    pub(crate) without: Fit,
+    pub(crate) force: Challenger,
+}
+
+/// Returns the generic force that beats an effect of the answer in its place, if there is one: every other
+/// part of the answer is kept, all unknowns are free, and the evidence with the force is larger by the gain
+/// that an effect needs. The force must also leave less of the record, unless the effect's own size may be
+/// zero (`vanishes`): a law with fewer parameters gains evidence by that alone, which is no reason against a
+/// law with a cause.
+pub(crate) async fn in_place<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    answer: &Fit,
+    (position, vanishes): (usize, bool),
+    round: &Round,
+) -> Result<Option<Replacement>, L::Error> {
+    /// Minimum share of the effect's reduction of `chi^2` that the test of a force promises: with less it does
+    /// not reach the effect by a refit.
+    const PROMISED: f64 = 0.5;
+    let (base, thresholds) = (session.base, &session.inputs.thresholds);
+    let without = if answer.model.added.len() == 1 {
+        Some(base.fit.clone())
+    } else {
+        let start = answer.point().without(position);
+        let mut experiments = session.experiments(Stage::Refit);
+        experiments
+            .fit(start, LeastSquaresSettings::short(6))
+            .await?
+    };
+    let Some(without) = without else {
+        return Ok(None);
+    };
+    let reduction = without.chi_squared() - answer.chi_squared();
+    let residual = &without.search.linear_minimum_residual();
+    let mut forms = forms(&round.generics, residual, &without.tangent());
+    let tests = forms.len();
+    forms.retain(|form| {
+        family_wise(form.p_value, tests) < thresholds.alpha && form.statistic > PROMISED * reduction
+    });
+    forms.sort_by(|a, b| b.merit().total_cmp(&a.merit()));
+    forms.truncate(TRIED);
+    let starts = forms.iter().map(|form| started(&without, form)).collect();
+    let mut experiments = session.experiments(Stage::Refit);
+    let refits = experiments
+        .fits(starts, LeastSquaresSettings::short(8))
+        .await?;
+    let refits = forms.iter().zip(refits);
+    let refits = refits.filter_map(|(form, fit)| Some(form.challenger(&without, fit?)));
+    let best = refits.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
+    let force = best.filter(|force| {
+        let scale = force.fit.dispersion().min(answer.dispersion());
+        let gained = force.log_evidence - answer.log_evidence();
+        let closer = force.fit.chi_squared() < answer.chi_squared();
+        gained > thresholds.gain * scale && (closer || vanishes)
+    });
+    Ok(force.map(|force| Replacement { without, force }))
 }
 
 /// Returns all generic forces, with the two phases of a harmonic combined into one form.

@@ -14,9 +14,9 @@ use crate::record::whitened::WhitenedRecord;
 use protocol::announce::EffectDescriptor;
 use search::least_squares::LeastSquaresSettings;
 
-/// Share of the orders of a record that count as low: a record that resolves a mode has orders well above
-/// it.
-const LOW: f64 = 0.25;
+/// Part of the orders of a record that counts as low, one in as many: a record that resolves a mode has orders
+/// well above it.
+const LOW: usize = 4;
 /// Number of candidate effects that are refitted to the low orders.
 const REFITS: usize = 6;
 /// Number of refits to the low orders that are returned: the likeliest ones.
@@ -39,7 +39,7 @@ pub async fn likeliest<L: Laboratory>(
     if !whole.metric.is_periodic() {
         return Ok(Vec::new());
     }
-    let highest = (LOW * highest as f64).ceil() as usize;
+    let highest = highest.div_ceil(LOW);
     let low =
         WhitenedRecord::under_own_noise(whole.record.clone(), highest, whole.numerics.clone());
     let mut experiments = experiments.for_record(&low);

@@ -6,6 +6,9 @@ use crate::model::fit::Fit;
 use crate::model::unknowns::Point;
 use search::least_squares::LeastSquaresSettings;
 
+/// Maximum number of ladder sizes from which an effect is refitted, in addition to its linear estimate.
+const STARTS: usize = 3;
+
 /// Candidate effect after its refit.
 #[derive(Clone, Debug)]
 pub struct Refitted {
@@ -28,7 +31,7 @@ impl Refitted {
     }
 }
 
-/// Refits candidate effects in parallel, each from its linear estimate and from a ladder of other sizes, and
+/// Refits candidate effects in parallel, each from its linear estimate and from the best of a ladder of other sizes, and
 /// returns the best refit of each; effects of which no refit can be simulated are omitted.
 ///
 /// # Errors
@@ -39,7 +42,7 @@ pub async fn refit<L: Laboratory>(
     suspects: &[&CandidateEffect],
 ) -> Result<Vec<Refitted>, L::Error> {
     let starts = |suspect: &&CandidateEffect| {
-        let all = std::iter::once(&suspect.start).chain(&suspect.rungs);
+        let all = std::iter::once(&suspect.start).chain(suspect.rungs.iter().take(STARTS));
         let all = all.map(|start| (suspect.effect.id.clone(), fit.with(&suspect.effect, start)));
         all.collect::<Vec<(String, Point)>>()
     };

@@ -66,8 +66,6 @@ const SHAPES: usize = 6;
 /// Sizes of the ladder on which non-linear effects are tested, as shares of the range from the absent value
 /// to the bound.
 const RUNGS: [f64; 7] = [1.0, 0.75, 0.5, 0.25, 0.12, 0.06, 0.03];
-/// Maximum number of ladder sizes from which an effect is refitted, in addition to its linear estimate.
-const STARTS: usize = 3;
 /// Maximum relative difference between the changes per unit at full and at half size for an effect to count
 /// as linear.
 const PROPORTIONAL: f64 = 0.3;
@@ -399,7 +397,6 @@ fn judge(
     }
     let linear = rungs.is_empty();
     rungs.sort_by(|a, b| a.0.total_cmp(&b.0));
-    rungs.truncate(STARTS);
     CandidateEffect {
         effect: effect.clone(),
         score,

@@ -59,6 +59,11 @@ impl NuisanceParameter {
         self.effect.is_some() && self.nuisance.id == id
     }
 
+    /// Removes the limit of the parameter, so that only its prior holds it.
+    pub(crate) const fn release(&mut self) {
+        self.farthest = FARTHEST;
+    }
+
     /// Returns the nuisance parameter as a variable of the search.
     pub(crate) fn variable(&self) -> Variable {
         let scaled = |bound: f64, absent: f64| (bound - absent) / self.nuisance.deviation;

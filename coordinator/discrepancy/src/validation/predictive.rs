@@ -25,6 +25,7 @@
 use crate::inputs::Inputs;
 use crate::laboratory::Laboratory;
 use crate::linear::evidence::{deviation, log_determinant};
+use crate::linear::score::misfit_tail;
 use crate::linear::stack::stacked;
 use crate::linear::tangent::free;
 use crate::model::experiments::Experiments;
@@ -33,7 +34,7 @@ use crate::record::measured::difference;
 use crate::record::metric::Metric;
 use crate::record::noise::NoiseSource;
 use crate::record::whitened::WhitenedRecord;
-use crate::thresholds::Thresholds;
+use crate::thresholds::{STATED, Thresholds};
 use crate::validation::compare::{DataRole, ValidationRecord};
 use crate::validation::scoring_metric::divide_by_student_deviation;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -131,6 +132,42 @@ pub(crate) async fn scores<L: Laboratory>(
             Some(posteriors[0].predicted(&with_it) - posteriors[1].predicted(&without_it));
     }
     Ok(found)
+}
+
+/// Returns whether noise, and what a fit leaves open of its unknowns, may be all that the fit leaves of a
+/// record that took no part in it, at a significance level; for stated noise, whether the residual is no more
+/// than the noise may be. `None` where the record cannot be simulated or its noise is not known.
+///
+/// # Errors
+/// Those of the laboratory.
+pub(crate) async fn is_explained<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    one: &ValidationRecord<'_>,
+    fit: &Fit,
+    level: f64,
+) -> Result<Option<bool>, L::Error> {
+    let known = one.scale.known();
+    if known == NoiseSource::Estimated || one.scale.len() == 0 {
+        return Ok(None);
+    }
+    let Some(record) = predicted(experiments, one, fit).await? else {
+        return Ok(None);
+    };
+    let on = experiments.on;
+    let [length, _] = Posterior::of(&on.metric, fit, 1.0).lengths(&record);
+    let n = record.residual.len();
+    Ok(Some(if known.is_seen() {
+        // held-out cycles share the noise of the fitted ones
+        let noise = if one.part == DataRole::Cycles {
+            &on.record
+        } else {
+            one.record
+        };
+        let cycles = noise.cycles.len();
+        misfit_tail(length, n, 0.0, n as f64 * (cycles as f64 - 1.0)) >= level
+    } else {
+        length <= STATED * n as f64
+    }))
 }
 
 /// Returns the reason why the predictive scores do not support the effect `id`; `None` if they do: no record
@@ -278,6 +315,13 @@ impl<'a> Posterior<'a> {
     /// dispersion. `NaN` where the precision is not positive definite, that is where the fit leaves an
     /// unknown undetermined.
     fn predicted(&self, record: &Predicted) -> f64 {
+        let [length, volume] = self.lengths(record);
+        -0.5 * (length + volume)
+    }
+
+    /// Returns the squared length of a record's residual under its predictive covariance `I + J_h A^-1
+    /// J_h^T`, and the logarithm of the determinant of that covariance.
+    fn lengths(&self, record: &Predicted) -> [f64; 2] {
         let root = self.dispersion.sqrt();
         let (z, jacobian) = (&record.residual / root, &record.jacobian / root);
         // what lies on a bound is known as well as that; what moves neither record has nothing to say
@@ -288,18 +332,18 @@ impl<'a> Posterior<'a> {
         };
         let free = free(&both, self.variables);
         if free.is_empty() {
-            return -0.5 * z.norm_squared();
+            return [z.norm_squared(), 0.0];
         }
         let precision = self.precision(&free);
         let jacobian = jacobian.select_columns(&free);
         let with = &precision + jacobian.tr_mul(&jacobian);
         let b = jacobian.tr_mul(&z);
         let (Some(with), Some(precision)) = (with.cholesky(), precision.cholesky()) else {
-            return f64::NAN;
+            return [f64::NAN; 2];
         };
         let explained = b.dot(&with.solve(&b));
         let volume = log_determinant(&with) - log_determinant(&precision);
-        -0.5 * (z.norm_squared() - explained + volume)
+        [z.norm_squared() - explained, volume]
     }
 
     /// Returns the sum of the log densities of blocks of the fitted record, each left out of the fit: its

@@ -1,6 +1,6 @@
 //! Acceptance tests with two effects at once, and with effects that are in no library.
 use crate::strata::{OUTSIDE, named, planted};
-use crate::trial::{diagnose_usual, diagnoses, line, say};
+use crate::trial::{Setup, diagnose_usual, diagnosed, diagnoses, line, say};
 use crate::truth::{Truth, Unlisted};
 use discrepancy::verdict::Verdict;
 
@@ -101,4 +101,56 @@ fn what_acts_like_a_listed_effect_takes_only_its_name() {
         let honest = first == Some("beam_inertia") || answer.verdict == Verdict::Unlisted;
         assert!(honest, "{}", line(&answer));
     }
+}
+
+/// Checks that a generic force that is better than a named effect in its place takes that place, also where
+/// the named effect was added because the force did not beat it by enough before.
+#[test]
+fn a_force_in_the_place_of_a_name_that_it_beats_is_unlisted() {
+    for seed in 0..diagnoses(2, 15) {
+        let mut truth = Truth::healthy(3700 + seed);
+        truth.unlisted = Some(Unlisted::BeamDrag(0.3));
+        let mut setup = Setup::default();
+        // no force is ever good enough to be compared before a name is chosen
+        setup.thresholds.generic_gain = 1e9;
+        let (answer, _) = diagnosed(&truth, &setup);
+        let said = line(&answer);
+        assert_eq!(answer.verdict, Verdict::Unlisted, "{said}");
+        assert_eq!(answer.generic.as_deref(), Some("probe.beam.v2"), "{said}");
+        assert!(answer.effects.is_empty(), "{said}");
+        let mut reasons = answer
+            .rounds
+            .iter()
+            .filter_map(|round| round.reason.as_deref());
+        assert!(reasons.any(|own| own.contains("in the place of")), "{said}");
+    }
+}
+
+/// Checks that a name that explains a part says so: two effects act, and one round is allowed.
+#[test]
+fn a_name_that_leaves_more_than_noise_is_said_in_part() {
+    let truth = planted(Truth::healthy(3800), named()[1], 8.0);
+    let truth = planted(truth, named()[3], 8.0);
+    let mut setup = Setup::default();
+    setup.thresholds.rounds = 1;
+    let (part, _) = diagnosed(&truth, &setup);
+    assert!(part.is_in_part(), "{}", line(&part));
+    let reason = part.reason.as_deref().unwrap_or_default();
+    assert!(
+        reason.starts_with("explains") && reason.contains("remain"),
+        "{reason}"
+    );
+    let (whole, _) = diagnosed(&truth, &Setup::default());
+    assert!(
+        !whole.is_in_part(),
+        "{} {:?}",
+        line(&whole),
+        whole.remainder
+    );
+    let explained = [&part, &whole].map(|own| own.remainder.explained.unwrap());
+    assert!(
+        explained[0] < explained[1] && explained[1] > 0.95,
+        "{explained:?}"
+    );
+    assert_eq!(whole.reason, None);
 }

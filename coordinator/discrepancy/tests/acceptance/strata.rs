@@ -66,8 +66,9 @@ pub(crate) fn planted_at(
 
 /// Effects outside the library, at detectable sizes, each with the joint and forms of the generic force that
 /// describes it.
-pub(crate) const OUTSIDE: [(Unlisted, &str, &[&str]); 5] = [
+pub(crate) const OUTSIDE: [(Unlisted, &str, &[&str]); 6] = [
     (Unlisted::BeamSpring(1.2), "beam", &["d3", "cos1"]),
+    (Unlisted::BeamDrag(0.3), "beam", &["v2"]),
     (Unlisted::HeadThrice(0.4), "head", &["cos3", "sin3"]),
     (Unlisted::RodDashpot(0.5), "rod", &["v"]),
     (Unlisted::GearMesh(1.0), "crank", &["cos4", "sin4"]),

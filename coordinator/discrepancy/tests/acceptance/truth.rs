@@ -20,6 +20,8 @@ pub(crate) enum Unlisted {
     HeadThrice(f64),
     /// A dashpot on the rod (kN/(m/t)).
     RodDashpot(f64),
+    /// A drag at the beam's bearing by the square of its speed (kN/(m/t)^2).
+    BeamDrag(f64),
     /// A gear mesh torque that brakes the crank four times per turn (kN m).
     GearMesh(f64),
     /// Coulomb friction of the gearbox teeth (kN m).
@@ -206,6 +208,9 @@ impl TimeIntegration<'_> {
         match truth.unlisted {
             Some(Unlisted::BeamSpring(size)) => {
                 on_beam += size * ((height - beam) / 1.5 - 1.0).powi(3);
+            }
+            Some(Unlisted::BeamDrag(size)) => {
+                on_beam += size * (v - beam_rate) * (v - beam_rate).abs();
             }
             Some(Unlisted::HeadThrice(size)) => on_head += size * (3.0 * angle + 1.0).cos(),
             Some(Unlisted::RodDashpot(size)) => on_rod += size * (v - rod_rate),

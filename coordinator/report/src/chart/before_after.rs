@@ -1,5 +1,5 @@
 //! Figure of a report's first screen: measured curves of few channels with the simulated ones before and after a
-//! change of the model, side by side.
+//! change of the model, side by side, and the residuals below.
 use super::axis::ChartAxis;
 use super::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
 use super::panel::Panel;
@@ -13,7 +13,11 @@ const LEFT: f64 = 62.0;
 const BETWEEN: f64 = 62.0;
 const TOP: f64 = 44.0;
 const HEIGHT: f64 = 190.0;
-const ROW: f64 = HEIGHT + 66.0;
+/// Height of the panel with the residuals.
+const RESIDUAL: f64 = 76.0;
+/// Distance between the panel with the curves and the one with the residuals below it.
+const GAP: f64 = 14.0;
+const ROW: f64 = HEIGHT + GAP + RESIDUAL + 66.0;
 /// Number of panels beside each other.
 const COLUMNS: usize = 2;
 
@@ -98,9 +102,37 @@ fn draw(canvas: &mut Canvas, channel: &BeforeAfter<'_>, (left, top): (f64, f64),
         panel.curve(canvas, &points(channel.at, after), AFTER);
     }
     panel.left_axis(canvas, true, &with_unit("value", &channel.unit));
-    panel.lower_axis(canvas, true, &channel.axis.title);
+    panel.lower_axis(canvas, false, "");
+    residuals(canvas, channel, (left, top + HEIGHT + GAP), width);
     let heading = TextStyle::new(12.0, INK).bold();
     canvas.text((left, top - 12.0), &channel.title, heading);
+}
+
+/// Draws measured minus simulated values, before and after, on one scale: curves that are close to the measured
+/// one lie on each other above.
+fn residuals(canvas: &mut Canvas, channel: &BeforeAfter<'_>, (left, top): (f64, f64), width: f64) {
+    let residual = |simulated: &[f64]| -> Vec<f64> {
+        let pairs = channel.measured.iter().zip(simulated);
+        pairs.map(|(m, s)| m - s).collect()
+    };
+    let before = residual(&channel.before);
+    let after = channel.after.as_deref().map(residual);
+    let values = before.iter().chain(after.iter().flatten()).copied();
+    let panel = Panel {
+        left,
+        top,
+        width,
+        height: RESIDUAL,
+        x: channel.axis.scale,
+        y: AxisScale::symmetric(values),
+    };
+    panel.guides(canvas);
+    panel.curve(canvas, &points(channel.at, &before), BEFORE);
+    if let Some(after) = &after {
+        panel.curve(canvas, &points(channel.at, after), AFTER);
+    }
+    panel.left_axis(canvas, true, "residual");
+    panel.lower_axis(canvas, true, &channel.axis.title);
 }
 
 /// Draws the legend above the panels.

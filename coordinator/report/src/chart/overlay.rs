@@ -183,7 +183,8 @@ pub(crate) fn fitted(case: &Case, result: &ConditionResult) -> Option<Figure> {
     before_after(
         &drawn,
         ["recommended parameters", "optimised parameters"],
-        "The fitted channels: measured, and simulated with the recommended and with the optimised parameters."
+        "The fitted channels: measured, and simulated with the recommended and with the optimised parameters; below, measured \
+         minus simulated."
             .to_owned(),
     )
 }

@@ -12,7 +12,7 @@ pub fn report(subject: &DiagnosisInput<'_>) -> Report {
     let title = format!("Diagnosis of {}", subject.case.name);
     let sections = SECTIONS.iter().map(|section| section(subject));
     Report {
-        outcome: words::outcome(subject.diagnosis().verdict),
+        outcome: words::outcome(subject.diagnosis()),
         ..Report::new(title, &subject.origin.run, sections)
     }
 }

@@ -3,7 +3,7 @@ use crate::sample;
 use discrepancy::baseline::discretisation_check::Preflight;
 use discrepancy::diagnose::{
     Absorbed, Diagnosis, Estimate, ForceEstimate, IndistinguishablePair, Limit, NuisanceEstimate,
-    ParameterEstimate, Round,
+    ParameterEstimate, Remainder, Round,
 };
 use discrepancy::hypothesis::candidate::CandidateEffect;
 use discrepancy::hypothesis::refit::Refitted;
@@ -501,6 +501,11 @@ pub(crate) fn diagnosis(verdict: Verdict) -> SampleDiagnosis {
         whiteness: Some([1e-7, 0.31]),
         verdict,
         reason: (verdict == Verdict::Unresolved).then(|| "the likeliest is not enough".to_owned()),
+        remainder: Remainder {
+            explained: (verdict != Verdict::Unresolved).then_some(0.99),
+            is_converged: true,
+            ..Remainder::default()
+        },
         effects,
         rounds: vec![round],
         localisation: Some(whereabouts()),

@@ -11,7 +11,8 @@ use crate::words::{SYNTHETIC, capitalised};
 pub(super) fn section(subject: &DiagnosisInput<'_>) -> Section {
     let diagnosis = subject.diagnosis();
     let mut blocks = vec![Block::Lead(words::verdict(subject))];
-    let reason = diagnosis.reason.iter();
+    // the first sentence has the reason of an answer in part
+    let reason = diagnosis.reason.iter().filter(|_| !diagnosis.is_in_part());
     blocks.extend(reason.map(|reason| Block::Text(format!("The reason: {reason}."))));
     let effects = words::effects(subject);
     if !effects.is_empty() {
@@ -78,9 +79,10 @@ fn best_channel(subject: &DiagnosisInput<'_>) -> Option<Figure> {
     };
     let caption = if best.after.is_some() {
         "The channel that shows it best: measured, and simulated by the recalibrated model without and with the added \
-         effects."
+         effects; below, measured minus simulated."
     } else {
-        "The channel with the largest residual: measured, and simulated by the recalibrated model."
+        "The channel with the largest residual: measured, and simulated by the recalibrated model; below, measured minus \
+         simulated."
     };
     chart::before_after(
         &[channel],

@@ -45,7 +45,7 @@ pub(in crate::diagnosis) fn gaps(subject: &DiagnosisInput<'_>) -> Option<Table> 
              1000 times, before and after on the same draw, less the scatter of the draws themselves.",
             "A gap that closes does not prove a name: a wrong effect often closes most of it, which is \
              why the rival stands beside it.",
-        ]).with_notes(diagnosis.whiteness.map(|p| whiteness(subject, p))).non_empty()
+        ]).with_notes(words::predictive_scores(subject)).with_notes(diagnosis.whiteness.map(|p| whiteness(subject, p))).non_empty()
 }
 
 /// States the p-values of a whiteness test of the residual, without and with the added effects.

@@ -1,6 +1,6 @@
 //! Sentences about the confidence in a diagnosis and its scope.
 use super::effect::named;
-use super::value::{equals, interval, nats, p_value};
+use super::value::{equals, interval, nats, odds, p_value};
 use crate::diagnosis::subject::DiagnosisInput;
 use crate::document::Fact;
 use crate::number::{percent, quantity, significant};
@@ -18,11 +18,10 @@ pub(in crate::diagnosis) fn confidence(subject: &DiagnosisInput<'_>) -> Vec<Stri
         .map(|effect| {
             format!(
                 "{}: if it were not there, a test as clear as this one anywhere in the library would \
-                 have the probability p {}; with every gene fitted again, the record speaks for it by \
-                 {} nats.",
+                 have the probability p {}; with every gene fitted again, the record says that it is {}.",
                 effect.id,
                 equals(&p_value(effect.p_value)),
-                nats(effect.ln_evidence)
+                likely(effect.ln_evidence)
             )
         })
         .collect();
@@ -31,9 +30,9 @@ pub(in crate::diagnosis) fn confidence(subject: &DiagnosisInput<'_>) -> Vec<Stri
     {
         let behind = (best.log_evidence - rival.log_evidence) / round.dispersion;
         sentences.push(format!(
-            "The best rejected rival, {}, lies {} nats behind on the fitted data; including held-out data, at least 3 nats are required.",
+            "The best rejected rival is {}: on the fitted data the answer is preferred to it ({}); including held-out data, odds of 20 to 1 are required.",
             named(subject, &rival.id),
-            nats(behind)
+            odds(behind)
         ));
     }
     if let Some(found) = &diagnosis.force {
@@ -48,12 +47,12 @@ pub(in crate::diagnosis) fn confidence(subject: &DiagnosisInput<'_>) -> Vec<Stri
     }
     if !added.is_empty() {
         sentences.extend(diagnosis.prediction.iter().map(|one| {
-            let likelier = if one.nats < 0.0 { "less likely" } else { "likelier" };
+            let likelier = if one.nats < 0.0 { "against" } else { "for" };
             format!(
-                "{}, {}: with the added effects these data are {} nats {likelier}, marginalised over the uncertainty of the fit.",
+                "{}, {}: these data speak {likelier} the added effects ({}), marginalised over the uncertainty of the fit.",
                 condition_name(subject.case, one.condition),
                 part(one.part),
-                nats(one.nats.abs()),
+                odds(one.nats),
             )
         }));
     }
@@ -80,11 +79,11 @@ fn force(subject: &DiagnosisInput<'_>, force: &ForceEstimate) -> Vec<String> {
     });
     let mut sentences = vec![format!(
         "The force {}: amplitude {} (95\u{a0}% interval {}){phase}; with every gene fitted again, the \
-         record speaks for it by {} nats.",
+         record says that it is {}.",
         force.id,
         quantity(force.amplitude, &force.unit),
         interval(force.interval, &force.unit),
-        nats(force.ln_evidence)
+        likely(force.ln_evidence)
     )];
     let rows = force.rows.iter().filter(|row| row.part != DataRole::Fitted);
     sentences.extend(rows.map(|row| format!("With that force, {}", closing(subject, row))));
@@ -115,8 +114,8 @@ fn closing(subject: &DiagnosisInput<'_>, row: &GapRow) -> String {
     )
 }
 
-/// Lists the gap before and after adding effects with the share that is closed, one fact for each kind of data,
-/// and the predictive scores; the gap alone if nothing was added.
+/// Lists the gap before and after adding effects with the share that is closed, one fact for each kind of data;
+/// the gap alone if nothing was added.
 pub(in crate::diagnosis) fn gap_numbers(subject: &DiagnosisInput<'_>) -> Vec<Fact> {
     let diagnosis = subject.diagnosis();
     let changed = !subject.added().is_empty();
@@ -143,21 +142,35 @@ pub(in crate::diagnosis) fn gap_numbers(subject: &DiagnosisInput<'_>) -> Vec<Fac
         };
         Fact::new(name, value)
     };
-    let mut facts: Vec<Fact> = diagnosis.rows.iter().map(gap).collect();
-    if changed {
-        facts.extend(diagnosis.prediction.iter().map(|one| {
-            let name = format!(
-                "predictive score, {}, {}",
-                condition_name(subject.case, one.condition),
-                part(one.part)
-            );
-            Fact::new(
-                name,
-                format!("{} nats for the added effects", nats(one.nats)),
-            )
-        }));
+    diagnosis.rows.iter().map(gap).collect()
+}
+
+/// States the odds of an effect against its absence.
+fn likely(nats: f64) -> String {
+    if nats < 0.0 {
+        format!("not there ({})", odds(nats))
+    } else {
+        format!("there ({})", odds(nats))
     }
-    facts
+}
+
+/// Lists the predictive scores of the answer in nats, by record; `None` where nothing was added or held out.
+pub(in crate::diagnosis) fn predictive_scores(subject: &DiagnosisInput<'_>) -> Option<String> {
+    let scores = subject.diagnosis().prediction.iter().map(|one| {
+        format!(
+            "{}, {}: {} nats",
+            condition_name(subject.case, one.condition),
+            part(one.part),
+            nats(one.nats)
+        )
+    });
+    let scores: Vec<String> = scores.collect();
+    (!subject.added().is_empty() && !scores.is_empty()).then(|| {
+        format!(
+            "Gain of the predictive log likelihood of data that took no part: {}.",
+            scores.join("; ")
+        )
+    })
 }
 
 /// Returns the role of the data of a comparison row in the fit: fitted, or the kind of hold-out.

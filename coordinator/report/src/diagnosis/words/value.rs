@@ -33,3 +33,30 @@ pub(in crate::diagnosis) fn interval([low, high]: [f64; 2], unit: &str) -> Strin
         MISSING.to_owned()
     }
 }
+
+/// Formats evidence in nats as odds, up to a million to one.
+pub(in crate::diagnosis) fn odds(value: f64) -> String {
+    /// Odds beyond which a number says nothing more.
+    const MOST: f64 = 1e6;
+    let odds = libm::exp(value.abs());
+    if value.is_nan() {
+        MISSING.to_owned()
+    } else if odds > MOST {
+        "practically certain".to_owned()
+    } else {
+        format!("odds of {} to 1", significant(odds))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn evidence_is_told_as_odds_up_to_a_million() {
+        assert_eq!(odds(3.0), "odds of 20.1 to 1");
+        assert_eq!(odds(14.0), "practically certain");
+        assert_eq!(odds(f64::INFINITY), "practically certain");
+        assert_eq!(odds(f64::NAN), MISSING);
+    }
+}

@@ -1,23 +1,48 @@
 //! Verdict of a diagnosis as a keyword and as a sentence.
 use super::effect::{generic, named};
 use crate::diagnosis::subject::DiagnosisInput;
+use crate::number::percent;
 use crate::words::join_words;
-use discrepancy::diagnose::Round;
+use discrepancy::diagnose::{Diagnosis, Round};
 use discrepancy::verdict::Verdict;
 
 /// Returns the verdict's keyword in capitals.
-pub(in crate::diagnosis) const fn outcome(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::NothingDetected => "NOTHING DETECTED",
-        Verdict::Named => "NAMED",
-        Verdict::Ambiguous => "AMBIGUOUS",
-        Verdict::Unlisted => "UNLISTED",
-        Verdict::Unresolved => "UNRESOLVED",
+pub(in crate::diagnosis) fn outcome(diagnosis: &Diagnosis) -> &'static str {
+    match (diagnosis.verdict, diagnosis.is_in_part()) {
+        (Verdict::NothingDetected, _) => "NOTHING DETECTED",
+        (Verdict::Named, false) => "NAMED",
+        (Verdict::Named, true) => "NAMED IN PART",
+        (Verdict::Ambiguous, false) => "AMBIGUOUS",
+        (Verdict::Ambiguous, true) => "AMBIGUOUS IN PART",
+        (Verdict::Unlisted, false) => "UNLISTED",
+        (Verdict::Unlisted, true) => "UNLISTED IN PART",
+        (Verdict::Unresolved, _) => "UNRESOLVED",
     }
 }
 
-/// Returns the verdict as one sentence, without the effect sizes.
+/// Returns the verdict as one sentence, without the effect sizes: what is missing, and how much of the gap it
+/// explains and leaves.
 pub(in crate::diagnosis) fn verdict(subject: &DiagnosisInput<'_>) -> String {
+    let diagnosis = subject.diagnosis();
+    let said = claim(subject);
+    if diagnosis.is_in_part() {
+        let what = diagnosis.reason.as_deref().unwrap_or_default();
+        return format!("In part: {}; it {what}.", said.trim_end_matches('.'));
+    }
+    match diagnosis.remainder.explained {
+        Some(share) if diagnosis.verdict != Verdict::Unresolved => {
+            format!(
+                "{}; it explains {} of the gap.",
+                said.trim_end_matches('.'),
+                percent(share)
+            )
+        }
+        _ => said,
+    }
+}
+
+/// Returns what the verdict claims, as one sentence.
+fn claim(subject: &DiagnosisInput<'_>) -> String {
     let diagnosis = subject.diagnosis();
     match diagnosis.verdict {
         Verdict::NothingDetected if diagnosis.limits.is_empty() => {

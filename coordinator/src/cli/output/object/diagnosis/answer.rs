@@ -1,7 +1,7 @@
 //! Complete JSON object of `horsehead diagnose`.
 use super::{
     effects::{EffectOutput, ForceOutput, RoundOutput, effect, force, rounds},
-    gap::{GapOutput, PredictionOutput, gap, predictions},
+    gap::{GapOutput, LeftOutput, PredictionOutput, gap, left, predictions},
     localisation::{LocalisationOutput, localisation},
     parameter_drift::{VaryingUnknownsOutput, wandered},
 };
@@ -20,8 +20,18 @@ pub(crate) struct DiagnoseOutput {
     run: String,
     case: String,
     verdict: Verdict,
+    /// Whether the verdict claims a part only: more than noise is left, or a stage that it rests on used up its
+    /// budget.
+    in_part: bool,
     /// Reason for the verdict of the diagnosis; null if it needs none.
     reason: Option<String>,
+    /// Share of the fitted record's gap that the answer closes; null without an answer.
+    explained: Option<f64>,
+    /// Records, fitted or not, on which the model of the answer leaves more than noise.
+    left: Vec<LeftOutput>,
+    converged: bool,
+    /// Unknowns, instruments and effect parameters of the answer that stand at a bound.
+    at_bounds: Vec<String>,
     /// Effects that the diagnosis added to the model, followed by the other members of their ambiguity sets,
     /// best first. Empty if the verdict names no effect: suspected effects are listed in the rounds.
     effects: Vec<EffectOutput>,
@@ -116,7 +126,12 @@ pub(crate) fn object(subject: &DiagnosisInput<'_>) -> DiagnoseOutput {
         run: subject.origin.run.clone(),
         case: subject.case.name.clone(),
         verdict: diagnosis.verdict,
+        in_part: diagnosis.is_in_part(),
         reason: diagnosis.reason.clone(),
+        explained: diagnosis.remainder.explained,
+        left: left(subject.case, &diagnosis.remainder.left),
+        converged: diagnosis.remainder.is_converged,
+        at_bounds: diagnosis.remainder.at_bounds.clone(),
         effects: named(diagnosis)
             .iter()
             .map(|e| effect(diagnosis, e))

@@ -1,5 +1,6 @@
 //! Gap (unexplained share of the measured variance) before and after the effects were added, and predictive
 //! scores.
+use discrepancy::diagnose::Left;
 use discrepancy::validation::compare::{DataRole, GapRow};
 use discrepancy::validation::gap_closure::Closed;
 use discrepancy::validation::predictive::Prediction;
@@ -23,17 +24,54 @@ pub(super) fn predictions(case: &Case, scores: &[Prediction]) -> Vec<PredictionO
         Some(PredictionOutput {
             record: case.conditions.get(score.condition)?.name.clone(),
             nats: score.nats,
-            held_out: match score.part {
-                DataRole::Cycles => "cycles",
-                DataRole::Channels => "channel",
-                DataRole::Segment => "segment",
-                DataRole::Condition => "condition",
-                DataRole::LeftOut => "left_out",
-                DataRole::Fitted => return None,
-            },
+            held_out: held_out(score.part)?,
         })
     };
     scores.iter().filter_map(one).collect()
+}
+
+/// Returns the keyword of a kind of held-out data; `None` for fitted data.
+const fn held_out(part: DataRole) -> Option<&'static str> {
+    match part {
+        DataRole::Cycles => Some("cycles"),
+        DataRole::Channels => Some("channel"),
+        DataRole::Segment => Some("segment"),
+        DataRole::Condition => Some("condition"),
+        DataRole::LeftOut => Some("left_out"),
+        DataRole::Fitted => None,
+    }
+}
+
+/// Record on which the model of the answer leaves more than noise.
+#[derive(Debug, Serialize)]
+pub(super) struct LeftOutput {
+    /// Name of the condition under which the record was measured.
+    record: String,
+    /// Kind of held-out data, as in a predictive score; null for the fitted record.
+    held_out: Option<&'static str>,
+    /// Share of the gap without effects that is left.
+    share: f64,
+    /// Title of the channel in which most is left.
+    channel: String,
+    /// Shortest range of the abscissa with half of that channel's squared residual.
+    between: [f64; 2],
+    /// Unit of the abscissa.
+    unit: String,
+}
+
+/// Converts the records on which an answer leaves more than noise to their JSON form.
+pub(super) fn left(case: &Case, all: &[Left]) -> Vec<LeftOutput> {
+    let one = |left: &Left| {
+        Some(LeftOutput {
+            record: case.conditions.get(left.condition)?.name.clone(),
+            held_out: held_out(left.part),
+            share: left.share,
+            channel: left.channel.clone(),
+            between: left.between,
+            unit: left.unit.clone(),
+        })
+    };
+    all.iter().filter_map(one).collect()
 }
 
 /// Gap (unexplained share of the measured variance) before and after the effects were added, on the fitted

@@ -3,7 +3,8 @@
 use super::{answer::object, times::Times};
 use discrepancy::{
     diagnose::{
-        Diagnosis, Estimate, ForceEstimate, IndistinguishablePair, Limit, ParameterEstimate, Round,
+        Diagnosis, Estimate, ForceEstimate, IndistinguishablePair, Left, Limit, ParameterEstimate,
+        Remainder, Round,
     },
     laboratory::Stage,
     localisation::{
@@ -303,6 +304,50 @@ fn wandering_genes_have_their_values() {
         assert!((ratio / factor - 1.0).abs() < 1e-12, "{ratio}");
     }
     assert_eq!(said["wander"]["after"], serde_json::json!([]));
+}
+
+/// Checks the fields that say how much an answer explains: a stage that ran out or a record with more than noise
+/// make it one in part, the localisation alone does not.
+#[test]
+fn what_is_left_stands_beside_the_verdict() {
+    let whole = printed(full(Verdict::Named));
+    assert_eq!(whole["in_part"], false);
+    assert_eq!(whole["left"], serde_json::json!([]));
+    let part = printed(Diagnosis {
+        remainder: Remainder {
+            explained: Some(0.71),
+            left: vec![Left {
+                condition: 1,
+                part: DataRole::Condition,
+                share: 0.29,
+                channel: "gauge 3".to_owned(),
+                between: [200.0, 260.0],
+                unit: "deg".to_owned(),
+            }],
+            is_converged: true,
+            at_bounds: vec!["kb1".to_owned()],
+        },
+        ..full(Verdict::Named)
+    });
+    assert_eq!(part["in_part"], true);
+    assert_eq!(part["explained"], 0.71);
+    assert_eq!(part["converged"], true);
+    assert_eq!(part["at_bounds"], serde_json::json!(["kb1"]));
+    let left = serde_json::json!({"record": "4rpm", "held_out": "condition", "share": 0.29,
+        "channel": "gauge 3", "between": [200.0, 260.0], "unit": "deg"});
+    assert_eq!(part["left"], serde_json::json!([left]));
+    for (stage, in_part) in [
+        (Stage::Where, false),
+        (Stage::Basin, false),
+        (Stage::Refit, true),
+    ] {
+        let ran_out = vec![stage];
+        let said = printed(Diagnosis {
+            ran_out,
+            ..full(Verdict::Named)
+        });
+        assert_eq!(said["in_part"], in_part, "{stage:?}");
+    }
 }
 
 #[test]

@@ -1,0 +1,200 @@
+//! Validation of an answer: its fit must be a minimum with instruments that are possible, must predict data
+//! excluded from the fit, must not open the gap under another condition, and must not be beaten by a generic
+//! force.
+use crate::baseline::session::Session;
+use crate::diagnose::claim::claim;
+use crate::diagnose::diagnosis::Diagnosis;
+use crate::diagnose::plausibility::Size;
+use crate::diagnose::remainder::{instruments_beyond, is_converged, percent};
+use crate::estimate::effect_size::estimates;
+use crate::estimate::force::force;
+use crate::hypothesis::generic_force::in_place;
+use crate::hypothesis::round::Round;
+use crate::inputs::Inputs;
+use crate::laboratory::{Laboratory, Stage};
+use crate::model::fit::Fit;
+use crate::validation::compare::{DataRole, GapRow, ValidationRecord, compare};
+use crate::validation::predictive::{Prediction, rejection_reason, scores};
+
+/// Computes sizes, gaps and predictive scores of an answer, stores them in the diagnosis, and returns the
+/// reason why the answer is none, if its fit is no minimum, needs instruments that are far off, or does not
+/// hold on data excluded from the fit. The predictive value of each effect in addition to the others is tested
+/// earlier.
+pub(crate) async fn validate<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    answer: &Fit,
+    shown: &[ValidationRecord<'_>],
+    diagnosis: &mut Diagnosis,
+) -> Result<Option<String>, L::Error> {
+    let base = session.base;
+    diagnosis.effects = estimates(&diagnosis.rounds, answer, &base.record.metric);
+    prove(session, answer, shown, diagnosis).await?;
+    let added = &answer.model.added;
+    if added.is_empty() {
+        return Ok(None);
+    }
+    let ids: Vec<&str> = added.iter().map(|own| &*own.id).collect();
+    let ids = ids.join(" with ");
+    let tried = diagnosis.rounds.first().map_or(1, |r| r.candidates.len());
+    // a name that what took no part has chosen needs as many times more as it chose from
+    let rounds = diagnosis.rounds.iter();
+    let kept = rounds.filter(|round| round.added.is_some());
+    let chosen: f64 = kept.map(|round| libm::log(round.ranked as f64)).sum();
+    let claim = Claim {
+        ids: &ids,
+        effects: added.len(),
+        tried,
+        chosen,
+    };
+    let (records, reason) = prediction(session, [answer, &base.fit], &claim, shown).await?;
+    diagnosis.prediction = records;
+    let opened = || opened(&ids, &diagnosis.rows, session.inputs);
+    Ok(no_fit(answer, &ids).or(reason).or_else(opened))
+}
+
+/// Claim whose predictive score is required.
+struct Claim<'a> {
+    /// Identifiers of its effects, for messages.
+    ids: &'a str,
+    /// Number of its effects.
+    effects: usize,
+    /// Number of candidates from which each was chosen.
+    tried: usize,
+    /// Nats that the score must have in addition, because the held-out data took part in a choice.
+    chosen: f64,
+}
+
+/// Scores a model against one without its claim on data excluded from the fit; returns the scores with the
+/// reason why the claim does not predict, if it does not.
+async fn prediction<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    [with, without]: [&Fit; 2],
+    claim: &Claim<'_>,
+    shown: &[ValidationRecord<'_>],
+) -> Result<(Vec<Prediction>, Option<String>), L::Error> {
+    let inputs = session.inputs;
+    let thresholds = &inputs.thresholds;
+    let mut experiments = session.experiments(Stage::Show);
+    let whole = scores(&mut experiments, shown, [with, without]).await?;
+    let needed = whole.needed(thresholds, claim.effects, claim.tried) + claim.chosen;
+    let reason = rejection_reason(claim.ids, &whole, [thresholds.prediction, needed], inputs);
+    Ok((whole.records, reason))
+}
+
+/// Returns the reason against a claim that the gap to the record of another condition grows with it, if it
+/// does.
+fn opened(ids: &str, rows: &[GapRow], inputs: &Inputs) -> Option<String> {
+    let mut others = rows.iter().filter(|row| row.part == DataRole::Condition);
+    let row = others.find(|row| row.closed.closed < 0.0)?;
+    Some(format!(
+        "{ids} explains the fitted data, but under {} the gap grows by {} with it",
+        inputs.condition(row.condition),
+        percent(-row.closed.closed)
+    ))
+}
+
+/// Returns the reason why the fit of an answer is none, if it has not converged or needs instruments that are
+/// far off.
+fn no_fit(answer: &Fit, ids: &str) -> Option<String> {
+    let beyond = instruments_beyond(answer);
+    if !beyond.is_empty() {
+        return Some(format!(
+            "with {ids} the fit still needs instruments far beyond their tolerance: {}",
+            beyond.join(", ")
+        ));
+    }
+    (!is_converged(answer)).then(|| {
+        format!(
+            "the fit with {ids} did not converge: one more step is predicted to lower the misfit by {}",
+            percent(answer.search.predicted_decrease())
+        )
+    })
+}
+
+/// Puts the generic force that beats an effect of the answer in the place of that effect, and returns the
+/// answer without the effect; `None` where no effect is beaten.
+pub(crate) async fn replace_by_force<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    answer: &Fit,
+    diagnosis: &mut Diagnosis,
+) -> Result<Option<Fit>, L::Error> {
+    if diagnosis.generic.is_some() {
+        return Ok(None);
+    }
+    let sizes = claim(answer, &diagnosis.effects);
+    for (position, effect) in answer.model.added.iter().enumerate() {
+        let own = |round: &&mut Round| round.added.as_ref() == Some(&effect.id);
+        let Some(round) = diagnosis.rounds.iter_mut().find(own) else {
+            continue;
+        };
+        // the size that gives the effect its name comes first
+        let size = sizes.iter().find(|size| size.effect == effect.id);
+        let vanishes = size.is_some_and(Size::may_be_nothing);
+        let Some(found) = in_place(session, answer, (position, vanishes), round).await? else {
+            continue;
+        };
+        let id = found.force.id.clone();
+        let metric = &session.base.record.metric;
+        diagnosis.force = Some(force(found.force, (&found.without, metric), round));
+        round.withdraw(format!(
+            "a generic force {id} in the place of {} explains more of the residual",
+            effect.id
+        ));
+        diagnosis.generic = Some(id);
+        return Ok(Some(found.without));
+    }
+    Ok(None)
+}
+
+/// Computes the gaps with the generic force that beats every named effect, and returns the reason why it does
+/// not describe a missing effect, if it does not hold on data excluded from the fit.
+pub(crate) async fn doubt_of_force<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    answer: &Fit,
+    shown: &[ValidationRecord<'_>],
+    diagnosis: &mut Diagnosis,
+) -> Result<Option<String>, L::Error> {
+    let Some(force) = diagnosis.force.as_mut() else {
+        return Ok(None);
+    };
+    let before = &session.base.fit;
+    let mut experiments = session.experiments(Stage::Show);
+    force.rows = compare(&mut experiments, shown, before, &force.fit).await?;
+    if diagnosis.generic.is_none() {
+        return Ok(None);
+    }
+    let ids = format!("the generic force {}", force.id);
+    let claim = Claim {
+        ids: &ids,
+        effects: 1,
+        tried: diagnosis.rounds.first().map_or(1, |r| r.generics.len()),
+        chosen: 0.0,
+    };
+    let fit = force.fit.clone();
+    let (records, reason) = prediction(session, [&fit, answer], &claim, shown).await?;
+    if answer.model.added.is_empty() {
+        diagnosis.prediction = records;
+    }
+    Ok(no_fit(&fit, &ids).or(reason))
+}
+
+/// Computes the misfit to each record before and after adding effects: for the answer and its best rejected
+/// rival.
+pub(crate) async fn prove<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    after: &Fit,
+    shown: &[ValidationRecord<'_>],
+    diagnosis: &mut Diagnosis,
+) -> Result<(), L::Error> {
+    let base = session.base;
+    let mut experiments = session.experiments(Stage::Show);
+    let before = &base.fit;
+    diagnosis.rows = compare(&mut experiments, shown, before, after).await?;
+    diagnosis.rival = None;
+    let rival = diagnosis.rejected().map(|(_, rival)| rival.clone());
+    if let Some(rival) = rival {
+        let rows = compare(&mut experiments, shown, before, &rival.fit).await?;
+        diagnosis.rival = Some((rival.id, rows));
+    }
+    Ok(())
+}
