@@ -1,7 +1,8 @@
 //! Tests with a Python model that has five candidate effects, one of which acts in the measured records but
 //! is absent from the case.
 use crate::rig::Rig;
-use std::fs;
+use serde_json::Value;
+use std::{fs, process::Command};
 
 /// True hardening coefficient of the spring, with which the measured records were generated [1/mm2].
 const HARDENING: f64 = 0.012;
@@ -25,6 +26,59 @@ fn a_hidden_effect_is_found_among_five_suspects_and_added() {
     assert!(text.starts_with("# A mass on a spring"));
     rig.done(&["case", "check", "case"]);
     assert_eq!(rig.left(), Vec::<String>::new());
+}
+
+/// Checks that a validation that has used up its budget takes no name away: the verdict says that it is one in
+/// part, and which stage ran out.
+#[test]
+fn a_name_stands_when_its_validation_has_used_up_its_budget() {
+    let rig = Rig::of("bench");
+    let make = rig.file("case/make.py");
+    let measured = rig.file("two");
+    let written = Command::new("python3")
+        .args([
+            make.as_os_str(),
+            measured.as_os_str(),
+            "friction=4".as_ref(),
+        ])
+        .status();
+    assert!(written.unwrap().success());
+    let file = rig.file("case/case.toml");
+    let text = fs::read_to_string(&file).unwrap();
+    fs::write(&file, text + "\n[diagnose]\nsimulations = 1200\n").unwrap();
+    let answer = rig.object(&["diagnose", "case", "--measured", "two", "--run", "run"]);
+    assert_eq!(answer["verdict"], "named", "{answer}");
+    let names = answer["effects"].as_array().unwrap().iter();
+    let names: Vec<&Value> = names.map(|effect| &effect["id"]).collect();
+    assert_eq!(names, ["friction", "hardening"], "{answer}");
+    // comparisons of rivals used up the budget, and the validation ran all the same
+    let ran_out = answer["ran_out"].as_array().unwrap();
+    assert!(ran_out.contains(&Value::from("show")), "{answer}");
+    assert_eq!(answer["in_part"], true, "{answer}");
+    let reason = answer["reason"].as_str().unwrap();
+    assert!(
+        reason.contains("the stage \"show\" used up its budget"),
+        "{reason}"
+    );
+    assert_eq!(
+        answer["prediction"].as_array().unwrap().len(),
+        2,
+        "{answer}"
+    );
+}
+
+/// Checks that a budget of zero is refused by file and field.
+#[test]
+fn a_budget_of_no_simulation_is_refused() {
+    let rig = Rig::of("bench");
+    let file = rig.file("case/case.toml");
+    let text = fs::read_to_string(&file).unwrap();
+    fs::write(&file, text + "\n[diagnose]\nsimulations = 0\n").unwrap();
+    let said = rig.refused(&["diagnose", "case", "--run", "run"]);
+    assert!(
+        said.contains("case.toml") && said.contains("simulations"),
+        "{said}"
+    );
 }
 
 /// Checks that the log digest is the same for one worker, three workers, and a run resumed from a truncated

@@ -8,6 +8,7 @@
 mod case_kind;
 pub mod command;
 pub mod conversion;
+mod diagnose;
 pub mod difference;
 pub mod document;
 pub mod effect;
@@ -31,6 +32,7 @@ pub mod summary;
 pub mod table;
 
 pub use case_kind::ModelKind;
+pub use diagnose::DiagnoseEntry;
 pub use effect::{CaseEffect, CaseParameter, Provenance};
 pub use effect_text::{append_effects, write_effects, write_starts};
 pub use error::CaseError;

@@ -1,5 +1,5 @@
 //! Loaded case, with its notes, separate cycles and effects.
-use super::{effect::CaseEffect, note::Note};
+use super::{diagnose::DiagnoseEntry, effect::CaseEffect, note::Note};
 use discrepancy::record::Record;
 use protocol::case::Case;
 use serde::Deserialize;
@@ -28,6 +28,8 @@ pub struct Loaded {
     pub synthetic: bool,
     /// Effects as the case file states them, with intervals and provenance.
     pub effects: Vec<CaseEffect>,
+    /// Settings of a diagnosis.
+    pub diagnose: DiagnoseEntry,
 }
 
 impl Loaded {

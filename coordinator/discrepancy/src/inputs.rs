@@ -1,4 +1,5 @@
 //! Inputs of a diagnosis, with its thresholds.
+use crate::laboratory::Stage;
 use crate::model::inactive_unknowns::InactiveUnknowns;
 use crate::record::measured::Record;
 use crate::thresholds::Thresholds;
@@ -34,6 +35,8 @@ pub struct Inputs {
     pub seed: u64,
     /// Thresholds of all decisions of the diagnosis.
     pub thresholds: Thresholds,
+    /// Whether the simulator computes derivatives; an external program computes none.
+    pub differentiates: bool,
     /// Whether derivatives are computed by finite differences even if the simulator can differentiate.
     pub differences: bool,
 }
@@ -48,6 +51,42 @@ impl Inputs {
             .map(|off| off.candidate);
         let all = self.library.iter().cloned().chain(off);
         all.filter(|suspect| !without.contains(&suspect.id))
+    }
+
+    /// Returns the budget of each stage in plain simulations: a number of simulations, never a time, so that the
+    /// result does not depend on the machine. Stages that need derivatives grow with their cost, which is that
+    /// of many simulations where the simulator computes none; tests and refits with the
+    /// number of candidate effects; checks and validation with the number of conditions.
+    pub fn budget(&self) -> [f64; Stage::ALL.len()] {
+        /// Number of candidate effects for which the budgets are stated.
+        const CANDIDATES: f64 = 100.0;
+        /// Number of conditions for which the budgets are stated.
+        const CONDITIONS: f64 = 2.0;
+        /// Cost of a simulation with the derivatives by ten unknowns.
+        const LINEARIZED: f64 = 6.0;
+        let stated = self.thresholds.budget.map(f64::from);
+        if let Some(whole) = self.thresholds.simulations {
+            let share = f64::from(whole.get()) / stated.iter().sum::<f64>().max(1.0);
+            return stated.map(|own| own * share);
+        }
+        let unknowns = self.space.dimension() as f64;
+        let linearized = if self.differentiates && !self.differences {
+            0.1f64.mul_add(unknowns, 5.0)
+        } else {
+            unknowns + 1.0
+        };
+        let linearized = (linearized / LINEARIZED).max(1.0);
+        let candidates = (self.considered().count() as f64 / CANDIDATES).max(1.0);
+        let conditions = (self.records.len() as f64 / CONDITIONS).max(1.0);
+        std::array::from_fn(|k| {
+            let growth = match Stage::ALL[k] {
+                Stage::Basin | Stage::Recalibrate | Stage::Where => linearized,
+                Stage::Preflight => conditions,
+                Stage::Test | Stage::Refit => linearized * candidates,
+                Stage::Show => linearized * conditions,
+            };
+            stated[k] * growth
+        })
     }
 
     /// Returns the name of a working condition for messages, e.g. "condition fast"; its number if it has no

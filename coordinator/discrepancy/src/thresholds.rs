@@ -1,6 +1,7 @@
 //! Thresholds of a diagnosis, fixed before any record is seen.
 use crate::laboratory::Stage;
 use serde::{Deserialize, Serialize};
+use std::num::NonZeroU32;
 
 /// Decision thresholds of a diagnosis. The defaults are those of every published result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -44,9 +45,15 @@ pub struct Thresholds {
     /// Element size in the numerical check, as a share of the case's. The fits keep the case's element size;
     /// the change by the finer model counts as noise.
     pub refinement: f64,
-    /// Budget of each stage in plain simulations, in the stages' order: once it is used up, a stage starts
-    /// nothing that is optional. A simulation with derivatives counts as five, plus a tenth per derivative.
+    /// Budget of each stage in plain simulations, in the stages' order, for a case of ten unknowns whose
+    /// simulator computes derivatives, a hundred candidate effects and two conditions; it grows with each
+    /// ([`Inputs::budget`](crate::inputs::Inputs::budget)). Once it is used up, a stage starts nothing that is
+    /// optional. A simulation with derivatives counts as five, plus a tenth per derivative.
     pub budget: [u32; Stage::ALL.len()],
+    /// Total budget of all stages in plain simulations, as the case states it, in which each stage has its share
+    /// of `budget`; `None` for the budget that grows with the case.
+    #[serde(default)]
+    pub simulations: Option<NonZeroU32>,
     /// Identifiers of library effects that the diagnosis does not consider.
     pub without: Vec<String>,
 }
@@ -123,6 +130,7 @@ impl Default for Thresholds {
             step: 0.7,
             refinement: 0.5,
             budget: [2000, 1200, 100, 200, 2000, 2400, 400],
+            simulations: None,
             without: Vec::new(),
         }
     }

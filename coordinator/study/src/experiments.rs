@@ -104,7 +104,7 @@ impl<'a, E: Evaluator> Jobs<'a, E> {
             stages,
             costs: BTreeMap::new(),
             spent: 0.0,
-            left: inputs.thresholds.budget.map(f64::from),
+            left: inputs.budget(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! Serde types of `case.toml` in its general form.
 use super::super::{
-    effect::CaseEffect, fitted_conditions::FittedConditions, loaded::Records, prior::PriorEntry,
+    diagnose::DiagnoseEntry, effect::CaseEffect, fitted_conditions::FittedConditions,
+    loaded::Records, prior::PriorEntry,
 };
 use protocol::case::{Offset, Scale, Tie, Valley};
 use serde::Deserialize;
@@ -19,6 +20,9 @@ pub(super) struct CaseFile {
     pub(super) conditions: Vec<ConditionEntry>,
     pub(super) channels: Vec<ChannelEntry>,
     pub(super) objective: Option<ObjectiveEntry>,
+    /// Settings of a diagnosis.
+    #[serde(default)]
+    pub(super) diagnose: DiagnoseEntry,
     #[serde(default)]
     pub(super) effects: Vec<CaseEffect>,
 }

@@ -62,6 +62,7 @@ pub fn read(source: &RecordFolder<'_>) -> Result<Loaded, CaseError> {
             .flatten()
             .map(Record::held_out_last)
             .collect(),
+        diagnose: file.diagnose,
         effects: file.effects,
     })
 }

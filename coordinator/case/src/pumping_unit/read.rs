@@ -120,6 +120,7 @@ pub(super) fn resolve(source: &RecordFolder<'_>) -> Result<Resolved, CaseError> 
         case,
         notes,
         cycles,
+        diagnose: file.diagnose,
         effects: file.effects,
     };
     Ok(Resolved {

@@ -2,7 +2,8 @@
 //! are read.
 use super::recommended::Recommended;
 use crate::{
-    effect::CaseEffect, fitted_conditions::FittedConditions, loaded::Records, prior::PriorEntry,
+    diagnose::DiagnoseEntry, effect::CaseEffect, fitted_conditions::FittedConditions,
+    loaded::Records, prior::PriorEntry,
 };
 use protocol::{
     case::Offset,
@@ -52,6 +53,9 @@ pub(super) struct CaseFile {
     pub(super) conditions: Vec<ConditionEntry>,
     /// Objective of a calibration; required where there is a gauge record.
     pub(super) objective: Option<ObjectiveEntry>,
+    /// Settings of a diagnosis.
+    #[serde(default)]
+    pub(super) diagnose: DiagnoseEntry,
     pub(super) run: RunSettings,
 }
 

@@ -17,10 +17,10 @@ pub(crate) struct Budgeted<'a, L> {
 }
 
 impl<'a, L> Budgeted<'a, L> {
-    pub(crate) fn new(lab: &'a mut L, budget: &[u32; Stage::ALL.len()]) -> Self {
+    pub(crate) const fn new(lab: &'a mut L, budget: [f64; Stage::ALL.len()]) -> Self {
         Self {
             lab,
-            left: budget.map(f64::from),
+            left: budget,
             ran_out: Vec::new(),
         }
     }

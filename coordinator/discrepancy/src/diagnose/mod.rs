@@ -42,15 +42,17 @@ use rounds::rounds;
 /// # Errors
 /// Returns an error if no worker is left to simulate, or the user stops the run.
 pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis, L::Error> {
-    let mut counted = Budgeted::new(lab, &inputs.thresholds.budget);
+    let budget = inputs.budget();
+    let mut counted = Budgeted::new(lab, budget);
     let mut diagnosis = diagnose_budgeted(&mut counted, inputs).await?;
     diagnosis
         .notes
         .extend(counted.ran_out().iter().map(|stage| {
             format!(
-                "the stage \"{}\" used up its budget of {} simulations and began no further work",
+                "the stage \"{}\" used up its budget of {:.0} simulations and began no further work; [diagnose] \
+                 simulations of case.toml states another total",
                 stage.name(),
-                inputs.thresholds.budget[*stage as usize]
+                budget[*stage as usize]
             )
         }));
     diagnosis.ran_out = counted.ran_out().to_vec();

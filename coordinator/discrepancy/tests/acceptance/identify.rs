@@ -110,6 +110,7 @@ fn seen(seed: u64, unknowns: Vec<Unknown>) -> IdentificationResult {
     let space = Space::new(&unknowns).expect("ordered");
     let inputs = Inputs {
         conditions: Vec::new(),
+        differentiates: true,
         differences: false,
         start: Some(vec![0.0; space.dimension()]),
         space,
@@ -304,6 +305,7 @@ fn of_line(seed: u64, correlation: f64, stated: Option<f64>) -> (IdentificationR
         .to_vec();
     let inputs = Inputs {
         conditions: Vec::new(),
+        differentiates: true,
         differences: false,
         start: Some(vec![0.0; 2]),
         space: Space::new(&unknowns).expect("ordered"),

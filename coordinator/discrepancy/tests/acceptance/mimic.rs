@@ -97,6 +97,7 @@ fn diagnosed(ids: &[&str], hidden: &[&[(&str, f64)]], seed: u64) -> Diagnosis {
     };
     let inputs = Inputs {
         conditions: Vec::new(),
+        differentiates: true,
         differences: false,
         space: Space::new(&unknowns).expect("ordered"),
         unknowns,

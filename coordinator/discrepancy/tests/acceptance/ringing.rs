@@ -132,6 +132,7 @@ fn diagnosed(records: Vec<Record>) -> Diagnosis {
 fn diagnosed_without(records: Vec<Record>, without: &[&str]) -> Diagnosis {
     let inputs = Inputs {
         conditions: Vec::new(),
+        differentiates: true,
         differences: false,
         space: space(),
         unknowns: unknowns(),

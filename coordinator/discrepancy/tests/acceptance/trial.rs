@@ -76,6 +76,7 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
     }
     let inputs = Inputs {
         conditions: Vec::new(),
+        differentiates: true,
         differences: setup.differences,
         space: space(),
         unknowns: Vec::new(),

@@ -171,6 +171,7 @@ fn at(genes: [f64; 3]) -> Point {
 fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
     let inputs = Inputs {
         conditions: Vec::new(),
+        differentiates: true,
         differences: false,
         space: space(),
         unknowns: Vec::new(),

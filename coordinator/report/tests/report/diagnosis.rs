@@ -92,7 +92,7 @@ fn what_is_added_is_read_back_by_a_case_file() {
 fn a_name_stands_with_its_size_its_rival_and_what_to_do() {
     let page = words(&page(&suspicion::diagnosis(Verdict::Named)));
     for said in [
-        "The simulation lacks clearance of the <pins> & their \"bores\" (pin_clearance); it explains 99.0 % of the gap.",
+        "The simulation lacks clearance of the <pins> & their \"bores\" (pin_clearance); it explains 99.0 % of the gap, and no more than noise is left.",
         "size = 0.800\u{a0}MPa (95\u{a0}% interval 0.700 to 0.900\u{a0}MPa)"
             .replace('\u{a0}', " ")
             .as_str(),

@@ -457,6 +457,15 @@ fn predicted(added: bool) -> Vec<Prediction> {
     added.then_some(one).into_iter().collect()
 }
 
+/// Returns the remainder of an answer that explains nearly everything.
+fn remainder(verdict: Verdict) -> Remainder {
+    Remainder {
+        explained: (verdict != Verdict::Unresolved).then_some(0.99),
+        is_converged: true,
+        ..Remainder::default()
+    }
+}
+
 /// Builds a diagnosis with the given verdict and all data that belong to it.
 pub(crate) fn diagnosis(verdict: Verdict) -> SampleDiagnosis {
     let case = sample::case();
@@ -480,11 +489,8 @@ pub(crate) fn diagnosis(verdict: Verdict) -> SampleDiagnosis {
         }
     }
     let before = fit(&case, &[], 30.0, curves(1.0));
-    let after = if added {
-        round.refits[0].fit.clone()
-    } else {
-        before.clone()
-    };
+    let after = if added { &round.refits[0].fit } else { &before };
+    let after = after.clone();
     let force = (verdict == Verdict::Unlisted).then(|| ForceEstimate {
         id: "probe.back_head.sign".to_owned(),
         joint: "back_head".to_owned(),
@@ -501,11 +507,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> SampleDiagnosis {
         whiteness: Some([1e-7, 0.31]),
         verdict,
         reason: (verdict == Verdict::Unresolved).then(|| "the likeliest is not enough".to_owned()),
-        remainder: Remainder {
-            explained: (verdict != Verdict::Unresolved).then_some(0.99),
-            is_converged: true,
-            ..Remainder::default()
-        },
+        remainder: remainder(verdict),
         effects,
         rounds: vec![round],
         localisation: Some(whereabouts()),

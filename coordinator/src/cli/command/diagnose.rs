@@ -94,6 +94,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let settings = DiagnosisSettings {
         thresholds: Thresholds {
             rounds: usize::from(arguments.rounds),
+            simulations: target.loaded.diagnose.simulations,
             without: arguments.without.clone(),
             ..Thresholds::default()
         },

@@ -5,7 +5,7 @@ use crate::cli::{
     output::calibration::{history_point, worker_use},
     run::{calibration::Calibration, kind::AnyRun},
 };
-use discrepancy::{laboratory::Finding, thresholds::Thresholds};
+use discrepancy::laboratory::Finding;
 use report::{
     Block, ConditionResult, Individual, Run, Section, Table,
     document::{Fact, Row},
@@ -77,16 +77,13 @@ pub(super) fn unfinished(
             sections.push(workers(state));
             sections
         }
-        AnyRun::Diagnosis(run) => {
-            let budget = &run.manifest.settings.thresholds;
-            vec![
-                stage_progress(state, Some(budget)),
-                gaps(state),
-                suspects(state),
-                workers(state),
-            ]
-        }
-        AnyRun::Identification(_) => vec![stage_progress(state, None), workers(state)],
+        AnyRun::Diagnosis(_) => vec![
+            stage_progress(state),
+            gaps(state),
+            suspects(state),
+            workers(state),
+        ],
+        AnyRun::Identification(_) => vec![stage_progress(state), workers(state)],
     }
 }
 
@@ -164,9 +161,8 @@ const fn progress(blocks: Vec<Block>) -> Section {
     }
 }
 
-/// Returns the section on the stages of a diagnosis or identification; `budget` has the simulations that each
-/// stage of a diagnosis may use.
-fn stage_progress(state: &RunState, budget: Option<&Thresholds>) -> Section {
+/// Returns the section on the stages of a diagnosis or identification.
+fn stage_progress(state: &RunState) -> Section {
     let Some(last) = state.stages.last() else {
         return progress(vec![Block::Text(
             "Waiting for the first result.".to_owned(),
@@ -181,12 +177,8 @@ fn stage_progress(state: &RunState, budget: Option<&Thresholds>) -> Section {
             Some(own) if own.stage == last.stage => "running",
             Some(_) => "done",
         };
-        let all = budget.and_then(|own| own.budget.get(*stage as usize));
-        let left = match (own, all) {
-            (_, None) => MISSING.to_owned(),
-            (None, Some(all)) => count(u64::from(*all)),
-            (Some(own), Some(_)) => fixed(own.left, 0),
-        };
+        let left = own.filter(|own| own.left.is_finite());
+        let left = left.map_or_else(|| MISSING.to_owned(), |own| fixed(own.left, 0));
         let open = own.filter(|own| own.stage == last.stage);
         let open = open.map_or(0, |own| own.open as u64);
         Row::new(

@@ -142,6 +142,7 @@ pub(super) fn inputs<S>(
         global_search: entrance,
         seed: manifest.seed,
         thresholds: thresholds.clone(),
+        differentiates: !case::kind::of(case).is_program(),
         differences: false,
     })
 }

@@ -52,6 +52,7 @@ fn diagnosed(rig: &Rig, cycles: usize) -> Diagnosis {
         global_search: "least-squares",
         seed: 1,
         thresholds: Thresholds::default(),
+        differentiates: true,
         differences: false,
     };
     let mut laboratory = SynchronousLaboratory(Oscillators.prepare(&case).unwrap());

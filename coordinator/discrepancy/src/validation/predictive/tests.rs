@@ -142,6 +142,7 @@ fn case() -> Inputs {
         global_search: "quick",
         seed: 1,
         thresholds: Thresholds::default(),
+        differentiates: true,
         differences: false,
     }
 }

@@ -32,7 +32,7 @@ pub(in crate::diagnosis) fn verdict(subject: &DiagnosisInput<'_>) -> String {
     match diagnosis.remainder.explained {
         Some(share) if diagnosis.verdict != Verdict::Unresolved => {
             format!(
-                "{}; it explains {} of the gap.",
+                "{}; it explains {} of the gap, and no more than noise is left.",
                 said.trim_end_matches('.'),
                 percent(share)
             )
