@@ -89,7 +89,9 @@ pub(crate) async fn remainder<L: Laboratory>(
     let mut left = Vec::new();
     for one in shown {
         let explained = if one.part == DataRole::Fitted {
-            Some(base.explains(fit, level))
+            // a stated noise that is too high leaves less than noise
+            let less = !base.known().is_seen() && fit.chi_squared() < base.noise();
+            Some(less || base.explains(fit, level))
         } else {
             let mut experiments = session.experiments(Stage::Show);
             is_explained(&mut experiments, one, fit, level).await?

@@ -173,7 +173,7 @@ impl Metric {
 
     /// Returns the variance of each entry of a whitened vector of noise, given that the noise variances were
     /// estimated from few cycles: that of Student's distribution with their degrees of freedom, at most
-    /// [`WIDEST`]; 1 where they were not estimated.
+    /// 1.5; 1 where they were not estimated.
     pub fn student_variances(&self) -> DVector<f64> {
         let mut out = DVector::from_element(self.len(), 1.0);
         for block in &self.blocks {
