@@ -13,7 +13,9 @@ use crate::diagnose::plausibility;
 use crate::diagnose::reason::{Rejection, left, reason, remarks};
 use crate::diagnose::remainder::remainder;
 use crate::diagnose::settle::settle;
-use crate::diagnose::validate::{doubt_of_force, prove, replace_by_force, validate};
+use crate::diagnose::validate::{
+    doubt_of_force, drop_implausible, prove, replace_by_force, validate,
+};
 use crate::estimate::effect_size::{Estimate, refitted};
 use crate::estimate::nuisances::nuisance_estimates;
 use crate::estimate::spread::{Spread, coloured};
@@ -138,16 +140,22 @@ async fn settled<L: Laboratory>(
         answer = settle(session, other).await?;
         doubt = validate(session, &answer, shown, diagnosis).await?;
     }
+    while firm && let Some(fewer) = drop_implausible(session, &answer, diagnosis).await? {
+        answer = fewer;
+        doubt = validate(session, &answer, shown, diagnosis).await?;
+    }
     if firm && let Some(without) = replace_by_force(session, &answer, diagnosis).await? {
         answer = without;
         doubt = validate(session, &answer, shown, diagnosis).await?;
     }
     let of_force = doubt_of_force(session, &answer, shown, diagnosis).await?;
+    let doubt = doubt.or_else(|| implausible(base, &answer, diagnosis));
+    // a force beside effects that are not named has no size of its own
+    let beside = doubt.is_some() && !answer.model.added.is_empty();
     let mut suspects = Vec::new();
-    if !firm || of_force.is_some() {
+    if !firm || of_force.is_some() || beside {
         suspects.extend(withhold_force(diagnosis));
     }
-    let doubt = doubt.or_else(|| implausible(base, &answer, diagnosis));
     if !firm || doubt.is_some() {
         suspects.extend(withhold_effects(diagnosis));
         // what is not named is not shown as an answer, either
@@ -197,7 +205,8 @@ fn implausible(base: &Baseline, answer: &Fit, diagnosis: &Diagnosis) -> Option<S
         let mut rounds = diagnosis.rounds.iter();
         rounds.find_map(|round| no_answer(base, round))
     };
-    plausibility::doubt(&claim(answer, &diagnosis.effects)).or_else(sets)
+    let doubt = plausibility::doubt(&claim(answer, &diagnosis.effects));
+    doubt.map(|doubt| doubt.reason).or_else(sets)
 }
 
 fn suspect(id: &str, nats: f64) -> String {

@@ -52,40 +52,53 @@ impl Size {
     }
 }
 
+/// Reason against naming one of several effects.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Doubt {
+    /// Identifier of the effect.
+    pub(crate) effect: String,
+    pub(crate) reason: String,
+}
+
 /// Returns the first reason against naming effects of these sizes, if there is one.
-pub(crate) fn doubt(sizes: &[Size]) -> Option<String> {
-    for size in sizes {
-        let Size {
-            effect, parameter, ..
-        } = size;
-        let mut own = sizes.iter().filter(|other| other.effect == *effect);
-        if own.all(Size::may_be_nothing) {
-            let [low, high] = size.interval;
-            return Some(match size.tolerance {
-                Some(sd) if !(low..=high).contains(&size.absent) => format!(
-                    "{effect}: its {parameter} of {:.3e} lies within {WITHIN} standard deviations of the \
-                     instrument's tolerance ({sd:.1e})",
-                    size.value
-                ),
-                _ => format!(
-                    "{effect}: the interval of its {parameter}, {low:.3e} to {high:.3e}, contains the value \
-                     at which the effect vanishes"
-                ),
-            });
-        }
-        if size.at_bound() {
-            return Some(format!(
-                "{effect}: its {parameter} lies at its bound of {:.3e}",
+pub(crate) fn doubt(sizes: &[Size]) -> Option<Doubt> {
+    sizes.iter().find_map(|size| {
+        Some(Doubt {
+            effect: size.effect.clone(),
+            reason: doubt_of(size, sizes)?,
+        })
+    })
+}
+
+/// Returns the reason against one of several sizes, if there is one.
+fn doubt_of(size: &Size, sizes: &[Size]) -> Option<String> {
+    let Size {
+        effect, parameter, ..
+    } = size;
+    let mut own = sizes.iter().filter(|other| other.effect == *effect);
+    if own.all(Size::may_be_nothing) {
+        let [low, high] = size.interval;
+        return Some(match size.tolerance {
+            Some(sd) if !(low..=high).contains(&size.absent) => format!(
+                "{effect}: its {parameter} of {:.3e} lies within {WITHIN} standard deviations of the \
+                 instrument's tolerance ({sd:.1e})",
                 size.value
-            ));
-        }
-        if size.is_open() {
-            return Some(format!(
-                "{effect}: the interval of its {parameter} is as wide as its whole range"
-            ));
-        }
+            ),
+            _ => format!(
+                "{effect}: the interval of its {parameter}, {low:.3e} to {high:.3e}, contains the value \
+                 at which the effect vanishes"
+            ),
+        });
     }
-    None
+    if size.at_bound() {
+        return Some(format!(
+            "{effect}: its {parameter} lies at its bound of {:.3e}",
+            size.value
+        ));
+    }
+    size.is_open().then(|| {
+        format!("{effect}: the interval of its {parameter} is as wide as its whole range")
+    })
 }
 
 #[cfg(test)]
@@ -106,7 +119,7 @@ mod tests {
 
     #[test]
     fn a_size_that_may_be_nothing_names_nothing() {
-        let said = |sizes: &[Size]| doubt(sizes);
+        let said = |sizes: &[Size]| doubt(sizes).map(|doubt| doubt.reason);
         assert_eq!(said(&[size(0.3, [0.2, 0.4])]), None);
         let nothing = size(0.1, [-0.1, 0.3]);
         assert!(
@@ -120,7 +133,8 @@ mod tests {
             effect: "phase".to_owned(),
             ..size(0.3, [0.2, 0.4])
         };
-        assert!(said(&[nothing, other]).unwrap().starts_with("slip"));
+        assert!(said(&[nothing.clone(), other.clone()]).unwrap().starts_with("slip"));
+        assert_eq!(doubt(&[other, nothing]).unwrap().effect, "slip");
     }
 
     #[test]
@@ -129,7 +143,7 @@ mod tests {
             tolerance: Some(0.1),
             ..size(value, [value - 0.01, value + 0.01])
         };
-        assert!(doubt(&[toleranced(0.29)]).unwrap().contains("tolerance"));
+        assert!(doubt(&[toleranced(0.29)]).unwrap().reason.contains("tolerance"));
         assert_eq!(doubt(&[toleranced(-0.31)]), None);
     }
 
@@ -138,12 +152,13 @@ mod tests {
         assert!(
             doubt(&[size(0.9999, [0.5, 1.0])])
                 .unwrap()
+                .reason
                 .contains("bound")
         );
         let wide = Size {
             absent: -2.0,
             ..size(0.5, [-1.0, 1.0])
         };
-        assert!(doubt(&[wide]).unwrap().contains("whole range"));
+        assert!(doubt(&[wide]).unwrap().reason.contains("whole range"));
     }
 }

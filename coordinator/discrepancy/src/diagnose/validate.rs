@@ -1,10 +1,11 @@
 //! Validation of an answer: its fit must be a minimum with instruments that are possible, must predict data
 //! excluded from the fit, must not open the gap under another condition, and must not be beaten by a generic
 //! force.
+use crate::baseline::recalibrate;
 use crate::baseline::session::Session;
 use crate::diagnose::claim::claim;
 use crate::diagnose::diagnosis::Diagnosis;
-use crate::diagnose::plausibility::Size;
+use crate::diagnose::plausibility::{self, Size};
 use crate::diagnose::remainder::{instruments_beyond, is_converged, percent};
 use crate::estimate::effect_size::estimates;
 use crate::estimate::force::force;
@@ -109,6 +110,33 @@ fn no_fit(answer: &Fit, ids: &str) -> Option<String> {
             percent(answer.search.predicted_decrease())
         )
     })
+}
+
+/// Removes from an answer of several effects the first whose size cannot be named, and returns the answer
+/// without it: what can be named stays. `None` where there is no such effect or no other one.
+pub(crate) async fn drop_implausible<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    answer: &Fit,
+    diagnosis: &mut Diagnosis,
+) -> Result<Option<Fit>, L::Error> {
+    let added = &answer.model.added;
+    let Some(doubt) = plausibility::doubt(&claim(answer, &diagnosis.effects)) else {
+        return Ok(None);
+    };
+    let position = added.iter().position(|own| own.id == doubt.effect);
+    let Some(position) = position.filter(|_| added.len() > 1) else {
+        return Ok(None);
+    };
+    let start = answer.point().without(position);
+    let mut experiments = session.experiments(Stage::Refit);
+    let Some(fit) = recalibrate::converge(&mut experiments, start).await? else {
+        return Ok(None);
+    };
+    let own = |round: &&mut Round| round.added.as_ref() == Some(&doubt.effect);
+    for round in diagnosis.rounds.iter_mut().filter(own) {
+        round.withdraw(doubt.reason.clone());
+    }
+    Ok(Some(fit))
 }
 
 /// Puts the generic force that beats an effect of the answer in the place of that effect, and returns the

@@ -4,7 +4,6 @@ use crate::diagnosis::subject::DiagnosisInput;
 use crate::number::quantity;
 use crate::words::{join_words, lower};
 use discrepancy::diagnose::Estimate;
-use discrepancy::verdict::Verdict;
 use protocol::announce::Role;
 
 /// Names an effect by its title followed by its identifier; the identifier alone if no worker describes the
@@ -46,16 +45,17 @@ fn sizes(subject: &DiagnosisInput<'_>, effect: &Estimate) -> String {
     join_words(&each, "and")
 }
 
-/// Lists the added effects with their sizes, one item each; effects of an unresolved verdict are marked as
-/// suspected.
+/// Lists the effects with their sizes, one item each; those that are not named are marked as suspected.
 pub(in crate::diagnosis) fn effects(subject: &DiagnosisInput<'_>) -> Vec<String> {
-    let unresolved = subject.diagnosis().verdict == Verdict::Unresolved;
-    let suspected = if unresolved {
-        "suspected, not named: "
-    } else {
-        ""
+    let diagnosis = subject.diagnosis();
+    let is_named = |id: &String| diagnosis.rounds.iter().any(|round| round.set.contains(id));
+    let one = |effect: &Estimate| {
+        let suspected = if is_named(&effect.id) {
+            ""
+        } else {
+            "suspected, not named: "
+        };
+        format!("{suspected}{}: {}", effect.id, sizes(subject, effect))
     };
-    let each = subject.diagnosis().effects.iter();
-    each.map(|effect| format!("{suspected}{}: {}", effect.id, sizes(subject, effect)))
-        .collect()
+    diagnosis.effects.iter().map(one).collect()
 }

@@ -132,10 +132,7 @@ pub(crate) fn object(subject: &DiagnosisInput<'_>) -> DiagnoseOutput {
         left: left(subject.case, &diagnosis.remainder.left),
         converged: diagnosis.remainder.is_converged,
         at_bounds: diagnosis.remainder.at_bounds.clone(),
-        effects: named(diagnosis)
-            .iter()
-            .map(|e| effect(diagnosis, e))
-            .collect(),
+        effects: named(diagnosis).map(|e| effect(diagnosis, e)).collect(),
         generic: diagnosis.generic.clone(),
         generic_force: diagnosis.force.as_ref().map(force),
         rounds: rounds(diagnosis),
@@ -185,12 +182,20 @@ pub(crate) fn object(subject: &DiagnosisInput<'_>) -> DiagnoseOutput {
     }
 }
 
-/// Returns the effects found by the diagnosis if the verdict names any, else an empty slice.
-fn named(diagnosis: &Diagnosis) -> &[Estimate] {
-    match diagnosis.verdict {
-        Verdict::Named | Verdict::Ambiguous | Verdict::Unlisted => &diagnosis.effects,
-        Verdict::NothingDetected | Verdict::Unresolved => &[],
-    }
+/// Iterates over the effects that the verdict names: added effects and the members of their ambiguity sets.
+fn named(diagnosis: &Diagnosis) -> impl Iterator<Item = &Estimate> {
+    let silent = matches!(
+        diagnosis.verdict,
+        Verdict::NothingDetected | Verdict::Unresolved
+    );
+    let in_set = |own: &&Estimate| {
+        diagnosis
+            .rounds
+            .iter()
+            .any(|round| round.set.contains(&own.id))
+    };
+    let effects = diagnosis.effects.iter();
+    effects.filter(move |own| !silent && in_set(own))
 }
 
 fn numerical_error(diagnosis: &Diagnosis) -> Option<NumericalOutput> {
