@@ -96,9 +96,8 @@ fn doubt_of(size: &Size, sizes: &[Size]) -> Option<String> {
             size.value
         ));
     }
-    size.is_open().then(|| {
-        format!("{effect}: the interval of its {parameter} is as wide as its whole range")
-    })
+    size.is_open()
+        .then(|| format!("{effect}: the interval of its {parameter} is as wide as its whole range"))
 }
 
 #[cfg(test)]
@@ -133,7 +132,11 @@ mod tests {
             effect: "phase".to_owned(),
             ..size(0.3, [0.2, 0.4])
         };
-        assert!(said(&[nothing.clone(), other.clone()]).unwrap().starts_with("slip"));
+        assert!(
+            said(&[nothing.clone(), other.clone()])
+                .unwrap()
+                .starts_with("slip")
+        );
         assert_eq!(doubt(&[other, nothing]).unwrap().effect, "slip");
     }
 
@@ -143,7 +146,12 @@ mod tests {
             tolerance: Some(0.1),
             ..size(value, [value - 0.01, value + 0.01])
         };
-        assert!(doubt(&[toleranced(0.29)]).unwrap().reason.contains("tolerance"));
+        assert!(
+            doubt(&[toleranced(0.29)])
+                .unwrap()
+                .reason
+                .contains("tolerance")
+        );
         assert_eq!(doubt(&[toleranced(-0.31)]), None);
     }
 
