@@ -98,7 +98,7 @@ fn a_folder_shows_finished_stopped_damaged_foreign_and_deleted_runs() {
     let verdict = browser.text("#verdict");
     let sizes = effect["parameters"].as_object().unwrap();
     let size = shown(&sizes.values().next().unwrap()["value"]);
-    for text in ["The simulation lacks", &size, "predictive score"] {
+    for text in ["The simulation lacks", &size, "these data speak for"] {
         assert!(verdict.contains(text), "{text}: {verdict}");
     }
     browser.picture((1200, 1100), &picture("diagnosis"));
