@@ -1,4 +1,5 @@
 //! Inputs of a diagnosis, with its thresholds.
+use crate::baseline::budget::cost_with_derivatives;
 use crate::laboratory::Stage;
 use crate::model::inactive_unknowns::InactiveUnknowns;
 use crate::record::measured::Record;
@@ -55,27 +56,27 @@ impl Inputs {
 
     /// Returns the budget of each stage in plain simulations: a number of simulations, never a time, so that the
     /// result does not depend on the machine. Stages that need derivatives grow with their cost, which is that
-    /// of many simulations where the simulator computes none; tests and refits with the
-    /// number of candidate effects; checks and validation with the number of conditions.
+    /// of many simulations where the simulator computes none; tests and refits with the number of candidate
+    /// effects; checks and validation with the number of conditions.
     pub fn budget(&self) -> [f64; Stage::ALL.len()] {
         /// Number of candidate effects for which the budgets are stated.
         const CANDIDATES: f64 = 100.0;
         /// Number of conditions for which the budgets are stated.
         const CONDITIONS: f64 = 2.0;
-        /// Cost of a simulation with the derivatives by ten unknowns.
-        const LINEARIZED: f64 = 6.0;
+        /// Number of unknowns for which the budgets are stated.
+        const UNKNOWNS: usize = 10;
         let stated = self.thresholds.budget.map(f64::from);
         if let Some(whole) = self.thresholds.simulations {
             let share = f64::from(whole.get()) / stated.iter().sum::<f64>().max(1.0);
             return stated.map(|own| own * share);
         }
-        let unknowns = self.space.dimension() as f64;
+        let unknowns = self.space.dimension();
         let linearized = if self.differentiates && !self.differences {
-            0.1f64.mul_add(unknowns, 5.0)
+            cost_with_derivatives(unknowns)
         } else {
-            unknowns + 1.0
+            unknowns as f64 + 1.0
         };
-        let linearized = (linearized / LINEARIZED).max(1.0);
+        let linearized = (linearized / cost_with_derivatives(UNKNOWNS)).max(1.0);
         let candidates = (self.considered().count() as f64 / CANDIDATES).max(1.0);
         let conditions = (self.records.len() as f64 / CONDITIONS).max(1.0);
         std::array::from_fn(|k| {

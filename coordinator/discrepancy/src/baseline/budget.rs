@@ -31,15 +31,20 @@ impl<'a, L> Budgeted<'a, L> {
     }
 }
 
-/// Returns the cost of a simulation relative to one without derivatives: 1, or with derivatives 5 plus 0.1
-/// per derivative.
+/// Returns the cost of a simulation relative to one without derivatives: 1, or that of
+/// [`cost_with_derivatives`].
 pub fn cost(spec: &SimulateSpec) -> f64 {
-    let columns = spec.columns.len() as f64;
     if spec.columns.is_empty() {
         1.0
     } else {
-        5.0 + 0.1 * columns
+        cost_with_derivatives(spec.columns.len())
     }
+}
+
+/// Returns the cost of a simulation with a number of derivatives relative to one without: 5 plus 0.1 per
+/// derivative.
+pub(crate) fn cost_with_derivatives(columns: usize) -> f64 {
+    5.0 + 0.1 * columns as f64
 }
 
 impl<L: Laboratory> Laboratory for Budgeted<'_, L> {

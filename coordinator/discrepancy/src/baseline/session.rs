@@ -1,8 +1,10 @@
 //! Shared state of all rounds of a diagnosis.
 use crate::baseline::base::Baseline;
 use crate::inputs::Inputs;
-use crate::laboratory::Stage;
+use crate::laboratory::{Laboratory, Stage};
 use crate::model::experiments::Experiments;
+use crate::model::fit::Fit;
+use search::least_squares::LeastSquaresSettings;
 
 /// Simulator, inputs and baseline of a running diagnosis.
 pub(crate) struct Session<'a, L> {
@@ -12,6 +14,26 @@ pub(crate) struct Session<'a, L> {
     pub(crate) base: &'a Baseline,
     /// Inputs of the diagnosis: case, records and candidate effects.
     pub(crate) inputs: &'a Inputs,
+}
+
+impl<L: Laboratory> Session<'_, L> {
+    /// Fits an answer without the effect at a position, all others kept: the baseline where there is no other.
+    /// `None` if the fit fails.
+    ///
+    /// # Errors
+    /// Those of the laboratory.
+    pub(crate) async fn fit_without(
+        &mut self,
+        answer: &Fit,
+        position: usize,
+    ) -> Result<Option<Fit>, L::Error> {
+        if answer.model.added.len() == 1 {
+            return Ok(Some(self.base.fit.clone()));
+        }
+        let start = answer.point().without(position);
+        let mut experiments = self.experiments(Stage::Refit);
+        experiments.fit(start, LeastSquaresSettings::short(6)).await
+    }
 }
 
 impl<L> Session<'_, L> {

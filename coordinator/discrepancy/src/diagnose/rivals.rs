@@ -117,15 +117,7 @@ async fn is_acceptable<L: Laboratory>(
     fit: &Fit,
 ) -> Result<bool, L::Error> {
     let needed = session.inputs.thresholds.gain;
-    let without = if answer.model.added.len() == 1 {
-        Some(session.base.fit.clone())
-    } else {
-        let start = answer.point().without(position);
-        let mut experiments = session.experiments(Stage::Refit);
-        experiments
-            .fit(start, LeastSquaresSettings::short(6))
-            .await?
-    };
+    let without = session.fit_without(answer, position).await?;
     let Some(without) = without else {
         return Ok(false);
     };

@@ -138,16 +138,8 @@ pub(crate) async fn in_place<L: Laboratory>(
     /// Minimum share of the effect's reduction of `chi^2` that the test of a force promises: with less it does
     /// not reach the effect by a refit.
     const PROMISED: f64 = 0.5;
-    let (base, thresholds) = (session.base, &session.inputs.thresholds);
-    let without = if answer.model.added.len() == 1 {
-        Some(base.fit.clone())
-    } else {
-        let start = answer.point().without(position);
-        let mut experiments = session.experiments(Stage::Refit);
-        experiments
-            .fit(start, LeastSquaresSettings::short(6))
-            .await?
-    };
+    let thresholds = &session.inputs.thresholds;
+    let without = session.fit_without(answer, position).await?;
     let Some(without) = without else {
         return Ok(None);
     };

@@ -31,8 +31,8 @@ impl Refitted {
     }
 }
 
-/// Refits candidate effects in parallel, each from its linear estimate and from the best of a ladder of other sizes, and
-/// returns the best refit of each; effects of which no refit can be simulated are omitted.
+/// Refits candidate effects in parallel, each from its linear estimate and from the best of a ladder of other
+/// sizes, and returns the best refit of each; effects of which no refit can be simulated are omitted.
 ///
 /// # Errors
 /// Returns an error if no worker is left to simulate, or the user stops the run.
