@@ -31,8 +31,8 @@ impl<'a, L> Budgeted<'a, L> {
     }
 }
 
-/// Returns the cost of a simulation relative to one without derivatives: 1, or that of
-/// [`cost_with_derivatives`].
+/// Returns the cost of a simulation relative to one without derivatives: 1, or with derivatives 5 plus 0.1
+/// per derivative.
 pub fn cost(spec: &SimulateSpec) -> f64 {
     if spec.columns.is_empty() {
         1.0
