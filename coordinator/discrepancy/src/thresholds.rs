@@ -83,6 +83,10 @@ pub(crate) const RANKED: f64 = 0.5;
 /// [`WITHIN`].
 pub(crate) const BEYOND: f64 = 4.0;
 
+/// Share of the gap to every record that an answer must explain whose fit needs instruments beyond [`BEYOND`]:
+/// with less, what is missing beside it is larger than what is named.
+pub(crate) const MAJORITY: f64 = 0.5;
+
 /// Distance to a bound, as a share of the range, within which a size counts as being on the bound: less than
 /// any step of a fit.
 pub(crate) const AT_BOUND: f64 = 1e-3;

@@ -42,12 +42,6 @@ impl Baseline {
         })
     }
 
-    /// Returns whether the instruments are limited to their tolerance, because the model without effects needs
-    /// more.
-    pub(crate) const fn instruments_are_held(&self) -> bool {
-        !self.instruments.is_empty()
-    }
-
     /// Returns whether the residual of a fit may be noise alone, at a significance level.
     pub(crate) fn explains(&self, fit: &Fit, level: f64) -> bool {
         self.is_noise(fit.chi_squared(), fit.tangent().parameters(), level)

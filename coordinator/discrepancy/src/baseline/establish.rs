@@ -15,7 +15,7 @@ use crate::record::measured::{Curves, Record};
 use crate::record::metric::Metric;
 use crate::record::noise::Noise;
 use crate::record::whitened::WhitenedRecord;
-use crate::thresholds::{BEYOND, WITHIN};
+use crate::thresholds::BEYOND;
 use nalgebra::DVector;
 
 /// Reason why no baseline could be constructed.
@@ -204,18 +204,6 @@ async fn constrain_instruments<L: Laboratory>(
     if beyond.is_empty() {
         return Ok((fit, beyond));
     }
-    let mut start = fit.point();
-    for one in &mut start.model.nuisances {
-        one.farthest = WITHIN;
-    }
-    let places: Vec<usize> = fit
-        .model
-        .indexed_nuisances()
-        .map(|(place, _)| place)
-        .collect();
-    for place in places {
-        start.x[place] = start.x[place].clamp(-WITHIN, WITHIN);
-    }
-    let held = recalibrate::converge(experiments, start).await?;
+    let held = recalibrate::converge(experiments, fit.point().with_held_instruments()).await?;
     Ok((held.unwrap_or(fit), beyond))
 }

@@ -8,11 +8,10 @@ use crate::baseline::base::Baseline;
 use crate::baseline::session::Session;
 use crate::diagnose::claim::{claim, no_answer};
 use crate::diagnose::diagnosis::Diagnosis;
-use crate::diagnose::other_starts::fit_from_other_starts;
+use crate::diagnose::other_starts::{Starts, fit_from_other_starts};
 use crate::diagnose::plausibility;
 use crate::diagnose::reason::{Rejection, left, reason, remarks};
-use crate::diagnose::remainder::remainder;
-use crate::diagnose::settle::settle;
+use crate::diagnose::remainder::{Remainder, remainder};
 use crate::diagnose::validate::{
     doubt_of_force, drop_implausible, prove, replace_by_force, validate,
 };
@@ -28,6 +27,7 @@ use crate::record::metric::Metric;
 use crate::record::noise::NoiseSource;
 use crate::validation::compare::ValidationRecord;
 use crate::verdict::{Findings, TestValidity, verdict};
+use std::mem;
 
 /// Computes estimates, validation and verdict of a diagnosis; `shown` are the records used for the
 /// validation.
@@ -125,28 +125,30 @@ struct Settled {
 /// Fits an answer to convergence and validates it; withdraws from the diagnosis what does not hold.
 async fn settled<L: Laboratory>(
     session: &mut Session<'_, L>,
-    (answer, ground): (Fit, TestValidity),
+    (mut answer, ground): (Fit, TestValidity),
     shown: &[ValidationRecord<'_>],
     diagnosis: &mut Diagnosis,
 ) -> Result<Settled, L::Error> {
     let base = session.base;
     let firm = matches!(ground, TestValidity::Valid | TestValidity::NoiseStated);
-    let mut answer = settle(session, answer).await?;
-    let mut doubt = validate(session, &answer, shown, diagnosis).await?;
-    if firm
-        && doubt.is_some()
-        && let Some(other) = fit_from_other_starts(session, &answer, &diagnosis.rounds).await?
-    {
-        answer = settle(session, other).await?;
-        doubt = validate(session, &answer, shown, diagnosis).await?;
+    let mut doubt = validate(session, &mut answer, shown, diagnosis).await?;
+    for starts in Starts::ALL {
+        if !firm || (doubt.is_none() && diagnosis.remainder.beyond.is_empty()) {
+            break;
+        }
+        let other = fit_from_other_starts(session, &answer, &diagnosis.rounds, starts).await?;
+        if let Some(other) = other {
+            answer = other;
+            doubt = validate(session, &mut answer, shown, diagnosis).await?;
+        }
     }
     while firm && let Some(fewer) = drop_implausible(session, &answer, diagnosis).await? {
         answer = fewer;
-        doubt = validate(session, &answer, shown, diagnosis).await?;
+        doubt = validate(session, &mut answer, shown, diagnosis).await?;
     }
     if firm && let Some(without) = replace_by_force(session, &answer, diagnosis).await? {
         answer = without;
-        doubt = validate(session, &answer, shown, diagnosis).await?;
+        doubt = validate(session, &mut answer, shown, diagnosis).await?;
     }
     let of_force = doubt_of_force(session, &answer, shown, diagnosis).await?;
     let doubt = doubt.or_else(|| implausible(base, &answer, diagnosis));
@@ -166,7 +168,11 @@ async fn settled<L: Laboratory>(
         (Some(_), Some(force)) => (&force.fit, &force.rows),
         _ => (&answer, &diagnosis.rows),
     };
-    diagnosis.remainder = remainder(session, own, shown, rows).await?;
+    let beyond = mem::take(&mut diagnosis.remainder.beyond);
+    diagnosis.remainder = Remainder {
+        beyond,
+        ..remainder(session, own, shown, rows).await?
+    };
     Ok(Settled {
         after: answer,
         suspect: (!suspects.is_empty()).then(|| suspects.join(" and ")),

@@ -84,7 +84,7 @@ pub struct Diagnosis {
 
 impl Diagnosis {
     /// Returns whether the verdict makes a claim that is not the whole answer: more than noise is left on some
-    /// record, or a stage whose comparisons the verdict rests on used up its budget. Where no more than noise is
+    /// record, the fit needs instruments far beyond their tolerance, or a stage whose comparisons the verdict rests on used up its budget. Where no more than noise is
     /// left, the way into another minimum and the localisation could not add anything.
     pub fn is_in_part(&self) -> bool {
         let claims = match self.verdict {
@@ -93,7 +93,8 @@ impl Diagnosis {
         };
         let mut ran_out = self.ran_out.iter();
         let stopped = ran_out.any(|stage| !matches!(stage, Stage::Where | Stage::Basin));
-        claims && (stopped || !self.remainder.left.is_empty())
+        let Remainder { left, beyond, .. } = &self.remainder;
+        claims && (stopped || !left.is_empty() || !beyond.is_empty())
     }
 
     /// Describes in words what the answer explains, what it leaves and where, and which stages used up their
@@ -112,7 +113,14 @@ impl Diagnosis {
                 stage.name()
             )
         });
-        let parts: Vec<String> = explained.chain(left).chain(stages).collect();
+        let beyond = &self.remainder.beyond;
+        let beyond = (!beyond.is_empty()).then(|| {
+            format!(
+                "the fit needs instruments far beyond their tolerance: {}",
+                beyond.join(", ")
+            )
+        });
+        let parts: Vec<String> = explained.chain(left).chain(beyond).chain(stages).collect();
         parts.join("; ")
     }
 

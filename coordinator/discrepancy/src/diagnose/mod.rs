@@ -136,6 +136,8 @@ async fn diagnose_budgeted<L: Laboratory>(
     }
     let validation_records = validation_records(&mut session, &split).await?;
     let after = rounds(&mut session, &validation_records, &mut diagnosis).await?;
-    conclude(&mut session, after, &validation_records, &mut diagnosis).await?;
+    // on the heap: its state is large, and every caller would hold it
+    let concluded = conclude(&mut session, after, &validation_records, &mut diagnosis);
+    Box::pin(concluded).await?;
     Ok(diagnosis)
 }

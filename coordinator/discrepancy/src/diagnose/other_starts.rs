@@ -1,13 +1,32 @@
-//! Repetition of the fit of an answer that does not predict, from other sizes of its effects: a fit in a wrong
-//! minimum explains the fitted record only.
+//! Repetition of the fit of an answer that does not hold or needs instruments that are far off, from other
+//! points: it may lie in a wrong minimum.
+use crate::baseline::global_start::global_starts;
 use crate::baseline::session::Session;
 use crate::hypothesis::round::Round;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
+use crate::model::unknowns::Point;
 use search::least_squares::LeastSquaresSettings;
 
-/// Returns the likeliest fit of the answer's effects from every size at which one of them was tested, if it is
-/// likelier than the answer's own fit; effects that act in proportion to their size have no other start.
+/// Points from which the fit of an answer is repeated.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Starts {
+    /// Every size at which one of the answer's effects was tested, and the answer's effects with the unknowns of
+    /// the case as they were before any fit. Optional work within the budget of the refits.
+    Tested,
+    /// The best points of a global search of the unknowns with the answer's effects. The search without them
+    /// looked for the minimum of another model. It is done once, whatever is left of the budget: without it a
+    /// found effect would be lost to the point where the others were tested.
+    Global,
+}
+
+impl Starts {
+    /// All kinds of starts, the cheaper first.
+    pub(crate) const ALL: [Self; 2] = [Self::Tested, Self::Global];
+}
+
+/// Returns the likeliest fit of the answer's effects from other points, if it is likelier than the answer's own
+/// fit.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -15,8 +34,50 @@ pub(crate) async fn fit_from_other_starts<L: Laboratory>(
     session: &mut Session<'_, L>,
     answer: &Fit,
     rounds: &[Round],
+    starts: Starts,
 ) -> Result<Option<Fit>, L::Error> {
-    let mut starts = Vec::new();
+    if answer.model.added.is_empty() {
+        return Ok(None);
+    }
+    let inputs = session.inputs;
+    let genes = inputs.space.dimension();
+    // what instruments took up in another minimum keeps a fit from leaving it
+    let exact = answer.point().with_exact_instruments();
+    let points = match starts {
+        Starts::Tested if !session.lab.has_budget(Stage::Refit) => Vec::new(),
+        Starts::Tested => {
+            let mut points = other_sizes(answer, rounds);
+            let mut before = exact;
+            let start = inputs.start.clone();
+            before.x[..genes].copy_from_slice(&start.unwrap_or_else(|| vec![0.0; genes]));
+            points.push(before);
+            points
+        }
+        Starts::Global => {
+            let mut experiments = session.experiments(Stage::Basin);
+            let search = (inputs.global_search, inputs.seed);
+            let rest = &exact.x[genes..];
+            global_starts(&mut experiments, &exact.model, rest, search).await?
+        }
+    };
+    if points.is_empty() {
+        return Ok(None);
+    }
+    let mut experiments = session.experiments(Stage::Refit);
+    let fits = experiments
+        .fits(points, LeastSquaresSettings::short(8))
+        .await?;
+    let likelier = fits
+        .into_iter()
+        .flatten()
+        .max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence()));
+    Ok(likelier.filter(|fit| fit.log_evidence() > answer.log_evidence()))
+}
+
+/// Returns the answer at each other size at which one of its effects was tested; effects that act in proportion
+/// to their size have none.
+fn other_sizes(answer: &Fit, rounds: &[Round]) -> Vec<Point> {
+    let mut points = Vec::new();
     for (position, effect) in answer.model.added.iter().enumerate() {
         let mut tested = rounds.iter().flat_map(|round| &round.candidates);
         let Some(own) = tested.find(|own| own.effect.id == effect.id) else {
@@ -24,18 +85,7 @@ pub(crate) async fn fit_from_other_starts<L: Laboratory>(
         };
         let without = answer.point().without(position);
         let from = own.rungs.iter();
-        starts.extend(from.map(|start| without.clone().with(effect, start)));
+        points.extend(from.map(|start| without.clone().with(effect, start)));
     }
-    if starts.is_empty() || !session.lab.has_budget(Stage::Refit) {
-        return Ok(None);
-    }
-    let mut experiments = session.experiments(Stage::Refit);
-    let fits = experiments
-        .fits(starts, LeastSquaresSettings::short(8))
-        .await?;
-    let likelier = fits
-        .into_iter()
-        .flatten()
-        .max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence()));
-    Ok(likelier.filter(|fit| fit.log_evidence() > answer.log_evidence()))
+    points
 }

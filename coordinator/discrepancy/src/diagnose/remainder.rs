@@ -21,6 +21,9 @@ pub struct Remainder {
     /// Unknowns, instruments and effect parameters of the answer that stand at a bound, and instruments
     /// beyond three times their tolerance.
     pub at_bounds: Vec<String>,
+    /// Instruments that the answer would need far beyond their tolerance if they were not held within it, which
+    /// indicates that something else is missing.
+    pub beyond: Vec<String>,
 }
 
 /// Record on which a model leaves more than noise, with the place where most of it lies.
@@ -114,6 +117,7 @@ pub(crate) async fn remainder<L: Laboratory>(
         left,
         is_converged: is_converged(fit),
         at_bounds: at_bounds(inputs, fit),
+        beyond: Vec::new(),
     })
 }
 

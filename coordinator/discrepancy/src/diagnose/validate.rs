@@ -7,6 +7,7 @@ use crate::diagnose::claim::claim;
 use crate::diagnose::diagnosis::Diagnosis;
 use crate::diagnose::plausibility::{self, Size};
 use crate::diagnose::remainder::{instruments_beyond, is_converged, percent};
+use crate::diagnose::settle::{SettledFit, settle};
 use crate::estimate::effect_size::estimates;
 use crate::estimate::force::force;
 use crate::hypothesis::generic_force::in_place;
@@ -14,20 +15,24 @@ use crate::hypothesis::round::Round;
 use crate::inputs::Inputs;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
+use crate::thresholds::MAJORITY;
 use crate::validation::compare::{DataRole, GapRow, ValidationRecord, compare};
 use crate::validation::predictive::{Prediction, rejection_reason, scores};
 
-/// Computes sizes, gaps and predictive scores of an answer, stores them in the diagnosis, and returns the
-/// reason why the answer is none, if its fit is no minimum, needs instruments that are far off, or does not
+/// Continues the fit of an answer to convergence, computes its sizes, gaps and predictive scores, stores them in
+/// the diagnosis, and returns the reason why the answer is none, if its fit is no minimum, needs instruments that are far off, or does not
 /// hold on data excluded from the fit. The predictive value of each effect in addition to the others is tested
 /// earlier.
 pub(crate) async fn validate<L: Laboratory>(
     session: &mut Session<'_, L>,
-    answer: &Fit,
+    answer: &mut Fit,
     shown: &[ValidationRecord<'_>],
     diagnosis: &mut Diagnosis,
 ) -> Result<Option<String>, L::Error> {
     let base = session.base;
+    let SettledFit { fit, beyond } = settle(session, answer.clone()).await?;
+    *answer = fit;
+    diagnosis.remainder.beyond = beyond;
     diagnosis.effects = estimates(&diagnosis.rounds, answer, &base.record.metric);
     prove(session, answer, shown, diagnosis).await?;
     let added = &answer.model.added;
@@ -49,8 +54,10 @@ pub(crate) async fn validate<L: Laboratory>(
     };
     let (records, reason) = prediction(session, [answer, &base.fit], &claim, shown).await?;
     diagnosis.prediction = records;
-    let opened = || opened(&ids, &diagnosis.rows, session.inputs);
-    Ok(no_fit(answer, &ids).or(reason).or_else(opened))
+    let rows = &diagnosis.rows;
+    let opened = || opened(&ids, rows, session.inputs);
+    let no_fit = no_fit(answer, &ids, (rows, &diagnosis.remainder.beyond));
+    Ok(no_fit.or(reason).or_else(opened))
 }
 
 /// Claim whose predictive score is required.
@@ -94,13 +101,19 @@ fn opened(ids: &str, rows: &[GapRow], inputs: &Inputs) -> Option<String> {
     ))
 }
 
-/// Returns the reason why the fit of an answer is none, if it has not converged or needs instruments that are
-/// far off.
-fn no_fit(answer: &Fit, ids: &str) -> Option<String> {
-    let beyond = instruments_beyond(answer);
-    if !beyond.is_empty() {
+/// Returns the reason why the fit of an answer is none, if it has not converged, or needs instruments that are
+/// far off while it leaves most of the gap to a record.
+///
+/// Such instruments show that something else is missing, such as the exact law of the effect. They speak against
+/// the name only where that something is larger than what is named; otherwise the verdict is in part.
+fn no_fit(answer: &Fit, ids: &str, (rows, beyond): (&[GapRow], &[String])) -> Option<String> {
+    let least = rows.iter().map(|row| row.closed.closed).reduce(f64::min);
+    if let Some(least) = least.filter(|least| *least < MAJORITY)
+        && !beyond.is_empty()
+    {
         return Some(format!(
-            "with {ids} the fit still needs instruments far beyond their tolerance: {}",
+            "{ids} explains {} of the gap, and the fit still needs instruments far beyond their tolerance: {}",
+            percent(least),
             beyond.join(", ")
         ));
     }
@@ -198,12 +211,13 @@ pub(crate) async fn doubt_of_force<L: Laboratory>(
         tried: diagnosis.rounds.first().map_or(1, |r| r.generics.len()),
         chosen: 0.0,
     };
-    let fit = force.fit.clone();
+    let (fit, rows) = (force.fit.clone(), force.rows.clone());
     let (records, reason) = prediction(session, [&fit, answer], &claim, shown).await?;
     if answer.model.added.is_empty() {
         diagnosis.prediction = records;
     }
-    Ok(no_fit(&fit, &ids).or(reason))
+    let beyond = instruments_beyond(&fit);
+    Ok(no_fit(&fit, &ids, (&rows, &beyond)).or(reason))
 }
 
 /// Computes the misfit to each record before and after adding effects: for the answer and its best rejected

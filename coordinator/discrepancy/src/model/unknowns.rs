@@ -8,6 +8,7 @@ use crate::model::inactive_unknowns::InactiveUnknowns;
 use crate::model::nuisance_parameter::{NuisanceParameter, apply_gains, effects};
 use crate::model::parameter::{setting, variable};
 use crate::record::measured::{Curves, Record};
+use crate::thresholds::WITHIN;
 use protocol::announce::EffectDescriptor;
 use protocol::case::EffectSetting;
 use protocol::job::{Individual, Numerics, Reply, SimulateSpec};
@@ -214,6 +215,38 @@ impl Point {
         let again = placed.filter(|(_, one)| one.is(&effect.id));
         for place in again.map(|(place, _)| place).collect::<Vec<usize>>() {
             self.x.insert(place, 0.0);
+        }
+        self
+    }
+
+    /// Limits the nuisance parameters to [`WITHIN`] standard deviations.
+    #[must_use]
+    pub(crate) fn with_held_instruments(mut self) -> Self {
+        for one in &mut self.model.nuisances {
+            one.farthest = WITHIN;
+        }
+        self.map_instruments(|x| x.clamp(-WITHIN, WITHIN))
+    }
+
+    /// Removes the limit of the nuisance parameters, so that only their priors hold them.
+    #[must_use]
+    pub(crate) fn with_released_instruments(mut self) -> Self {
+        let nuisances = self.model.nuisances.iter_mut();
+        nuisances.for_each(NuisanceParameter::release);
+        self
+    }
+
+    /// Sets every nuisance parameter to its absent value.
+    #[must_use]
+    pub(crate) fn with_exact_instruments(self) -> Self {
+        self.map_instruments(|_| 0.0)
+    }
+
+    fn map_instruments(mut self, change: impl Fn(f64) -> f64) -> Self {
+        let first = self.model.space.dimension();
+        let count = self.model.active_nuisances().count();
+        for x in &mut self.x[first..first + count] {
+            *x = change(*x);
         }
         self
     }

@@ -24,6 +24,7 @@ mod maps;
 mod mimic;
 mod nothing;
 mod numerics;
+mod other_minimum;
 mod ringing;
 mod robust;
 mod single;

@@ -13,7 +13,7 @@ use protocol::job::{Numerics, SimulateSpec};
 use search::random::{Phase, Streams};
 use search::space::Space;
 
-const SAMPLES: usize = 144;
+pub(crate) const SAMPLES: usize = 144;
 
 /// Returns a sine wave of unknown size plus the effects, which are waves of other orders over a turn.
 ///
@@ -44,18 +44,36 @@ fn curve(x: f64, amounts: &[(&str, f64)], condition: usize) -> Vec<f64> {
     (0..SAMPLES).map(at).collect()
 }
 
-fn waves(spec: &SimulateSpec) -> Curves {
+/// Curve of a model: by the value of its unknown, the amounts of its effects and the condition.
+pub(crate) type Model = fn(f64, &[(&str, f64)], usize) -> Vec<f64>;
+
+/// Simulates a job with a model.
+pub(crate) fn simulated(model: Model, spec: &SimulateSpec) -> Curves {
     let own = &spec.individual;
     let effects = own.effects.iter();
     let effects: Vec<(&str, f64)> = effects
         .map(|e| (e.id.as_str(), e.parameters[0].1))
         .collect();
-    vec![curve(own.genes[0], &effects, own.condition)]
+    vec![model(own.genes[0], &effects, own.condition)]
 }
 
 /// Diagnoses one record per condition, each generated with its own hidden effects, with the library in the
 /// given order.
 fn diagnosed(ids: &[&str], hidden: &[&[(&str, f64)]], seed: u64) -> Diagnosis {
+    let inputs = inputs(curve, 3.0, ids, hidden, seed);
+    let mut lab = ByCurves(|spec| Some(simulated(curve, spec)));
+    now(diagnose(&mut lab, &inputs))
+}
+
+/// Returns the inputs of a diagnosis of one record per condition, each generated at `x` with its own hidden
+/// effects, with the library in the given order.
+pub(crate) fn inputs(
+    model: Model,
+    x: f64,
+    ids: &[&str],
+    hidden: &[&[(&str, f64)]],
+    seed: u64,
+) -> Inputs {
     let point = |k: usize| 360.0 * k as f64 / SAMPLES as f64;
     let channel = Channel {
         name: "wave".to_owned(),
@@ -76,7 +94,7 @@ fn diagnosed(ids: &[&str], hidden: &[&[(&str, f64)]], seed: u64) -> Diagnosis {
     };
     let mut stream = Streams::new(seed, 0).at(0, Phase::Initial, 0);
     let mut record = |condition: usize, amounts: &[(&str, f64)]| {
-        let truth = curve(3.0, amounts, condition);
+        let truth = model(x, amounts, condition);
         let mut cycle = || vec![truth.iter().map(|y| y + 0.2 * stream.normal()).collect()];
         Record {
             condition,
@@ -95,7 +113,7 @@ fn diagnosed(ids: &[&str], hidden: &[&[(&str, f64)]], seed: u64) -> Diagnosis {
         let sizes = vec![size("amount", "N", 0.5, Sign::Either)];
         effect(id, id, Place::Dynamics, sizes)
     };
-    let inputs = Inputs {
+    Inputs {
         conditions: Vec::new(),
         differentiates: true,
         differences: false,
@@ -112,8 +130,7 @@ fn diagnosed(ids: &[&str], hidden: &[&[(&str, f64)]], seed: u64) -> Diagnosis {
             draws: 100,
             ..Thresholds::default()
         },
-    };
-    now(diagnose(&mut ByCurves(|spec| Some(waves(spec))), &inputs))
+    }
 }
 
 /// Returns the identifiers of the effects that a diagnosis added.

@@ -32,6 +32,8 @@ pub(crate) struct DiagnoseOutput {
     converged: bool,
     /// Unknowns, instruments and effect parameters of the answer that stand at a bound.
     at_bounds: Vec<String>,
+    /// Instruments that the answer would need far beyond their tolerance.
+    beyond: Vec<String>,
     /// Effects that the diagnosis added to the model, followed by the other members of their ambiguity sets,
     /// best first. Empty if the verdict names no effect: suspected effects are listed in the rounds.
     effects: Vec<EffectOutput>,
@@ -132,6 +134,7 @@ pub(crate) fn object(subject: &DiagnosisInput<'_>) -> DiagnoseOutput {
         left: left(subject.case, &diagnosis.remainder.left),
         converged: diagnosis.remainder.is_converged,
         at_bounds: diagnosis.remainder.at_bounds.clone(),
+        beyond: diagnosis.remainder.beyond.clone(),
         effects: named(diagnosis).map(|e| effect(diagnosis, e)).collect(),
         generic: diagnosis.generic.clone(),
         generic_force: diagnosis.force.as_ref().map(force),

@@ -326,6 +326,7 @@ fn what_is_left_stands_beside_the_verdict() {
             }],
             is_converged: true,
             at_bounds: vec!["kb1".to_owned()],
+            beyond: vec!["gauge_gain.gain_1 at 6.0 tolerances".to_owned()],
         },
         ..full(Verdict::Named)
     });
@@ -333,6 +334,8 @@ fn what_is_left_stands_beside_the_verdict() {
     assert_eq!(part["explained"], 0.71);
     assert_eq!(part["converged"], true);
     assert_eq!(part["at_bounds"], serde_json::json!(["kb1"]));
+    let beyond = serde_json::json!(["gauge_gain.gain_1 at 6.0 tolerances"]);
+    assert_eq!(part["beyond"], beyond);
     let left = serde_json::json!({"record": "4rpm", "held_out": "condition", "share": 0.29,
         "channel": "gauge 3", "between": [200.0, 260.0], "unit": "deg"});
     assert_eq!(part["left"], serde_json::json!([left]));
