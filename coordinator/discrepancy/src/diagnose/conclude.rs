@@ -139,6 +139,7 @@ async fn settled<L: Laboratory>(
         let other = fit_from_other_starts(session, &answer, &diagnosis.rounds, starts).await?;
         if let Some(other) = other {
             answer = other;
+            withdraw_unneeded(&answer, diagnosis);
             doubt = validate(session, &mut answer, shown, diagnosis).await?;
         }
     }
@@ -217,6 +218,21 @@ fn implausible(base: &Baseline, answer: &Fit, diagnosis: &Diagnosis) -> Option<S
 
 fn suspect(id: &str, nats: f64) -> String {
     format!("{id}, at {nats:.0} nats")
+}
+
+/// Withdraws the effects that an answer does not have any more, because its fit in another minimum is likelier
+/// without them.
+fn withdraw_unneeded(answer: &Fit, diagnosis: &mut Diagnosis) {
+    for round in &mut diagnosis.rounds {
+        let Some(id) = round.added.clone() else {
+            continue;
+        };
+        if answer.model.added.iter().all(|own| own.id != id) {
+            round.withdraw(format!(
+                "{id} is not needed in the likelier minimum that a global search found"
+            ));
+        }
+    }
 }
 
 /// Withdraws the added effects from the answer of a diagnosis; returns a description of each.

@@ -14,9 +14,10 @@ pub(crate) enum Starts {
     /// Every size at which one of the answer's effects was tested, and the answer's effects with the unknowns of
     /// the case as they were before any fit. Optional work within the budget of the refits.
     Tested,
-    /// The best points of a global search of the unknowns with the answer's effects. The search without them
-    /// looked for the minimum of another model. It is done once, whatever is left of the budget: without it a
-    /// found effect would be lost to the point where the others were tested.
+    /// The best points of a global search of the unknowns with the first of the answer's effects, with that
+    /// effect alone and with all: in a wrong minimum further effects stand for what the first one explains in
+    /// its own. The search without effects looked for the minimum of another model. It is done once, whatever
+    /// is left of the budget: without it a found effect would be lost to the point where all were tested.
     Global,
 }
 
@@ -25,8 +26,8 @@ impl Starts {
     pub(crate) const ALL: [Self; 2] = [Self::Tested, Self::Global];
 }
 
-/// Returns the likeliest fit of the answer's effects from other points, if it is likelier than the answer's own
-/// fit.
+/// Returns the likeliest fit of the answer's effects, or of the first of them, from other points, if it is
+/// likelier than the answer's own fit.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -54,10 +55,20 @@ pub(crate) async fn fit_from_other_starts<L: Laboratory>(
             points
         }
         Starts::Global => {
+            let further = (1..answer.model.added.len()).rev();
+            let first = further.fold(exact.clone(), Point::without);
             let mut experiments = session.experiments(Stage::Basin);
             let search = (inputs.global_search, inputs.seed);
-            let rest = &exact.x[genes..];
-            global_starts(&mut experiments, &exact.model, rest, search).await?
+            let rest = &first.x[genes..];
+            let mut points = global_starts(&mut experiments, &first.model, rest, search).await?;
+            if answer.model.added.len() > 1 {
+                for k in 0..points.len() {
+                    let mut all = exact.clone();
+                    all.x[..genes].copy_from_slice(&points[k].x[..genes]);
+                    points.push(all);
+                }
+            }
+            points
         }
     };
     if points.is_empty() {
