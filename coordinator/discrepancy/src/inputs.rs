@@ -108,3 +108,67 @@ impl Inputs {
             .filter(|record| !record.held_out)
     }
 }
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use protocol::case::Scale;
+    use std::num::NonZeroU32;
+
+    /// Creates inputs with two conditions, no record and one unknown.
+    pub(crate) fn case() -> Inputs {
+        with_unknowns(1)
+    }
+
+    fn with_unknowns(count: usize) -> Inputs {
+        let one = |k| Unknown::new(format!("mass {k}"), "kg", Scale::Linear, 1.0, [0.0, 2.0]);
+        let unknowns: Vec<Unknown> = (0..count).map(one).collect();
+        Inputs {
+            space: Space::new(&unknowns).expect("ordered"),
+            conditions: ["5rpm", "4rpm"].map(str::to_owned).to_vec(),
+            unknowns: Vec::new(),
+            records: Vec::new(),
+            library: Vec::new(),
+            start: None,
+            usual: Numerics::default(),
+            finer: Vec::new(),
+            global_search: "quick",
+            seed: 1,
+            thresholds: Thresholds::default(),
+            differentiates: true,
+            differences: false,
+        }
+    }
+
+    /// Checks that budgets are those stated for a small case, and grow with what makes a diagnosis costly.
+    #[test]
+    fn budgets_grow_with_the_case_unless_a_total_is_stated() {
+        let of = |inputs: &Inputs, stage: Stage| inputs.budget()[stage as usize];
+        let usual = with_unknowns(10);
+        for stage in Stage::ALL {
+            let stated = f64::from(Thresholds::default().budget[stage as usize]);
+            for small in [&usual, &case()] {
+                assert!((of(small, stage) - stated).abs() < 1e-9, "{stage:?}");
+            }
+        }
+
+        let many = with_unknowns(60);
+        let growth = cost_with_derivatives(60) / cost_with_derivatives(10);
+        for stage in [Stage::Basin, Stage::Recalibrate, Stage::Refit, Stage::Show] {
+            let grown = of(&many, stage) / of(&usual, stage);
+            assert!((grown - growth).abs() < 1e-12, "{stage:?} {grown}");
+        }
+        let checks = [&many, &usual].map(|own| of(own, Stage::Preflight));
+        assert!((checks[0] - checks[1]).abs() < 1e-9, "{checks:?}");
+
+        let mut external = with_unknowns(60);
+        external.differentiates = false;
+        let grown = of(&external, Stage::Refit) / of(&usual, Stage::Refit);
+        assert!((grown - 61.0 / cost_with_derivatives(10)).abs() < 1e-12);
+
+        let mut total = with_unknowns(60);
+        total.thresholds.simulations = NonZeroU32::new(500);
+        let whole: f64 = total.budget().iter().sum();
+        assert!((whole - 500.0).abs() < 1e-9);
+    }
+}

@@ -1,8 +1,8 @@
 //! Tests of the predictive scores against dense Gaussian densities, and on records without an effect.
 use super::*;
+use crate::inputs::tests::case;
 use crate::record::measured::{Record, Stated, tests::recorded};
 use crate::validation::scoring_metric::ScoringMetric;
-use protocol::case::Unknown;
 use search::least_squares::Prior;
 
 fn variable(deviation: f64, bounds: [f64; 2]) -> Variable {
@@ -119,32 +119,6 @@ fn noise_is_predicted_no_better_by_what_was_fitted_to_it() {
         claims += u32::from(with + 0.5 * held.norm_squared() >= needed);
     }
     assert!(claims <= 20, "{claims} of {sets}");
-}
-
-/// Creates inputs with two conditions and one unknown.
-fn case() -> Inputs {
-    Inputs {
-        space: search::space::Space::new(&[Unknown::new(
-            "mass",
-            "kg",
-            protocol::case::Scale::Linear,
-            1.0,
-            [0.0, 2.0],
-        )])
-        .unwrap(),
-        conditions: ["5rpm", "4rpm"].map(str::to_owned).to_vec(),
-        unknowns: Vec::new(),
-        records: Vec::new(),
-        library: Vec::new(),
-        start: None,
-        usual: protocol::job::Numerics::default(),
-        finer: Vec::new(),
-        global_search: "quick",
-        seed: 1,
-        thresholds: Thresholds::default(),
-        differentiates: true,
-        differences: false,
-    }
 }
 
 fn said(cycles: f64, condition: f64, together: Option<f64>) -> Option<String> {
