@@ -45,14 +45,7 @@ pub(crate) async fn prune<L: Laboratory>(
         let Some((position, fit, reason)) = found else {
             break;
         };
-        let id = &current.model.added[position].id;
-        let own = diagnosis
-            .rounds
-            .iter_mut()
-            .filter(|round| round.added.as_ref() == Some(id));
-        for round in own {
-            round.withdraw(reason.clone());
-        }
+        diagnosis.withdraw(&current.model.added[position].id, &reason);
         current = fit;
     }
     Ok(current)

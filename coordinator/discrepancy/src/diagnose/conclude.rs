@@ -11,7 +11,7 @@ use crate::diagnose::diagnosis::Diagnosis;
 use crate::diagnose::other_starts::{Starts, fit_from_other_starts};
 use crate::diagnose::plausibility;
 use crate::diagnose::reason::{Rejection, left, reason, remarks};
-use crate::diagnose::remainder::{Remainder, remainder};
+use crate::diagnose::remainder::remainder;
 use crate::diagnose::validate::{
     doubt_of_force, drop_implausible, prove, replace_by_force, validate,
 };
@@ -170,10 +170,8 @@ async fn settled<L: Laboratory>(
         _ => (&answer, &diagnosis.rows),
     };
     let beyond = mem::take(&mut diagnosis.remainder.beyond);
-    diagnosis.remainder = Remainder {
-        beyond,
-        ..remainder(session, own, shown, rows).await?
-    };
+    diagnosis.remainder = remainder(session, own, shown, rows).await?;
+    diagnosis.remainder.beyond = beyond;
     Ok(Settled {
         after: answer,
         suspect: (!suspects.is_empty()).then(|| suspects.join(" and ")),

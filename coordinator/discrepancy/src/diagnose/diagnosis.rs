@@ -84,8 +84,9 @@ pub struct Diagnosis {
 
 impl Diagnosis {
     /// Returns whether the verdict makes a claim that is not the whole answer: more than noise is left on some
-    /// record, the fit needs instruments far beyond their tolerance, or a stage whose comparisons the verdict rests on used up its budget. Where no more than noise is
-    /// left, the way into another minimum and the localisation could not add anything.
+    /// record, the fit needs instruments far beyond their tolerance, or a stage whose comparisons the verdict
+    /// rests on used up its budget. Where no more than noise is left, the way into another minimum and the
+    /// localisation could not add anything.
     pub fn is_in_part(&self) -> bool {
         let claims = match self.verdict {
             Verdict::Named | Verdict::Ambiguous | Verdict::Unlisted => true,
@@ -128,9 +129,22 @@ impl Diagnosis {
     /// set, with the first round in which an effect was added.
     pub fn rejected(&self) -> Option<(&Round, &Refitted)> {
         let round = self.rounds.iter().find(|round| round.added.is_some())?;
-        let held = |id: &String| self.rounds.iter().any(|round| round.set.contains(id));
-        let rival = round.refits.iter().find(|refit| !held(&refit.id))?;
+        let rival = round.refits.iter().find(|refit| !self.holds(&refit.id))?;
         Some((round, rival))
+    }
+
+    /// Returns whether an effect was added in some round, or is a member of the ambiguity set of one that was.
+    pub fn holds(&self, id: &str) -> bool {
+        let mut sets = self.rounds.iter().flat_map(|round| &round.set);
+        sets.any(|member| member == id)
+    }
+
+    /// Withdraws an effect from every round that added it, and records the reason.
+    pub(crate) fn withdraw(&mut self, id: &str, reason: &str) {
+        let rounds = self.rounds.iter_mut();
+        for round in rounds.filter(|round| round.added.as_deref() == Some(id)) {
+            round.withdraw(reason.to_owned());
+        }
     }
 
     /// Returns the detection limits of the effects that the answer does not name.

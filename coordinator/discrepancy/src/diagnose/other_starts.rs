@@ -47,10 +47,9 @@ pub(crate) async fn fit_from_other_starts<L: Laboratory>(
     let points = match starts {
         Starts::Tested if !session.lab.has_budget(Stage::Refit) => Vec::new(),
         Starts::Tested => {
-            let mut points = other_sizes(answer, rounds);
-            let mut before = exact;
             let start = inputs.start.clone();
-            before.x[..genes].copy_from_slice(&start.unwrap_or_else(|| vec![0.0; genes]));
+            let before = exact.with_genes(&start.unwrap_or_else(|| vec![0.0; genes]));
+            let mut points = other_sizes(answer, rounds);
             points.push(before);
             points
         }
@@ -62,11 +61,9 @@ pub(crate) async fn fit_from_other_starts<L: Laboratory>(
             let rest = &first.x[genes..];
             let mut points = global_starts(&mut experiments, &first.model, rest, search).await?;
             if answer.model.added.len() > 1 {
-                for k in 0..points.len() {
-                    let mut all = exact.clone();
-                    all.x[..genes].copy_from_slice(&points[k].x[..genes]);
-                    points.push(all);
-                }
+                let all = |start: &Point| exact.clone().with_genes(&start.x[..genes]);
+                let together: Vec<Point> = points.iter().map(all).collect();
+                points.extend(together);
             }
             points
         }

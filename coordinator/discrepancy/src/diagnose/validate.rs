@@ -20,9 +20,9 @@ use crate::validation::compare::{DataRole, GapRow, ValidationRecord, compare};
 use crate::validation::predictive::{Prediction, rejection_reason, scores};
 
 /// Continues the fit of an answer to convergence, computes its sizes, gaps and predictive scores, stores them in
-/// the diagnosis, and returns the reason why the answer is none, if its fit is no minimum, needs instruments that are far off, or does not
-/// hold on data excluded from the fit. The predictive value of each effect in addition to the others is tested
-/// earlier.
+/// the diagnosis, and returns the reason why the answer is none, if its fit is no minimum, needs instruments that
+/// are far off, or does not hold on data excluded from the fit. The predictive value of each effect in addition to
+/// the others is tested earlier.
 pub(crate) async fn validate<L: Laboratory>(
     session: &mut Session<'_, L>,
     answer: &mut Fit,
@@ -145,10 +145,7 @@ pub(crate) async fn drop_implausible<L: Laboratory>(
     let Some(fit) = recalibrate::converge(&mut experiments, start).await? else {
         return Ok(None);
     };
-    let own = |round: &&mut Round| round.added.as_ref() == Some(&doubt.effect);
-    for round in diagnosis.rounds.iter_mut().filter(own) {
-        round.withdraw(doubt.reason.clone());
-    }
+    diagnosis.withdraw(&doubt.effect, &doubt.reason);
     Ok(Some(fit))
 }
 
@@ -211,13 +208,13 @@ pub(crate) async fn doubt_of_force<L: Laboratory>(
         tried: diagnosis.rounds.first().map_or(1, |r| r.generics.len()),
         chosen: 0.0,
     };
-    let (fit, rows) = (force.fit.clone(), force.rows.clone());
+    let fit = force.fit.clone();
+    let no_fit = no_fit(&fit, &ids, (&force.rows, &instruments_beyond(&fit)));
     let (records, reason) = prediction(session, [&fit, answer], &claim, shown).await?;
     if answer.model.added.is_empty() {
         diagnosis.prediction = records;
     }
-    let beyond = instruments_beyond(&fit);
-    Ok(no_fit(&fit, &ids, (&rows, &beyond)).or(reason))
+    Ok(no_fit.or(reason))
 }
 
 /// Computes the misfit to each record before and after adding effects: for the answer and its best rejected

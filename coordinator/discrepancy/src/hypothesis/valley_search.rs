@@ -171,9 +171,7 @@ fn from_rivals(round: &Round, own: usize, genes: usize) -> Vec<Point> {
 
 /// Combines the unknowns of one fit with the model, nuisance parameters and effect parameters of another.
 fn crossed(genes_of: &Fit, rest_of: &Fit, genes: usize) -> Point {
-    let mut point = rest_of.point();
-    point.x[..genes].copy_from_slice(&genes_of.x()[..genes]);
-    point
+    rest_of.point().with_genes(&genes_of.x()[..genes])
 }
 
 /// Adopts the better fits found, refits all other promising effects from the best of them, and ranks all

@@ -219,6 +219,13 @@ impl Point {
         self
     }
 
+    /// Replaces the values of the case's unknowns.
+    #[must_use]
+    pub(crate) fn with_genes(mut self, genes: &[f64]) -> Self {
+        self.x[..genes.len()].copy_from_slice(genes);
+        self
+    }
+
     /// Limits the nuisance parameters to [`WITHIN`] standard deviations.
     #[must_use]
     pub(crate) fn with_held_instruments(mut self) -> Self {

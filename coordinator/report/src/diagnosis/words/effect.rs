@@ -48,9 +48,8 @@ fn sizes(subject: &DiagnosisInput<'_>, effect: &Estimate) -> String {
 /// Lists the effects with their sizes, one item each; those that are not named are marked as suspected.
 pub(in crate::diagnosis) fn effects(subject: &DiagnosisInput<'_>) -> Vec<String> {
     let diagnosis = subject.diagnosis();
-    let is_named = |id: &String| diagnosis.rounds.iter().any(|round| round.set.contains(id));
     let one = |effect: &Estimate| {
-        let suspected = if is_named(&effect.id) {
+        let suspected = if diagnosis.holds(&effect.id) {
             ""
         } else {
             "suspected, not named: "

@@ -191,14 +191,8 @@ fn named(diagnosis: &Diagnosis) -> impl Iterator<Item = &Estimate> {
         diagnosis.verdict,
         Verdict::NothingDetected | Verdict::Unresolved
     );
-    let in_set = |own: &&Estimate| {
-        diagnosis
-            .rounds
-            .iter()
-            .any(|round| round.set.contains(&own.id))
-    };
     let effects = diagnosis.effects.iter();
-    effects.filter(move |own| !silent && in_set(own))
+    effects.filter(move |own| !silent && diagnosis.holds(&own.id))
 }
 
 fn numerical_error(diagnosis: &Diagnosis) -> Option<NumericalOutput> {
