@@ -243,7 +243,6 @@ fn a_worker_that_outlives_fifteen_coordinators_does_every_job_once() {
 #[tokio::test(flavor = "multi_thread")]
 async fn one_three_and_seven_workers_of_which_some_are_killed_make_the_same_log() {
     let mut logs = BTreeSet::new();
-    let mut lost = 0;
     for count in [1, 3, 7] {
         let folder = tempfile::tempdir().unwrap();
         let locator = free_locator();
@@ -263,12 +262,11 @@ async fn one_three_and_seven_workers_of_which_some_are_killed_make_the_same_log(
             .await;
         let last = dispatch.close().await.unwrap().last;
         assert_eq!(last.failed, 0);
-        // one that had not joined yet is no loss, nor is one that was not missed before the end
-        assert!(last.lost <= 3, "{last:?}");
-        lost += last.lost;
+        // the only worker is missed; among several, one that had not joined yet is no loss, and the run may end
+        // before another one is missed
+        let least = u32::from(count == 1);
+        assert!((least..=3).contains(&last.lost), "{last:?}");
         logs.insert(search.log());
     }
-    // the only worker is missed
-    assert!(lost > 0);
     assert_eq!(logs.len(), 1, "{logs:?}");
 }
