@@ -24,6 +24,14 @@ pub(crate) struct Baseline {
 }
 
 impl Baseline {
+    /// Lets the model and all that are fitted from here on compete with a smooth discrepancy.
+    #[must_use]
+    pub(crate) fn with_discrepancy(mut self) -> Self {
+        self.record = self.record.with_discrepancy();
+        self.fit = self.fit.competing(self.record.smooth.clone());
+        self
+    }
+
     /// Returns the expected squared length of the whitened residual if it is noise alone: its number of
     /// entries.
     pub(crate) fn noise(&self) -> f64 {

@@ -171,7 +171,7 @@ async fn first_fit<L: Laboratory>(
     let Some(first) = recalibrate::from_starts(&mut recalibration, starts).await? else {
         return Ok(None);
     };
-    if first.dispersion() > DOUBTFUL
+    if first.misfit() > DOUBTFUL
         && experiments.lab.has_budget(Stage::Basin)
         && let Some(other) = narrow_minimum::scan(experiments, &first).await?
     {

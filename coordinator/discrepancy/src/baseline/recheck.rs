@@ -51,7 +51,8 @@ pub(crate) async fn check_against_finer<L: Laboratory>(
     let [usual_null, usual_own] = [before, after].map(|fit| cost(fit, &ones, &nothing));
     // the finer model's change is one more unknown
     let dispersion = (own / (after.freedom() - 1.0).max(1.0)).max(1.0);
-    let nats = after.log_evidence() - before.log_evidence();
+    let among = after.discrepancies(before);
+    let nats = after.log_evidence_among(&among) - before.log_evidence_among(&among);
     let gain = nats - 0.5 * (usual_null - usual_own) + 0.5 * (null - own);
     Ok(Some(Checked {
         preflight,
@@ -66,16 +67,18 @@ fn floor(metric: &Metric, error: &DVector<f64>, known: &DVector<f64>) -> DVector
     metric.powers(error).zip_map(&metric.powers(known), weight)
 }
 
-/// Returns the weighted squared residual of a fit, minimised to first order over its variables and over the
-/// amplitude of a numerical error of given shape and unit standard deviation.
+/// Returns the weighted squared residual of a fit, minimised to first order over its variables, its
+/// discrepancy and the amplitude of a numerical error of given shape and unit standard deviation.
 fn cost(fit: &Fit, weights: &DVector<f64>, error: &DVector<f64>) -> f64 {
     let at = fit.search.best();
-    let columns = at.jacobian.column_iter();
+    let waves = fit.waves();
+    let columns = at.jacobian.column_iter().chain(waves.column_iter());
     let mut columns: Vec<DVector<f64>> = columns.map(|c| c.component_mul(weights)).collect();
     columns.push(error.component_mul(weights));
     let residual = at.residual.component_mul(weights);
+    let amplitudes = waves.ncols() + 1;
     let mut variables = fit.variables().to_vec();
-    variables.push(Variable {
+    let unit = Variable {
         start: 0.0,
         lower: f64::NEG_INFINITY,
         upper: f64::INFINITY,
@@ -85,9 +88,10 @@ fn cost(fit: &Fit, weights: &DVector<f64>, error: &DVector<f64>) -> f64 {
             mean: 0.0,
             deviation: 1.0,
         }),
-    });
+    };
+    variables.resize(variables.len() + amplitudes, unit);
     let mut x = at.x.clone();
-    x.push(0.0);
+    x.resize(x.len() + amplitudes, 0.0);
     let linear = Linearized {
         x,
         residual: residual.clone(),

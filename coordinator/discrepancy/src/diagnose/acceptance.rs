@@ -44,7 +44,7 @@ pub(crate) async fn accept<L: Laboratory>(
         return Ok(None);
     }
     if let Some(both) = together
-        && let Some(beside) = decide_joint(round, &both, thresholds)
+        && let Some(beside) = decide_joint(round, (&both, current), thresholds)
     {
         let id = both.members.join(" with ");
         let reason = doubt_by_finer_model(session, current, &both.fit, &id, diagnosis).await?;

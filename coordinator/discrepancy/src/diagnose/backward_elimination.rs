@@ -4,7 +4,7 @@ use crate::diagnose::diagnosis::Diagnosis;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
 use crate::validation::compare::ValidationRecord;
-use crate::validation::predictive::{rejection_reason, scores};
+use crate::validation::predictive::{Needed, rejection_reason, scores};
 use search::least_squares::LeastSquaresSettings;
 
 /// Removes, one at a time, effects without which the evidence falls by less than the gain required to add an
@@ -34,8 +34,7 @@ pub(crate) async fn prune<L: Laboratory>(
         let Some((position, fit)) = fits.first() else {
             break;
         };
-        let lost = (current.log_evidence() - fit.log_evidence()) / current.dispersion();
-        let found = if lost < gain {
+        let found = if current.gain_over(fit) < gain {
             let id = &current.model.added[*position].id;
             let reason = format!("{id} is no longer needed with the effects that were added later");
             Some((*position, fit.clone(), reason))
@@ -60,7 +59,6 @@ async fn find_unpredictive<L: Laboratory>(
     diagnosis: &Diagnosis,
 ) -> Result<Option<(usize, Fit, String)>, L::Error> {
     let inputs = session.inputs;
-    let thresholds = &inputs.thresholds;
     let tried = diagnosis.rounds.first().map_or(1, |r| r.candidates.len());
     for (position, fit) in without {
         if !session.lab.has_budget(Stage::Show) {
@@ -68,7 +66,7 @@ async fn find_unpredictive<L: Laboratory>(
         }
         let mut experiments = session.experiments(Stage::Show);
         let own = scores(&mut experiments, shown, [answer, &fit]).await?;
-        let needed = [thresholds.prediction, own.needed(thresholds, 1, tried)];
+        let needed = Needed::of(&inputs.thresholds, 1, tried);
         let id = &answer.model.added[position].id;
         if let Some(reason) = rejection_reason(id, &own, needed, inputs) {
             return Ok(Some((position, fit, reason)));

@@ -100,7 +100,7 @@ pub(crate) async fn conclude<L: Laboratory>(
     }
     diagnosis.nuisances = nuisance_estimates(&after, &spread);
     // what a missing effect leaves is no noise: limits are those beside the answer
-    let ratio = (after.dispersion() / base.fit.dispersion()).sqrt();
+    let ratio = (after.misfit() / base.fit.misfit()).sqrt();
     for limit in &mut diagnosis.limits {
         limit.size *= ratio;
     }

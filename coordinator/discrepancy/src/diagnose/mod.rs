@@ -4,7 +4,6 @@ mod acceptance;
 mod backward_elimination;
 mod claim;
 mod conclude;
-mod correlation;
 pub(crate) mod diagnosis;
 mod other_starts;
 mod plausibility;
@@ -31,7 +30,6 @@ use crate::baseline::establish::establish;
 use crate::baseline::session::Session;
 use crate::laboratory::{Laboratory, Stage};
 use crate::localisation::summary;
-use crate::record::measured::Record;
 use crate::thresholds::MAX_PREDICTED_DECREASE;
 use crate::validation::compare::validation_records;
 use conclude::conclude;
@@ -82,30 +80,10 @@ async fn diagnose_budgeted<L: Laboratory>(
             "every channel of the calibrated condition is held out",
         ));
     }
-    let mut base = match establish(lab, inputs, split.fitted.clone()).await? {
-        Ok(base) => base,
+    let base = match establish(lab, inputs, split.fitted.clone()).await? {
+        Ok(base) => base.with_discrepancy(),
         Err(baseless) => return Ok(Diagnosis::unresolved(baseless.reason())),
     };
-    let mut split = split;
-    let mut first = Session {
-        lab: &mut *lab,
-        base: &base,
-        inputs,
-    };
-    let completed = correlation::with_correlations(&mut first).await?;
-    let again: Inputs;
-    let mut inputs = inputs;
-    if let Some((fitted, said)) = completed {
-        again = correlation::repeated_inputs(inputs, &fitted, &base.fit);
-        inputs = &again;
-        split = again.records.first().map_or(split, Record::split);
-        base = match establish(lab, inputs, split.fitted.clone()).await? {
-            Ok(base) => base,
-            Err(baseless) => return Ok(Diagnosis::unresolved(baseless.reason())),
-        };
-        base.notes.push(said);
-    }
-    let (base, split) = (base, split);
     let mut session = Session {
         lab,
         base: &base,

@@ -2,7 +2,7 @@
 //! the rest of the answer unchanged, and is ranked with it.
 //!
 //! The rank is the log evidence of the fit divided by its dispersion, plus the predictive score on data
-//! excluded from the fit; left-out blocks of the fitted record are already contained in the evidence. A rival
+//! excluded from the fit. A rival
 //! replaces the added effect only if it passes the same checks: evidence, and comparison with a finer model.
 use crate::baseline::recheck::check_against_finer;
 use crate::baseline::session::Session;
@@ -14,7 +14,7 @@ use crate::linear::evidence::ambiguity_set;
 use crate::linear::isolability::similarity;
 use crate::model::fit::Fit;
 use crate::thresholds::{AMBIGUITY_MARGIN, RANKED};
-use crate::validation::compare::{DataRole, ValidationRecord};
+use crate::validation::compare::ValidationRecord;
 use crate::validation::predictive::scores;
 use search::least_squares::LeastSquaresSettings;
 
@@ -95,12 +95,9 @@ async fn merits<L: Laboratory>(
             if !own.failed.is_empty() {
                 continue;
             }
-            let held_out = own.records.iter().all(|one| one.part != DataRole::LeftOut);
-            predicted = own.together.filter(|_| held_out).unwrap_or(0.0);
+            predicted = own.together.unwrap_or(0.0);
         }
-        let dispersion = fit.dispersion().min(answer.dispersion());
-        let evidence = (fit.log_evidence() - answer.log_evidence()) / dispersion;
-        let merit = evidence + predicted;
+        let merit = fit.gain_over(answer) + predicted;
         if merit.is_finite() {
             ranked.push(Ranked { id, merit, fit });
         }
@@ -121,7 +118,7 @@ async fn is_acceptable<L: Laboratory>(
     let Some(without) = without else {
         return Ok(false);
     };
-    if (fit.log_evidence() - without.log_evidence()) / fit.dispersion() < needed {
+    if fit.gain_over(&without) < needed {
         return Ok(false);
     }
     let checked = check_against_finer(session, &without, fit).await?;

@@ -169,6 +169,8 @@ fn finding(
     suspects: &[CandidateEffect],
     refits: &[Refitted],
 ) -> Finding {
+    let needed = [current.discrepancy().cloned()];
+    let null = current.log_evidence_among(&needed);
     let suspect = |own: &&CandidateEffect| Suspect {
         id: own.effect.id.clone(),
         title: own.effect.title.clone(),
@@ -176,7 +178,7 @@ fn finding(
         gain: refits
             .iter()
             .find(|refit| refit.id == own.effect.id)
-            .map(|refit| refit.log_evidence - current.log_evidence()),
+            .map(|refit| refit.fit.log_evidence_among(&needed) - null),
     };
     Finding {
         added: ids(current),

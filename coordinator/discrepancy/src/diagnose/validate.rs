@@ -17,7 +17,7 @@ use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
 use crate::thresholds::MAJORITY;
 use crate::validation::compare::{DataRole, GapRow, ValidationRecord, compare};
-use crate::validation::predictive::{Prediction, rejection_reason, scores};
+use crate::validation::predictive::{Needed, Prediction, rejection_reason, scores};
 
 /// Continues the fit of an answer to convergence, computes its sizes, gaps and predictive scores, stores them in
 /// the diagnosis, and returns the reason why the answer is none, if its fit is no minimum, needs instruments that
@@ -81,19 +81,25 @@ async fn prediction<L: Laboratory>(
     shown: &[ValidationRecord<'_>],
 ) -> Result<(Vec<Prediction>, Option<String>), L::Error> {
     let inputs = session.inputs;
-    let thresholds = &inputs.thresholds;
     let mut experiments = session.experiments(Stage::Show);
     let whole = scores(&mut experiments, shown, [with, without]).await?;
-    let needed = whole.needed(thresholds, claim.effects, claim.tried) + claim.chosen;
-    let reason = rejection_reason(claim.ids, &whole, [thresholds.prediction, needed], inputs);
+    let needed = Needed {
+        chosen: claim.chosen,
+        ..Needed::of(&inputs.thresholds, claim.effects, claim.tried)
+    };
+    let reason = rejection_reason(claim.ids, &whole, needed, inputs);
     Ok((whole.records, reason))
 }
 
 /// Returns the reason against a claim that the gap to the record of another condition grows with it, if it
-/// does.
+/// does by more than the scatter of the cycles tells.
 fn opened(ids: &str, rows: &[GapRow], inputs: &Inputs) -> Option<String> {
+    let grows = |row: &&GapRow| {
+        let interval = row.closed.interval;
+        interval.map_or(row.closed.closed, |[_, upper]| upper) < 0.0
+    };
     let mut others = rows.iter().filter(|row| row.part == DataRole::Condition);
-    let row = others.find(|row| row.closed.closed < 0.0)?;
+    let row = others.find(grows)?;
     Some(format!(
         "{ids} explains the fitted data, but under {} the gap grows by {} with it",
         inputs.condition(row.condition),

@@ -63,7 +63,7 @@ pub(crate) async fn weigh<L: Laboratory>(
     let own = |one: &Visible<'_>| scaled(&one.suspect.signature, &one.amounts);
     let here: Vec<DMatrix<f64>> = visible.iter().map(own).collect();
     let at = fit.search.best();
-    let mut alike = pairs(&here, &fit.tangent(), fit.dispersion());
+    let mut alike = pairs(&here, &fit.tangent(), fit.misfit());
     alike.retain(|pair| pair.relative_distance < 1.0);
     alike.sort_by(|a, b| a.relative_distance.total_cmp(&b.relative_distance));
     if alike.is_empty() {
@@ -93,7 +93,7 @@ pub(crate) async fn weigh<L: Laboratory>(
         pairs(
             &signatures,
             &Tangent::new(&both, fit.variables()),
-            fit.dispersion(),
+            fit.misfit(),
         )
     });
     let name = |k: usize| visible[k].suspect.effect.id.clone();

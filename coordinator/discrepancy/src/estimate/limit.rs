@@ -41,7 +41,7 @@ pub(crate) fn limits(round: &Round, fit: &Fit, alpha: f64) -> Vec<Limit> {
     {
         let hurdle = DetectionThreshold {
             p_value: single(alpha, suspect.tries * round.candidates.len()),
-            dispersion: fit.dispersion(),
+            dispersion: fit.misfit(),
         };
         let sizes = sizes(&suspect.effect);
         for (column, &k) in sizes.iter().enumerate() {

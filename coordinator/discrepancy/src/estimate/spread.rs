@@ -99,7 +99,8 @@ fn covariance(metric: &Metric, fit: &Fit, dispersion: f64) -> Option<(DMatrix<f6
     let used = free(at, fit.variables());
     let jacobian = at.jacobian.select_columns(&used);
     let prior = prior(fit, &used);
-    let information = jacobian.tr_mul(&jacobian) / dispersion + &prior;
+    let waves = fit.waves();
+    let information = information(&jacobian, &waves)? / dispersion + &prior;
     let white = if used.is_empty() {
         information
     } else {
@@ -107,7 +108,10 @@ fn covariance(metric: &Metric, fit: &Fit, dispersion: f64) -> Option<(DMatrix<f6
     };
     let mut own = white.clone();
     let mut growth = DVector::from_element(used.len(), 1.0);
-    if let Some(meat) = meat(metric, fit, &jacobian, dispersion) {
+    // a discrepancy is in the covariance already
+    let coloured = waves.ncols() == 0;
+    let meat = coloured.then(|| meat(metric, fit, &jacobian, dispersion));
+    if let Some(meat) = meat.flatten() {
         own = &white * (meat / (dispersion * dispersion) + prior) * &white;
         for k in 0..used.len() {
             let wider = own[(k, k)] / white[(k, k)];
@@ -132,6 +136,18 @@ fn covariance(metric: &Metric, fit: &Fit, dispersion: f64) -> Option<(DMatrix<f6
         }
     }
     Some((whole, growths))
+}
+
+/// Returns the information `J^T C^-1 J` of a Jacobian under the covariance `C = I + D D^T` of noise and a
+/// discrepancy of scaled waves `D`; `None` where it is singular.
+fn information(jacobian: &DMatrix<f64>, waves: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let mut information = jacobian.tr_mul(jacobian);
+    if waves.ncols() > 0 {
+        let inner = waves.tr_mul(waves) + DMatrix::identity(waves.ncols(), waves.ncols());
+        let mixed = waves.tr_mul(jacobian);
+        information -= mixed.tr_mul(&inner.cholesky()?.solve(&mixed));
+    }
+    Some(information)
 }
 
 /// Returns the prior precision matrix of the unknowns with the indices `of` in a fit.

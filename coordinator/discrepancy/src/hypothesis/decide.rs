@@ -44,17 +44,15 @@ pub(crate) fn decide(
 /// becomes the round of the first effect, and one copy of the round is returned for each of the others.
 pub(crate) fn decide_joint(
     round: &mut Round,
-    both: &JointRefit,
+    (both, current): (&JointRefit, &Fit),
     thresholds: &Thresholds,
 ) -> Option<Vec<Round>> {
-    let best = round.refits.first();
-    let dispersion = both.fit.dispersion();
-    let evidence = best.map_or(f64::NEG_INFINITY, |best| best.log_evidence);
-    let gained = both.fit.log_evidence() - evidence.max(round.null_evidence);
-    if gained <= thresholds.gain * dispersion || round.p_value > thresholds.alpha {
+    let best = round.refits.first().map_or(current, |best| &best.fit);
+    let gained = both.fit.gain_over(best).min(both.fit.gain_over(current));
+    if gained <= thresholds.gain || round.p_value > thresholds.alpha {
         return None;
     }
-    round.dispersion = dispersion;
+    round.dispersion = both.fit.dispersion();
     let mut rounds = both.members.iter().map(|id| Round {
         added: Some(id.clone()),
         set: vec![id.clone()],

@@ -72,14 +72,11 @@ pub(crate) async fn challenge<L: Laboratory>(
     let (base, thresholds) = (session.base, &session.inputs.thresholds);
     let best = round.refits.first();
     let best_name = best.map(|best| &best.fit);
-    // what the best name leaves, by how much it lowers the misfit, and its evidence; without a name,
-    // those of the model without
+    // what the best name leaves, and by how much it lowers the misfit; without a name, those of the model
+    // without
     let left = best.map_or(f64::INFINITY, |best| best.fit.chi_squared());
     let named = (current.chi_squared() - left).max(0.0);
     let left = left.min(current.chi_squared());
-    let evidence = best.map_or(f64::NEG_INFINITY, |best| best.log_evidence);
-    let evidence = evidence.max(round.null_evidence);
-
     let tangent = current.tangent();
     let residual = &current.search.linear_minimum_residual();
     let mut forms = forms(&round.generics, residual, &tangent);
@@ -102,17 +99,18 @@ pub(crate) async fn challenge<L: Laboratory>(
         .filter_map(|(form, refit)| Some((form, refit?)));
     let best = refits.min_by(|(_, a), (_, b)| a.chi_squared().total_cmp(&b.chi_squared()));
     Ok(best.and_then(|(form, fit)| {
-        let named_best = best_name.map_or(f64::INFINITY, Fit::dispersion);
-        let scale = fit.dispersion().min(named_best).min(current.dispersion());
         let own = form.challenger(current, fit);
         let (removed, fit) = (own.removed, &own.fit);
-        let margin = thresholds.generic_gain * scale;
+        let misfit = best_name.map_or(f64::INFINITY, Fit::misfit);
+        let misfit = fit.misfit().min(misfit).min(current.misfit());
+        let margin = thresholds.generic_gain * misfit;
         let noise =
             |left: f64| base.is_noise(left, fit.tangent().parameters(), thresholds.adequacy);
         let clears = noise(fit.chi_squared()) && !noise(left);
         let beats = removed > thresholds.generic_factor * named + margin
             || (clears && removed > named + margin);
-        let beats = beats && own.log_evidence - evidence > thresholds.gain * scale;
+        let gained = fit.gain_over(best_name.unwrap_or(current));
+        let beats = beats && gained.min(fit.gain_over(current)) > thresholds.gain;
         beats.then_some(own)
     }))
 }
@@ -161,10 +159,8 @@ pub(crate) async fn in_place<L: Laboratory>(
     let refits = refits.filter_map(|(form, fit)| Some(form.challenger(&without, fit?)));
     let best = refits.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
     let force = best.filter(|force| {
-        let scale = force.fit.dispersion().min(answer.dispersion());
-        let gained = force.log_evidence - answer.log_evidence();
         let closer = force.fit.chi_squared() < answer.chi_squared();
-        gained > thresholds.gain * scale && (closer || vanishes)
+        force.fit.gain_over(answer) > thresholds.gain && (closer || vanishes)
     });
     Ok(force.map(|force| Replacement { without, force }))
 }

@@ -16,7 +16,8 @@ pub struct Refitted {
     pub id: String,
     /// Best fit with the effect.
     pub fit: Fit,
-    /// Log evidence of the refitted model (nats).
+    /// Log evidence of the refitted model (nats): if all that it leaves were noise, until the round of tests is
+    /// judged, then with the discrepancy that the round's likeliest effect needs.
     pub log_evidence: f64,
 }
 
@@ -25,7 +26,7 @@ impl Refitted {
     pub(crate) fn new(id: String, fit: Fit) -> Self {
         Self {
             id,
-            log_evidence: fit.log_evidence(),
+            log_evidence: fit.log_evidence_of_noise(),
             fit,
         }
     }

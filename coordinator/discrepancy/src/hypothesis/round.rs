@@ -17,9 +17,10 @@ pub struct Round {
     pub refits: Vec<Refitted>,
     /// Log evidence of the current model, without a further effect.
     pub null_evidence: f64,
-    /// Dispersion (`chi^2` per degree of freedom) of the best model, by which statistics and differences of
-    /// log evidences are divided.
+    /// Dispersion of the best model, by which differences of log evidences are divided.
     pub dispersion: f64,
+    /// Misfit (`chi^2` per degree of freedom) of the best model, by which the statistics of tests are divided.
+    pub misfit: f64,
     /// Family-wise p-value of the tests of all named effects.
     pub p_value: f64,
     /// Ambiguity set: identifiers of the effects that the record cannot distinguish from the added one, best
@@ -50,6 +51,7 @@ impl Round {
             refits,
             null_evidence: current.log_evidence(),
             dispersion: 1.0,
+            misfit: 1.0,
             p_value: 1.0,
             set: Vec::new(),
             added: None,
@@ -73,16 +75,33 @@ impl Round {
         self.reason = Some(reason);
     }
 
-    /// Sorts the refits by evidence, and derives the dispersion of the best model and the family-wise p-value
-    /// under it.
-    pub(crate) fn judge(&mut self, current: &Fit) {
+    fn sort(&mut self) {
         self.refits
             .sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
-        let best = self.refits.first().map(|own| own.fit.dispersion());
-        self.dispersion = best
-            .map_or(f64::INFINITY, |own| own)
-            .min(current.dispersion());
-        let scale = self.dispersion;
+    }
+
+    /// Ranks the refits by evidence, averaged over the discrepancies that the likeliest and the current model
+    /// need, and derives dispersion and misfit of the best model and the family-wise p-value under it.
+    pub(crate) fn judge(&mut self, current: &Fit) {
+        /// Number of rankings: the likeliest may be another one under the discrepancy that the first needs.
+        const RANKINGS: usize = 2;
+        for refit in &mut self.refits {
+            refit.log_evidence = refit.fit.log_evidence_of_noise();
+        }
+        for _ in 0..RANKINGS {
+            self.sort();
+            let leader = self.refits.first().map_or(current, |own| &own.fit);
+            let among = leader.discrepancies(current);
+            self.null_evidence = current.log_evidence_among(&among);
+            for refit in &mut self.refits {
+                refit.log_evidence = refit.fit.log_evidence_among(&among);
+            }
+        }
+        self.sort();
+        let best = self.refits.first().map_or(current, |own| &own.fit);
+        self.dispersion = best.dispersion().min(current.dispersion());
+        self.misfit = best.misfit().min(current.misfit());
+        let scale = self.misfit;
         let least = self
             .candidates
             .iter()

@@ -76,14 +76,14 @@ pub(crate) async fn search<L: Laboratory>(
         let found = other.map(|fit| Found { place, fit }).into_iter().collect();
         settle(session, current, round, found).await?;
     }
-    if round.dispersion > lost && session.lab.has_budget(Stage::Basin) {
+    if round.misfit > lost && session.lab.has_budget(Stage::Basin) {
         let found = from_low_orders(session, current, round).await?;
         if !found.is_empty() {
             settle(session, current, round, found).await?;
             deeper(session, current, round).await?;
         }
     }
-    Ok(round.dispersion <= lost)
+    Ok(round.misfit <= lost)
 }
 
 /// Searches for narrow minima of the likeliest effects repeatedly, each time from the end of the previous
@@ -155,7 +155,7 @@ fn leaders(round: &Round, bound: f64) -> Vec<usize> {
     let gain = |refit: &Refitted| refit.log_evidence - round.null_evidence;
     let best = round.refits.first().map_or(0.0, gain);
     let likely = |refit: &Refitted| gain(refit) > 0.0 && gain(refit) > SHARE * best;
-    let leads = |refit: &Refitted| likely(refit) && refit.fit.dispersion() > bound;
+    let leads = |refit: &Refitted| likely(refit) && refit.fit.misfit() > bound;
     (0..round.refits.len().min(LEADERS))
         .filter(|k| leads(&round.refits[*k]))
         .collect()

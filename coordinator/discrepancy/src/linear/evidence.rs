@@ -73,6 +73,16 @@ pub fn log_evidence(at: &Linearized, variables: &[Variable]) -> f64 {
         .sum::<f64>()
 }
 
+/// Returns the logarithm of the mean of `exp` of several values; `NaN` where one is.
+pub(crate) fn log_mean(values: &[f64]) -> f64 {
+    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if values.iter().any(|value| value.is_nan()) || !largest.is_finite() {
+        return values.iter().sum();
+    }
+    let sum: f64 = values.iter().map(|value| libm::exp(value - largest)).sum();
+    largest + libm::log(sum / values.len() as f64)
+}
+
 /// Returns the logarithm of the integral of `exp(-slope t - t^2 / 2)` over `t > 0`, relative to that of the
 /// whole Gaussian `exp(-t^2 / 2)`.
 fn log_share_inside(slope: f64) -> f64 {

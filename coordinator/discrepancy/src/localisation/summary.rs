@@ -59,7 +59,7 @@ pub(crate) async fn localise<L: Laboratory>(
     Ok(Localisation {
         along: window_test::map::map(&residual, &deviations, inputs.thresholds.draws, MAPS),
         order: order::map(&residual, base.record.metric.freedom(), MAPS),
-        equivalent: joint::indistinguishable(&joints, fit.dispersion()),
+        equivalent: joint::indistinguishable(&joints, fit.misfit()),
         joints,
     })
 }

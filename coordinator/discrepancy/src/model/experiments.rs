@@ -242,11 +242,7 @@ impl<L: Laboratory> Experiments<'_, L> {
         let finished =
             |((model, search), curves): ((FittedModel, LeastSquares), Option<Curves>)| {
                 let curves = curves?;
-                Some(Fit {
-                    model,
-                    search,
-                    curves,
-                })
+                Some(Fit::new(model, (search, curves), self.on.smooth.clone()))
             };
         Ok(fits.into_iter().zip(at_best).map(finished).collect())
     }

@@ -1,10 +1,13 @@
 //! Model that was fitted to a record, with the quantities that the tests use.
-use crate::linear::evidence;
+use crate::linear::discrepancy::{Discrepancy, SmoothBasis};
+use crate::linear::evidence::{self, log_mean};
 use crate::linear::tangent::Tangent;
 use crate::model::unknowns::{FittedModel, Point};
 use crate::record::measured::Curves;
+use nalgebra::DMatrix;
 use protocol::announce::EffectDescriptor;
 use search::least_squares::{LeastSquares, Variable};
+use std::sync::{Arc, OnceLock};
 
 /// Model with the final state of its fit.
 #[derive(Clone, Debug)]
@@ -15,9 +18,63 @@ pub struct Fit {
     pub search: LeastSquares,
     /// Simulated curves at the fitted point.
     pub curves: Curves,
+    /// Waves of the smooth discrepancy with which the model competes, if it does.
+    pub(crate) smooth: Option<Arc<SmoothBasis>>,
+    /// Likeliest discrepancy beside the model with the log evidence that it gains, computed when it is first
+    /// asked for.
+    likeliest: OnceLock<Option<(Discrepancy, f64)>>,
 }
 
 impl Fit {
+    /// Creates a fit from the final state of its search and the curves there. `smooth` are the waves of the
+    /// smooth discrepancy with which it competes, if it does.
+    pub fn new(
+        model: FittedModel,
+        (search, curves): (LeastSquares, Curves),
+        smooth: Option<Arc<SmoothBasis>>,
+    ) -> Self {
+        Self {
+            model,
+            search,
+            curves,
+            smooth,
+            likeliest: OnceLock::new(),
+        }
+    }
+
+    /// Returns the same fit in competition with a smooth discrepancy.
+    pub(crate) fn competing(self, smooth: Option<Arc<SmoothBasis>>) -> Self {
+        Self::new(self.model, (self.search, self.curves), smooth)
+    }
+
+    /// Returns the smooth discrepancy that the model needs beside it; `None` if it is likeliest without one.
+    pub fn discrepancy(&self) -> Option<&Discrepancy> {
+        self.likeliest().map(|(own, _)| own)
+    }
+
+    fn likeliest(&self) -> Option<&(Discrepancy, f64)> {
+        let smooth = self.smooth.as_ref()?;
+        let found = self
+            .likeliest
+            .get_or_init(|| smooth.likeliest(self.search.best(), self.variables()));
+        found.as_ref()
+    }
+
+    /// Returns the whitened waves of the discrepancy that the model needs, each times the standard deviation of
+    /// its coefficient; no column if it needs none.
+    pub(crate) fn waves(&self) -> DMatrix<f64> {
+        self.waves_of(self.discrepancy())
+    }
+
+    /// Returns the whitened waves of a discrepancy, each times the standard deviation of its coefficient.
+    pub(crate) fn waves_of(&self, discrepancy: Option<&Discrepancy>) -> DMatrix<f64> {
+        let own = self.smooth.as_ref().zip(discrepancy);
+        own.map_or_else(
+            || DMatrix::zeros(self.entries(), 0),
+            |(smooth, own)| smooth.scaled(own),
+        )
+    }
+
     /// Returns the fitted values of the unknowns.
     pub fn x(&self) -> &[f64] {
         &self.search.best().x
@@ -62,16 +119,70 @@ impl Fit {
         (self.entries() as f64 - self.tangent().parameters()).max(1.0)
     }
 
-    /// Returns the variance of a residual entry in units of the noise variance, `max(1, chi^2 / (n - p))`:
-    /// the dispersion by which differences of log likelihoods are divided (`McCullagh` & Nelder, *Generalized
-    /// Linear Models*, 4.5).
-    pub fn dispersion(&self) -> f64 {
+    /// Returns the variance of a residual entry in units of the noise variance, `max(1, chi^2 / (n - p))`.
+    pub fn misfit(&self) -> f64 {
         (self.chi_squared() / self.freedom()).max(1.0)
     }
 
-    /// Returns the log evidence of the model (nats), up to a constant of the record.
+    /// Returns the dispersion by which differences of log likelihoods are divided (`McCullagh` & Nelder,
+    /// *Generalized Linear Models*, 4.5): the misfit, or 1 where a smooth discrepancy stands for it.
+    pub fn dispersion(&self) -> f64 {
+        if self.discrepancy().is_some() {
+            1.0
+        } else {
+            self.misfit()
+        }
+    }
+
+    /// Returns the log evidence of the model with the smooth discrepancy that it needs (nats), up to a constant
+    /// of the record.
     pub fn log_evidence(&self) -> f64 {
+        let gained = self.likeliest().map_or(0.0, |(_, gained)| *gained);
+        self.log_evidence_of_noise() + gained
+    }
+
+    /// Returns the log evidence of the model if all that it leaves were noise (nats), up to a constant of the
+    /// record.
+    pub(crate) fn log_evidence_of_noise(&self) -> f64 {
         evidence::log_evidence(self.search.best(), self.variables())
+    }
+
+    /// Returns the log evidence of the model with each of several discrepancies, or none (nats), up to a
+    /// constant of the record.
+    pub(crate) fn log_evidence_with(&self, among: &[Option<Discrepancy>]) -> Vec<f64> {
+        let noise = self.log_evidence_of_noise();
+        let gain = |own: &Discrepancy| {
+            let smooth = self.smooth.as_ref()?;
+            smooth.gain(self.search.best(), self.variables(), own)
+        };
+        let each = among
+            .iter()
+            .map(|own| noise + own.as_ref().and_then(gain).unwrap_or(0.0));
+        each.collect()
+    }
+
+    /// Returns the log evidence of the model averaged over several discrepancies (nats), up to a constant of the
+    /// record.
+    pub(crate) fn log_evidence_among(&self, among: &[Option<Discrepancy>]) -> f64 {
+        log_mean(&self.log_evidence_with(among))
+    }
+
+    /// Returns the gain of log evidence over another model of the same record, averaged over the discrepancies
+    /// that either needs and divided by the dispersion (nats).
+    pub(crate) fn gain_over(&self, other: &Self) -> f64 {
+        let among = self.discrepancies(other);
+        let gained = self.log_evidence_among(&among) - other.log_evidence_among(&among);
+        gained / self.dispersion().min(other.dispersion())
+    }
+
+    /// Returns the discrepancies over which the comparison of two models averages: none, and those that either
+    /// needs. Three points stand for the distribution of amplitudes and length, of which the likeliest alone
+    /// would be claimed with a certainty that no record gives.
+    pub(crate) fn discrepancies(&self, other: &Self) -> Vec<Option<Discrepancy>> {
+        let needed = [self, other].map(|own| own.discrepancy().cloned());
+        let mut among = vec![None];
+        among.extend(needed.into_iter().flatten().map(Some));
+        among
     }
 
     /// Returns the tangent space of the fitted model: the changes of the whitened residual that its unknowns

@@ -321,53 +321,6 @@ impl Metric {
         self.by_channel(|block, _| Bins::of(&block.group))
     }
 
-    /// Divides the indices of a whitened vector into blocks that are nearly independent where the residual is
-    /// noise with a few slow waves: stretches of samples of at least five correlation lengths each, every
-    /// fifth order of a period. At most ten blocks; none where two are not possible.
-    pub(crate) fn blocks(&self, residual: &DVector<f64>) -> Vec<Vec<usize>> {
-        const MOST: usize = 10;
-        const ORDERS: usize = 5;
-        /// Minimum length of a block of samples, in correlation lengths.
-        const LENGTHS: f64 = 5.0;
-        let samples = self.blocks.iter().filter(|own| !own.group.is_periodic());
-        let lengths = samples.map(|block| {
-            let rows = (0..block.rows()).map(|row| {
-                let entries = block.entries(residual, row);
-                let slow = block.group.basis.slow().min(entries.len());
-                let row: Vec<f64> = entries[slow..].iter().map(|e| e.re).collect();
-                row.len() as f64 / (LENGTHS * correlation_length(&row))
-            });
-            rows.fold(f64::INFINITY, f64::min)
-        });
-        let fit = lengths.fold(f64::INFINITY, f64::min);
-        let count = (2..=MOST).rev().find(|count| *count as f64 <= fit);
-        let count = if fit.is_finite() {
-            count.unwrap_or(0)
-        } else {
-            ORDERS
-        };
-        if count == 0 {
-            return Vec::new();
-        }
-        let mut parts = vec![Vec::new(); count];
-        for block in &self.blocks {
-            let places = block.factors.len();
-            let slow = block.group.basis.slow();
-            let width = block.parts() * block.rows();
-            for place in 0..places {
-                let part = if block.group.is_periodic() || place < slow {
-                    place % count
-                } else {
-                    (place - slow) * count / (places - slow)
-                };
-                let begin = block.begin + width * place;
-                parts[part].extend(begin..begin + width);
-            }
-        }
-        parts.retain(|part| !part.is_empty());
-        parts
-    }
-
     /// Returns, for each element of a whitened vector, the mean power of its neighbouring basis coefficients,
     /// in noise variances.
     pub fn powers(&self, whitened: &DVector<f64>) -> DVector<f64> {
@@ -408,18 +361,6 @@ impl Metric {
             *x -= u * parts;
         }
     }
-}
-
-/// Returns the integrated autocorrelation time of a sequence, in samples: `1 + 2 sum rho_k` up to the first
-/// correlation below 0, at least 1 (Sokal 1997).
-fn correlation_length(row: &[f64]) -> f64 {
-    let power: f64 = row.iter().map(|x| x * x).sum();
-    let rho = |lag: usize| {
-        let pairs = row.iter().zip(&row[lag..]);
-        pairs.map(|(a, b)| a * b).sum::<f64>() / power
-    };
-    let positive = (1..row.len()).map(rho).take_while(|rho| *rho > 0.0);
-    1.0 + 2.0 * positive.sum::<f64>()
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ pub(crate) mod nuisance;
 pub mod samples;
 pub(crate) mod scatter;
 pub mod spectrum;
+pub(crate) mod waves;
 pub mod whitened;
 
 pub use input_scatter::InputScatter;

@@ -1,10 +1,13 @@
 //! Record with its metric, the reference with which every simulation is compared.
+use crate::linear::discrepancy::SmoothBasis;
 use crate::record::basis::ChannelGroup;
 use crate::record::measured::{Curves, Record};
 use crate::record::metric::Metric;
 use crate::record::noise::Noise;
+use crate::record::waves::smooth_basis;
 use nalgebra::DVector;
 use protocol::job::Numerics;
+use std::sync::Arc;
 
 /// Record with the metric in which residuals are whitened.
 #[derive(Clone, Debug)]
@@ -17,6 +20,8 @@ pub struct WhitenedRecord {
     pub measured: DVector<f64>,
     /// Numerical settings of the simulations that are compared with the record.
     pub numerics: Numerics,
+    /// Waves of the smooth discrepancy that fits to the record compete with; `None` where a fit is only a start.
+    pub smooth: Option<Arc<SmoothBasis>>,
 }
 
 impl WhitenedRecord {
@@ -28,7 +33,17 @@ impl WhitenedRecord {
             metric,
             measured,
             numerics,
+            smooth: None,
         }
+    }
+
+    /// Lets fits to the record compete with a smooth discrepancy.
+    #[must_use]
+    pub fn with_discrepancy(mut self) -> Self {
+        let scales = self.metric.standard_error();
+        let whiten = |curves: &Curves| self.metric.whiten(curves);
+        self.smooth = Some(Arc::new(smooth_basis(&self.record, scales, whiten)));
+        self
     }
 
     /// Whitens a record with the metric of its own noise, with orders up to `highest` and without errors of

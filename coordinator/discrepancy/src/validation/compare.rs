@@ -4,6 +4,7 @@ use crate::baseline::discretisation_check;
 use crate::baseline::input_error::{InputError, input_errors};
 use crate::baseline::session::Session;
 use crate::laboratory::{Laboratory, Stage, channels};
+use crate::linear::discrepancy::{Discrepancy, SmoothBasis};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::record::basis::ChannelGroup;
@@ -11,9 +12,11 @@ use crate::record::measured::{Curves, Record, Split};
 use crate::record::metric::Metric;
 use crate::record::noise::Noise;
 use crate::record::nuisance::{Acts, Nuisance};
+use crate::record::waves::smooth_basis;
 use crate::record::whitened::WhitenedRecord;
 use crate::validation::gap_closure::{Closed, gap_closure};
 use crate::validation::scoring_metric::ScoringMetric;
+use nalgebra::DMatrix;
 
 /// Gap between record and model on one record, before and after the answer's effects are added.
 #[derive(Clone, Debug)]
@@ -46,8 +49,6 @@ pub enum DataRole {
     Segment,
     /// Record of another working condition than the calibrated one.
     Condition,
-    /// Blocks of the fitted record, each left out of the fit in turn.
-    LeftOut,
 }
 
 impl DataRole {
@@ -59,9 +60,6 @@ impl DataRole {
             Self::Channels => "the channels that were held out".to_owned(),
             Self::Segment => "the part of the record that was held out".to_owned(),
             Self::Condition => condition.to_owned(),
-            Self::LeftOut => {
-                "blocks of the fitted record, each left out of the fit in turn".to_owned()
-            }
         }
     }
 }
@@ -76,6 +74,27 @@ pub(crate) struct ValidationRecord<'a> {
     pub(crate) scale: ScoringMetric,
     /// Role of the record: fitted, or which kind of held-out data it is.
     pub(crate) part: DataRole,
+    /// Waves of the record's own discrepancy; no wave where it shares that of the fitted cycles.
+    smooth: SmoothBasis,
+}
+
+impl ValidationRecord<'_> {
+    /// Returns the waves of the record's own discrepancy, each times the standard deviation of its coefficient:
+    /// in each channel as strong as `needed` in the channel of the same name of the fitted record.
+    pub(crate) fn waves(&self, needed: Option<&Discrepancy>, fitted: &Record) -> DMatrix<f64> {
+        let Some(found) = needed else {
+            return DMatrix::zeros(self.scale.len(), 0);
+        };
+        let own = self.record.channels.iter().map(|own| {
+            let mut same = fitted.channels.iter();
+            let same = same.position(|other| other.channel.name == own.channel.name);
+            same.map_or(0.0, |k| found.deviations[k])
+        });
+        self.smooth.scaled(&Discrepancy {
+            deviations: own.collect(),
+            length: found.length,
+        })
+    }
 }
 
 /// Collects the records on which an answer is validated: the calibrated condition's record in parts, in the
@@ -114,16 +133,28 @@ pub(crate) async fn validation_records<'a, L: Laboratory>(
                 let scale = ScoringMetric::of(record, cycles, &base.record.metric, cycles.len());
                 (alike, scale)
             }
-            DataRole::Channels | DataRole::Segment | DataRole::Condition | DataRole::LeftOut => {
+            DataRole::Channels | DataRole::Segment | DataRole::Condition => {
                 let scale = elsewhere(session, record).await?;
                 (record.cycles.clone(), scale)
             }
         };
+        let own = match part {
+            DataRole::Fitted | DataRole::Cycles => None,
+            DataRole::Channels | DataRole::Segment | DataRole::Condition => Some(record),
+        };
+        let whiten = |curves: &Curves| {
+            let whitened = DMatrix::from_columns(&[scale.whiten(curves)]);
+            scale.weigh(whitened).column(0).into_owned()
+        };
+        let smooth = own.map_or_else(SmoothBasis::default, |record| {
+            smooth_basis(record, Vec::new(), whiten)
+        });
         shown.push(ValidationRecord {
             record,
             alike,
             scale,
             part,
+            smooth,
         });
     }
     Ok(shown)

@@ -3,42 +3,41 @@
 //!
 //! At a fit with residual Jacobian `J` and prior precision `L` the unknowns are Gaussian with precision `A =
 //! J^T J + L`. A whitened record with residual `z` and Jacobian `J_h` at that point then has the covariance
-//! `I + J_h A^-1 J_h^T`, and with `b = J_h^T z`, `K = A + J_h^T J_h`
+//! `C_h + J_h A^-1 J_h^T`, and with `b = J_h^T C_h^-1 z`, `K = A + J_h^T C_h^-1 J_h`
 //!
-//! `ln p = -1/2 (z^T z - b^T K^-1 b + ln |K| - ln |A|)`
+//! `ln p = -1/2 (z^T C_h^-1 z - b^T K^-1 b + ln |K| - ln |A| + ln |C_h|)`
 //!
 //! up to a constant of the record. Directions that the fit does not determine are integrated out, so they do
 //! not influence the score. With `dS = ln p(with) - ln p(without)`, `E exp dS = 1` where the effect is
 //! absent, so that `P(dS >= T) <= exp(-T)` however many effects were tried on the fitted record (Markov's
 //! inequality).
 //!
-//! Residuals and Jacobians of both models are divided by one scale, the smaller of their dispersions: a model
-//! that is wrong by more than the noise predicts no better than that.
+//! Each model has the smooth discrepancy that its fit needs
+//! ([`linear::discrepancy`](crate::linear::discrepancy)): the coefficients of the fitted record are further
+//! unknowns with unit priors, which held-out cycles share. Another record has a discrepancy of its own with the
+//! same variances, `C_h = I + D_h D_h^T`, so that only what a law explains is predicted. Held-out cycles repeat
+//! the discrepancy of the fitted ones and say nothing about the law: their score is shown, not required.
 //!
-//! Where nothing is held out, blocks of the fitted record are left out one after the other, which takes no
-//! simulation: with `b = J_B^T r_B` and `M = A - J_B^T J_B`
-//!
-//! `ln p = -1/2 (r_B^T r_B + b^T M^-1 b + ln |A| - ln |M|)`
-//!
-//! The same data selected the effect, so Markov's bound is multiplied by the number of effects that were
-//! tried.
+//! Without a discrepancy residuals and Jacobians of both models are divided by one scale, the smaller of their
+//! dispersions: a model that is wrong by more than the noise predicts no better than that.
 use crate::inputs::Inputs;
 use crate::laboratory::Laboratory;
-use crate::linear::evidence::{deviation, log_determinant};
+use crate::linear::discrepancy::Discrepancy;
+use crate::linear::evidence::{deviation, log_determinant, log_mean};
 use crate::linear::score::misfit_tail;
 use crate::linear::stack::stacked;
 use crate::linear::tangent::free;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
-use crate::record::measured::difference;
+use crate::model::parameter::sizes;
+use crate::record::measured::Record;
 use crate::record::metric::Metric;
 use crate::record::noise::NoiseSource;
-use crate::record::whitened::WhitenedRecord;
 use crate::thresholds::{STATED, Thresholds};
 use crate::validation::compare::{DataRole, ValidationRecord};
 use crate::validation::scoring_metric::divide_by_student_deviation;
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
-use search::least_squares::{Linearized, Variable};
+use nalgebra::{DMatrix, DVector};
+use search::least_squares::{Linearized, Prior, Variable};
 
 /// Predictive score of an answer on one record that took no part in the fit.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,25 +55,17 @@ pub struct Prediction {
 pub(crate) struct Scores {
     /// Predictive score on each record.
     pub(crate) records: Vec<Prediction>,
-    /// Predictive score on all records jointly (nats); `None` where there is no record.
+    /// Predictive score on all records jointly that do not repeat the fitted one (nats); `None` where there is
+    /// none.
     pub(crate) together: Option<f64>,
+    /// Gain of log evidence on the fitted record, over the dispersion (nats).
+    pub(crate) evidence: f64,
     /// Role and condition index of each record on which the model fails although the other model does not.
     pub(crate) failed: Vec<(DataRole, usize)>,
 }
 
-impl Scores {
-    /// Returns the joint score (nats) that an answer of `effects` effects out of `tried` candidates must
-    /// reach.
-    pub(crate) fn needed(&self, thresholds: &Thresholds, effects: usize, tried: usize) -> f64 {
-        let left_out = self.records.iter().any(|one| one.part == DataRole::LeftOut);
-        let searched = libm::log(tried.max(1) as f64) * effects as f64;
-        thresholds.prediction + if left_out { searched } else { 0.0 }
-    }
-}
-
 /// Computes the predictive scores of a model against another on all data that took no part in the fit.
-/// Records whose noise is neither estimated from cycles nor stated are skipped; where no record is held out,
-/// blocks of the fitted record are left out in turn.
+/// Records whose noise is neither estimated from cycles nor stated are skipped.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -83,55 +74,99 @@ pub(crate) async fn scores<L: Laboratory>(
     shown: &[ValidationRecord<'_>],
     [with, without]: [&Fit; 2],
 ) -> Result<Scores, L::Error> {
-    let on = experiments.on;
-    let dispersion = with.dispersion().min(without.dispersion());
-    let posteriors = [with, without].map(|fit| Posterior::of(&on.metric, fit, dispersion));
-    let mut found = Scores::default();
-    let mut all = [Vec::new(), Vec::new()];
+    let models = [with, without];
+    let averages = Average::both(&experiments.on.metric, models);
+    let mut found = Scores {
+        evidence: with.gain_over(without),
+        ..Scores::default()
+    };
+    let mut all = Vec::new();
     let known = |one: &&ValidationRecord<'_>| !matches!(one.scale.known(), NoiseSource::Estimated);
     let held_out = shown.iter().filter(|one| one.part != DataRole::Fitted);
     let some = |one: &&ValidationRecord<'_>| known(one) && one.scale.len() > 0;
     for one in held_out.filter(some) {
-        let with_it = predicted(experiments, one, with).await?;
-        let without_it = predicted(experiments, one, without).await?;
-        let (with_it, without_it) = match (with_it, without_it) {
-            (Some(with_it), Some(without_it)) => (with_it, without_it),
+        let with_it = linearized(experiments, one, with).await?;
+        let without_it = linearized(experiments, one, without).await?;
+        let seen = match (with_it, without_it) {
+            (Some(with_it), Some(without_it)) => [with_it, without_it],
             (None, Some(_)) => {
                 found.failed.push((one.part, one.record.condition));
                 continue;
             }
             (_, None) => continue,
         };
+        let fitted = &experiments.on.record;
+        let own = [(one, seen)];
         found.records.push(Prediction {
             condition: one.record.condition,
             part: one.part,
-            nats: posteriors[0].predicted(&with_it) - posteriors[1].predicted(&without_it),
+            nats: ratio(&averages, models, &own, fitted),
         });
-        all[0].push(with_it);
-        all[1].push(without_it);
-    }
-    if found.records.is_empty() {
-        let each = [(&posteriors[0], with), (&posteriors[1], without)];
-        // the same blocks for both: as long as what the model that leaves less asks for
-        let left = |own: &&Posterior<'_>| own.at.residual.norm_squared();
-        let closer = posteriors.iter().min_by(|a, b| left(a).total_cmp(&left(b)));
-        let blocks = closer.map_or_else(Vec::new, |own| on.metric.blocks(&own.at.residual));
-        let [with_it, without_it] = each.map(|(own, fit)| own.left_out((on, fit), &blocks));
-        if let (Some(with_it), Some(without_it)) = (with_it, without_it) {
-            let nats = with_it - without_it;
-            found.records.push(Prediction {
-                condition: on.record.condition,
-                part: DataRole::LeftOut,
-                nats,
-            });
-            found.together = Some(nats);
+        if one.part != DataRole::Cycles {
+            all.extend(own);
         }
-    } else {
-        let [with_it, without_it] = all.map(|own| Predicted::stacked(&own));
-        found.together =
-            Some(posteriors[0].predicted(&with_it) - posteriors[1].predicted(&without_it));
+    }
+    if !all.is_empty() {
+        found.together = Some(ratio(&averages, models, &all, &experiments.on.record));
     }
     Ok(found)
+}
+
+/// Records that took no part in the fit, each with what the models with and without the effect predict of it.
+type Seen<'a, 'b> = [(&'a ValidationRecord<'b>, [Predicted; 2])];
+
+/// Returns the log ratio of the densities of several records jointly, with and without the effect.
+fn ratio(
+    averages: &[Average; 2],
+    models: [&Fit; 2],
+    records: &Seen<'_, '_>,
+    fitted: &Record,
+) -> f64 {
+    let [with, without] = [0, 1].map(|k| {
+        averages[k].predicted(|needed| {
+            let own = records.iter().map(|(shown, seen)| {
+                seen[k].beside_discrepancy((shown, fitted), models[k], needed)
+            });
+            Predicted::stacked(&own.collect::<Vec<_>>())
+        })
+    });
+    with - without
+}
+
+/// Posterior of a model, averaged over discrepancies that a comparison considers, each as likely as any other
+/// before the record is seen.
+struct Average {
+    /// Each discrepancy, with the log evidence of the model under it and the posterior.
+    each: Vec<(Option<Discrepancy>, f64, Posterior)>,
+}
+
+impl Average {
+    /// Builds the averages of a model with an effect and of one without it, over the same discrepancies.
+    fn both(metric: &Metric, [with, without]: [&Fit; 2]) -> [Self; 2] {
+        let dispersion = with.dispersion().min(without.dispersion());
+        let among = with.discrepancies(without);
+        [with, without].map(|fit| Self {
+            each: among
+                .iter()
+                .zip(fit.log_evidence_with(&among))
+                .map(|(own, evidence)| {
+                    let waves = fit.waves_of(own.as_ref());
+                    let posterior = Posterior::of(metric, fit, dispersion, &waves);
+                    (own.clone(), evidence, posterior)
+                })
+                .collect(),
+        })
+    }
+
+    /// Returns the log predictive density (nats), as [`Posterior::predicted`]; `seen` gives what the model
+    /// predicts with a discrepancy.
+    fn predicted(&self, seen: impl Fn(Option<&Discrepancy>) -> Predicted) -> f64 {
+        let evidence: Vec<f64> = self.each.iter().map(|(_, own, _)| *own).collect();
+        let joint = self.each.iter().map(|(needed, evidence, posterior)| {
+            evidence + posterior.predicted(&seen(needed.as_ref()))
+        });
+        log_mean(&joint.collect::<Vec<_>>()) - log_mean(&evidence)
+    }
 }
 
 /// Returns whether noise, and what a fit leaves open of its unknowns, may be all that the fit leaves of a
@@ -150,11 +185,12 @@ pub(crate) async fn is_explained<L: Laboratory>(
     if known == NoiseSource::Estimated || one.scale.len() == 0 {
         return Ok(None);
     }
-    let Some(record) = predicted(experiments, one, fit).await? else {
+    let Some(record) = linearized(experiments, one, fit).await? else {
         return Ok(None);
     };
     let on = experiments.on;
-    let [length, _] = Posterior::of(&on.metric, fit, 1.0).lengths(&record);
+    let without = DMatrix::zeros(fit.entries(), 0);
+    let [length, _] = Posterior::of(&on.metric, fit, 1.0, &without).lengths(&record);
     let n = record.residual.len();
     Ok(Some(if known.is_seen() {
         // held-out cycles share the noise of the fitted ones
@@ -170,12 +206,35 @@ pub(crate) async fn is_explained<L: Laboratory>(
     }))
 }
 
-/// Returns the reason why the predictive scores do not support the effect `id`; `None` if they do: no record
-/// scores below `-alone`, and the joint score reaches `needed`.
+/// What a claim must reach on data that took no part in its fit, or without such data on the fitted record.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Needed {
+    /// Nats below whose negative no record may score, and which all records together must reach.
+    pub(crate) score: f64,
+    /// Nats that the score or the evidence must reach in addition, because held-out data took part in a choice.
+    pub(crate) chosen: f64,
+    /// Gain of log evidence required where no record but cycles of the fitted condition is held out.
+    pub(crate) evidence: f64,
+}
+
+impl Needed {
+    /// Returns what a claim of `effects` effects out of `tried` candidates needs: the best of many candidates
+    /// has `ln(tried)` more evidence by chance, and each of several effects was chosen so.
+    pub(crate) fn of(thresholds: &Thresholds, effects: usize, tried: usize) -> Self {
+        let searched = libm::log(tried.max(1) as f64) * effects as f64;
+        Self {
+            score: thresholds.prediction,
+            chosen: 0.0,
+            evidence: thresholds.prediction + searched,
+        }
+    }
+}
+
+/// Returns the reason why the predictive scores do not support the effect `id`; `None` if they do.
 pub(crate) fn rejection_reason(
     id: &str,
     scores: &Scores,
-    [alone, needed]: [f64; 2],
+    needed: Needed,
     inputs: &Inputs,
 ) -> Option<String> {
     let words = |part: DataRole, condition: usize| part.words(&inputs.condition(condition));
@@ -185,7 +244,11 @@ pub(crate) fn rejection_reason(
             words(*part, *condition)
         ));
     }
-    let worst = scores.records.iter().find(|one| one.nats < -alone);
+    let mut laws = scores
+        .records
+        .iter()
+        .filter(|one| one.part != DataRole::Cycles);
+    let worst = laws.find(|one| one.nats < -needed.score);
     if let Some(worst) = worst {
         return Some(format!(
             "{id} explains the fitted cycles but predicts {} worse: their log likelihood falls by {:.1} nats when it is added",
@@ -194,31 +257,54 @@ pub(crate) fn rejection_reason(
         ));
     }
     let Some(together) = scores.together else {
-        return Some(format!(
-            "{id} explains the fitted data, but there is nothing that it could predict: the case holds no data out and the record is too short to leave out a part of it; hold out a condition, channel or cycles"
-        ));
+        let (gained, least) = (scores.evidence, needed.evidence + needed.chosen);
+        return (gained.is_nan() || gained < least).then(|| {
+            format!(
+                "{id} explains the fitted data, but nothing else is held out that tests its law: it gains {gained:.1} nats, \
+                 and without another condition, channel or part of the record {least:.1} nats are needed"
+            )
+        });
     };
+    let least = needed.score + needed.chosen;
     // no number is no evidence
-    (together.is_nan() || together < needed).then(|| {
+    (together.is_nan() || together < least).then(|| {
         format!(
-            "{id} explains the fitted cycles but predicts the held-out data no better: the gain in log likelihood there is {together:.1} nats, and {needed:.1} nats are needed"
+            "{id} explains the fitted cycles but predicts the held-out data no better: the gain in log likelihood there is {together:.1} nats, and {least:.1} nats are needed"
         )
     })
 }
 
+/// Returns the changes of a record by the sizes of a fit's generic forces, each times the fitted size: such a
+/// force has a form and a joint, and no law that tells its size under another condition.
+fn sizes_of_forces(fit: &Fit, jacobian: &DMatrix<f64>) -> DMatrix<f64> {
+    let added = fit.model.added.iter().enumerate();
+    let places = added
+        .filter(|(_, own)| own.generic)
+        .flat_map(|(position, own)| {
+            let first = fit.model.first_of(position);
+            sizes(own).into_iter().map(move |k| first + k)
+        });
+    let mut columns = DMatrix::zeros(jacobian.nrows(), 0);
+    for place in places {
+        let change = jacobian.column(place) * fit.x()[place].abs();
+        columns = beside(&columns, &DMatrix::from_columns(&[change]));
+    }
+    columns
+}
+
 /// Computes the residual and Jacobian of a record at a fit. Held-out cycles of the fitted condition need no
 /// simulation.
-async fn predicted<L: Laboratory>(
+async fn linearized<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     shown: &ValidationRecord<'_>,
     fit: &Fit,
 ) -> Result<Option<Predicted>, L::Error> {
     let scale = &shown.scale;
     if shown.part == DataRole::Cycles {
-        return Ok(Some(Predicted {
-            residual: scale.residual(&fit.curves),
-            jacobian: scale.weigh(fit.search.best().jacobian.clone()),
-        }));
+        return Ok(Some(Predicted::new(
+            scale.residual(&fit.curves),
+            scale.weigh(fit.search.best().jacobian.clone()),
+        )));
     }
     let mut seen = experiments.linearized(fit, shown.record).await?;
     if seen.is_none() {
@@ -235,8 +321,19 @@ async fn predicted<L: Laboratory>(
             jacobian.set_column(k, &-scale.whiten(change));
         }
     }
-    let jacobian = scale.weigh(jacobian);
-    Ok(Some(Predicted { residual, jacobian }))
+    let mut seen = Predicted::new(residual, scale.weigh(jacobian));
+    if shown.part == DataRole::Condition {
+        seen.own = sizes_of_forces(fit, &seen.jacobian);
+    }
+    Ok(Some(seen))
+}
+
+/// Returns the columns of one matrix followed by those of another with as many rows.
+fn beside(left: &DMatrix<f64>, right: &DMatrix<f64>) -> DMatrix<f64> {
+    let count = left.ncols();
+    let mut both = left.clone().resize_horizontally(count + right.ncols(), 0.0);
+    both.columns_mut(count, right.ncols()).copy_from(right);
+    both
 }
 
 /// Whitened residual of a record at a fitted point, and its Jacobian by the fit's unknowns.
@@ -244,60 +341,153 @@ async fn predicted<L: Laboratory>(
 pub(crate) struct Predicted {
     pub(crate) residual: DVector<f64>,
     pub(crate) jacobian: DMatrix<f64>,
+    /// Changes of the record that it shares with no other, one column per standard deviation.
+    pub(crate) own: DMatrix<f64>,
 }
 
 impl Predicted {
+    /// Creates the prediction of a record that shares all its unknowns with the fitted one.
+    pub(crate) fn new(residual: DVector<f64>, jacobian: DMatrix<f64>) -> Self {
+        let own = DMatrix::zeros(residual.len(), 0);
+        Self {
+            residual,
+            jacobian,
+            own,
+        }
+    }
+
+    /// Returns what a model predicts of a record with a given discrepancy: held-out cycles share it, any other
+    /// record has one of its own with the same variances.
+    fn beside_discrepancy(
+        &self,
+        (shown, fitted): (&ValidationRecord<'_>, &Record),
+        model: &Fit,
+        needed: Option<&Discrepancy>,
+    ) -> Self {
+        let waves = model.waves_of(needed);
+        let (shared, own) = if shown.part == DataRole::Cycles {
+            (shown.scale.weigh(-waves), self.own.clone())
+        } else {
+            let own = beside(&self.own, &shown.waves(needed, fitted));
+            (DMatrix::zeros(own.nrows(), waves.ncols()), own)
+        };
+        Self {
+            residual: self.residual.clone(),
+            jacobian: beside(&self.jacobian, &shared),
+            own,
+        }
+    }
+
     /// Stacks the residuals and Jacobians of several records into one.
     pub(crate) fn stacked(all: &[Self]) -> Self {
         let rows = all.iter().map(|one| one.residual.len()).sum();
         let columns = all.first().map_or(0, |one| one.jacobian.ncols());
+        let waves = all.iter().map(|one| one.own.ncols()).sum();
         let mut stacked = Self {
             residual: DVector::zeros(rows),
             jacobian: DMatrix::zeros(rows, columns),
+            own: DMatrix::zeros(rows, waves),
         };
-        let mut at = 0;
+        let (mut at, mut wave) = (0, 0);
         for one in all {
-            let length = one.residual.len();
-            stacked
-                .residual
-                .rows_mut(at, length)
-                .copy_from(&one.residual);
-            stacked
-                .jacobian
-                .rows_mut(at, length)
-                .copy_from(&one.jacobian);
+            let (length, waves) = one.own.shape();
+            let mut residual = stacked.residual.rows_mut(at, length);
+            residual.copy_from(&one.residual);
+            let mut jacobian = stacked.jacobian.rows_mut(at, length);
+            jacobian.copy_from(&one.jacobian);
+            let mut own = stacked.own.view_mut((at, wave), (length, waves));
+            own.copy_from(&one.own);
             at += length;
+            wave += waves;
         }
         stacked
     }
 }
 
-/// Gaussian posterior of a fit's unknowns, with residuals in standard deviations.
-struct Posterior<'a> {
-    variables: &'a [Variable],
+/// Gaussian posterior of a fit's unknowns, and of the coefficients of its discrepancy, with residuals in
+/// standard deviations.
+struct Posterior {
+    variables: Vec<Variable>,
     at: Linearized,
     dispersion: f64,
+    /// Step from the fitted point to the mean: zero without a discrepancy, under whose covariance the fitted
+    /// point is no minimum.
+    step: DVector<f64>,
 }
 
-impl<'a> Posterior<'a> {
+impl Posterior {
     /// Builds the posterior of a model's unknowns from its fit; residuals and Jacobian are divided by the
-    /// square root of `dispersion`.
-    fn of(metric: &Metric, fit: &'a Fit, dispersion: f64) -> Self {
+    /// square root of `dispersion`. `waves` are those of its discrepancy, times their standard deviations.
+    fn of(metric: &Metric, fit: &Fit, dispersion: f64, waves: &DMatrix<f64>) -> Self {
         let at = fit.search.best();
         let root = dispersion.sqrt();
-        let residual = divide_by_student_deviation(
-            metric,
-            DMatrix::from_columns(&[at.residual.clone() / root]),
-        );
-        Self {
-            variables: fit.variables(),
-            at: Linearized {
-                x: at.x.clone(),
-                residual: residual.column(0).into_owned(),
-                jacobian: divide_by_student_deviation(metric, at.jacobian.clone() / root),
-            },
+        let weigh = |columns: DMatrix<f64>| divide_by_student_deviation(metric, columns / root);
+        let residual = weigh(DMatrix::from_columns(std::slice::from_ref(&at.residual)));
+        let at = Linearized {
+            x: at.x.clone(),
+            residual: residual.column(0).into_owned(),
+            jacobian: weigh(at.jacobian.clone()),
+        };
+        Self::new(at, fit.variables(), dispersion, &weigh(-waves))
+    }
+
+    /// Builds the posterior of the unknowns of a linear model, and of one more unknown with a unit prior for
+    /// each column of `waves`; everything is weighed already.
+    fn new(
+        mut at: Linearized,
+        variables: &[Variable],
+        dispersion: f64,
+        waves: &DMatrix<f64>,
+    ) -> Self {
+        let count = waves.ncols();
+        at.jacobian = beside(&at.jacobian, waves);
+        at.x.resize(at.x.len() + count, 0.0);
+        let unit = Variable {
+            start: 0.0,
+            lower: f64::NEG_INFINITY,
+            upper: f64::INFINITY,
+            step: 1.0,
+            longest: f64::INFINITY,
+            prior: Some(Prior {
+                mean: 0.0,
+                deviation: 1.0,
+            }),
+        };
+        let mut variables = variables.to_vec();
+        variables.resize(variables.len() + count, unit);
+        let mut own = Self {
+            step: DVector::zeros(variables.len()),
+            variables,
+            at,
             dispersion,
+        };
+        if count > 0 {
+            own.step = own.step_to_mean();
         }
+        own
+    }
+
+    /// Returns the step from the fitted point to the mean of the unknowns.
+    fn step_to_mean(&self) -> DVector<f64> {
+        let mut step = DVector::zeros(self.variables.len());
+        let free = free(&self.at, &self.variables);
+        let Some(precision) = self.precision(&free).cholesky() else {
+            return step;
+        };
+        let jacobian = self.at.jacobian.select_columns(&free);
+        let mut slope = jacobian.tr_mul(&self.at.residual);
+        for (own, &k) in slope.iter_mut().zip(&free) {
+            let variable = &self.variables[k];
+            let deviation = deviation(variable);
+            let off = variable
+                .prior
+                .map_or(0.0, |prior| self.at.x[k] - prior.mean);
+            *own += off / (deviation * deviation);
+        }
+        for (k, own) in free.into_iter().zip(precision.solve(&slope).iter()) {
+            step[k] = -own;
+        }
+        step
     }
 
     /// Returns the posterior precision matrix of the unknowns with the indices `of`, all others held.
@@ -319,93 +509,47 @@ impl<'a> Posterior<'a> {
         -0.5 * (length + volume)
     }
 
-    /// Returns the squared length of a record's residual under its predictive covariance `I + J_h A^-1
+    /// Returns the squared length of a record's residual under its predictive covariance `C_h + J_h A^-1
     /// J_h^T`, and the logarithm of the determinant of that covariance.
     fn lengths(&self, record: &Predicted) -> [f64; 2] {
         let root = self.dispersion.sqrt();
         let (z, jacobian) = (&record.residual / root, &record.jacobian / root);
+        let z = z + &jacobian * &self.step;
         // what lies on a bound is known as well as that; what moves neither record has nothing to say
         let both = Linearized {
             x: self.at.x.clone(),
             residual: DVector::zeros(0),
             jacobian: stacked(&self.at.jacobian, &jacobian),
         };
-        let free = free(&both, self.variables);
+        let free = free(&both, &self.variables);
+        let count = free.len();
+        let mut columns = jacobian.select_columns(&free).insert_column(count, 0.0);
+        columns.set_column(count, &z);
+        let mut products = columns.tr_mul(&columns);
+        let mut volume = 0.0;
+        if record.own.ncols() > 0 {
+            let own = &record.own / root;
+            let inner = own.tr_mul(&own) + DMatrix::identity(own.ncols(), own.ncols());
+            let Some(factor) = inner.cholesky() else {
+                return [f64::NAN; 2];
+            };
+            volume += log_determinant(&factor);
+            let mixed = own.tr_mul(&columns);
+            products -= mixed.tr_mul(&factor.solve(&mixed));
+        }
+        let length = products[(count, count)];
         if free.is_empty() {
-            return [z.norm_squared(), 0.0];
+            return [length, volume];
         }
         let precision = self.precision(&free);
-        let jacobian = jacobian.select_columns(&free);
-        let with = &precision + jacobian.tr_mul(&jacobian);
-        let b = jacobian.tr_mul(&z);
+        let with = &precision + products.view((0, 0), (count, count));
+        let b = products.view((0, count), (count, 1)).into_owned();
         let (Some(with), Some(precision)) = (with.cholesky(), precision.cholesky()) else {
             return [f64::NAN; 2];
         };
         let explained = b.dot(&with.solve(&b));
-        let volume = log_determinant(&with) - log_determinant(&precision);
-        [z.norm_squared() - explained, volume]
-    }
-
-    /// Returns the sum of the log densities of blocks of the fitted record, each left out of the fit: its
-    /// cycles where there are several, else the given parts. `None` where there are fewer than two blocks.
-    fn left_out(&self, (on, fit): (&WhitenedRecord, &Fit), blocks: &[Vec<usize>]) -> Option<f64> {
-        let blocks: Vec<Predicted> = if on.record.cycles.len() > 1 {
-            self.cycles(on, fit)
-        } else {
-            let rows = |rows: &Vec<usize>| Predicted {
-                residual: self.at.residual.select_rows(rows),
-                jacobian: self.at.jacobian.select_rows(rows),
-            };
-            blocks.iter().map(rows).collect()
-        };
-        (blocks.len() > 1).then(|| self.blocks_left_out(&blocks))
-    }
-
-    /// Returns the sum of the log densities of blocks of the fitted record, each given the rest of the
-    /// record.
-    fn blocks_left_out(&self, blocks: &[Predicted]) -> f64 {
-        let free = free(&self.at, self.variables);
-        let precision = self.precision(&free);
-        let whole = precision
-            .clone()
-            .cholesky()
-            .map(|own| log_determinant(&own));
-        let block = |block: &Predicted| {
-            let square = block.residual.norm_squared();
-            if free.is_empty() {
-                return -0.5 * square;
-            }
-            let jacobian = block.jacobian.select_columns(&free);
-            let rest: Option<Cholesky<f64, Dyn>> =
-                (&precision - jacobian.tr_mul(&jacobian)).cholesky();
-            let (Some(whole), Some(rest)) = (whole, rest) else {
-                return f64::NAN;
-            };
-            let b = jacobian.tr_mul(&block.residual);
-            let volume = whole - log_determinant(&rest);
-            -0.5 * (square + b.dot(&rest.solve(&b)) + volume)
-        };
-        blocks.iter().map(block).sum()
-    }
-
-    /// Returns each cycle of the fitted record as a block; residual and Jacobian are divided by `sqrt(n)`, so
-    /// that all `n` cycles together weigh as much as their mean.
-    fn cycles(&self, on: &WhitenedRecord, fit: &Fit) -> Vec<Predicted> {
-        let share = (on.record.cycles.len() as f64).sqrt();
-        let cycles = on.record.cycles.iter();
-        let residual = |cycle| {
-            let left = on.metric.whiten(&difference(cycle, &fit.curves, 1.0));
-            let left = DMatrix::from_columns(&[left / (share * self.dispersion.sqrt())]);
-            divide_by_student_deviation(&on.metric, left)
-                .column(0)
-                .into_owned()
-        };
-        cycles
-            .map(|cycle| Predicted {
-                residual: residual(cycle),
-                jacobian: &self.at.jacobian / share,
-            })
-            .collect()
+        volume += log_determinant(&with) - log_determinant(&precision);
+        [length - explained, volume]
     }
 }
 

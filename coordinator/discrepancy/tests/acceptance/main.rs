@@ -22,6 +22,7 @@ mod identify;
 mod machine;
 mod maps;
 mod mimic;
+mod model_error;
 mod nothing;
 mod numerics;
 mod other_minimum;

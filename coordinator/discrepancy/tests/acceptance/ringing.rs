@@ -170,7 +170,7 @@ fn what_is_hidden_in_a_record_without_a_period_gets_its_name() {
         assert!((low..=high).contains(&amount), "{found:?}");
         let white = answer.whiteness.expect("a test");
         assert!(white[0] < 0.01 && white[1] > 0.01, "{white:?}");
-        // of one cycle whose noise is stated, what blocks of it say of one another carries a name
+        // of one cycle whose noise is stated, strong evidence carries a name
         let one = diagnosed(vec![hidden(&[(id, 5.0 * amount)], 1, true)]);
         let said = crate::trial::line(&one);
         assert_eq!(
@@ -178,8 +178,7 @@ fn what_is_hidden_in_a_record_without_a_period_gets_its_name() {
             (Verdict::Named, id),
             "{said}"
         );
-        assert_eq!(one.prediction.len(), 1, "{said}");
-        assert_eq!(one.prediction[0].part, DataRole::LeftOut, "{said}");
+        assert!(one.prediction.is_empty(), "{said}");
         let unknown = diagnosed(vec![hidden(&[(id, 5.0 * amount)], 1, false)]);
         let said = crate::trial::line(&unknown);
         assert_eq!(unknown.verdict, Verdict::Unresolved, "{said}");
@@ -252,10 +251,10 @@ fn an_unknown_that_is_off_is_a_suspect() {
     assert_eq!(answer.before.expect("a model").x().len(), 2);
 }
 
-/// Checks a log whose noise size is stated but whose correlation is not: the correlation is estimated from
-/// the residual, healthy logs get no claim, and a hidden effect gets its name.
+/// Checks a log whose noise size is stated but whose correlation is not: slow noise counts as a discrepancy,
+/// healthy logs get no claim, and a hidden effect gets its name.
 #[test]
-fn a_correlation_that_is_not_stated_is_taken_from_what_is_left() {
+fn slow_noise_that_is_not_stated_names_nothing() {
     let without = |seed: u64, effects: &[(&str, f64)]| {
         let clean = curves(&space().values(&TRUTH), effects);
         let mut own = record(seed, 1, &clean, true);
@@ -265,22 +264,16 @@ fn a_correlation_that_is_not_stated_is_taken_from_what_is_left() {
         own
     };
     let sets = diagnoses(4, 60);
-    let (mut claims, mut quiet) = (0, 0);
+    let mut claims = 0;
     for seed in 0..sets {
         let answer = diagnosed(vec![without(400 + seed, &[])]);
-        let said = answer
-            .notes
-            .iter()
-            .any(|note| note.contains("is not stated"));
-        assert!(said, "{:?}", answer.notes);
-        claims += usize::from(!answer.effects.is_empty() && answer.verdict != Verdict::Unresolved);
-        quiet += usize::from(answer.verdict == Verdict::NothingDetected);
+        // the noise is more than what is stated, so that something is left
+        claims += usize::from(answer.verdict != Verdict::Unresolved);
     }
     say(&format!(
-        "one log without a correlation: {claims} claims, {quiet} of {sets} nothing detected"
+        "one log without a correlation: {claims} claims of {sets}"
     ));
     assert!(20 * claims as u64 <= sets, "{claims}");
-    assert!(10 * quiet as u64 >= 8 * sets, "{quiet} of {sets}");
     let answer = diagnosed(vec![without(450, &[("hardening", 0.8)])]);
     let said = crate::trial::line(&answer);
     assert_eq!(answer.verdict, Verdict::Named, "{said}");

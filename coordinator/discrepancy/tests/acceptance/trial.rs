@@ -1,7 +1,7 @@
 //! Diagnosis of one true machine, and helpers for checking the answer.
 use crate::case::{ORDERS, space};
 use crate::machine::{ImmediateLaboratory, Machine, Roughness, finer, ripple};
-use crate::truth::{ALL, Truth, record};
+use crate::truth::{ALL, Truth, add_smooth_error, record};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::thresholds::Thresholds;
 use protocol::announce::EffectDescriptor;
@@ -30,6 +30,8 @@ pub(crate) struct Setup {
     pub(crate) numerics: Roughness,
     /// Ripple added to the gauges of the record that no model reproduces (MPa).
     pub(crate) ripple_mpa: f64,
+    /// Smooth error of the model in every record, in standard errors of the mean.
+    pub(crate) model_error: f64,
     /// Whether derivatives are finite differences of whole simulations, not computed by the laboratory.
     pub(crate) differences: bool,
     /// Ratio of the noise that the data sheet states to the true noise; NaN if no noise is stated.
@@ -51,6 +53,7 @@ impl Default for Setup {
             labels: Vec::new(),
             numerics: Roughness::Exact,
             ripple_mpa: 0.0,
+            model_error: 0.0,
             differences: false,
             stated: 1.0,
         }
@@ -64,6 +67,7 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
         record(truth, 1, &setup.channels, 4),
     ];
     for record in &mut records {
+        add_smooth_error(record, setup.model_error, truth.seed);
         for cycle in &mut record.cycles {
             // nothing but the gauges has it
             let gauges = setup.channels.len().min(4);

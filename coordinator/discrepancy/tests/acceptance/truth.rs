@@ -515,3 +515,33 @@ impl Noise {
         })
     }
 }
+
+/// Adds a smooth curve to every cycle of a record: `size` standard errors of the mean of each channel, with a
+/// correlation length of a twentieth of the turn.
+pub(crate) fn add_smooth_error(record: &mut Record, size: f64, seed: u64) {
+    /// Highest order of the error: the spectrum has fallen to a hundredth there.
+    const ORDERS: u32 = 10;
+    let streams = Streams::new(seed, 41);
+    let share = |order: u32| (-0.5 * (TAU * f64::from(order) / 20.0).powi(2)).exp();
+    let whole: f64 = (1..=ORDERS).map(share).sum();
+    let count = record.cycles.len() as f64;
+    for (c, own) in record.channels.iter().enumerate() {
+        let mut stream = streams.at(record.condition as u32, Phase::Initial, c);
+        let deviation = size * own.channel.noise.expect("a stand-in states it") / count.sqrt();
+        let abscissa = &own.channel.abscissa;
+        let mut error = vec![0.0; abscissa.points.len()];
+        for order in 1..=ORDERS {
+            let scale = deviation * (share(order) / whole).sqrt();
+            let [a, b] = [0, 1].map(|_| scale * stream.normal());
+            for (y, angle) in error.iter_mut().zip(&abscissa.points) {
+                let turn = f64::from(order) * angle.to_radians();
+                *y += a * turn.cos() + b * turn.sin();
+            }
+        }
+        for cycle in &mut record.cycles {
+            for (y, error) in cycle[c].iter_mut().zip(&error) {
+                *y += error;
+            }
+        }
+    }
+}

@@ -159,11 +159,7 @@ fn fit(case: &Case, added: &[&EffectDescriptor], size: f64, curves: Curves) -> F
         }
         search.absorb(plan.iter().map(|x| Some(residual(x))).collect());
     }
-    Fit {
-        model,
-        search,
-        curves,
-    }
+    Fit::new(model, (search, curves), None)
 }
 
 const CHANNELS: [Sensor; 4] = [
@@ -307,6 +303,7 @@ fn round(case: &Case, library: &[EffectDescriptor]) -> Round {
         ],
         null_evidence: -1250.0,
         dispersion: 1.4,
+        misfit: 1.4,
         p_value: 1e-250,
         set: vec![library[0].id.clone()],
         added: Some(library[0].id.clone()),

@@ -185,6 +185,5 @@ const fn part(part: DataRole) -> &'static str {
         DataRole::Channels => "held-out channels",
         DataRole::Segment => "held-out part",
         DataRole::Condition => "another condition, which took no part",
-        DataRole::LeftOut => "blocks of the record, left out in turn",
     }
 }

@@ -37,7 +37,6 @@ const fn held_out(part: DataRole) -> Option<&'static str> {
         DataRole::Channels => Some("channel"),
         DataRole::Segment => Some("segment"),
         DataRole::Condition => Some("condition"),
-        DataRole::LeftOut => Some("left_out"),
         DataRole::Fitted => None,
     }
 }

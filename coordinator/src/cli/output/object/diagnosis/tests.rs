@@ -98,6 +98,7 @@ fn full(verdict: Verdict) -> Diagnosis {
             refits: Vec::new(),
             null_evidence: -900.0,
             dispersion: 1.0,
+            misfit: 1.0,
             p_value: 1e-9,
             set,
             added: Some("gauge_drift".to_owned()),
@@ -240,11 +241,7 @@ fn a_force_without_a_cause_is_printed_with_its_size() {
         interval: [800.0, 1000.0],
         phase_deg: Some(-40.0),
         ln_evidence: 75.0,
-        fit: Fit {
-            model,
-            search,
-            curves: Vec::new(),
-        },
+        fit: Fit::new(model, (search, Vec::new()), None),
         rows: vec![row(DataRole::Fitted, 0.9), row(DataRole::Condition, 0.7)],
     };
     let said = printed(Diagnosis {
@@ -280,11 +277,7 @@ fn wandering_genes_have_their_values() {
         p_value: 0.01,
     };
     let said = printed(Diagnosis {
-        before: Some(Fit {
-            model,
-            search,
-            curves: Vec::new(),
-        }),
+        before: Some(Fit::new(model, (search, Vec::new()), None)),
         drifts: vec![ParameterDrift {
             unknown: 1,
             shifts: vec![shift(sector, 1.0), shift(RecordPart::Condition(1), -1.0)],
