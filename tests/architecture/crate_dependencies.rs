@@ -76,6 +76,13 @@ const ARROWS: &[(&str, &str)] = &[
     ("oscillator", "coordinator"),
     ("oscillator", "dispatch"),
     ("oscillator", "discrepancy"),
+    // decisions of a diagnosis on linearised cases
+    ("rejudge", "case"),
+    ("rejudge", "discrepancy"),
+    ("rejudge", "protocol"),
+    ("rejudge", "search"),
+    ("rejudge", "worker"),
+    ("rejudge", "oscillator"),
     // developers' measurements of the dynamics
     ("bench", "protocol"),
     ("bench", "worker"),
@@ -104,9 +111,20 @@ const GATED: &[(&str, &[&str])] = &[
     ),
     (
         "anyhow",
-        &["worker", "study", "coordinator", "tests", "truth", "bench"],
+        &[
+            "worker",
+            "study",
+            "coordinator",
+            "tests",
+            "truth",
+            "bench",
+            "rejudge",
+        ],
     ),
-    ("clap", &["worker", "coordinator", "truth", "bench"]),
+    (
+        "clap",
+        &["worker", "coordinator", "truth", "bench", "rejudge"],
+    ),
     (
         "nalgebra",
         &["simulation", "search", "discrepancy", "oscillator"],
