@@ -26,9 +26,6 @@ pub struct Thresholds {
     /// part in the fit; no single record may score below its negative. An effect that is absent reaches `ln
     /// 20` in at most one of twenty diagnoses, however the effect was selected on the fitted record.
     pub prediction: f64,
-    /// Minimum share of the initial misfit above the noise that an effect must remove not to be negligible,
-    /// where the model without the effect already fits to within the noise.
-    pub practical: f64,
     /// Maximum number of effects that a diagnosis adds to the model, one per round of tests.
     pub rounds: usize,
     /// Factor by which a probe force (a force without a physical cause) must beat the best listed effect.
@@ -73,6 +70,10 @@ pub const WITHIN: f64 = 3.0;
 /// Largest factor by which noise variances from few cycles are widened: that of six degrees of freedom. With
 /// fewer the variance of Student's distribution is hardly meaningful or does not exist.
 pub(crate) const WIDEST: f64 = 1.5;
+
+/// Error that every model of a real machine has in every channel, as a share of the root mean square of the measured
+/// curve. Linearity and hysteresis of good measuring chains alone are 0.1 % (accuracy class 0.1).
+pub(crate) const MODEL_FLOOR: f64 = 1e-3;
 
 /// Share of the best effect's gain of evidence from which a rival is ranked with it: a rival that explains
 /// less of the fitted record cannot make up for that on other records.
@@ -125,7 +126,6 @@ impl Default for Thresholds {
             suspects: 8,
             gain: 3.0,
             prediction: std::f64::consts::LN_2 + std::f64::consts::LN_10,
-            practical: 0.05,
             rounds: 3,
             generic_factor: 1.15,
             generic_gain: 10.0,

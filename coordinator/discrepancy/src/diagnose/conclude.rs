@@ -52,7 +52,11 @@ pub(crate) async fn conclude<L: Laboratory>(
         diagnosis.drifts_after = drifts(&mut experiments, &after, inputs.others()).await?;
     }
     let thresholds = &inputs.thresholds;
-    let misfit = if base.explains(&after, thresholds.adequacy) {
+    let traced = diagnosis.rounds.first().and_then(Round::traced);
+    let trace_only = traced.is_some_and(|fit| base.explains(fit, thresholds.adequacy));
+    let misfit = if trace_only {
+        None
+    } else if base.explains(&after, thresholds.adequacy) {
         let mut left = diagnosis.remainder.left.iter();
         left.next()
             .map(|left| left.words(&inputs.condition(left.condition)))
@@ -63,13 +67,13 @@ pub(crate) async fn conclude<L: Laboratory>(
         names: diagnosis
             .rounds
             .first()
-            .is_some_and(|r| r.p_value < thresholds.alpha),
+            .is_some_and(|r| r.p_value < thresholds.alpha && r.trace.is_none()),
         suspect,
         doubt,
         left: misfit,
     };
     let seen = diagnosis.localisation.as_ref();
-    let maps = seen.is_some_and(|seen| seen.rejects(thresholds.alpha));
+    let maps = !trace_only && seen.is_some_and(|seen| seen.rejects(thresholds.alpha));
     let findings = Findings {
         ground,
         rejected: rejection.names || rejection.left.is_some() || maps,

@@ -83,6 +83,20 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
+    /// Returns the effects that are no more than traces, each with its size and the reason.
+    pub fn traces(&self) -> Vec<(&Estimate, &str)> {
+        let mut traces: Vec<(&Estimate, &str)> = Vec::new();
+        for (round, sizes) in self.rounds.iter().zip(&self.sizes) {
+            let own = round.trace.as_ref().zip(round.reason.as_deref());
+            let Some((id, reason)) = own else { continue };
+            let size = sizes.iter().find(|size| size.id == *id);
+            if let Some(size) = size.filter(|_| traces.iter().all(|(own, _)| own.id != *id)) {
+                traces.push((size, reason));
+            }
+        }
+        traces
+    }
+
     /// Returns whether the verdict makes a claim that is not the whole answer: more than noise is left on some
     /// record, the fit needs instruments far beyond their tolerance, or a stage whose comparisons the verdict
     /// rests on used up its budget. Where no more than noise is left, the way into another minimum and the

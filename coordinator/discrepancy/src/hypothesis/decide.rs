@@ -4,6 +4,7 @@
 use crate::baseline::base::Baseline;
 use crate::hypothesis::joint_refit::JointRefit;
 use crate::hypothesis::round::Round;
+use crate::hypothesis::trace::largest_change;
 use crate::model::fit::Fit;
 use crate::thresholds::Thresholds;
 
@@ -20,18 +21,16 @@ pub(crate) fn decide(
         round.reason = Some(format!("{} is the likeliest, but {doubt}", best.id));
         return None;
     }
-    let lengths = [&base.fit, current, &best.fit].map(Fit::chi_squared);
-    // beside what was found: what leaves no more than noise lacks nothing that matters; a noise that is only
-    // stated tells too little of that to make a significant effect negligible
-    let adequate = base.known().is_seen() && base.explains(current, thresholds.adequacy);
-    let removed = removed(lengths, base.noise());
-    if adequate && removed < thresholds.practical {
+    let change = largest_change(base, [current, &best.fit]);
+    if let Some(change) = change.filter(|change| change.ratio < 1.0) {
+        let channel = &base.record.record.channels[change.channel].channel.title;
         round.reason = Some(format!(
-            "{} is significant but negligible: it removes {:.1} % of the misfit above the noise, and the model without it \
-             already fits to within the noise",
+            "{} is no more than a trace: it changes no channel by more than models of real machines err, the {channel} by {:.2} % \
+             of its variation",
             best.id,
-            100.0 * removed
+            100.0 * change.share
         ));
+        round.trace = Some(best.id.clone());
         return None;
     }
     let (id, fit) = (best.id.clone(), best.fit.clone());
@@ -66,13 +65,6 @@ pub(crate) fn decide_joint(
     Some(beside)
 }
 
-/// Returns the share of the baseline's excess misfit that an effect removes, from the squared residuals of
-/// the baseline, of the current model and of the model with the effect, and the squared residual expected of
-/// noise alone.
-fn removed([first, now, then]: [f64; 3], noise: f64) -> f64 {
-    (now - then) / (first - noise).max(1.0)
-}
-
 /// Returns the reason why an effect is not accepted for its family-wise p-value or its gain of log evidence
 /// (nats); `None` if both suffice.
 fn doubt(p_value: f64, gain: f64, thresholds: &Thresholds) -> Option<String> {
@@ -90,14 +82,6 @@ fn doubt(p_value: f64, gain: f64, thresholds: &Thresholds) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn what_is_removed_counts_by_the_gap_at_first() {
-        let own = removed([9000.0, 3000.0, 1000.0], 1000.0);
-        assert!((own - 0.25).abs() < 1e-12);
-        // of a gap that noise explains all is removed, or more
-        assert!(removed([990.0, 990.0, 980.0], 1000.0) > 1.0);
-    }
 
     #[test]
     fn a_doubt_names_what_is_missing_and_only_that() {

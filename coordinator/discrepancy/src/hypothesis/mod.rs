@@ -9,4 +9,5 @@ pub mod low_orders;
 pub mod refit;
 pub(crate) mod round;
 pub mod signature;
+pub(crate) mod trace;
 pub(crate) mod valley_search;

@@ -28,6 +28,8 @@ pub struct Round {
     pub set: Vec<String>,
     /// Identifier of the effect that the round added, if any.
     pub added: Option<String>,
+    /// Identifier of the likeliest effect if it is no more than a trace.
+    pub trace: Option<String>,
     /// Number of effects ranked by evidence and prediction when the ranking replaced the effect that was
     /// added first; 1 if it was not replaced.
     pub ranked: usize,
@@ -55,6 +57,7 @@ impl Round {
             p_value: 1.0,
             set: Vec::new(),
             added: None,
+            trace: None,
             ranked: 1,
             together: false,
             reason: None,
@@ -66,6 +69,13 @@ impl Round {
     /// Returns a log evidence relative to the current model, divided by the dispersion (nats).
     pub fn nats(&self, log_evidence: f64) -> f64 {
         (log_evidence - self.null_evidence) / self.dispersion
+    }
+
+    /// Returns the fit with the likeliest effect if that is no more than a trace.
+    pub(crate) fn traced(&self) -> Option<&Fit> {
+        let id = self.trace.as_ref()?;
+        let mut refits = self.refits.iter();
+        refits.find(|own| own.id == *id).map(|own| &own.fit)
     }
 
     /// Withdraws the effect that the round added, and records the reason.

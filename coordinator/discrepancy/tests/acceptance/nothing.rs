@@ -102,3 +102,27 @@ fn without_a_library_there_is_never_a_name() {
         assert_eq!(forces > 0, probes);
     }
 }
+
+/// Checks that an effect that changes no channel by more than models of real machines err is a trace with its size,
+/// however certain it is.
+#[test]
+fn what_changes_no_channel_visibly_is_a_trace() {
+    for (k, id) in [(0, "rod_drag"), (1, "card_time_shift")] {
+        let all = named();
+        let effect = all.iter().find(|own| own.id == id).expect("it is listed");
+        let truth = planted(Truth::healthy(100 + 100 * k).noisy(0.05), effect, 3.0);
+        let (answer, _) = diagnosed(&truth, &Setup::default());
+        say(&format!("{id}: {}", line(&answer)));
+        let traces = answer.traces();
+        let (size, reason) = traces.first().expect("a trace");
+        assert!(size.p_value < 1e-9, "{}", size.p_value);
+        assert!(reason.contains("no more than a trace"), "{reason}");
+        assert!(answer.effects.is_empty(), "{}", line(&answer));
+        assert_eq!(
+            answer.verdict,
+            Verdict::NothingDetected,
+            "{}",
+            line(&answer)
+        );
+    }
+}

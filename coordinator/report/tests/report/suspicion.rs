@@ -292,6 +292,7 @@ fn round(case: &Case, library: &[EffectDescriptor]) -> Round {
         log_evidence,
     };
     Round {
+        trace: None,
         ranked: 1,
         together: false,
         candidates: suspects,

@@ -45,7 +45,7 @@ fn sizes(subject: &DiagnosisInput<'_>, effect: &Estimate) -> String {
     join_words(&each, "and")
 }
 
-/// Lists the effects with their sizes, one item each; those that are not named are marked as suspected.
+/// Lists the effects with their sizes, one item each; those that are not named are marked as suspected or as traces.
 pub(in crate::diagnosis) fn effects(subject: &DiagnosisInput<'_>) -> Vec<String> {
     let diagnosis = subject.diagnosis();
     let one = |effect: &Estimate| {
@@ -56,5 +56,9 @@ pub(in crate::diagnosis) fn effects(subject: &DiagnosisInput<'_>) -> Vec<String>
         };
         format!("{suspected}{}: {}", effect.id, sizes(subject, effect))
     };
-    diagnosis.effects.iter().map(one).collect()
+    let traces = diagnosis.traces().into_iter().map(|(effect, reason)| {
+        let sizes = sizes(subject, effect);
+        format!("trace, not named: {}: {sizes}; {reason}", effect.id)
+    });
+    diagnosis.effects.iter().map(one).chain(traces).collect()
 }

@@ -51,9 +51,17 @@ fn claim(subject: &DiagnosisInput<'_>) -> String {
                 .to_owned()
         }
         Verdict::NothingDetected => {
-            "Nothing detected: what the recalibrated simulation leaves of the \
-             record is noise, down to the detection limits below."
-                .to_owned()
+            let traces = diagnosis.traces().into_iter();
+            let traces: Vec<String> = traces.map(|(own, _)| named(subject, &own.id)).collect();
+            let trace = if traces.is_empty() {
+                String::new()
+            } else {
+                format!(" and a trace of {}", join_words(&traces, "and"))
+            };
+            format!(
+                "Nothing detected: what the recalibrated simulation leaves of the record is noise{trace}, down to the \
+                 detection limits below."
+            )
         }
         Verdict::Named => {
             let added = subject.added().into_iter();

@@ -37,6 +37,8 @@ pub(crate) struct DiagnoseOutput {
     /// Effects that the diagnosis added to the model, followed by the other members of their ambiguity sets,
     /// best first. Empty if the verdict names no effect: suspected effects are listed in the rounds.
     effects: Vec<EffectOutput>,
+    /// Effects that are significant, but change no channel by more than models of real machines err.
+    traces: Vec<EffectOutput>,
     /// Generic force (form and joint) that fits better than every named effect.
     generic: Option<String>,
     /// Best-fitting generic force with its size, reported even if the verdict does not accept it.
@@ -136,6 +138,11 @@ pub(crate) fn object(subject: &DiagnosisInput<'_>) -> DiagnoseOutput {
         at_bounds: diagnosis.remainder.at_bounds.clone(),
         beyond: diagnosis.remainder.beyond.clone(),
         effects: named(diagnosis).map(|e| effect(diagnosis, e)).collect(),
+        traces: diagnosis
+            .traces()
+            .into_iter()
+            .map(|(own, _)| effect(diagnosis, own))
+            .collect(),
         generic: diagnosis.generic.clone(),
         generic_force: diagnosis.force.as_ref().map(force),
         rounds: rounds(diagnosis),

@@ -91,6 +91,7 @@ fn full(verdict: Verdict) -> Diagnosis {
         reason: None,
         effects: set.iter().map(|id| estimate(id)).collect(),
         rounds: vec![Round {
+            trace: None,
             ranked: 1,
             together: false,
             candidates: Vec::new(),

@@ -1,0 +1,44 @@
+//! Traces: effects that change no channel by more than models of real machines err anyway.
+use crate::baseline::base::Baseline;
+use crate::model::fit::Fit;
+use crate::record::measured::{Recorded, power};
+use crate::thresholds::MODEL_FLOOR;
+
+/// Largest change of a channel by an effect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LargestChange {
+    /// Index of the channel in the record.
+    pub(crate) channel: usize,
+    /// Root mean square of the change over that of the measured curve \[1\].
+    pub(crate) share: f64,
+    /// Root mean square of the change over the model error of the channel \[1\].
+    pub(crate) ratio: f64,
+}
+
+/// Returns the change of the channel that an effect, added to a refitted model, changes most relative to the model
+/// error of the channel. That error is the largest of the stated `model_error`, the part of the numerical check that
+/// recalibration leaves, and [`MODEL_FLOOR`] of the measured curve. `None` without a channel.
+pub(crate) fn largest_change(base: &Baseline, [without, with]: [&Fit; 2]) -> Option<LargestChange> {
+    let record = &base.record.record;
+    let mean = record.mean();
+    let channels = record.channels.iter().enumerate();
+    let change = |(c, own): (usize, &Recorded)| {
+        let curves = with.curves[c].iter().zip(&without.curves[c]);
+        let absolute = own.channel.is_absolute();
+        let changed: Vec<f64> = curves.map(|(a, b)| a - b).collect();
+        let changed = power(&changed, absolute).sqrt();
+        let measured = power(&mean[c], absolute).sqrt();
+        let numerical = base.preflight.as_ref().map_or(0.0, |own| own.rms_left[c]);
+        let error = (MODEL_FLOOR * measured)
+            .max(own.model_error.unwrap_or(0.0))
+            .max(numerical);
+        LargestChange {
+            channel: c,
+            share: changed / measured.max(f64::MIN_POSITIVE),
+            ratio: changed / error.max(f64::MIN_POSITIVE),
+        }
+    };
+    channels
+        .map(change)
+        .max_by(|a, b| a.ratio.total_cmp(&b.ratio))
+}
