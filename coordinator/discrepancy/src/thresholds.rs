@@ -28,10 +28,6 @@ pub struct Thresholds {
     pub prediction: f64,
     /// Maximum number of effects that a diagnosis adds to the model, one per round of tests.
     pub rounds: usize,
-    /// Factor by which a probe force (a force without a physical cause) must beat the best listed effect.
-    pub generic_factor: f64,
-    /// Units of `chi^2`, over the dispersion, by which a probe force must also beat the best listed effect.
-    pub generic_gain: f64,
     /// Squared cosine of projected signatures from which a probe force counts as the same as a listed effect.
     pub alike: f64,
     /// Number of noise sets for the null distribution of the map along the abscissa.
@@ -75,10 +71,6 @@ pub(crate) const WIDEST: f64 = 1.5;
 /// curve. Linearity and hysteresis of good measuring chains alone are 0.1 % (accuracy class 0.1).
 pub(crate) const MODEL_FLOOR: f64 = 1e-3;
 
-/// Share of the best effect's gain of evidence from which a rival is ranked with it: a rival that explains
-/// less of the fitted record cannot make up for that on other records.
-pub(crate) const RANKED: f64 = 0.5;
-
 /// Prior standard deviations beyond which an instrument's error in a fit without effects indicates that
 /// something else is missing: one in 16,000 lies beyond by chance. Instruments are then held within
 /// [`WITHIN`].
@@ -116,6 +108,14 @@ pub(crate) const MAPS: f64 = 0.05;
 /// look nearly alike, and the right joint was within a tenth of the best in all of a simulated set.
 pub(crate) const JOINTS: f64 = 0.1;
 
+impl Thresholds {
+    /// Returns the gain of log evidence (nats) that `effects` effects out of `tried` candidates need where no other
+    /// record tests their laws: the best of many candidates has `ln(tried)` more by chance.
+    pub(crate) fn evidence_of_best(&self, tried: usize, effects: usize) -> f64 {
+        self.prediction + libm::log(tried.max(1) as f64) * effects as f64
+    }
+}
+
 impl Default for Thresholds {
     fn default() -> Self {
         Self {
@@ -127,8 +127,6 @@ impl Default for Thresholds {
             gain: 3.0,
             prediction: std::f64::consts::LN_2 + std::f64::consts::LN_10,
             rounds: 3,
-            generic_factor: 1.15,
-            generic_gain: 10.0,
             alike: 0.9,
             draws: 400,
             step: 0.7,

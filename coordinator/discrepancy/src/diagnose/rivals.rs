@@ -13,7 +13,7 @@ use crate::laboratory::{Laboratory, Stage};
 use crate::linear::evidence::ambiguity_set;
 use crate::linear::isolability::similarity;
 use crate::model::fit::Fit;
-use crate::thresholds::{AMBIGUITY_MARGIN, RANKED};
+use crate::thresholds::AMBIGUITY_MARGIN;
 use crate::validation::compare::ValidationRecord;
 use crate::validation::predictive::scores;
 use search::least_squares::LeastSquaresSettings;
@@ -152,11 +152,7 @@ async fn swapped<L: Laboratory>(
         rivals.truncate(ALIKE);
     } else {
         let gain = |log_evidence: f64| log_evidence - round.null_evidence;
-        let best = round
-            .refits
-            .first()
-            .map_or(0.0, |best| gain(best.log_evidence));
-        rivals.retain(|own| gain(own.log_evidence) > RANKED * best.max(0.0));
+        rivals.retain(|own| gain(own.log_evidence) > 0.0);
     }
     let first =
         answer.model.added.len() == 1 && rivals.iter().all(|own| own.fit.model.added.len() == 1);

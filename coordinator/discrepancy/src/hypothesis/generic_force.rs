@@ -2,8 +2,8 @@
 //!
 //! The library of effects cannot be complete. A generic force is a force of simple form across a joint (a
 //! constant, a sign, a power, a harmonic) without a physical cause. If such a force, refitted with every
-//! unknown free, explains much more than the best named effect, or leaves only noise where the named effect
-//! does not, the named effect is rejected. A form whose projected signature is nearly that of a library
+//! unknown free, gains as much evidence over the best named effect as the best of so many forces needs, the named
+//! effect is rejected. A form whose projected signature is nearly that of a library
 //! effect does not count as a challenger, because the named effect is then the better description.
 use crate::baseline::session::Session;
 use crate::hypothesis::candidate::{CandidateEffect, joined};
@@ -69,21 +69,19 @@ pub(crate) async fn challenge<L: Laboratory>(
     current: &Fit,
     round: &Round,
 ) -> Result<Option<Challenger>, L::Error> {
-    let (base, thresholds) = (session.base, &session.inputs.thresholds);
+    let thresholds = &session.inputs.thresholds;
     let best = round.refits.first();
     let best_name = best.map(|best| &best.fit);
-    // what the best name leaves, and by how much it lowers the misfit; without a name, those of the model
-    // without
-    let left = best.map_or(f64::INFINITY, |best| best.fit.chi_squared());
-    let named = (current.chi_squared() - left).max(0.0);
-    let left = left.min(current.chi_squared());
+    // by how much the best name lowers the misfit
+    let named = best_name.map_or(0.0, |best| current.chi_squared() - best.chi_squared());
     let tangent = current.tangent();
     let residual = &current.search.linear_minimum_residual();
     let mut forms = forms(&round.generics, residual, &tangent);
     let tests = forms.len();
+    let needed = thresholds.evidence_of_best(tests, 1);
     forms.retain(|form| {
         family_wise(form.p_value, tests) < thresholds.alpha
-            && form.statistic > named + thresholds.generic_gain
+            && form.statistic > named
             && !is_listed(form, &round.candidates, thresholds.alike, &tangent)
     });
     forms.sort_by(|a, b| b.merit().total_cmp(&a.merit()));
@@ -99,19 +97,9 @@ pub(crate) async fn challenge<L: Laboratory>(
         .filter_map(|(form, refit)| Some((form, refit?)));
     let best = refits.min_by(|(_, a), (_, b)| a.chi_squared().total_cmp(&b.chi_squared()));
     Ok(best.and_then(|(form, fit)| {
-        let own = form.challenger(current, fit);
-        let (removed, fit) = (own.removed, &own.fit);
-        let misfit = best_name.map_or(f64::INFINITY, Fit::misfit);
-        let misfit = fit.misfit().min(misfit).min(current.misfit());
-        let margin = thresholds.generic_gain * misfit;
-        let noise =
-            |left: f64| base.is_noise(left, fit.tangent().parameters(), thresholds.adequacy);
-        let clears = noise(fit.chi_squared()) && !noise(left);
-        let beats = removed > thresholds.generic_factor * named + margin
-            || (clears && removed > named + margin);
         let gained = fit.gain_over(best_name.unwrap_or(current));
-        let beats = beats && gained.min(fit.gain_over(current)) > thresholds.gain;
-        beats.then_some(own)
+        let beats = gained.min(fit.gain_over(current)) >= needed;
+        beats.then(|| form.challenger(current, fit))
     }))
 }
 
@@ -145,6 +133,7 @@ pub(crate) async fn in_place<L: Laboratory>(
     let residual = &without.search.linear_minimum_residual();
     let mut forms = forms(&round.generics, residual, &without.tangent());
     let tests = forms.len();
+    let needed = thresholds.evidence_of_best(tests, 1);
     forms.retain(|form| {
         family_wise(form.p_value, tests) < thresholds.alpha && form.statistic > PROMISED * reduction
     });
@@ -160,7 +149,7 @@ pub(crate) async fn in_place<L: Laboratory>(
     let best = refits.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
     let force = best.filter(|force| {
         let closer = force.fit.chi_squared() < answer.chi_squared();
-        force.fit.gain_over(answer) > thresholds.gain && (closer || vanishes)
+        force.fit.gain_over(answer) >= needed && (closer || vanishes)
     });
     Ok(force.map(|force| Replacement { without, force }))
 }

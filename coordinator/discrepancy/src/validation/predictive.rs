@@ -221,11 +221,10 @@ impl Needed {
     /// Returns what a claim of `effects` effects out of `tried` candidates needs: the best of many candidates
     /// has `ln(tried)` more evidence by chance, and each of several effects was chosen so.
     pub(crate) fn of(thresholds: &Thresholds, effects: usize, tried: usize) -> Self {
-        let searched = libm::log(tried.max(1) as f64) * effects as f64;
         Self {
             score: thresholds.prediction,
             chosen: 0.0,
-            evidence: thresholds.prediction + searched,
+            evidence: thresholds.evidence_of_best(tried, effects),
         }
     }
 }

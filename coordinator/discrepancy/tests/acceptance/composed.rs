@@ -111,9 +111,9 @@ fn a_force_in_the_place_of_a_name_that_it_beats_is_unlisted() {
         let mut truth = Truth::healthy(3700 + seed);
         truth.unlisted = Some(Unlisted::BeamDrag(0.3));
         let mut setup = Setup::default();
-        // no force is ever good enough to be compared before a name is chosen, and a name need not be better than
-        // a smooth discrepancy
-        setup.thresholds.generic_gain = 1e9;
+        // every force counts as listed until a name is chosen, and a name need not be better than a smooth
+        // discrepancy
+        setup.thresholds.alike = -1.0;
         setup.thresholds.gain = -5.0;
         let (answer, _) = diagnosed(&truth, &setup);
         let said = line(&answer);
