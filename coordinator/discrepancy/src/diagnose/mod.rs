@@ -15,6 +15,7 @@ mod settle;
 mod validate;
 
 pub use crate::estimate::absorbed::Absorbed;
+pub use crate::estimate::discrepancy::DiscrepancyEstimate;
 pub use crate::estimate::effect_size::{Estimate, ParameterEstimate};
 pub use crate::estimate::experiment_design::IndistinguishablePair;
 pub use crate::estimate::force::ForceEstimate;

@@ -1,6 +1,7 @@
 //! Completeness of an answer: the share of the gap that it explains, where more than noise is left, and
 //! whether its fit is one at all.
 use crate::baseline::session::Session;
+use crate::estimate::discrepancy::{DiscrepancyEstimate, discrepancy};
 use crate::inputs::Inputs;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
@@ -14,6 +15,8 @@ use crate::validation::predictive::is_explained;
 pub struct Remainder {
     /// Share of the gap of the fitted record that the answer closes; `None` without an answer.
     pub explained: Option<f64>,
+    /// Smooth discrepancy that the model of the answer still needs; `None` where it needs none.
+    pub discrepancy: Option<DiscrepancyEstimate>,
     /// Records, fitted or not, on which the model of the answer leaves more than noise.
     pub left: Vec<Left>,
     /// Whether the fit of the answer has converged.
@@ -114,6 +117,7 @@ pub(crate) async fn remainder<L: Laboratory>(
     let fitted = rows.iter().find(|row| row.part == DataRole::Fitted);
     Ok(Remainder {
         explained: fitted.filter(|_| answered).map(|row| row.closed.closed),
+        discrepancy: fitted.and_then(|row| discrepancy(&base.record, fit, row.closed.before)),
         left,
         is_converged: is_converged(fit),
         at_bounds: at_bounds(inputs, fit),

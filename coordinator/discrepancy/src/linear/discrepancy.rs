@@ -35,14 +35,21 @@ const DOUBLINGS: i32 = 12;
 const REFINED: [f64; 6] = [4.0, 2.0, 1.4, 1.4, 1.2, 1.1];
 
 /// Wave of a channel.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Wave {
     /// Index of the channel.
     pub channel: usize,
     /// Number of cycles over the span of the channel's abscissa.
     pub cycles: f64,
-    /// Mean square of the wave over the abscissa.
-    pub power: f64,
+    /// Values along the abscissa.
+    pub curve: Vec<f64>,
+}
+
+impl Wave {
+    /// Returns the mean square of the wave over the abscissa.
+    fn power(&self) -> f64 {
+        self.curve.iter().map(|y| y * y).sum::<f64>() / self.curve.len().max(1) as f64
+    }
 }
 
 /// Waves of which a discrepancy is made, in the metric of a record.
@@ -50,6 +57,8 @@ pub struct Wave {
 pub struct SmoothBasis {
     columns: DMatrix<f64>,
     waves: Vec<Wave>,
+    /// Mean square of each wave over the abscissa.
+    powers: Vec<f64>,
     /// `columns^T columns`.
     gram: DMatrix<f64>,
     /// Standard error of the record's mean, by channel.
@@ -71,6 +80,7 @@ impl SmoothBasis {
         Self {
             gram: columns.tr_mul(&columns),
             columns,
+            powers: waves.iter().map(Wave::power).collect(),
             waves,
             scales,
         }
@@ -83,9 +93,9 @@ impl SmoothBasis {
             libm::exp(-0.5 * turns * turns)
         };
         let mut whole = vec![0.0; discrepancy.deviations.len()];
-        for wave in &self.waves {
+        for (wave, power) in self.waves.iter().zip(&self.powers) {
             if let Some(whole) = whole.get_mut(wave.channel) {
-                *whole += share(wave) * wave.power;
+                *whole += share(wave) * power;
             }
         }
         let each = self.waves.iter().map(|wave| {
@@ -99,15 +109,34 @@ impl SmoothBasis {
     /// Returns the whitened waves, each times the standard deviation of its coefficient; waves that have none
     /// are left out.
     pub fn scaled(&self, discrepancy: &Discrepancy) -> DMatrix<f64> {
-        let deviations = self.coefficients(discrepancy);
-        let there: Vec<usize> = (0..self.waves.len())
-            .filter(|k| deviations[*k] > 0.0)
-            .collect();
-        let mut columns = self.columns.select_columns(&there);
-        for (mut column, k) in columns.column_iter_mut().zip(there) {
-            column *= deviations[k];
+        let there = self.there(discrepancy);
+        let places: Vec<usize> = there.iter().map(|(k, _)| *k).collect();
+        let mut columns = self.columns.select_columns(&places);
+        for (mut column, (_, deviation)) in columns.column_iter_mut().zip(there) {
+            column *= deviation;
         }
         columns
+    }
+
+    /// Returns the waves that [`Self::scaled`] whitens, along the abscissa and in the channel's unit, each with the
+    /// index of its channel.
+    pub fn curves(&self, discrepancy: &Discrepancy) -> Vec<(usize, DVector<f64>)> {
+        let there = self.there(discrepancy).into_iter();
+        let curve = |(k, deviation): (usize, f64)| {
+            let wave = &self.waves[k];
+            (
+                wave.channel,
+                DVector::from_column_slice(&wave.curve) * deviation,
+            )
+        };
+        there.map(curve).collect()
+    }
+
+    /// Returns the indices of the waves that a discrepancy has, with the standard deviations of their coefficients.
+    fn there(&self, discrepancy: &Discrepancy) -> Vec<(usize, f64)> {
+        let deviations = self.coefficients(discrepancy);
+        let all = deviations.iter().copied().enumerate();
+        all.filter(|(_, deviation)| *deviation > 0.0).collect()
     }
 
     /// Returns the log evidence that a fit gains by a discrepancy over none (nats); `None` where its information
@@ -277,20 +306,18 @@ mod tests {
     const SAMPLES: usize = 60;
 
     fn waves() -> SmoothBasis {
-        let all: Vec<Wave> = (1..=6)
-            .flat_map(|k| {
-                let wave = Wave {
-                    channel: 0,
-                    cycles: f64::from(k),
-                    power: 0.5,
-                };
-                [wave, wave]
+        let phases = [f64::cos, f64::sin];
+        let wave = |k: u32| {
+            phases.map(|phase| Wave {
+                channel: 0,
+                cycles: f64::from(k),
+                curve: (0..SAMPLES)
+                    .map(|i| phase(TAU * f64::from(k) * i as f64 / SAMPLES as f64))
+                    .collect(),
             })
-            .collect();
-        let columns = DMatrix::from_fn(SAMPLES, all.len(), |i, j| {
-            let turn = TAU * all[j].cycles * i as f64 / SAMPLES as f64;
-            if j % 2 == 0 { turn.cos() } else { turn.sin() }
-        });
+        };
+        let all: Vec<Wave> = (1..=6).flat_map(wave).collect();
+        let columns = DMatrix::from_fn(SAMPLES, all.len(), |i, j| all[j].curve[i]);
         SmoothBasis::new(columns, all, vec![1.0])
     }
 

@@ -26,17 +26,15 @@ pub(crate) fn smooth_basis(
     for (channel, own) in record.channels.iter().enumerate() {
         let own = &own.channel;
         for (cycles, curve) in curves(&own.abscissa, own.is_absolute()) {
-            let count = curve.len().max(1) as f64;
-            let power = curve.iter().map(|y| y * y).sum::<f64>() / count;
             let mut alone = nothing.clone();
-            alone[channel] = curve;
+            alone[channel].clone_from(&curve);
             let column = whiten(&alone);
             if column.norm() > 0.0 {
                 columns.push(column);
                 waves.push(Wave {
                     channel,
                     cycles,
-                    power,
+                    curve,
                 });
             }
         }

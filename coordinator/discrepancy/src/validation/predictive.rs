@@ -405,7 +405,7 @@ impl Predicted {
 
 /// Gaussian posterior of a fit's unknowns, and of the coefficients of its discrepancy, with residuals in
 /// standard deviations.
-struct Posterior {
+pub(crate) struct Posterior {
     variables: Vec<Variable>,
     at: Linearized,
     dispersion: f64,
@@ -417,7 +417,7 @@ struct Posterior {
 impl Posterior {
     /// Builds the posterior of a model's unknowns from its fit; residuals and Jacobian are divided by the
     /// square root of `dispersion`. `waves` are those of its discrepancy, times their standard deviations.
-    fn of(metric: &Metric, fit: &Fit, dispersion: f64, waves: &DMatrix<f64>) -> Self {
+    pub(crate) fn of(metric: &Metric, fit: &Fit, dispersion: f64, waves: &DMatrix<f64>) -> Self {
         let at = fit.search.best();
         let root = dispersion.sqrt();
         let weigh = |columns: DMatrix<f64>| divide_by_student_deviation(metric, columns / root);
@@ -487,6 +487,23 @@ impl Posterior {
             step[k] = -own;
         }
         step
+    }
+
+    /// Returns the mean and the covariance of the last `count` unknowns; `None` where the fit leaves an unknown
+    /// undetermined.
+    pub(crate) fn last(&self, count: usize) -> Option<(DVector<f64>, DMatrix<f64>)> {
+        let all = self.variables.len();
+        let mut free = free(&self.at, &self.variables);
+        // what moves nothing keeps its prior
+        free.retain(|k| *k < all - count);
+        let own = free.len();
+        free.extend(all - count..all);
+        let covariance = self.precision(&free).cholesky()?.inverse();
+        let mean = self.step.rows(all - count, count).into_owned();
+        Some((
+            mean,
+            covariance.view((own, own), (count, count)).into_owned(),
+        ))
     }
 
     /// Returns the posterior precision matrix of the unknowns with the indices `of`, all others held.

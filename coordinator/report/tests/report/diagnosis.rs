@@ -2,9 +2,10 @@
 use crate::suspicion::{self, SampleDiagnosis};
 use crate::{check_page, names, words};
 use case::CaseEffect;
-use discrepancy::diagnose::Left;
+use discrepancy::diagnose::{DiscrepancyEstimate, Estimate, Left};
 use discrepancy::validation::compare::DataRole;
 use discrepancy::verdict::Verdict;
+use protocol::case::Channel;
 use protocol::pumping_unit::EFFECT_UNITS;
 use report::{self, diagnosis};
 use roxmltree::Document;
@@ -130,6 +131,55 @@ fn an_answer_in_part_says_what_is_left_in_its_first_sentence() {
                 71 % of the gap; 29 % remain, most of it at gauge 3.";
     assert!(page.contains(said), "{page}");
     assert!(!page.contains("The reason:"), "{page}");
+}
+
+/// Checks that the smooth discrepancy that an answer still needs stands in the first sentence and is drawn with its
+/// band, and that a trace is listed with its size.
+#[test]
+fn a_discrepancy_and_a_trace_are_shown() {
+    let mut made = suspicion::diagnosis(Verdict::Named);
+    let own = &mut made.diagnosed.diagnosis;
+    let channels: Vec<Channel> = own.rows[0]
+        .after
+        .iter()
+        .map(|_| made.case.channels[0].clone())
+        .collect();
+    let half: Vec<Vec<f64>> = own.rows[0]
+        .after
+        .iter()
+        .map(|y| vec![0.1; y.len()])
+        .collect();
+    own.remainder.discrepancy = Some(DiscrepancyEstimate {
+        channels,
+        mean: own.rows[0].after.clone(),
+        half,
+        length: 0.05,
+        share: 0.12,
+    });
+    let mut round = own.rounds[0].clone();
+    round.added = None;
+    round.reason = Some("gauge_drift is no more than a trace".to_owned());
+    round.trace = Some("gauge_drift".to_owned());
+    let size = own.effects[0].clone();
+    own.rounds.push(round);
+    own.sizes = vec![
+        Vec::new(),
+        vec![Estimate {
+            id: "gauge_drift".to_owned(),
+            ..size
+        }],
+    ];
+    let page = words(&page(&made));
+    for said in [
+        "it explains 99.0 % of the gap, a smooth discrepancy without a cause takes 12.0 % of it, and no more than noise",
+        "The smooth discrepancy that the model still needs beside the added effects, with its 95 % band",
+        "trace, not named: gauge_drift:",
+    ] {
+        assert!(
+            page.replace('\u{a0}', " ").contains(said),
+            "{said} is not in\n{page}"
+        );
+    }
 }
 
 #[test]

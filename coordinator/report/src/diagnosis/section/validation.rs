@@ -1,17 +1,26 @@
 //! Report section that shows how far the added effects close the gap to the measurement, on fitted and
 //! held-out records, compared with the best rejected rival effect.
-use crate::chart;
+use crate::chart::{
+    self,
+    strip::{self, Strip},
+};
+use crate::color::BLUE;
 use crate::diagnosis::condition_curves::{ConditionCurves, condition_curves};
 use crate::diagnosis::subject::DiagnosisInput;
 use crate::diagnosis::table as tables;
-use crate::document::{Block, Section, figures};
+use crate::document::{Block, Figure, Section, figures};
+use crate::number::{percent, unit};
 use maud::html;
 
 pub(super) fn section(subject: &DiagnosisInput<'_>) -> Section {
     let mut blocks = Vec::new();
     let numbers = [tables::gaps(subject), tables::paper(subject)];
     blocks.extend(numbers.into_iter().flatten().map(Block::Table));
-    blocks.extend(condition_curves(subject).iter().flat_map(curves));
+    let shown = condition_curves(subject);
+    blocks.extend(figures(
+        shown.first().and_then(|own| discrepancy(subject, own)),
+    ));
+    blocks.extend(shown.iter().flat_map(curves));
     let rounds = &subject.diagnosis().rounds;
     let added = rounds.iter().any(|round| round.added.is_some());
     if !added && !blocks.is_empty() {
@@ -24,6 +33,44 @@ pub(super) fn section(subject: &DiagnosisInput<'_>) -> Section {
         title: "Validation: the gap before and after",
         blocks,
     }
+}
+
+/// Draws the smooth discrepancy that the model of the answer still needs on the fitted record, with its band.
+fn discrepancy(subject: &DiagnosisInput<'_>, shown: &ConditionCurves<'_>) -> Option<Figure> {
+    let found = subject.diagnosis().remainder.discrepancy.as_ref()?;
+    let own = subject.diagnosis().after.as_ref()?;
+    let strip = |c: usize| {
+        let channel = &found.channels[c];
+        let at = &channel.abscissa.points;
+        let (mean, half) = (&found.mean[c], &found.half[c]);
+        let band = at.iter().zip(mean).zip(half);
+        let title = format!("{} [{}]", channel.title, unit(&channel.unit));
+        let line = strip::curve(String::new(), BLUE, at, mean, 1.0);
+        Strip {
+            band: band
+                .map(|((x, y), half)| (*x, y - half, y + half))
+                .collect(),
+            ..strip::strip(title, 80.0, vec![line])
+        }
+    };
+    let strips: Vec<Strip> = (0..found.channels.len()).map(strip).collect();
+    let title = "The smooth discrepancy that the model still needs";
+    let beside = if own.model.added.is_empty() {
+        ""
+    } else {
+        " beside the added effects"
+    };
+    Some(strip::stack(
+        "discrepancy",
+        title,
+        format!(
+            "{title}{beside}, with its 95\u{a0}% band: a curve without a cause that takes {} of the gap of the fitted \
+             record. Where it leaves zero by more than the band, the next effect is to be looked for.",
+            percent(found.share)
+        ),
+        shown.axes.first()?,
+        &strips,
+    ))
 }
 
 /// Draws the curves of one condition: the scored channels, and the other channels in a collapsed block.

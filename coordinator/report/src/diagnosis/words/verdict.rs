@@ -27,18 +27,32 @@ pub(in crate::diagnosis) fn verdict(subject: &DiagnosisInput<'_>) -> String {
     let said = claim(subject);
     if diagnosis.is_in_part() {
         let what = diagnosis.reason.as_deref().unwrap_or_default();
-        return format!("In part: {}; it {what}.", said.trim_end_matches('.'));
+        let taken = taken(diagnosis).map_or_else(String::new, |taken| format!("; {taken}"));
+        return format!("In part: {}; it {what}{taken}.", said.trim_end_matches('.'));
     }
     match diagnosis.remainder.explained {
         Some(share) if diagnosis.verdict != Verdict::Unresolved => {
+            let taken = taken(diagnosis).map_or_else(String::new, |taken| format!(", {taken}"));
             format!(
-                "{}; it explains {} of the gap, and no more than noise is left.",
+                "{}; it explains {} of the gap{taken}, and no more than noise is left.",
                 said.trim_end_matches('.'),
                 percent(share)
             )
         }
-        _ => said,
+        _ => taken(diagnosis).map_or_else(
+            || said.clone(),
+            |taken| format!("{}; {taken}.", said.trim_end_matches('.')),
+        ),
     }
+}
+
+/// Returns how much of the gap a smooth discrepancy takes beside the model of the answer; `None` without one.
+fn taken(diagnosis: &Diagnosis) -> Option<String> {
+    let own = diagnosis.remainder.discrepancy.as_ref()?;
+    let share = percent(own.share);
+    Some(format!(
+        "a smooth discrepancy without a cause takes {share} of it"
+    ))
 }
 
 /// Returns what the verdict claims, as one sentence.

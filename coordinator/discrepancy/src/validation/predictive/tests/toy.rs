@@ -50,11 +50,11 @@ fn waves() -> SmoothBasis {
     let (all, columns): (Vec<Wave>, Vec<DVector<f64>>) = curves(&abscissa, true)
         .into_iter()
         .map(|(cycles, curve)| {
-            let column = DVector::from_vec(curve);
+            let column = DVector::from_column_slice(&curve);
             let wave = Wave {
                 channel: 0,
                 cycles,
-                power: column.norm_squared() / SAMPLES as f64,
+                curve,
             };
             (wave, column)
         })

@@ -7,7 +7,10 @@ use super::{
 };
 use discrepancy::{
     baseline::discretisation_check::Preflight,
-    diagnose::{Absorbed, Diagnosis, Estimate, IndistinguishablePair, Limit, NuisanceEstimate},
+    diagnose::{
+        Absorbed, Diagnosis, DiscrepancyEstimate, Estimate, IndistinguishablePair, Limit,
+        NuisanceEstimate,
+    },
     verdict::Verdict,
 };
 use report::diagnosis::DiagnosisInput;
@@ -27,6 +30,8 @@ pub(crate) struct DiagnoseOutput {
     reason: Option<String>,
     /// Share of the fitted record's gap that the answer closes; null without an answer.
     explained: Option<f64>,
+    /// Smooth discrepancy that the model of the answer still needs on the fitted record; null if it needs none.
+    discrepancy: Option<DiscrepancyOutput>,
     /// Records, fitted or not, on which the model of the answer leaves more than noise.
     left: Vec<LeftOutput>,
     converged: bool,
@@ -71,6 +76,49 @@ pub(crate) struct DiagnoseOutput {
     ran_out: Vec<&'static str>,
     stages: Vec<StageOutput>,
     wall_s: f64,
+}
+
+/// Smooth discrepancy beside a model.
+#[derive(Debug, Serialize)]
+struct DiscrepancyOutput {
+    /// Share of the gap without effects that it takes.
+    share: f64,
+    /// Correlation length as a share of the abscissa's span.
+    length: f64,
+    /// Expected curve and half-width of its 95 % band by channel, in the channel's unit.
+    channels: BTreeMap<String, BandOutput>,
+}
+
+#[derive(Debug, Serialize)]
+struct BandOutput {
+    unit: String,
+    at: Vec<f64>,
+    mean: Vec<f64>,
+    half: Vec<f64>,
+}
+
+impl DiscrepancyOutput {
+    fn of(found: &DiscrepancyEstimate) -> Self {
+        let curves = found.mean.iter().zip(&found.half);
+        let channels = found
+            .channels
+            .iter()
+            .zip(curves)
+            .map(|(own, (mean, half))| {
+                let band = BandOutput {
+                    unit: own.unit.clone(),
+                    at: own.abscissa.points.clone(),
+                    mean: mean.clone(),
+                    half: half.clone(),
+                };
+                (own.name.clone(), band)
+            });
+        Self {
+            share: found.share,
+            length: found.length,
+            channels: channels.collect(),
+        }
+    }
 }
 
 /// P-values of the test whether the residual is white noise, before and after the effects were added.
@@ -133,6 +181,11 @@ pub(crate) fn object(subject: &DiagnosisInput<'_>) -> DiagnoseOutput {
         in_part: diagnosis.is_in_part(),
         reason: diagnosis.reason.clone(),
         explained: diagnosis.remainder.explained,
+        discrepancy: diagnosis
+            .remainder
+            .discrepancy
+            .as_ref()
+            .map(DiscrepancyOutput::of),
         left: left(subject.case, &diagnosis.remainder.left),
         converged: diagnosis.remainder.is_converged,
         at_bounds: diagnosis.remainder.at_bounds.clone(),

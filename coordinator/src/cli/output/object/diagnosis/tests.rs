@@ -206,6 +206,8 @@ fn every_verdict_has_its_word_and_every_field_of_the_contract() {
             let fields = said.as_object().unwrap();
             for field in [
                 "effects",
+                "traces",
+                "discrepancy",
                 "rounds",
                 "where",
                 "detection_limits",
@@ -309,6 +311,7 @@ fn what_is_left_stands_beside_the_verdict() {
     assert_eq!(whole["left"], serde_json::json!([]));
     let part = printed(Diagnosis {
         remainder: Remainder {
+            discrepancy: None,
             explained: Some(0.71),
             left: vec![Left {
                 condition: 1,
