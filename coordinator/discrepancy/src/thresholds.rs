@@ -20,9 +20,11 @@ pub struct Thresholds {
     /// Number of candidate effects that are refitted at a time with all unknowns free, the most likely first:
     /// all whose own test is significant, as far as a round's share of the budget for refits allows.
     pub suspects: usize,
-    /// Gain of log evidence (nats, over the dispersion) that an effect needs to be accepted: odds of 20 to 1.
+    /// Gain of log evidence (nats, over the dispersion) over a smooth discrepancy that an effect needs to be
+    /// accepted: odds of 20 to 1. With it, one of 200 records of a linear model gets a false name at model errors of
+    /// 0.6 to 3 standard errors (`predictive/tests/toy.rs`).
     pub gain: f64,
-    /// Predictive score (nats, `proof::predictive`) that an effect needs on all records together that took no
+    /// Predictive score (nats, [`predictive`](crate::validation::predictive)) that an effect needs on all records together that took no
     /// part in the fit; no single record may score below its negative. An effect that is absent reaches `ln
     /// 20` in at most one of twenty diagnoses, however the effect was selected on the fitted record.
     pub prediction: f64,

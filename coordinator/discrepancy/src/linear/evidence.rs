@@ -133,6 +133,16 @@ mod tests {
     use nalgebra::{DMatrix, DVector};
     use search::least_squares::Prior;
 
+    /// Checks the mean of densities far below the smallest number, and that a value that is no number stays one.
+    #[test]
+    fn the_mean_of_densities_is_taken_in_logarithms() {
+        let three = -9000.0 + libm::log(3.0);
+        let mean = log_mean(&[-9000.0, three]);
+        assert!((mean - (-9000.0 + libm::log(2.0))).abs() < 1e-9, "{mean}");
+        assert!((log_mean(&[f64::NEG_INFINITY, 0.0]) + libm::log(2.0)).abs() < 1e-12);
+        assert!(log_mean(&[f64::NAN, 0.0]).is_nan());
+    }
+
     #[test]
     fn evidence_of_a_linear_model_is_the_exact_one() {
         // y = a g + noise, a ~ N(0, s^2): y ~ N(0, I + s^2 g g^T)

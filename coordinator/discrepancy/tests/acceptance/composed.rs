@@ -128,7 +128,7 @@ fn a_force_in_the_place_of_a_name_that_it_beats_is_unlisted() {
         let form = answer
             .generic
             .as_deref()
-            .is_some_and(|own| own.ends_with(".v2"));
+            .is_some_and(|own| own.rsplit('.').next() == Some("v2"));
         assert!(form, "{said}");
         assert!(answer.effects.is_empty(), "{said}");
         let mut reasons = answer
