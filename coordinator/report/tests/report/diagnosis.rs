@@ -171,7 +171,7 @@ fn a_discrepancy_and_a_trace_are_shown() {
     ];
     let page = words(&page(&made));
     for said in [
-        "it explains 99.0 % of the gap, a smooth discrepancy without a cause takes 12.0 % of it, and no more than noise",
+        "it explains 99.0 % of the gap, a smooth discrepancy without a cause takes 12.0 % of the gap, and no more than noise",
         "The smooth discrepancy that the model still needs beside the added effects, with its 95 % band",
         "trace, not named: gauge_drift:",
     ] {

@@ -50,7 +50,7 @@ fn discrepancy(subject: &DiagnosisInput<'_>, shown: &ConditionCurves<'_>) -> Opt
             band: band
                 .map(|((x, y), half)| (*x, y - half, y + half))
                 .collect(),
-            ..strip::strip(title, 80.0, vec![line])
+            ..strip::strip(title, 110.0, vec![line])
         }
     };
     let strips: Vec<Strip> = (0..found.channels.len()).map(strip).collect();

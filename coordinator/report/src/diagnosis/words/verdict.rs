@@ -51,7 +51,7 @@ fn taken(diagnosis: &Diagnosis) -> Option<String> {
     let own = diagnosis.remainder.discrepancy.as_ref()?;
     let share = percent(own.share);
     Some(format!(
-        "a smooth discrepancy without a cause takes {share} of it"
+        "a smooth discrepancy without a cause takes {share} of the gap"
     ))
 }
 
