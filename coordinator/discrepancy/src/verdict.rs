@@ -39,7 +39,7 @@ pub struct Findings {
     pub ground: TestValidity,
     /// Whether any family of tests rejects the hypothesis that the residual is noise alone.
     pub rejected: bool,
-    /// Number of added effects, each supported by the evidence and of practical size.
+    /// Number of added effects, each supported by the evidence and more than a trace.
     pub added: usize,
     /// Number of effects in the largest ambiguity set of an added effect.
     pub rivals: usize,

@@ -143,7 +143,11 @@ impl LinearModel {
         for (k, (name, value)) in self.genes.iter().enumerate() {
             if !own.columns.contains_key(name) {
                 let mut moved: Vec<f64> = values();
-                let step = 0.01 * value.abs().max(f64::MIN_POSITIVE);
+                let step = if *value == 0.0 {
+                    0.01
+                } else {
+                    0.01 * value.abs()
+                };
                 moved[k] += step;
                 let secant = own.secant(model, &plain(moved, Vec::new()), step);
                 let secant = secant.with_context(|| format!("{name} cannot be varied"))?;
@@ -166,6 +170,19 @@ impl LinearModel {
             }
         }
         Ok(own)
+    }
+
+    /// Returns whether the model is that of the start values of a case with the given numerical settings.
+    pub fn is_of(&self, case: &Case, numerics: &[Numerics]) -> bool {
+        let genes = case
+            .unknowns
+            .iter()
+            .map(|own| (own.name.clone(), own.start));
+        let known = self.conditions.iter().all(|own| {
+            let stated = own.curves.iter().map(|(numerics, _)| numerics);
+            stated.eq(numerics)
+        });
+        self.case == case.name && self.genes.iter().cloned().eq(genes) && known
     }
 
     /// Simulates an individual with the linearised model; returns `None` for an effect that it does not know.

@@ -46,10 +46,9 @@ fn main() -> anyhow::Result<()> {
         model
     };
     anyhow::ensure!(
-        model.case == case.name,
-        "{} is the table of the case {}; remove it or state its case with --case",
-        cli.table.display(),
-        model.case
+        model.is_of(&case, &numerics),
+        "{} is the table of another case, or of other start values; remove it",
+        cli.table.display()
     );
     let rig = Rig::new(&model, &case, (loaded.cycles, numerics));
     let limits = rig.limits()?;

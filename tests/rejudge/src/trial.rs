@@ -177,10 +177,11 @@ impl<'a> Rig<'a> {
                 parameters: vec![(of.name.clone(), of.absent + size)],
             })
         });
-        let kept = self
-            .records
-            .len()
-            .min(if trial.conditions { 99 } else { 1 });
+        let kept = if trial.conditions {
+            self.records.len()
+        } else {
+            1
+        };
         let mut records = Vec::new();
         for record in &self.records[..kept] {
             let individual = Individual {

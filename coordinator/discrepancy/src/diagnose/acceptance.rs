@@ -100,8 +100,7 @@ async fn likeliest_together<L: Laboratory>(
 
 /// Returns whether a generic force explains more than the best combination of effects.
 fn beats(force: &Challenger, together: Option<&JointRefit>, thresholds: &Thresholds) -> bool {
-    let margin = thresholds.gain * force.fit.dispersion();
-    together.is_none_or(|own| own.fit.log_evidence() <= force.log_evidence - margin)
+    together.is_none_or(|own| force.fit.gain_over(&own.fit) >= thresholds.gain)
 }
 
 /// Compares the fit with a new effect with a finer discretisation, stores the result in the diagnosis, and
@@ -143,7 +142,7 @@ fn unlisted(
     );
     if challenger.removed > named {
         diagnosis.generic = Some(challenger.id.clone());
-        diagnosis.force = Some(force(challenger, (current, metric), round));
+        diagnosis.force = Some(force(challenger, (current, metric)));
     } else {
         diagnosis.notes.push(said.clone());
     }

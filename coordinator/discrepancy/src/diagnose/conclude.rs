@@ -52,8 +52,7 @@ pub(crate) async fn conclude<L: Laboratory>(
         diagnosis.drifts_after = drifts(&mut experiments, &after, inputs.others()).await?;
     }
     let thresholds = &inputs.thresholds;
-    let traced = diagnosis.rounds.first().and_then(Round::traced);
-    let trace_only = traced.is_some_and(|fit| base.explains(fit, thresholds.adequacy));
+    let trace_only = is_trace_alone(session, &after, shown, diagnosis).await?;
     let misfit = if trace_only {
         None
     } else if base.explains(&after, thresholds.adequacy) {
@@ -114,6 +113,26 @@ pub(crate) async fn conclude<L: Laboratory>(
         .collect();
     diagnosis.after = Some(after);
     Ok(())
+}
+
+/// Returns whether nothing but noise and a trace is left of every record; the diagnosis then says that nothing is
+/// left.
+async fn is_trace_alone<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    after: &Fit,
+    shown: &[ValidationRecord<'_>],
+    diagnosis: &mut Diagnosis,
+) -> Result<bool, L::Error> {
+    let traced = diagnosis.rounds.first().and_then(Round::traced);
+    let Some(traced) = traced.filter(|_| after.model.added.is_empty()) else {
+        return Ok(false);
+    };
+    let with = remainder(session, traced, shown, &diagnosis.rows).await?;
+    let alone = with.left.is_empty();
+    if alone {
+        diagnosis.remainder.left.clear();
+    }
+    Ok(alone)
 }
 
 /// Answer after its validation.

@@ -89,7 +89,7 @@ impl Diagnosis {
         for (round, sizes) in self.rounds.iter().zip(&self.sizes) {
             let own = round.trace.as_ref().zip(round.reason.as_deref());
             let Some((id, reason)) = own else { continue };
-            let size = sizes.iter().find(|size| size.id == *id);
+            let size = sizes.iter().find(|size| size.id == *id && !self.holds(id));
             if let Some(size) = size.filter(|_| traces.iter().all(|(own, _)| own.id != *id)) {
                 traces.push((size, reason));
             }

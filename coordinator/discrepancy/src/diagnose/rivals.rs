@@ -1,9 +1,9 @@
 //! Ambiguity sets: every effect that was refitted in a round is put in the place of the added effect, with
 //! the rest of the answer unchanged, and is ranked with it.
 //!
-//! The rank is the log evidence of the fit divided by its dispersion, plus the predictive score on data
-//! excluded from the fit. A rival
-//! replaces the added effect only if it passes the same checks: evidence, and comparison with a finer model.
+//! The rank is the gain of log evidence over the answer, all averaged over the same discrepancies and divided by the
+//! same dispersion, plus the predictive score on data excluded from the fit. A rival replaces the added effect only
+//! if it passes the same checks: evidence, and comparison with a finer model.
 use crate::baseline::recheck::check_against_finer;
 use crate::baseline::session::Session;
 use crate::diagnose::diagnosis::Diagnosis;
@@ -85,6 +85,13 @@ async fn merits<L: Laboratory>(
 ) -> Result<Vec<Ranked>, L::Error> {
     let (answer, _) = at;
     let rivals = swapped(session, at, round).await?;
+    let fits = || rivals.iter().map(|(_, fit)| fit);
+    let likeliest = fits().max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence()));
+    let among = answer.discrepancies(likeliest.unwrap_or(answer));
+    let dispersion = fits()
+        .map(Fit::dispersion)
+        .fold(answer.dispersion(), f64::min);
+    let of_answer = answer.log_evidence_among(&among);
     let mut ranked = Vec::new();
     for (id, fit) in rivals {
         // without a score only the fitted data tell a rival apart
@@ -97,7 +104,8 @@ async fn merits<L: Laboratory>(
             }
             predicted = own.together.unwrap_or(0.0);
         }
-        let merit = fit.gain_over(answer) + predicted;
+        let gained = (fit.log_evidence_among(&among) - of_answer) / dispersion;
+        let merit = gained + predicted;
         if merit.is_finite() {
             ranked.push(Ranked { id, merit, fit });
         }
@@ -118,7 +126,8 @@ async fn is_acceptable<L: Laboratory>(
     let Some(without) = without else {
         return Ok(false);
     };
-    if fit.gain_over(&without) < needed {
+    let gained = fit.gain_over(&without);
+    if gained.is_nan() || gained < needed {
         return Ok(false);
     }
     let checked = check_against_finer(session, &without, fit).await?;

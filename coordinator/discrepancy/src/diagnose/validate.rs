@@ -12,6 +12,7 @@ use crate::estimate::effect_size::estimates;
 use crate::estimate::force::force;
 use crate::hypothesis::generic_force::in_place;
 use crate::hypothesis::round::Round;
+use crate::hypothesis::trace::largest_change;
 use crate::inputs::Inputs;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
@@ -57,7 +58,9 @@ pub(crate) async fn validate<L: Laboratory>(
     let rows = &diagnosis.rows;
     let opened = || opened(&ids, rows, session.inputs);
     let no_fit = no_fit(answer, &ids, (rows, &diagnosis.remainder.beyond));
-    Ok(no_fit.or(reason).or_else(opened))
+    let change = largest_change(base, [&base.fit, answer]);
+    let trace = || change.and_then(|own| own.trace(&ids, &base.record.record));
+    Ok(no_fit.or(reason).or_else(opened).or_else(trace))
 }
 
 /// Claim whose predictive score is required.
@@ -179,7 +182,7 @@ pub(crate) async fn replace_by_force<L: Laboratory>(
         };
         let id = found.force.id.clone();
         let metric = &session.base.record.metric;
-        diagnosis.force = Some(force(found.force, (&found.without, metric), round));
+        diagnosis.force = Some(force(found.force, (&found.without, metric)));
         round.withdraw(format!(
             "a generic force {id} in the place of {} explains more of the residual",
             effect.id

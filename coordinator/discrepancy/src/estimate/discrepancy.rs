@@ -3,14 +3,13 @@ use crate::model::fit::Fit;
 use crate::record::measured::Curves;
 use crate::record::whitened::WhitenedRecord;
 use crate::validation::gap_closure::gap;
-use crate::validation::predictive::Posterior;
 use nalgebra::{DMatrix, DVector};
 use protocol::case::Channel;
 
 /// Half-width of a 95 % interval in standard deviations.
 const WIDTH: f64 = 1.96;
 
-/// Smooth discrepancy beside a fit, given its record.
+/// Smooth discrepancy beside a fit, given its record and the fitted values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DiscrepancyEstimate {
     /// Channels of the fitted record, with the values of the abscissa that were fitted.
@@ -34,8 +33,11 @@ pub(crate) fn discrepancy(
 ) -> Option<DiscrepancyEstimate> {
     let found = fit.discrepancy()?;
     let waves = fit.smooth.as_ref()?.curves(found);
-    let posterior = Posterior::of(&record.metric, fit, 1.0, &fit.waves());
-    let (coefficients, covariance) = posterior.last(waves.len())?;
+    // beside the fitted values, as the curves are drawn
+    let columns = fit.waves();
+    let information = columns.tr_mul(&columns) + DMatrix::identity(waves.len(), waves.len());
+    let covariance = information.cholesky()?.inverse();
+    let coefficients = &covariance * columns.tr_mul(&fit.search.best().residual);
     let lengths = fit.curves.iter().map(Vec::len);
     let mut mean: Curves = lengths.map(|n| vec![0.0; n]).collect();
     let mut half = mean.clone();

@@ -2,7 +2,6 @@
 //! effect: where it acts, its form, its amplitude and the misfit that it removes.
 use crate::estimate::spread::Spread;
 use crate::hypothesis::generic_force::Challenger;
-use crate::hypothesis::round::Round;
 use crate::model::fit::Fit;
 use crate::model::probe;
 use crate::record::metric::Metric;
@@ -35,13 +34,9 @@ pub struct ForceEstimate {
     pub rows: Vec<GapRow>,
 }
 
-/// Builds the report of a generic force (`challenger`) that beat the model `before` in a round; the misfits
-/// by record are still empty.
-pub(crate) fn force(
-    challenger: Challenger,
-    (before, metric): (&Fit, &Metric),
-    round: &Round,
-) -> ForceEstimate {
+/// Builds the report of a generic force (`challenger`) that beat the model `before`; the misfits by record
+/// are still empty.
+pub(crate) fn force(challenger: Challenger, (before, metric): (&Fit, &Metric)) -> ForceEstimate {
     let fit = challenger.fit;
     let first = before.model.added.len();
     let parts = &fit.model.added[first..];
@@ -84,7 +79,7 @@ pub(crate) fn force(
         interval: [(amplitude - half).max(lowest), amplitude + half],
         amplitude,
         phase_deg,
-        ln_evidence: round.nats(challenger.log_evidence),
+        ln_evidence: challenger.gained,
         id: challenger.id,
         fit,
         rows: Vec::new(),

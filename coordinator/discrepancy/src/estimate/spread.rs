@@ -8,7 +8,8 @@
 //! are then less well known than for independent entries. With the power `S` of the residual, wave by wave
 //! and times `n / (n - p)`, the covariance is the sandwich `A^-1 (J^T S J / s^4 + L) A^-1`, `A = J^T J /
 //! s^2 + L` (White 1980, HC1 of `MacKinnon` & White 1985; in waves a stationary error is independent, so that its
-//! autocovariance needs no estimate). No variance falls below the one for white residuals. An unknown on a
+//! autocovariance needs no estimate). Beside a smooth discrepancy of covariance `C = I + D D^T` the middle factor is
+//! `J^T C J`, and the dispersion 1. No variance falls below the one for white residuals. An unknown on a
 //! bound counts as known for all others, and has the variance that it would have if it alone were free.
 use crate::linear::score::student;
 use crate::linear::tangent::free;
@@ -100,7 +101,7 @@ fn covariance(metric: &Metric, fit: &Fit, dispersion: f64) -> Option<(DMatrix<f6
     let jacobian = at.jacobian.select_columns(&used);
     let prior = prior(fit, &used);
     let waves = fit.waves();
-    let information = information(&jacobian, &waves)? / dispersion + &prior;
+    let information = jacobian.tr_mul(&jacobian) / dispersion + &prior;
     let white = if used.is_empty() {
         information
     } else {
@@ -108,10 +109,13 @@ fn covariance(metric: &Metric, fit: &Fit, dispersion: f64) -> Option<(DMatrix<f6
     };
     let mut own = white.clone();
     let mut growth = DVector::from_element(used.len(), 1.0);
-    // a discrepancy is in the covariance already
-    let coloured = waves.ncols() == 0;
-    let meat = coloured.then(|| meat(metric, fit, &jacobian, dispersion));
-    if let Some(meat) = meat.flatten() {
+    let meat = if waves.ncols() > 0 {
+        let mixed = waves.tr_mul(&jacobian);
+        Some(jacobian.tr_mul(&jacobian) + mixed.tr_mul(&mixed))
+    } else {
+        meat(metric, fit, &jacobian, dispersion)
+    };
+    if let Some(meat) = meat {
         own = &white * (meat / (dispersion * dispersion) + prior) * &white;
         for k in 0..used.len() {
             let wider = own[(k, k)] / white[(k, k)];
@@ -127,7 +131,7 @@ fn covariance(metric: &Metric, fit: &Fit, dispersion: f64) -> Option<(DMatrix<f6
     let mut growths = DVector::from_element(count, 1.0);
     let fixed = (0..count).filter(|k| !used.contains(k));
     for k in fixed {
-        whole[(k, k)] = alone(fit, &used, k, dispersion);
+        whole[(k, k)] = alone(fit, &used, k);
     }
     for (i, &k) in used.iter().enumerate() {
         growths[k] = growth[i];
@@ -136,18 +140,6 @@ fn covariance(metric: &Metric, fit: &Fit, dispersion: f64) -> Option<(DMatrix<f6
         }
     }
     Some((whole, growths))
-}
-
-/// Returns the information `J^T C^-1 J` of a Jacobian under the covariance `C = I + D D^T` of noise and a
-/// discrepancy of scaled waves `D`; `None` where it is singular.
-fn information(jacobian: &DMatrix<f64>, waves: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let mut information = jacobian.tr_mul(jacobian);
-    if waves.ncols() > 0 {
-        let inner = waves.tr_mul(waves) + DMatrix::identity(waves.ncols(), waves.ncols());
-        let mixed = waves.tr_mul(jacobian);
-        information -= mixed.tr_mul(&inner.cholesky()?.solve(&mixed));
-    }
-    Some(information)
 }
 
 /// Returns the prior precision matrix of the unknowns with the indices `of` in a fit.
@@ -162,10 +154,10 @@ fn prior(fit: &Fit, of: &[usize]) -> DMatrix<f64> {
 
 /// Returns the variance that the `k`-th unknown, which is on a bound, would have if it were free in addition
 /// to the unknowns `used`; infinite where the record does not determine it.
-fn alone(fit: &Fit, used: &[usize], k: usize, dispersion: f64) -> f64 {
+fn alone(fit: &Fit, used: &[usize], k: usize) -> f64 {
     let all: Vec<usize> = used.iter().copied().chain([k]).collect();
     let jacobian = fit.search.best().jacobian.select_columns(&all);
-    let information = jacobian.tr_mul(&jacobian) / dispersion + prior(fit, &all);
+    let information = jacobian.tr_mul(&jacobian) / fit.misfit() + prior(fit, &all);
     let inverse = information.cholesky().map(|own| own.inverse());
     inverse.map_or(f64::INFINITY, |own| own[(used.len(), used.len())])
 }

@@ -22,14 +22,8 @@ pub(crate) fn decide(
         return None;
     }
     let change = largest_change(base, [current, &best.fit]);
-    if let Some(change) = change.filter(|change| change.ratio < 1.0) {
-        let channel = &base.record.record.channels[change.channel].channel.title;
-        round.reason = Some(format!(
-            "{} is no more than a trace: it changes no channel by more than models of real machines err, the {channel} by {:.2} % \
-             of its variation",
-            best.id,
-            100.0 * change.share
-        ));
+    if let Some(trace) = change.and_then(|own| own.trace(&best.id, &base.record.record)) {
+        round.reason = Some(trace);
         round.trace = Some(best.id.clone());
         return None;
     }
@@ -47,11 +41,12 @@ pub(crate) fn decide_joint(
     thresholds: &Thresholds,
 ) -> Option<Vec<Round>> {
     let best = round.refits.first().map_or(current, |best| &best.fit);
-    let gained = both.fit.gain_over(best).min(both.fit.gain_over(current));
-    if gained <= thresholds.gain || round.p_value > thresholds.alpha {
+    let gains = [best, current].map(|other| both.fit.gain_over(other));
+    let enough = gains.iter().all(|gained| *gained > thresholds.gain);
+    if !enough || round.p_value > thresholds.alpha {
         return None;
     }
-    round.dispersion = both.fit.dispersion();
+    round.dispersion = both.fit.dispersion().min(current.dispersion());
     let mut rounds = both.members.iter().map(|id| Round {
         added: Some(id.clone()),
         set: vec![id.clone()],

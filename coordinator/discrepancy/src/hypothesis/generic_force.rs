@@ -41,7 +41,7 @@ impl Form<'_> {
         Challenger {
             id: self.parts[0].effect.id.clone(),
             removed: without.chi_squared() - fit.chi_squared(),
-            log_evidence: fit.log_evidence(),
+            gained: fit.gain_over(without),
             fit,
         }
     }
@@ -54,8 +54,8 @@ pub(crate) struct Challenger {
     pub(crate) id: String,
     /// Reduction of `chi^2` by adding the force and refitting.
     pub(crate) removed: f64,
-    /// Log evidence of the model refitted with the force (nats).
-    pub(crate) log_evidence: f64,
+    /// Gain of log evidence over the model without the force (nats).
+    pub(crate) gained: f64,
     /// Fit of the model with the force.
     pub(crate) fit: Fit,
 }
@@ -95,12 +95,14 @@ pub(crate) async fn challenge<L: Laboratory>(
         .iter()
         .zip(refits)
         .filter_map(|(form, refit)| Some((form, refit?)));
-    let best = refits.min_by(|(_, a), (_, b)| a.chi_squared().total_cmp(&b.chi_squared()));
-    Ok(best.and_then(|(form, fit)| {
-        let gained = fit.gain_over(best_name.unwrap_or(current));
-        let beats = gained.min(fit.gain_over(current)) >= needed;
-        beats.then(|| form.challenger(current, fit))
-    }))
+    let best = refits
+        .map(|(form, fit)| form.challenger(current, fit))
+        .max_by(|a, b| a.gained.total_cmp(&b.gained));
+    let beats = |own: &Challenger| {
+        let over_name = own.fit.gain_over(best_name.unwrap_or(current));
+        over_name >= needed && own.gained >= needed
+    };
+    Ok(best.filter(beats))
 }
 
 /// Model from which an effect of the answer was removed, and the generic force that takes its place.
@@ -146,7 +148,7 @@ pub(crate) async fn in_place<L: Laboratory>(
         .await?;
     let refits = forms.iter().zip(refits);
     let refits = refits.filter_map(|(form, fit)| Some(form.challenger(&without, fit?)));
-    let best = refits.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
+    let best = refits.max_by(|a, b| a.gained.total_cmp(&b.gained));
     let force = best.filter(|force| {
         let closer = force.fit.chi_squared() < answer.chi_squared();
         force.fit.gain_over(answer) >= needed && (closer || vanishes)

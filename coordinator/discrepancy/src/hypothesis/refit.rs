@@ -17,7 +17,7 @@ pub struct Refitted {
     /// Best fit with the effect.
     pub fit: Fit,
     /// Log evidence of the refitted model (nats): if all that it leaves were noise, until the round of tests is
-    /// judged, then with the discrepancy that the round's likeliest effect needs.
+    /// judged, then averaged over the discrepancies of the round.
     pub log_evidence: f64,
 }
 

@@ -1,7 +1,7 @@
 //! Traces: effects that change no channel by more than models of real machines err anyway.
 use crate::baseline::base::Baseline;
 use crate::model::fit::Fit;
-use crate::record::measured::{Recorded, power};
+use crate::record::measured::{Record, Recorded, power};
 use crate::thresholds::MODEL_FLOOR;
 
 /// Largest change of a channel by an effect.
@@ -15,9 +15,24 @@ pub(crate) struct LargestChange {
     pub(crate) ratio: f64,
 }
 
+impl LargestChange {
+    /// Returns the reason why the effects `ids` are no more than traces, if they are.
+    pub(crate) fn trace(&self, ids: &str, record: &Record) -> Option<String> {
+        let channel = &record.channels[self.channel].channel.title;
+        (self.ratio < 1.0).then(|| {
+            format!(
+                "{ids} is no more than a trace: it changes no channel by more than models of real machines err, {channel} by \
+                 {:.2} % of its root mean square",
+                100.0 * self.share
+            )
+        })
+    }
+}
+
 /// Returns the change of the channel that an effect, added to a refitted model, changes most relative to the model
 /// error of the channel. That error is the largest of the stated `model_error`, the part of the numerical check that
-/// recalibration leaves, and [`MODEL_FLOOR`] of the measured curve. `None` without a channel.
+/// recalibration leaves, and [`MODEL_FLOOR`] of the measured curve. Curves without a fixed zero count without their
+/// mean. `None` without a channel.
 pub(crate) fn largest_change(base: &Baseline, [without, with]: [&Fit; 2]) -> Option<LargestChange> {
     let record = &base.record.record;
     let mean = record.mean();

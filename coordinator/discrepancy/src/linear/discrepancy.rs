@@ -6,12 +6,12 @@
 //! the spectrum of a squared-exponential covariance of length `l`. The whitened residual `r` of a fit then has
 //! the covariance `C = I + B S B^T`, and with the unknowns integrated out
 //!
-//! `ln Z = -1/2 (r^T C^-1 r - g^T A^-1 g + ln |A| + ln |C|)`, `A = J^T C^-1 J + L`, `g = J^T C^-1 r + L (x - m)`
+//! `ln Z = -1/2 (r^T C^-1 r + u^T u - g^T A^-1 g - ln |L| + ln |A| + ln |C|)`, `A = J^T C^-1 J + L`, `g = J^T C^-1 r + L (x - m)`
 //!
-//! up to a constant of the record, with the Jacobian `J` of the residual and priors of mean `m` and precision
-//! `L`. `C` is never formed: with `D = B S^1/2`, `C^-1 = I - D (I + D^T D)^-1 D^T` and `|C| = |I + D^T D|`.
+//! up to a constant of the record, with the Jacobian `J` of the residual, priors of mean `m` and precision
+//! `L`, and `u` the unknowns in units of their priors. `C` is never formed: with `D = B S^1/2`, `C^-1 = I - D (I + D^T D)^-1 D^T` and `|C| = |I + D^T D|`.
 //! The standard deviation of each channel and the length maximise `ln Z` (type-II maximum likelihood: Rasmussen
-//! & Williams, *Gaussian Processes for Machine Learning*, 5.4.1), for each model on its own: a name competes
+//! & Williams, *Gaussian Processes for Machine Learning*, 5.4.1), for each model: a name competes
 //! with "no effect, but a smooth discrepancy".
 use crate::linear::evidence::{deviation, log_determinant};
 use crate::linear::tangent::free;
@@ -19,20 +19,23 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use search::least_squares::{Linearized, Variable};
 use std::f64::consts::TAU;
 
-/// Lengths that are compared, as shares of the abscissa's span: from the longest wave that a recalibration
-/// leaves to the shortest of which [`HIGHEST`](crate::record::waves) has several. None beyond them is tried.
+/// Lengths that are compared, as shares of the abscissa's span, and between which they are refined: one sixth leaves
+/// waves of one and two cycles, one fiftieth all twelve that [`waves`](crate::record::waves) has.
 const LENGTHS: [f64; 4] = [1.0 / 6.0, 1.0 / 12.0, 1.0 / 25.0, 1.0 / 50.0];
 /// Smallest standard deviation of a discrepancy that is compared, in standard errors of the record's mean:
 /// less shows in no record.
 const LEAST: f64 = 0.25;
-/// Largest standard deviation that is compared, in those of the residual if it were all in one channel. A long
-/// wave of any size, of which recalibration leaves only the curvature, is no smaller claim than an effect.
+/// Largest standard deviation that is compared, in those of the residual if it were all in one channel. Recalibration
+/// takes most of a long wave, so that one of any size would explain what it leaves.
 const LARGEST: f64 = 3.0;
 /// Number of doublings of [`LEAST`] that are compared.
 const DOUBLINGS: i32 = 12;
-/// Factors by which the standard deviation of each channel and the length are changed one by one, while that
-/// makes the fit likelier: between models the best of a coarse grid would differ by nats that no law explains.
-const REFINED: [f64; 6] = [4.0, 2.0, 1.4, 1.4, 1.2, 1.1];
+/// Factors by which the standard deviation of each channel and the length are changed one by one from the best of the
+/// grid, which alone may be several nats below the maximum.
+const REFINED: [f64; 4] = [4.0, 2.0, 1.4, 1.2];
+/// Largest number of passes with one factor, and the gain (nats) of a pass from which on another one is worth it.
+const PASSES: usize = 3;
+const SETTLED: f64 = 0.3;
 
 /// Wave of a channel.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,6 +87,19 @@ impl SmoothBasis {
             waves,
             scales,
         }
+    }
+
+    /// Returns the standard error of the record's mean, by channel.
+    pub fn scales(&self) -> &[f64] {
+        &self.scales
+    }
+
+    /// Returns the median over the channels of a discrepancy's standard deviation, in standard errors of the mean.
+    pub fn strength(&self, discrepancy: &Discrepancy) -> f64 {
+        let each = discrepancy.deviations.iter().zip(&self.scales);
+        let mut ratios: Vec<f64> = each.map(|(own, scale)| own / scale).collect();
+        ratios.sort_by(f64::total_cmp);
+        ratios.get(ratios.len() / 2).copied().unwrap_or(0.0)
     }
 
     /// Returns the standard deviation of each wave's coefficient under a discrepancy.
@@ -169,15 +185,6 @@ impl SmoothBasis {
             let value = problem.log_evidence(&self.coefficients(own));
             value.map_or(f64::NEG_INFINITY, |value| value - without)
         };
-        let mut best: Option<(Discrepancy, f64)> = None;
-        let mut keep = |own: Discrepancy| {
-            let gain = value(&own);
-            let better = gain > best.as_ref().map_or(0.0, |(_, gain)| *gain);
-            if better {
-                best = Some((own, gain));
-            }
-            better
-        };
         let common = |power: i32, length: f64| {
             let factor = LEAST * 2_f64.powi(power);
             Discrepancy {
@@ -185,31 +192,41 @@ impl SmoothBasis {
                 length,
             }
         };
+        let mut best: Option<(Discrepancy, f64)> = None;
         for length in LENGTHS {
+            let mut highest = f64::NEG_INFINITY;
             let mut worse = 0;
             for power in 0..DOUBLINGS {
-                worse = if keep(common(power, length)) {
-                    0
-                } else {
-                    worse + 1
-                };
+                let own = common(power, length);
+                let gain = value(&own);
+                worse = if gain > highest { 0 } else { worse + 1 };
+                highest = highest.max(gain);
+                if gain > best.as_ref().map_or(0.0, |(_, gain)| *gain) {
+                    best = Some((own, gain));
+                }
                 // one maximum: two steps beyond it are enough
-                if worse > 2 {
+                if worse == 2 {
                     break;
                 }
             }
         }
         let (mut own, mut gain) = best?;
         for step in REFINED {
-            for k in 0..=self.scales.len() {
-                for factor in [step, 1.0 / step] {
-                    let mut other = own.clone();
-                    let changed = other.deviations.get_mut(k);
-                    *changed.unwrap_or(&mut other.length) *= factor;
-                    let value = value(&other);
-                    if value > gain {
-                        (own, gain) = (other, value);
+            for _ in 0..PASSES {
+                let before = gain;
+                for k in 0..=self.scales.len() {
+                    for factor in [step, 1.0 / step] {
+                        let mut other = own.clone();
+                        let changed = other.deviations.get_mut(k);
+                        *changed.unwrap_or(&mut other.length) *= factor;
+                        let value = value(&other);
+                        if value > gain {
+                            (own, gain) = (other, value);
+                        }
                     }
+                }
+                if gain - before < SETTLED {
+                    break;
                 }
             }
         }

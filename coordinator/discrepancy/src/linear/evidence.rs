@@ -2,7 +2,8 @@
 //! parameters.
 //!
 //! `ln Z = -1/2 (|r|^2 + u^T u) + 1/2 ln |L| - 1/2 ln |J^T J + L|`, with `u` the parameters in units of their
-//! priors. Differences are divided by the dispersion `chi^2 / (n - p)` of the best model, at least 1: the
+//! priors. Differences are divided by the smaller dispersion of the two models, `chi^2 / (n - p)`, at least 1, and
+//! 1 where a smooth discrepancy stands for it: the
 //! quasi-likelihood of an error whose variance is that multiple of the noise variance (Burnham & Anderson,
 //! *Model Selection and Multimodel Inference*, 2.5).
 use crate::linear::tangent::free;

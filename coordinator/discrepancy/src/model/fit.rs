@@ -148,17 +148,18 @@ impl Fit {
     }
 
     /// Returns the log evidence of the model with each of several discrepancies, or none (nats), up to a
-    /// constant of the record.
+    /// constant of the record; `NaN` where the information is singular.
     pub(crate) fn log_evidence_with(&self, among: &[Option<Discrepancy>]) -> Vec<f64> {
         let noise = self.log_evidence_of_noise();
         let gain = |own: &Discrepancy| {
             let smooth = self.smooth.as_ref()?;
             smooth.gain(self.search.best(), self.variables(), own)
         };
-        let each = among
-            .iter()
-            .map(|own| noise + own.as_ref().and_then(gain).unwrap_or(0.0));
-        each.collect()
+        let gain = |own: &Option<Discrepancy>| {
+            let gained = own.as_ref().map(|own| gain(own).unwrap_or(f64::NAN));
+            noise + gained.unwrap_or(0.0)
+        };
+        among.iter().map(gain).collect()
     }
 
     /// Returns the log evidence of the model averaged over several discrepancies (nats), up to a constant of the
@@ -176,8 +177,8 @@ impl Fit {
     }
 
     /// Returns the discrepancies over which the comparison of two models averages: none, and those that either
-    /// needs. Three points stand for the distribution of amplitudes and length, of which the likeliest alone
-    /// would be claimed with a certainty that no record gives.
+    /// needs. Up to three points stand for the distribution of amplitudes and length: the likeliest alone would
+    /// claim a certainty that no record gives.
     pub(crate) fn discrepancies(&self, other: &Self) -> Vec<Option<Discrepancy>> {
         let needed = [self, other].map(|own| own.discrepancy().cloned());
         let mut among = vec![None];

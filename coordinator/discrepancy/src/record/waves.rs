@@ -9,8 +9,8 @@ use std::f64::consts::TAU;
 /// of the shortest length that is compared has fallen to a third there.
 const HIGHEST: usize = 12;
 
-/// Collects the waves of every channel of a record, with the constant of a channel with a fixed zero. `whiten` is the linear map of
-/// curves into units of their uncertainty, `scales` the standard error of each channel's mean.
+/// Collects the waves of every channel of a record, with the constant of a channel with a fixed zero. `whiten` is the
+/// linear map of curves into units of their uncertainty, `scales` the standard error of each channel's mean.
 pub(crate) fn smooth_basis(
     record: &Record,
     scales: Vec<f64>,

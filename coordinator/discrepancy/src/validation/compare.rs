@@ -79,20 +79,31 @@ pub(crate) struct ValidationRecord<'a> {
 }
 
 impl ValidationRecord<'_> {
-    /// Returns the waves of the record's own discrepancy, each times the standard deviation of its coefficient:
-    /// in each channel as strong as `needed` in the channel of the same name of the fitted record.
-    pub(crate) fn waves(&self, needed: Option<&Discrepancy>, fitted: &Record) -> DMatrix<f64> {
-        let Some(found) = needed else {
+    /// Returns the waves of the record's own discrepancy, each times the standard deviation of its coefficient: in
+    /// each channel as strong as `needed` in the channel of the same name of the fitted record; in one that was not
+    /// fitted as many standard errors as in the fitted ones (median), and as long.
+    pub(crate) fn waves(
+        &self,
+        needed: Option<&Discrepancy>,
+        (model, fitted): (&Fit, &Record),
+    ) -> DMatrix<f64> {
+        let Some((found, basis)) = needed.zip(model.smooth.as_ref()) else {
             return DMatrix::zeros(self.scale.len(), 0);
         };
-        let own = self.record.channels.iter().map(|own| {
+        let strength = basis.strength(found);
+        let own = self.record.channels.iter().zip(self.smooth.scales());
+        let own = own.map(|(own, scale)| {
             let mut same = fitted.channels.iter();
             let same = same.position(|other| other.channel.name == own.channel.name);
-            same.map_or(0.0, |k| found.deviations[k])
+            same.map_or(strength * scale, |k| found.deviations[k])
+        });
+        let [whole, part] = [fitted, self.record].map(|record| {
+            let [from, to] = record.span();
+            to - from
         });
         self.smooth.scaled(&Discrepancy {
             deviations: own.collect(),
-            length: found.length,
+            length: found.length * whole / part.max(f64::MIN_POSITIVE),
         })
     }
 }
@@ -147,7 +158,7 @@ pub(crate) async fn validation_records<'a, L: Laboratory>(
             scale.weigh(whitened).column(0).into_owned()
         };
         let smooth = own.map_or_else(SmoothBasis::default, |record| {
-            smooth_basis(record, Vec::new(), whiten)
+            smooth_basis(record, scale.standard_error(), whiten)
         });
         shown.push(ValidationRecord {
             record,

@@ -209,7 +209,7 @@ pub(crate) async fn is_explained<L: Laboratory>(
 /// What a claim must reach on data that took no part in its fit, or without such data on the fitted record.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Needed {
-    /// Nats below whose negative no record may score, and which all records together must reach.
+    /// Nats that all records together must reach; none may score less than the negative of it.
     pub(crate) score: f64,
     /// Nats that the score or the evidence must reach in addition, because held-out data took part in a choice.
     pub(crate) chosen: f64,
@@ -367,7 +367,7 @@ impl Predicted {
         let (shared, own) = if shown.part == DataRole::Cycles {
             (shown.scale.weigh(-waves), self.own.clone())
         } else {
-            let own = beside(&self.own, &shown.waves(needed, fitted));
+            let own = beside(&self.own, &shown.waves(needed, (model, fitted)));
             (DMatrix::zeros(own.nrows(), waves.ncols()), own)
         };
         Self {
@@ -405,7 +405,7 @@ impl Predicted {
 
 /// Gaussian posterior of a fit's unknowns, and of the coefficients of its discrepancy, with residuals in
 /// standard deviations.
-pub(crate) struct Posterior {
+struct Posterior {
     variables: Vec<Variable>,
     at: Linearized,
     dispersion: f64,
@@ -484,26 +484,10 @@ impl Posterior {
             *own += off / (deviation * deviation);
         }
         for (k, own) in free.into_iter().zip(precision.solve(&slope).iter()) {
-            step[k] = -own;
+            let (at, variable) = (self.at.x[k], &self.variables[k]);
+            step[k] = (at - own).clamp(variable.lower, variable.upper) - at;
         }
         step
-    }
-
-    /// Returns the mean and the covariance of the last `count` unknowns; `None` where the fit leaves an unknown
-    /// undetermined.
-    pub(crate) fn last(&self, count: usize) -> Option<(DVector<f64>, DMatrix<f64>)> {
-        let all = self.variables.len();
-        let mut free = free(&self.at, &self.variables);
-        // what moves nothing keeps its prior
-        free.retain(|k| *k < all - count);
-        let own = free.len();
-        free.extend(all - count..all);
-        let covariance = self.precision(&free).cholesky()?.inverse();
-        let mean = self.step.rows(all - count, count).into_owned();
-        Some((
-            mean,
-            covariance.view((own, own), (count, count)).into_owned(),
-        ))
     }
 
     /// Returns the posterior precision matrix of the unknowns with the indices `of`, all others held.

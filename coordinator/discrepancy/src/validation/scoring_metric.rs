@@ -65,6 +65,12 @@ impl ScoringMetric {
         divide_by_student_deviation(&self.metric, columns)
     }
 
+    /// Returns the standard error of the record's mean, by channel.
+    pub(crate) fn standard_error(&self) -> Vec<f64> {
+        let own = self.metric.standard_error();
+        own.into_iter().map(|error| error / self.unit).collect()
+    }
+
     /// Returns the number of entries of a whitened residual.
     pub(crate) fn len(&self) -> usize {
         self.metric.len()

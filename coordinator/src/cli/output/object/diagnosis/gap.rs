@@ -13,8 +13,7 @@ pub(super) struct PredictionOutput {
     /// Name of the condition under which the record was measured.
     record: String,
     nats: f64,
-    /// Kind of held-out data: `cycles`, `channel`, `segment`, `condition`, or `left_out` for blocks of the
-    /// fitted record.
+    /// Kind of held-out data: `cycles`, `channel`, `segment` or `condition`.
     held_out: &'static str,
 }
 
