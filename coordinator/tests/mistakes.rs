@@ -70,6 +70,20 @@ impl TestFolder {
         encoder.finish().unwrap();
     }
 
+    /// Rewrites the load card: `rewrite` returns the cells of a row, given its number and all rows.
+    fn card(&self, rewrite: impl Fn(usize, &[Vec<String>]) -> (String, String)) {
+        let path = self.path("case/measured/card_5rpm.csv");
+        let text = fs::read_to_string(&path).unwrap();
+        let (header, rest) = text.split_once('\n').unwrap();
+        let cells = |line: &str| line.split(',').map(str::to_owned).collect();
+        let rows: Vec<Vec<String>> = rest.lines().map(cells).collect();
+        let lines = (0..rows.len()).map(|row| {
+            let (turn, load) = rewrite(row, &rows);
+            format!("{turn},{load}\n")
+        });
+        fs::write(&path, format!("{header}\n{}", lines.collect::<String>())).unwrap();
+    }
+
     /// Adds an effect, given as lines of TOML, to the test case.
     fn effect(&self, lines: &str) {
         self.replace(
@@ -188,9 +202,113 @@ const MISTAKES: &[Mistake] = &[
         "simulate case",
         0,
         &[
-            "5rpm: the record of gauge 3 correlates by -0.98 with its simulation",
+            "the record of gauge 3 correlates by -0.98 with its simulation",
             "multiply the column by -1",
         ],
+    ),
+    (
+        "gauges in microstrain",
+        |d| {
+            d.record(|row, cells| {
+                for cell in &mut cells[2..6] {
+                    if row > 0 {
+                        *cell = format!("{}", cell.parse::<f64>().unwrap() / 0.206);
+                    }
+                }
+            });
+        },
+        "simulate case",
+        0,
+        &[
+            "gauge 1, gauge 2, gauge 3, gauge 4 has 5.1",
+            "as if its values are in um/m of steel (factor 4.854)",
+        ],
+    ),
+    (
+        "angle from top dead centre",
+        |d| {
+            d.record(|row, cells| {
+                if row > 0 {
+                    cells[1] = format!("{:.1}", (cells[1].parse::<f64>().unwrap() + 180.0) % 360.0);
+                }
+            });
+        },
+        "simulate case",
+        0,
+        &[
+            "every record fits its simulation from 180 deg on",
+            "such as the other dead centre? subtract 180 deg",
+        ],
+    ),
+    (
+        "a load card in pounds",
+        |d| {
+            d.card(|row, rows| {
+                (
+                    rows[row][0].clone(),
+                    format!("{}", rows[row][1].parse::<f64>().unwrap() / 4.448_222),
+                )
+            });
+        },
+        "simulate case",
+        0,
+        &[
+            "times the amplitude of its simulation: as if the load that drives the simulation is in lbf (factor 4.448)",
+        ],
+    ),
+    (
+        "a load card that begins half a turn later",
+        |d| {
+            d.card(|row, rows| {
+                let half = (row + rows.len() / 2) % rows.len();
+                (rows[row][0].clone(), rows[half][1].clone())
+            });
+        },
+        "simulate case",
+        0,
+        &[
+            "what drives the simulation such as a measured load, begin at another point",
+            "the curves do not tell which",
+        ],
+    ),
+    (
+        "a counterweight in kN m",
+        |d| {
+            d.replace(
+                "case/case.toml",
+                "counterweight_moment_n_m = 106.2e3",
+                "counterweight_moment_n_m = 106.2",
+            );
+        },
+        "simulate case",
+        0,
+        &[
+            "the record of crank torque correlates by 0.3",
+            "check its column and unit, and the values of the case that it depends on",
+        ],
+    ),
+    (
+        "a crank radius that is too long",
+        |d| d.replace("case/case.toml", "radius_m = 1.0973", "radius_m = 1.2573"),
+        "simulate case",
+        0,
+        &[
+            "the record of rod position has 0.87",
+            "check its unit, and the lengths, masses and loads of the case",
+        ],
+    ),
+    (
+        "an inertia in t m2",
+        |d| {
+            d.replace(
+                "case/case.toml",
+                "inertia_kg_m2 = 2.4e4",
+                "inertia_kg_m2 = 24.0",
+            );
+        },
+        "case check case",
+        2,
+        &["`beam.inertia_kg_m2` = 24", "at least 795 kg m2"],
     ),
     (
         "a simulation that fails",

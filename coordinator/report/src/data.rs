@@ -92,7 +92,8 @@ impl Run {
     pub fn gaps<'a>(&self, case: &'a Case, condition: usize) -> Vec<(&'a Channel, Gap)> {
         let shown = self.shown(case, condition);
         let gap = |(_, channel, record): (usize, &'a Channel, &ChannelRecord)| {
-            let gap = Gap::between(record, shown.channel(channel), channel.is_absolute())?;
+            let of = (record, channel.noise);
+            let gap = Gap::between(of, shown.channel(channel), channel.is_absolute())?;
             Some((channel, gap))
         };
         case.measured(condition).filter_map(gap).collect()

@@ -190,6 +190,27 @@ fn open_loop(document: &Document, case: &CaseFile, pin: f64) -> CaseError {
     )
 }
 
+/// Checks that the beam with both heads has at least the inertia of the flexible head's mass at half its radius.
+pub(super) fn check_inertia(
+    document: &Document,
+    case: &CaseFile,
+    head_mass_kg: f64,
+) -> Result<(), CaseError> {
+    let least = head_mass_kg * (0.5 * case.back_head.radius_m).powi(2);
+    if case.beam.inertia_kg_m2 >= least {
+        return Ok(());
+    }
+    Err(document.field(
+        &[DocumentStep::Key("beam"), DocumentStep::Key("inertia_kg_m2")],
+        case.beam.inertia_kg_m2,
+        format!(
+            "at least {least:.0} kg m2: the {head_mass_kg:.0} kg of {} at half of back_head.radius_m",
+            case.flexible_head.modes_file.display()
+        ),
+        "state the inertia of the beam with both heads about the saddle bearing in kg m2 (t m2 times 1000)",
+    ))
+}
+
 /// Checks that the rope's anchor and all its contact points over a turn lie on the arc covered by the tables
 /// of the reduced head.
 pub(super) fn check_contact_on_arc(

@@ -159,6 +159,7 @@ fn parts(source: &RecordFolder<'_>, file: &CaseFile) -> Result<Parts, CaseError>
     if let (Some(envelope), Some(head)) = (&envelope, &head) {
         let arc = &head.head.arc_deg;
         faults.take(machine::check_contact_on_arc(document, file, arc, envelope));
+        faults.take(machine::check_inertia(document, file, head.head.mass_kg));
     }
     let stated = file.objective.as_ref();
     let objective = faults.take(objective::read(document, stated, &file.conditions));

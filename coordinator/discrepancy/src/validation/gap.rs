@@ -21,8 +21,8 @@ pub const BANDS: [RangeInclusive<usize>; 4] = [1..=5, 6..=30, 31..=120, 121..=us
 pub struct Gap {
     /// Mean squared residual, in the channel's unit squared.
     pub mse: f64,
-    /// Part of the mean squared residual that the scatter between cycles explains, in the channel's unit
-    /// squared; 0 with one cycle, where it is unknown.
+    /// Part of the mean squared residual that the scatter between cycles explains, or with one cycle the stated
+    /// noise, in the channel's unit squared; 0 where neither is known.
     pub noise: f64,
     /// Mean square of the measured curve about its mean, in the channel's unit squared.
     pub variance: f64,
@@ -34,8 +34,13 @@ pub struct Gap {
 
 impl Gap {
     /// Compares a channel's record with a simulated curve on the same abscissa; `None` if their lengths
-    /// differ or are zero. `absolute` says whether a constant offset between the two counts as disagreement.
-    pub fn between(record: &ChannelRecord, simulated: &[f64], absolute: bool) -> Option<Self> {
+    /// differ or are zero. `absolute` says whether a constant offset between the two counts as disagreement;
+    /// `stated` is the standard deviation of the noise of one value, if it is stated.
+    pub fn between(
+        (record, stated): (&ChannelRecord, Option<f64>),
+        simulated: &[f64],
+        absolute: bool,
+    ) -> Option<Self> {
         let n = record.mean.len();
         if n == 0 || simulated.len() != n {
             return None;
@@ -56,7 +61,7 @@ impl Gap {
             noise: if record.cycles > 1 {
                 spread / record.cycles as f64
             } else {
-                0.0
+                stated.map_or(0.0, |noise| noise * noise)
             },
             variance: power(&record.mean, absolute),
             sectors: sectors(&residual),
@@ -153,7 +158,7 @@ mod tests {
     #[test]
     fn a_perfect_simulation_leaves_no_gap_and_an_offset_is_none() {
         let measured: Vec<f64> = wave(1, 10.0).iter().map(|x| x + 40.0).collect();
-        let gap = Gap::between(&record(measured, 0.2, 5), &wave(1, 10.0), false).unwrap();
+        let gap = Gap::between((&record(measured, 0.2, 5), None), &wave(1, 10.0), false).unwrap();
         assert!(gap.share() < 1e-20 && gap.mse < 1e-20);
         assert!((gap.variance - 50.0).abs() < 1e-9);
     }
@@ -166,7 +171,7 @@ mod tests {
             .enumerate()
             .map(|(i, x)| x + if i % 2 == 0 { 0.1 } else { -0.1 })
             .collect();
-        let gap = Gap::between(&record(measured, 0.2, 4), &wave(1, 10.0), false).unwrap();
+        let gap = Gap::between((&record(measured, 0.2, 4), None), &wave(1, 10.0), false).unwrap();
         assert!(gap.share() < 1e-12, "{}", gap.share());
         assert!((gap.over_noise().unwrap() - 1.0).abs() < 1e-9);
         assert!((gap.bands[3] - 1.0).abs() < 1e-9, "{:?}", gap.bands);
@@ -180,7 +185,7 @@ mod tests {
                 *x += 3.0;
             }
         }
-        let gap = Gap::between(&record(measured, 0.2, 5), &wave(1, 10.0), false).unwrap();
+        let gap = Gap::between((&record(measured, 0.2, 5), None), &wave(1, 10.0), false).unwrap();
         let (sector, share) = gap.worst_sector();
         assert!(sector == 3 && share > 0.9, "{:?}", gap.sectors);
 
@@ -189,7 +194,7 @@ mod tests {
             .zip(wave(60, 0.5))
             .map(|(a, b)| a + b)
             .collect();
-        let gap = Gap::between(&record(measured, 0.2, 5), &wave(1, 10.0), false).unwrap();
+        let gap = Gap::between((&record(measured, 0.2, 5), None), &wave(1, 10.0), false).unwrap();
         assert_eq!(gap.worst_band().0, 31..=120);
         assert!(gap.worst_band().1 > 0.999);
         assert!((gap.share() - (0.125 - 0.008) / 50.0).abs() < 1e-3 * gap.share() + 1e-5);
@@ -197,8 +202,12 @@ mod tests {
 
     #[test]
     fn different_grids_and_one_cycle_are_said() {
-        assert!(Gap::between(&record(wave(1, 1.0), 0.0, 5), &[1.0], false).is_none());
-        let gap = Gap::between(&record(wave(1, 1.0), 0.0, 1), &wave(2, 1.0), false).unwrap();
+        assert!(Gap::between((&record(wave(1, 1.0), 0.0, 5), None), &[1.0], false).is_none());
+        let gap =
+            Gap::between((&record(wave(1, 1.0), 0.0, 1), None), &wave(2, 1.0), false).unwrap();
         assert!(gap.over_noise().is_none() && gap.share() > 1.0);
+        let stated = (&record(wave(1, 1.0), 0.0, 1), Some(0.5));
+        let gap = Gap::between(stated, &wave(2, 1.0), false).unwrap();
+        assert!((gap.over_noise().unwrap() - 2.0).abs() < 1e-9);
     }
 }

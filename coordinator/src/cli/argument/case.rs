@@ -2,6 +2,7 @@
 use crate::cli::output::terminal;
 use case::{Overrides, load_with_notes};
 use clap::Args;
+use discrepancy::record::Record;
 use protocol::case::Case;
 use std::{
     convert::Infallible,
@@ -39,6 +40,8 @@ pub(crate) struct LoadedCase {
     /// Whether the case declares its records as computed (synthetic).
     pub(crate) synthetic: bool,
     pub(crate) notes: Vec<String>,
+    /// Records with each cycle separate.
+    pub(crate) cycles: Vec<Record>,
 }
 
 impl CaseChoice {
@@ -63,5 +66,6 @@ pub(crate) fn load_case(folder: &Path, measured: Option<&Path>) -> anyhow::Resul
         measured,
         synthetic: loaded.synthetic,
         notes,
+        cycles: loaded.cycles,
     })
 }

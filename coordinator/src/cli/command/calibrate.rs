@@ -168,6 +168,7 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Calibration> {
         measured,
         synthetic,
         notes,
+        ..
     } = arguments.choice.load()?;
     let start = Start::read(arguments.genes.as_deref(), &case)?;
     let space = searched(&case, start.as_ref())?;

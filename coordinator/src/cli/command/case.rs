@@ -132,7 +132,7 @@ fn ask_worker(folder: &Path, overrides: &Overrides) -> anyhow::Result<Vec<String
             check_known(&document, &loaded.effects, &library)?;
         }
         with_temporary_run(case, "check", 1, async |bus, stop| {
-            study::check_records(bus, case, stop).await
+            study::check_records(bus, case, &loaded.cycles, stop).await
         })
     };
     asked().or_else(|error| match error.downcast_ref::<StudyError>() {

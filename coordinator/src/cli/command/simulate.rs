@@ -72,7 +72,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         columns,
     };
     let groups = compare_once("simulate", case, std::slice::from_ref(&wanted), 1)?;
-    let mismatches = study::mismatches(case, &groups);
+    let mismatches = study::mismatches(case, &loaded.cycles, &groups);
     terminal::note(&mismatches);
     notes.extend(mismatches);
     let curves = first(groups).context("no result came back")?;

@@ -48,7 +48,9 @@ pub(crate) async fn calibrate<E: Evaluator>(
         Err(error @ StudyError::Unavailable { .. }) => Err(error),
         other => Ok(other?),
     };
-    let notes = recommended.as_ref().map(|all| study::mismatches(case, all));
+    let notes = recommended
+        .as_ref()
+        .map(|all| study::mismatches(case, &[], all));
     let notes = notes.unwrap_or_default();
     watch.noted(&notes);
     let calibrated = study::calibrate(evaluator, case, strategy.as_mut(), watch, stop).await?;

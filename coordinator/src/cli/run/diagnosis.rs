@@ -63,7 +63,7 @@ pub(crate) async fn diagnose<E: Evaluator>(
     stop: &mut Stop,
 ) -> anyhow::Result<Found> {
     let library = study::library(evaluator, stop).await?;
-    let notes = study::check_records(evaluator, &loaded.case, stop).await?;
+    let notes = study::check_records(evaluator, &loaded.case, &loaded.cycles, stop).await?;
     watch.noted(&notes);
     let notes = [&manifest.notes[..], &notes].concat();
     let off = InactiveUnknowns::of(&loaded.case.unknowns);

@@ -105,6 +105,7 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Individuals>> {
         measured,
         synthetic,
         notes,
+        ..
     } = arguments.choice.load()?;
     require_record(&arguments.choice.case, &case, case.objective.condition)?;
     let path = if let Some(path) = &arguments.run {

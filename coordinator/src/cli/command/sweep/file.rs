@@ -103,6 +103,7 @@ fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<SweptFile>, Individua
         measured: records,
         synthetic,
         notes,
+        ..
     } = load_case(&case_folder, measured)?;
     require_record(&case_folder, &case, case.objective.condition)?;
     let space = Space::new(&case.unknowns)?;

@@ -166,6 +166,7 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Orthogonal>> {
         measured,
         synthetic,
         notes,
+        ..
     } = arguments.choice.load()?;
     require_record(&arguments.choice.case, &case, case.objective.condition)?;
     let space = Space::new(&case.unknowns)?;

@@ -141,6 +141,7 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<ScalingSettings>> {
         measured,
         synthetic,
         notes,
+        ..
     } = arguments.choice.load()?;
     require_record(&arguments.choice.case, &case, case.objective.condition)?;
     let crews = match arguments.crews.as_slice() {
