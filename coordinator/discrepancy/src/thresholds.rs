@@ -73,6 +73,11 @@ pub(crate) const WIDEST: f64 = 1.5;
 /// curve. Linearity and hysteresis of good measuring chains alone are 0.1 % (accuracy class 0.1).
 pub(crate) const MODEL_FLOOR: f64 = 1e-3;
 
+/// Error of the laws of effects that were found, as a share of what they change: real friction, losses and lags follow
+/// idealised laws no better. Beside the friction of the shipped record, whose law is not the library's, a second
+/// effect gains 9.9 nats and changes less than that.
+pub(crate) const LAW_FLOOR: f64 = 0.05;
+
 /// Prior standard deviations beyond which an instrument's error in a fit without effects indicates that
 /// something else is missing: one in 16,000 lies beyond by chance. Instruments are then held within
 /// [`WITHIN`].

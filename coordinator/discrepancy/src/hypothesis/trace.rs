@@ -2,7 +2,7 @@
 use crate::baseline::base::Baseline;
 use crate::model::fit::Fit;
 use crate::record::measured::{Record, Recorded, power};
-use crate::thresholds::MODEL_FLOOR;
+use crate::thresholds::{LAW_FLOOR, MODEL_FLOOR};
 
 /// Largest change of a channel by an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,20 +31,25 @@ impl LargestChange {
 
 /// Returns the change of the channel that an effect, added to a refitted model, changes most relative to the model
 /// error of the channel. That error is the largest of the stated `model_error`, the part of the numerical check that
-/// recalibration leaves, and [`MODEL_FLOOR`] of the measured curve. Curves without a fixed zero count without their
+/// recalibration leaves, [`MODEL_FLOOR`] of the measured curve, and [`LAW_FLOOR`] of the change by the effects that
+/// the model without it has. Curves without a fixed zero count without their
 /// mean. `None` without a channel.
 pub(crate) fn largest_change(base: &Baseline, [without, with]: [&Fit; 2]) -> Option<LargestChange> {
     let record = &base.record.record;
     let mean = record.mean();
     let channels = record.channels.iter().enumerate();
     let change = |(c, own): (usize, &Recorded)| {
-        let curves = with.curves[c].iter().zip(&without.curves[c]);
         let absolute = own.channel.is_absolute();
-        let changed: Vec<f64> = curves.map(|(a, b)| a - b).collect();
-        let changed = power(&changed, absolute).sqrt();
+        let change = |to: &Fit, from: &Fit| {
+            let curves = to.curves[c].iter().zip(&from.curves[c]);
+            let changed: Vec<f64> = curves.map(|(a, b)| a - b).collect();
+            power(&changed, absolute).sqrt()
+        };
+        let changed = change(with, without);
         let measured = power(&mean[c], absolute).sqrt();
         let numerical = base.preflight.as_ref().map_or(0.0, |own| own.rms_left[c]);
         let error = (MODEL_FLOOR * measured)
+            .max(LAW_FLOOR * change(without, &base.fit))
             .max(own.model_error.unwrap_or(0.0))
             .max(numerical);
         LargestChange {
