@@ -252,8 +252,8 @@ impl Cause {
 fn shapes<'a>(all: &[Agreement<'a>]) -> (Vec<String>, Vec<&'a str>) {
     let every: Vec<&Agreement<'_>> = all.iter().collect();
     let wrong = every.iter().filter(|own| own.own < ALIKE).count();
-    if let Some((cause, angle)) = best_turn(&every)
-        && 2 * wrong > every.len()
+    if 2 * wrong > every.len()
+        && let Some((cause, angle)) = best_turn(&every)
         && every.iter().all(|own| cause.correlation(own) >= ALIKE)
         && FAR * cause.left(&every) < Cause::Reversed.left(&every)
     {

@@ -7,7 +7,7 @@ use crate::linear::tangent::Tangent;
 use crate::model::fit::Fit;
 use crate::record::metric::Metric;
 use nalgebra::{DMatrix, DVector};
-use search::least_squares::{Linearized, Prior, Variable};
+use search::least_squares::{Linearized, Variable};
 
 /// Comparison of a model about to be accepted with a finer discretisation of it.
 #[derive(Clone, Debug)]
@@ -78,18 +78,7 @@ fn cost(fit: &Fit, weights: &DVector<f64>, error: &DVector<f64>) -> f64 {
     let residual = at.residual.component_mul(weights);
     let amplitudes = waves.ncols() + 1;
     let mut variables = fit.variables().to_vec();
-    let unit = Variable {
-        start: 0.0,
-        lower: f64::NEG_INFINITY,
-        upper: f64::INFINITY,
-        step: 1.0,
-        longest: f64::INFINITY,
-        prior: Some(Prior {
-            mean: 0.0,
-            deviation: 1.0,
-        }),
-    };
-    variables.resize(variables.len() + amplitudes, unit);
+    variables.resize(variables.len() + amplitudes, Variable::standard_normal());
     let mut x = at.x.clone();
     x.resize(x.len() + amplitudes, 0.0);
     let linear = Linearized {

@@ -37,7 +37,7 @@ use crate::thresholds::{STATED, Thresholds};
 use crate::validation::compare::{DataRole, ValidationRecord};
 use crate::validation::scoring_metric::divide_by_student_deviation;
 use nalgebra::{DMatrix, DVector};
-use search::least_squares::{Linearized, Prior, Variable};
+use search::least_squares::{Linearized, Variable};
 
 /// Predictive score of an answer on one record that took no part in the fit.
 #[derive(Clone, Debug, PartialEq)]
@@ -441,19 +441,8 @@ impl Posterior {
         let count = waves.ncols();
         at.jacobian = beside(&at.jacobian, waves);
         at.x.resize(at.x.len() + count, 0.0);
-        let unit = Variable {
-            start: 0.0,
-            lower: f64::NEG_INFINITY,
-            upper: f64::INFINITY,
-            step: 1.0,
-            longest: f64::INFINITY,
-            prior: Some(Prior {
-                mean: 0.0,
-                deviation: 1.0,
-            }),
-        };
         let mut variables = variables.to_vec();
-        variables.resize(variables.len() + count, unit);
+        variables.resize(variables.len() + count, Variable::standard_normal());
         let mut own = Self {
             step: DVector::zeros(variables.len()),
             variables,

@@ -19,6 +19,23 @@ pub struct Variable {
     pub prior: Option<Prior>,
 }
 
+impl Variable {
+    /// Creates a variable without bounds that has a standard normal prior distribution and starts at its mean.
+    pub const fn standard_normal() -> Self {
+        Self {
+            start: 0.0,
+            lower: f64::NEG_INFINITY,
+            upper: f64::INFINITY,
+            step: 1.0,
+            longest: f64::INFINITY,
+            prior: Some(Prior {
+                mean: 0.0,
+                deviation: 1.0,
+            }),
+        }
+    }
+}
+
 /// Normal prior distribution of an unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prior {

@@ -4,118 +4,11 @@
     clippy::unwrap_used,
     reason = "helpers of tests: a command that cannot be run or read has failed"
 )]
-use flate2::{Compression, read::GzDecoder, write::GzEncoder};
-use std::{
-    fs,
-    io::{Read as _, Write as _},
-    path::{Path, PathBuf},
-    process::Command,
-};
-use tempfile::TempDir;
+mod folder;
+mod records;
 
-/// Temporary folder with a copy of the shipped case; commands run in it.
-struct TestFolder {
-    folder: TempDir,
-}
-
-impl TestFolder {
-    fn new() -> Self {
-        let desk = Self {
-            folder: TempDir::new().unwrap(),
-        };
-        let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
-        for part in ["measured", "back_head"] {
-            fs::create_dir_all(desk.path("case").join(part)).unwrap();
-            for file in fs::read_dir(shipped.join(part)).unwrap() {
-                let file = file.unwrap();
-                let to = desk.path("case").join(part).join(file.file_name());
-                fs::copy(file.path(), to).unwrap();
-            }
-        }
-        for file in ["case.toml", "recommended.toml", "table3_optimised.toml"] {
-            fs::copy(shipped.join(file), desk.path("case").join(file)).unwrap();
-        }
-        desk
-    }
-
-    fn path(&self, file: &str) -> PathBuf {
-        self.folder.path().join(file)
-    }
-
-    /// Replaces the first occurrence of a text in a file. Panics if the file does not contain the text.
-    fn replace(&self, file: &str, from: &str, to: &str) {
-        let text = fs::read_to_string(self.path(file)).unwrap();
-        assert!(text.contains(from), "{file} has no `{from}`");
-        fs::write(self.path(file), text.replacen(from, to, 1)).unwrap();
-    }
-
-    fn write(&self, file: &str, text: &str) {
-        fs::write(self.path(file), text).unwrap();
-    }
-
-    /// Rewrites the measured record row by row: `rewrite` gets the row number (0 for the header) and the
-    /// cells of the row.
-    fn record(&self, rewrite: impl Fn(usize, &mut Vec<String>)) {
-        let path = self.path("case/measured/test_5rpm.csv.gz");
-        let mut text = String::new();
-        GzDecoder::new(fs::File::open(&path).unwrap())
-            .read_to_string(&mut text)
-            .unwrap();
-        let mut encoder = GzEncoder::new(fs::File::create(&path).unwrap(), Compression::fast());
-        for (row, line) in text.lines().enumerate() {
-            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
-            rewrite(row, &mut cells);
-            writeln!(encoder, "{}", cells.join(",")).unwrap();
-        }
-        encoder.finish().unwrap();
-    }
-
-    /// Rewrites the load card: `rewrite` returns the cells of a row, given its number and all rows.
-    fn card(&self, rewrite: impl Fn(usize, &[Vec<String>]) -> (String, String)) {
-        let path = self.path("case/measured/card_5rpm.csv");
-        let text = fs::read_to_string(&path).unwrap();
-        let (header, rest) = text.split_once('\n').unwrap();
-        let cells = |line: &str| line.split(',').map(str::to_owned).collect();
-        let rows: Vec<Vec<String>> = rest.lines().map(cells).collect();
-        let lines = (0..rows.len()).map(|row| {
-            let (turn, load) = rewrite(row, &rows);
-            format!("{turn},{load}\n")
-        });
-        fs::write(&path, format!("{header}\n{}", lines.collect::<String>())).unwrap();
-    }
-
-    /// Adds an effect, given as lines of TOML, to the test case.
-    fn effect(&self, lines: &str) {
-        self.replace(
-            "case/case.toml",
-            "[objective]",
-            &format!("{lines}\n\n[objective]"),
-        );
-    }
-
-    /// Runs a command and returns its exit code and its output (stdout followed by stderr).
-    fn run(&self, command: &str) -> (i32, String) {
-        let output = Command::new(env!("CARGO_BIN_EXE_horsehead"))
-            .args(command.split(' '))
-            .current_dir(self.folder.path())
-            .env("HORSEHEAD_ALLOW", self.path("allow.toml"))
-            .output()
-            .unwrap();
-        let said = [output.stdout, output.stderr].concat();
-        let said = String::from_utf8_lossy(&said).into_owned();
-        (output.status.code().unwrap(), said)
-    }
-}
-
-/// One mistake: its name, the preparation of the folder, the command, the expected exit code, and texts that
-/// the output must contain.
-type Mistake = (
-    &'static str,
-    fn(&TestFolder),
-    &'static str,
-    i32,
-    &'static [&'static str],
-);
+use folder::{Mistake, TestFolder};
+use std::{fs, process::Command};
 
 const SHORT: &str = "[[effects]]\nid = \"pivot_frictoin\"\nparameters = { moment = { value = 9.0, unit = \"N.m\" } }";
 
@@ -171,144 +64,6 @@ const MISTAKES: &[Mistake] = &[
             "pivot_frictoin",
             "`horsehead case check CASE` lists all that is wrong",
         ],
-    ),
-    (
-        "columns of two gauges exchanged",
-        |d| {
-            d.record(|row, cells| {
-                if row == 0 {
-                    cells.swap(2, 4);
-                }
-            });
-        },
-        "case check case",
-        0,
-        &[
-            "5rpm: the record of gauge 1 correlates by 0.98 with the simulated gauge 3, and by -0.84 with its own",
-            "correct their names",
-        ],
-    ),
-    (
-        "gauges of reversed sign, diagnosed by one look",
-        |d| {
-            d.record(|row, cells| {
-                for cell in &mut cells[2..6] {
-                    if row > 0 {
-                        *cell = format!("{}", -cell.parse::<f64>().unwrap());
-                    }
-                }
-            });
-        },
-        "simulate case",
-        0,
-        &[
-            "the record of gauge 3 correlates by -0.98 with its simulation",
-            "multiply the column by -1",
-        ],
-    ),
-    (
-        "gauges in microstrain",
-        |d| {
-            d.record(|row, cells| {
-                for cell in &mut cells[2..6] {
-                    if row > 0 {
-                        *cell = format!("{}", cell.parse::<f64>().unwrap() / 0.206);
-                    }
-                }
-            });
-        },
-        "simulate case",
-        0,
-        &[
-            "gauge 1, gauge 2, gauge 3, gauge 4 has 5.1",
-            "as if its values are in um/m of steel (factor 4.854)",
-        ],
-    ),
-    (
-        "angle from top dead centre",
-        |d| {
-            d.record(|row, cells| {
-                if row > 0 {
-                    cells[1] = format!("{:.1}", (cells[1].parse::<f64>().unwrap() + 180.0) % 360.0);
-                }
-            });
-        },
-        "simulate case",
-        0,
-        &[
-            "every record fits its simulation from 180 deg on",
-            "such as the other dead centre? subtract 180 deg",
-        ],
-    ),
-    (
-        "a load card in pounds",
-        |d| {
-            d.card(|row, rows| {
-                (
-                    rows[row][0].clone(),
-                    format!("{}", rows[row][1].parse::<f64>().unwrap() / 4.448_222),
-                )
-            });
-        },
-        "simulate case",
-        0,
-        &[
-            "times the amplitude of its simulation: as if the load that drives the simulation is in lbf (factor 4.448)",
-        ],
-    ),
-    (
-        "a load card that begins half a turn later",
-        |d| {
-            d.card(|row, rows| {
-                let half = (row + rows.len() / 2) % rows.len();
-                (rows[row][0].clone(), rows[half][1].clone())
-            });
-        },
-        "simulate case",
-        0,
-        &[
-            "what drives the simulation such as a measured load, begin at another point",
-            "the curves do not tell which",
-        ],
-    ),
-    (
-        "a counterweight in kN m",
-        |d| {
-            d.replace(
-                "case/case.toml",
-                "counterweight_moment_n_m = 106.2e3",
-                "counterweight_moment_n_m = 106.2",
-            );
-        },
-        "simulate case",
-        0,
-        &[
-            "the record of crank torque correlates by 0.3",
-            "check its column and unit, and the values of the case that it depends on",
-        ],
-    ),
-    (
-        "a crank radius that is too long",
-        |d| d.replace("case/case.toml", "radius_m = 1.0973", "radius_m = 1.2573"),
-        "simulate case",
-        0,
-        &[
-            "the record of rod position has 0.87",
-            "check its unit, and the lengths, masses and loads of the case",
-        ],
-    ),
-    (
-        "an inertia in t m2",
-        |d| {
-            d.replace(
-                "case/case.toml",
-                "inertia_kg_m2 = 2.4e4",
-                "inertia_kg_m2 = 24.0",
-            );
-        },
-        "case check case",
-        2,
-        &["`beam.inertia_kg_m2` = 24", "at least 795 kg m2"],
     ),
     (
         "a simulation that fails",
@@ -612,7 +367,7 @@ fn table(name: &str, value: &str) -> String {
 #[test]
 fn every_mistake_is_answered_with_what_to_do() {
     let mut wrong = Vec::new();
-    for (name, prepare, command, code, words) in MISTAKES {
+    for (name, prepare, command, code, words) in MISTAKES.iter().chain(records::RECORDS) {
         let desk = TestFolder::new();
         prepare(&desk);
         let (ended, said) = desk.run(command);
@@ -688,7 +443,7 @@ fn a_check_ends_its_last_line() {
     let desk = TestFolder::new();
     let output = Command::new(env!("CARGO_BIN_EXE_horsehead"))
         .args(["case", "check", "case"])
-        .current_dir(desk.folder.path())
+        .current_dir(desk.path(""))
         .output()
         .unwrap();
     assert!(output.stdout.ends_with(b"\n") && !output.stdout.ends_with(b"\n\n"));
