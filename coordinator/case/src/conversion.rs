@@ -1,22 +1,25 @@
 //! Parsing of units in common notation, and conversion factors between units.
 
-/// Unit of measurement: its factor to SI units, and its exponents of metre, kilogram, second and radian.
-type Size = (f64, [f64; 4]);
+/// Unit of measurement: its factor to SI units, and its exponents of metre, kilogram, second, radian and
+/// volt.
+type Size = (f64, [f64; 5]);
 
-const LENGTH: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
-const MASS: [f64; 4] = [0.0, 1.0, 0.0, 0.0];
-const TIME: [f64; 4] = [0.0, 0.0, 1.0, 0.0];
-const ANGLE: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
-const FORCE: [f64; 4] = [1.0, 1.0, -2.0, 0.0];
-const STRESS: [f64; 4] = [-1.0, 1.0, -2.0, 0.0];
-const FREQUENCY: [f64; 4] = [0.0, 0.0, -1.0, 0.0];
+const LENGTH: [f64; 5] = [1.0, 0.0, 0.0, 0.0, 0.0];
+const MASS: [f64; 5] = [0.0, 1.0, 0.0, 0.0, 0.0];
+const TIME: [f64; 5] = [0.0, 0.0, 1.0, 0.0, 0.0];
+const ANGLE: [f64; 5] = [0.0, 0.0, 0.0, 1.0, 0.0];
+const FORCE: [f64; 5] = [1.0, 1.0, -2.0, 0.0, 0.0];
+const STRESS: [f64; 5] = [-1.0, 1.0, -2.0, 0.0, 0.0];
+const FREQUENCY: [f64; 5] = [0.0, 0.0, -1.0, 0.0, 0.0];
+const VOLTAGE: [f64; 5] = [0.0, 0.0, 0.0, 0.0, 1.0];
 
 /// Unit symbols in lower case, as they occur in keys of case files, with their factors to SI units and
 /// dimensions.
-const SYMBOLS: &[(&str, f64, [f64; 4])] = &[
+const SYMBOLS: &[(&str, f64, [f64; 5])] = &[
     ("m", 1.0, LENGTH),
     ("mm", 1e-3, LENGTH),
     ("cm", 1e-2, LENGTH),
+    ("um", 1e-6, LENGTH),
     ("in", 0.0254, LENGTH),
     ("inch", 0.0254, LENGTH),
     ("ft", 0.3048, LENGTH),
@@ -28,15 +31,24 @@ const SYMBOLS: &[(&str, f64, [f64; 4])] = &[
     ("ms", 1e-3, TIME),
     ("min", 60.0, TIME),
     ("h", 3600.0, TIME),
+    ("d", 86_400.0, TIME),
     ("rad", 1.0, ANGLE),
     ("deg", std::f64::consts::PI / 180.0, ANGLE),
     ("n", 1.0, FORCE),
+    ("rev", std::f64::consts::TAU, ANGLE),
+    ("dan", 10.0, FORCE),
     ("lbf", 4.448_221_615_260_5, FORCE),
+    ("kip", 4_448.221_615_260_5, FORCE),
+    ("kgf", 9.806_65, FORCE),
+    ("tf", 9_806.65, FORCE),
     ("pa", 1.0, STRESS),
     ("psi", 6_894.757_293_168, STRESS),
+    ("ksi", 6_894_757.293_168, STRESS),
     ("bar", 1e5, STRESS),
     ("hz", 1.0, FREQUENCY),
     ("rpm", 1.0 / 60.0, FREQUENCY),
+    ("v", 1.0, VOLTAGE),
+    ("mv", 1e-3, VOLTAGE),
 ];
 
 /// Prefixes of newtons and pascals and their factors; `m` means mega, since milli is not used with these
@@ -61,10 +73,15 @@ fn symbol(name: &str) -> Option<Size> {
 /// dimensions differ or the units are equal. Units are written as `N/mm` and `kN.m/rad`, or as the suffix of
 /// a key: `n_per_mm`, `kg_m2`.
 pub fn factor(from: &str, to: &str) -> Option<f64> {
+    ratio(from, to).filter(|ratio| ratio.total_cmp(&1.0).is_ne())
+}
+
+/// Returns the ratio of two units, 1 for equal ones; `None` if a unit is not known or the dimensions differ.
+pub fn ratio(from: &str, to: &str) -> Option<f64> {
     let ((from, measure), (to, other)) = (size(from)?, size(to)?);
     let mut powers = measure.iter().zip(other);
-    let alike = powers.all(|(a, b)| a.total_cmp(&b).is_eq());
-    (alike && from.total_cmp(&to).is_ne()).then(|| from / to)
+    let alike = powers.all(|(a, b)| (a - b).abs() < 1e-9);
+    alike.then(|| from / to)
 }
 
 /// Returns the remedy for a value that is stated in the unit `from` where `to` is expected.
@@ -112,7 +129,7 @@ fn size(text: &str) -> Option<Size> {
         .to_lowercase()
         .replace("_per_", "/")
         .replace(['_', '*', ' '], ".");
-    let mut whole: Size = (1.0, [0.0; 4]);
+    let mut whole: Size = (1.0, [0.0; 5]);
     for (place, product) in text.split('/').enumerate() {
         for part in product.split('.').filter(|part| !part.is_empty()) {
             // the 1.5 of `m^1.5` was cut in two

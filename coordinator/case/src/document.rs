@@ -30,6 +30,16 @@ pub enum DocumentStep<'a> {
 }
 
 impl Document {
+    /// Creates a document from its text; `path` is for messages.
+    pub const fn new(path: PathBuf, text: String) -> Self {
+        Self { path, text }
+    }
+
+    /// Returns the text of the TOML file.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
     /// Reads a TOML file; `role` states for the error message what the file is needed for.
     ///
     /// # Errors

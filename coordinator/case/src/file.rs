@@ -1,10 +1,15 @@
 //! Reading of a case's files as bytes or text, independent of their content.
 use super::error::{CaseError, damaged};
-use std::{borrow::Cow, fs, io, io::Read, path::Path};
+use std::{
+    borrow::Cow,
+    fs, io,
+    io::{BufRead, BufReader, Read, Write as _},
+    path::Path,
+};
 
 /// Maximum size of a file after decompression (bytes), enough for 40 hours of a 100 Hz record; a larger file
 /// is a mistake or a compression bomb.
-const LIMIT: u64 = 1 << 30;
+pub const LIMIT: u64 = 1 << 30;
 
 /// Checks that a file exists.
 ///
@@ -24,12 +29,8 @@ pub fn require_exists(path: &Path, role: &str) -> Result<(), CaseError> {
 /// Remedy that is suggested where a file of a case is missing.
 const MISSING: &str = "put the file there, or correct the name where it is stated";
 
-/// Reads a whole file; `role` is its purpose, for the error message.
-///
-/// # Errors
-/// Returns an error for a file that is missing, unreadable, empty or larger than 1 GiB.
-pub fn read(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
-    // opening a pipe would wait for somebody to write into it
+/// Opens a file that must be neither a folder nor a pipe, which would wait for somebody to write into it.
+fn opened(path: &Path, role: &str) -> Result<fs::File, CaseError> {
     let opened = fs::metadata(path).and_then(|there| {
         if there.is_file() {
             fs::File::open(path)
@@ -42,7 +43,7 @@ pub fn read(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
             Err(io::Error::other(format!("it is {what}, not a file")))
         }
     });
-    let file = opened.map_err(|source| {
+    opened.map_err(|source| {
         if source.kind() == io::ErrorKind::NotFound {
             CaseError::Missing {
                 path: path.into(),
@@ -55,7 +56,35 @@ pub fn read(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
                 source,
             }
         }
-    })?;
+    })
+}
+
+/// Returns whether a file is gzipped by its name.
+pub fn is_packed(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|end| end.eq_ignore_ascii_case("gz"))
+}
+
+/// Opens a file for reading, decompressed if its name ends in `.gz`; `role` is its purpose,
+/// for the error message.
+///
+/// # Errors
+/// Returns an error for a file that is missing or unreadable.
+pub fn open(path: &Path, role: &str) -> Result<Box<dyn BufRead>, CaseError> {
+    let file = BufReader::new(opened(path, role)?);
+    Ok(if is_packed(path) {
+        Box::new(BufReader::new(flate2::bufread::MultiGzDecoder::new(file)))
+    } else {
+        Box::new(file)
+    })
+}
+
+/// Reads a whole file; `role` is its purpose, for the error message.
+///
+/// # Errors
+/// Returns an error for a file that is missing, unreadable, empty or larger than 1 GiB.
+pub fn read(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
+    let file = opened(path, role)?;
     let bytes = read_limited(file, path)?.map_err(|source| CaseError::Unreadable {
         path: path.into(),
         source,
@@ -106,18 +135,40 @@ pub fn read_gzip(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
     Ok(bytes)
 }
 
+/// Returns the bytes of a file of the given name: gzipped if it ends in `.gz`, with the same bytes for the
+/// same content.
+///
+/// # Errors
+/// Returns an error if the data cannot be compressed.
+pub fn packed(path: &Path, content: &[u8]) -> Result<Vec<u8>, CaseError> {
+    if !is_packed(path) {
+        return Ok(content.to_vec());
+    }
+    let mut to = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    let written = to.write_all(content).and_then(|()| to.finish());
+    written.map_err(|source| CaseError::Unwritable {
+        path: path.into(),
+        source,
+    })
+}
+
 /// Reads a file or stream to its end; refuses more than [`LIMIT`] bytes.
 fn read_limited(from: impl Read, path: &Path) -> Result<io::Result<Vec<u8>>, CaseError> {
     let mut bytes = Vec::new();
     let outcome = from.take(LIMIT + 1).read_to_end(&mut bytes);
     if bytes.len() as u64 > LIMIT {
-        return Err(damaged(
-            path,
-            "the file is larger than 1 GiB",
-            "split the record: a few dozen revolutions are enough",
-        ));
+        return Err(too_large(path));
     }
     Ok(outcome.map(|_| bytes))
+}
+
+/// Builds the error for a file of more than [`LIMIT`] bytes.
+pub fn too_large(path: &Path) -> CaseError {
+    damaged(
+        path,
+        "the file is larger than 1 GiB",
+        "split the record: a few dozen revolutions are enough",
+    )
 }
 
 /// Converts UTF-16, as spreadsheets write it, to UTF-8; recognised by the byte-order mark, or by zero bytes

@@ -4,6 +4,7 @@ pub(crate) mod command;
 mod digest;
 pub(crate) mod kind;
 mod output;
+pub(crate) mod record;
 mod reduce_head;
 
 pub use digest::simulation_digest;

@@ -23,12 +23,16 @@ pub fn interpolate_clamped(xs: &[f64], ys: &[f64], x: f64) -> f64 {
     interpolated(xs, ys, x).unwrap_or_else(end)
 }
 
-/// Interpolates in a table that covers one period from 0 without repeating its first point.
+/// Interpolates in a table whose abscissas lie within one period from 0 and do not repeat the first point.
 pub fn periodic(xs: &[f64], ys: &[f64], x: f64, period: f64) -> Option<f64> {
     let place = x.rem_euclid(period);
     interpolated(xs, ys, place).or_else(|| {
-        let (last, first) = ((*xs.last()?, *ys.last()?), (period, *ys.first()?));
-        between(last, first, place)
+        let (last, first) = ((*xs.last()?, *ys.last()?), (*xs.first()?, *ys.first()?));
+        if place < first.0 {
+            between((last.0 - period, last.1), first, place)
+        } else {
+            between(last, (first.0 + period, first.1), place)
+        }
     })
 }
 
@@ -56,6 +60,9 @@ mod tests {
         assert!(interpolate_clamped(&[], &[], 1.0).abs() < 1e-300);
         assert_eq!(periodic(&xs, &ys, 3.5, 4.0), Some(25.0));
         assert_eq!(periodic(&xs, &ys, -2.0, 4.0), Some(30.0));
+        // the first point later than 0
+        assert_eq!(periodic(&[1.0, 3.0], &[20.0, 40.0], 0.0, 4.0), Some(30.0));
+        assert_eq!(periodic(&[1.0, 3.0], &[20.0, 40.0], 3.5, 4.0), Some(35.0));
         assert_eq!(periodic(&[], &[], 1.0, 4.0), None);
     }
 }

@@ -14,17 +14,25 @@ use std::path::Path;
 /// Returns an error if the angles do not start at 0, are unevenly spaced or include 360, if the loads are not
 /// in newtons judging by their magnitude, or if the last and first rows differ by a jump.
 pub fn read(path: &Path, smoothing: Smoothing, role: &str) -> Result<LoadCard, CaseError> {
-    let bytes = file::read(path, role)?;
-    let mut table = CsvTable::read(path, &bytes, &["turn_deg", "polished_rod_load_n"])?;
-    check_turn(path, &table)?;
-    check_load(path, &table)?;
-    let load_n = table.columns.pop().unwrap_or_default();
-    let turn_deg = table.columns.pop().unwrap_or_default();
+    let [turn_deg, load_n] = of(path, &file::read(path, role)?)?;
     Ok(LoadCard {
         turn_deg,
         load_n,
         smoothing,
     })
+}
+
+/// Reads and checks the angles and loads of a card from its bytes.
+///
+/// # Errors
+/// As [`read`], but for a missing file.
+pub(super) fn of(path: &Path, bytes: &[u8]) -> Result<[Vec<f64>; 2], CaseError> {
+    let mut table = CsvTable::read(path, bytes, &["turn_deg", "polished_rod_load_n"])?;
+    check_turn(path, &table)?;
+    check_load(path, &table)?;
+    let load_n = table.columns.pop().unwrap_or_default();
+    let turn_deg = table.columns.pop().unwrap_or_default();
+    Ok([turn_deg, load_n])
 }
 
 /// Checks that the angles run from 0 in equal steps to one step before 360.

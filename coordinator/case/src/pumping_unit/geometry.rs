@@ -131,14 +131,10 @@ pub struct QuasiStaticTurn {
 /// Number of equally spaced crank angles of the quasi-static turn.
 const SAMPLES: u32 = 720;
 
-/// Computes the back rope's tension and contact angle over one turn. The rope balances the load on the front
-/// arm, the beam's unbalance and its inertia, with the moment arm `h(psi)`. Returns `None` if the crank
-/// cannot complete a turn.
-pub fn quasi_static(machine: &Machine, condition: &WorkingCondition) -> Option<QuasiStaticTurn> {
-    let bodies = (&machine.crank, &machine.back_head);
-    let length = machine.ropes.back_cylinders as f64 * machine.ropes.cylinder_length_m
-        + machine.rod.length_m;
-    let sense = match machine.crank.sense {
+/// Returns beam angle and contact normal \[rad\] at equally spaced crank angles from bottom dead centre, where
+/// the front arm is lowest; `None` if the crank cannot complete a turn.
+fn turn_from_bottom(crank: &Crank, head: &BackHead, length: f64) -> Option<Vec<[f64; 2]>> {
+    let sense = match crank.sense {
         TurnSense::Clockwise => -1.0,
         TurnSense::CounterClockwise => 1.0,
     };
@@ -146,20 +142,46 @@ pub fn quasi_static(machine: &Machine, condition: &WorkingCondition) -> Option<Q
     let turn = |start: f64, mut guess: [f64; 2]| {
         let mut angles = Vec::new();
         for k in 0..SAMPLES {
-            guess = solve_loop(bodies, start + sense * step * f64::from(k), guess, length)?;
+            let phi = start + sense * step * f64::from(k);
+            guess = solve_loop((crank, head), phi, guess, length)?;
             angles.push(guess);
         }
         Some(angles)
     };
     let first = turn(0.0, [0.0, std::f64::consts::PI])?;
-    // bottom dead centre: the front arm is lowest; a parabola through three samples
+    // a parabola through three samples
     let n = first.len();
     let low = (0..n).min_by(|a, b| first[*a][0].total_cmp(&first[*b][0]))?;
     let [before, here, after] = [first[(low + n - 1) % n], first[low], first[(low + 1) % n]];
     let bend = before[0] - 2.0 * here[0] + after[0];
     let shift = 0.5 * (before[0] - after[0]) / bend;
-    let angles = turn(sense * step * (low as f64 + shift), here)?;
+    turn(sense * step * (low as f64 + shift), here)
+}
 
+/// Returns the position of the polished rod above its lowest one \[m\] at equally spaced crank angles from
+/// bottom dead centre; `None` if the crank cannot complete a turn.
+pub(super) fn rod_position(case: &CaseFile) -> Option<Vec<f64>> {
+    let back_rope = case.ropes.back_cylinders as f64 * case.ropes.cylinder_length_m;
+    let length = back_rope + case.rod.length_m;
+    let turn = turn_from_bottom(&case.crank, &case.back_head, length)?;
+    let lowest = turn.first()?[0];
+    let arm = case.front_head.radius_m;
+    Some(
+        turn.iter()
+            .map(|[theta, _]| arm * (theta - lowest))
+            .collect(),
+    )
+}
+
+/// Computes the back rope's tension and contact angle over one turn. The rope balances the load on the front
+/// arm, the beam's unbalance and its inertia, with the moment arm `h(psi)`. Returns `None` if the crank
+/// cannot complete a turn.
+pub fn quasi_static(machine: &Machine, condition: &WorkingCondition) -> Option<QuasiStaticTurn> {
+    let length = machine.ropes.back_cylinders as f64 * machine.ropes.cylinder_length_m
+        + machine.rod.length_m;
+    let angles = turn_from_bottom(&machine.crank, &machine.back_head, length)?;
+    let n = angles.len();
+    let step = std::f64::consts::TAU / f64::from(SAMPLES);
     let speed = condition.speed_rpm * std::f64::consts::TAU / 60.0;
     let mut result = QuasiStaticTurn::default();
     for (k, [theta, normal]) in angles.iter().enumerate() {

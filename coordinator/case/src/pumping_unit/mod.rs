@@ -12,6 +12,7 @@ mod geometry;
 mod head;
 mod head_comparison;
 mod head_source;
+pub mod import;
 pub(crate) mod kind;
 mod machine;
 pub mod mesh;
@@ -23,6 +24,9 @@ mod recommended;
 mod record;
 mod schema;
 mod twin;
+
+use crate::{document::Document, error::CaseError};
+use std::path::PathBuf;
 
 pub use card::read as read_card;
 pub use figures::{ConditionFigures, KeyFigures, RecordFigures, figures};
@@ -36,7 +40,27 @@ pub use head_source::{HeadSource, load_head};
 pub use record::{RecordFacts, count_samples};
 pub use twin::TwinFile;
 
-/// Returns a commented `case.toml` as a starting point; it loads as soon as the files it names exist.
-pub const fn template() -> &'static str {
-    include_str!("template.toml")
+/// Commented data sheet as a starting point, for a record with nothing known of its instruments.
+const SHEET_TEMPLATE: &str = include_str!("record/template.toml");
+
+/// Commented `case.toml` as a starting point; it loads as soon as the files it names exist.
+const TEMPLATE: &str = include_str!("template.toml");
+
+/// Returns the files of a new case, as paths below its folder and text: a commented `case.toml`, and a
+/// commented data sheet for each record that it names.
+///
+/// # Errors
+/// Never for the templates as they are; a fault in them is that of a case file.
+pub fn new_files() -> Result<Vec<(PathBuf, &'static str)>, CaseError> {
+    let document = Document::new("case.toml".into(), TEMPLATE.to_owned());
+    let case: schema::CaseFile = document.parse()?;
+    let records = case
+        .conditions
+        .iter()
+        .filter_map(|own| own.record_file.as_ref());
+    let sheets = records.map(|file| (record::sheet_path(file), SHEET_TEMPLATE));
+    Ok([(document.path, TEMPLATE)]
+        .into_iter()
+        .chain(sheets)
+        .collect())
 }

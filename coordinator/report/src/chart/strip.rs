@@ -14,7 +14,7 @@ const TOP: f64 = 12.0;
 const GAP: f64 = 16.0;
 const FOOT: f64 = 44.0;
 
-/// Curve of a strip, with a label at its right end.
+/// Curve of a strip, with a label at its right end unless that is empty.
 pub struct StripCurve {
     label: String,
     color: Color,
@@ -114,16 +114,15 @@ pub fn stack(
             for curve in &strip.curves {
                 panel.curve(canvas, &curve.points, Pen::new(curve.color, 1.2));
             }
-            let ends: Vec<_> = strip
-                .curves
-                .iter()
+            let labelled = || strip.curves.iter().filter(|curve| !curve.label.is_empty());
+            let ends: Vec<_> = labelled()
                 .map(|curve| {
                     let last = curve.points.iter().rfind(|(_, y)| y.is_finite());
                     last.map_or(panel.bottom(), |&(_, y)| panel.at_y(y))
                 })
                 .collect();
             let places = spread(&ends, 13.0, top, panel.bottom());
-            for (curve, y) in strip.curves.iter().zip(places) {
+            for (curve, y) in labelled().zip(places) {
                 let lettering = TextStyle::new(11.0, curve.color);
                 canvas.text((panel.right() + 7.0, y), &curve.label, lettering);
             }

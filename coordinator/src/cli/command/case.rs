@@ -35,7 +35,7 @@ enum Action {
         #[command(flatten)]
         output: OutputChoice,
     },
-    /// Write a commented template of `case.toml` into a new folder.
+    /// Write a commented template of `case.toml`, and of the data sheet of its record, into a new folder.
     #[command(after_help = format!("Example:\n  horsehead case new my-unit\n\n{EXIT_CODES}"))]
     New {
         /// Folder to make.
@@ -202,23 +202,27 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
 }
 
 fn write_template(folder: &Path) -> anyhow::Result<()> {
-    let file = folder.join("case.toml");
-    if file.exists() {
+    let files = case::pumping_unit::new_files()?;
+    let places = files.iter().map(|(name, _)| folder.join(name));
+    if let Some(there) = places.clone().find(|file| file.exists()) {
         return Err(Problem {
-            message: format!("{} exists already", file.display()),
+            message: format!("{} exists already", there.display()),
             remedy: "choose another folder; nothing was written".to_owned(),
         }
         .into());
     }
-    let written = std::fs::create_dir_all(folder)
-        .and_then(|()| atomic_file::replace(&file, case::pumping_unit::template().as_bytes()));
-    written.map_err(|error| Problem {
-        message: format!("cannot write {}: {error}", file.display()),
-        remedy: "choose a folder that can be written".to_owned(),
-    })?;
+    for (file, (_, text)) in places.zip(&files) {
+        let parent = file.parent().unwrap_or(folder);
+        let written = std::fs::create_dir_all(parent)
+            .and_then(|()| atomic_file::replace(&file, text.as_bytes()));
+        written.map_err(|error| Problem {
+            message: format!("cannot write {}: {error}", file.display()),
+            remedy: "choose a folder that can be written".to_owned(),
+        })?;
+        terminal::tell(&format!("wrote {}", file.display()));
+    }
     terminal::tell(&format!(
-        "wrote {}\nput the files it names beside it, then run `horsehead case check {}`",
-        file.display(),
+        "put the files it names beside it, then run `horsehead case check {}`",
         folder.display()
     ));
     Ok(())

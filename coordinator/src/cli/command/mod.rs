@@ -28,7 +28,7 @@ mod verify;
 mod workers;
 
 use super::output::{problem, terminal};
-use crate::pumping_unit::command as head;
+use crate::pumping_unit::{command as head, record};
 use clap::{CommandFactory as _, Parser, Subcommand};
 use std::process::ExitCode;
 
@@ -79,6 +79,7 @@ commands! {
     Diagnose: diagnose,
     Identify: identify,
     Head: head,
+    Record: record,
     Dashboard: dashboard,
     Report: report,
     Explain: explain,

@@ -44,7 +44,7 @@ pub struct RecordFacts {
 }
 
 /// Relative tolerance between stated and measured speed \[1\]: belt creep and slip reach 3 %.
-const SPEED_TOLERANCE: f64 = 0.05;
+pub(in super::super) const SPEED_TOLERANCE: f64 = 0.05;
 
 /// Checks that a data sheet belongs to the condition.
 ///

@@ -11,7 +11,9 @@ mod sheet;
 mod tests;
 mod tolerance;
 
-pub(super) use agreement::Expected;
 pub use agreement::RecordFacts;
+pub(super) use agreement::{Expected, SPEED_TOLERANCE};
 pub use read::count_samples;
-pub(super) use read::{channels, read};
+pub(super) use read::{GaugeRecord, channels, of, read, sheet_path};
+pub(super) use resample::grid;
+pub(super) use samples::{CURVES, whole};

@@ -6,6 +6,7 @@ use super::{
     sheet::Sheet,
 };
 use crate::{
+    document::Document,
     error::{CaseError, Faults, damaged},
     file,
     note::Note,
@@ -48,23 +49,39 @@ pub(in super::super) fn read(
         expected.condition,
         expected.case_file.display()
     );
-    let packed = path
-        .extension()
-        .is_some_and(|end| end.eq_ignore_ascii_case("gz"));
     let mut faults = Faults::default();
-    let bytes = faults.take(if packed {
+    let bytes = faults.take(if file::is_packed(path) {
         file::read_gzip(path, &role)
     } else {
         file::read(path, &role)
     });
     let role = format!("the data sheet of the record {}", path.display());
-    let sheet = faults.take(Sheet::read(&sheet_path(path), &role));
+    let sheet = faults.take(
+        Document::read(&sheet_path(path), &role).and_then(|document| {
+            Sheet::of(&document)?;
+            Ok(document)
+        }),
+    );
     faults.end()?;
-    let (Some(bytes), Some((sheet, document, mut notes))) = (bytes, sheet) else {
+    let (Some(bytes), Some(document)) = (bytes, sheet) else {
         return Err(damaged(path, "it cannot be read", "copy it again"));
     };
-    check_stated(&sheet, &document, expected)?;
-    let samples = Samples::read(path, &bytes)?;
+    of(path, &bytes, &document, expected)
+}
+
+/// Reads a record from its bytes and its data sheet.
+///
+/// # Errors
+/// As [`read`].
+pub(in super::super) fn of(
+    path: &Path,
+    bytes: &[u8],
+    document: &Document,
+    expected: &Expected<'_>,
+) -> Result<GaugeRecord, CaseError> {
+    let (sheet, mut notes) = Sheet::of(document)?;
+    check_stated(&sheet, document, expected)?;
+    let samples = Samples::read(path, bytes)?;
     let facts = facts(path, &samples, &sheet);
     check_speed(path, &samples, &facts, expected)?;
     check_sheet(path, &samples, &sheet, &document.path, &facts, &mut notes)?;
@@ -115,7 +132,7 @@ pub(in super::super) fn channels(condition: usize, step_deg: f64) -> Vec<Channel
 }
 
 /// Returns the path of a record's data sheet: the same name with the extension `.toml`.
-fn sheet_path(record: &Path) -> PathBuf {
+pub(in super::super) fn sheet_path(record: &Path) -> PathBuf {
     let name = record.file_name().unwrap_or_default().to_string_lossy();
     let stem = name.trim_end_matches(".gz").trim_end_matches(".csv");
     record.with_file_name(format!("{stem}.toml"))

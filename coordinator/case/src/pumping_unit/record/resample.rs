@@ -115,7 +115,7 @@ pub(super) fn grid_count(step_deg: f64) -> usize {
 }
 
 /// Returns the grid angles 0, step, .. 360 - step.
-pub(super) fn grid(step_deg: f64) -> Vec<f64> {
+pub(in super::super) fn grid(step_deg: f64) -> Vec<f64> {
     (0..grid_count(step_deg))
         .map(|at| at as f64 * step_deg)
         .collect()

@@ -12,7 +12,7 @@ const COLUMNS: [&str; 2] = ["time_s", "crank_deg"];
 
 /// Columns with measured curves and their sensors: gauges, at least one of which is required, then the
 /// optional sensors that a diagnosis uses.
-const CURVES: [(&str, Sensor); 6] = [
+pub(in super::super) const CURVES: [(&str, Sensor); 6] = [
     ("stress_1_mpa", Sensor::Gauge(1)),
     ("stress_2_mpa", Sensor::Gauge(2)),
     ("stress_3_mpa", Sensor::Gauge(3)),
@@ -219,7 +219,7 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Converts a non-negative number that is whole up to rounding to an integer; negative numbers become 0.
-pub(super) fn whole(value: f64) -> u64 {
+pub(in super::super) fn whole(value: f64) -> u64 {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

@@ -9,7 +9,6 @@ use crate::{
 use discrepancy::record::{InputScatter, Stated};
 use protocol::pumping_unit::{Sensor, TurnSense};
 use serde::Deserialize;
-use std::path::Path;
 
 /// Keys of a data sheet that are read; other keys are allowed and produce a note.
 #[derive(Debug, Deserialize)]
@@ -144,12 +143,11 @@ impl Sheet {
         }
     }
 
-    /// Reads and checks a data sheet; returns it with its document and one note per unused key.
+    /// Parses and checks a data sheet; returns it with one note per unused key.
     ///
     /// # Errors
-    /// A missing or malformed file, a gauge unit other than MPa, or values out of range.
-    pub(super) fn read(path: &Path, role: &str) -> Result<(Self, Document, Vec<Note>), CaseError> {
-        let document = Document::read(path, role)?;
+    /// A malformed file, a gauge unit other than MPa, or values out of range.
+    pub(super) fn of(document: &Document) -> Result<(Self, Vec<Note>), CaseError> {
         let sheet: Self = document.parse()?;
         document.within(
             "strokes_per_minute",
@@ -207,7 +205,7 @@ impl Sheet {
                 document.within(field, value, 0.0..=highest, unit)?;
             }
         }
-        check_tolerance(&document, &sheet.tolerance)?;
+        check_tolerance(document, &sheet.tolerance)?;
         if sheet.gauges.unit != "MPa" {
             return Err(document.field(
                 &[DocumentStep::Key("gauges"), DocumentStep::Key("unit")],
@@ -221,11 +219,11 @@ impl Sheet {
             .keys()
             .filter(|key| !KNOWN.contains(&key.as_str()))
             .map(|key| Note {
-                path: path.to_owned(),
+                path: document.path.clone(),
                 text: format!("`{key}` is not used"),
             })
             .collect();
-        Ok((sheet, document, notes))
+        Ok((sheet, notes))
     }
 }
 

@@ -1,0 +1,186 @@
+//! Layout of a table in a text file: separators, and the lines that are not data.
+use super::lines::text;
+use serde::{Deserialize, Serialize};
+
+/// Separator of the cells of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub(crate) enum Delimiter {
+    /// Tabulator.
+    #[serde(rename = "tab")]
+    Tab,
+    /// Semicolon.
+    #[serde(rename = ";")]
+    Semicolon,
+    /// Comma.
+    #[serde(rename = ",")]
+    Comma,
+    /// Vertical bar.
+    #[serde(rename = "|")]
+    Bar,
+    /// Any number of blanks and tabulators.
+    #[serde(rename = "blanks")]
+    Blanks,
+}
+
+impl Delimiter {
+    /// All delimiters; of those under which a table reads equally well the first is meant.
+    pub(super) const ALL: [Self; 5] = [
+        Self::Tab,
+        Self::Semicolon,
+        Self::Comma,
+        Self::Bar,
+        Self::Blanks,
+    ];
+
+    const fn byte(self) -> u8 {
+        match self {
+            Self::Tab => b'\t',
+            Self::Semicolon => b';',
+            Self::Comma => b',',
+            Self::Bar => b'|',
+            Self::Blanks => b' ',
+        }
+    }
+
+    /// Splits a line into cells without surrounding blanks and quotes.
+    pub(super) fn split(self, line: &[u8], cells: &mut Cells) {
+        cells.text.clear();
+        cells.ends.clear();
+        if self == Self::Blanks {
+            let filled = line.split(u8::is_ascii_whitespace);
+            filled
+                .filter(|cell| !cell.is_empty())
+                .for_each(|cell| cells.push(cell));
+        } else if line.contains(&b'"') {
+            let mut reader = csv::ReaderBuilder::new()
+                .has_headers(false)
+                .flexible(true)
+                .delimiter(self.byte())
+                .from_reader(line);
+            let mut record = csv::ByteRecord::new();
+            // the line is in memory, and any bytes are a record
+            if reader.read_byte_record(&mut record).unwrap_or_default() {
+                record.iter().for_each(|cell| cells.push(cell));
+            }
+        } else {
+            line.split(|byte| *byte == self.byte())
+                .for_each(|cell| cells.push(cell));
+        }
+    }
+}
+
+/// Cells of one line.
+#[derive(Debug, Default)]
+pub(super) struct Cells {
+    text: Vec<u8>,
+    ends: Vec<usize>,
+}
+
+impl Cells {
+    fn push(&mut self, cell: &[u8]) {
+        self.text.extend_from_slice(cell.trim_ascii());
+        self.ends.push(self.text.len());
+    }
+
+    /// Returns the number of cells, without empty ones at the end of the line.
+    pub(super) fn filled(&self) -> usize {
+        let empty = |index: &usize| self.get(*index).is_some_and(<[u8]>::is_empty);
+        self.ends.len() - (0..self.ends.len()).rev().take_while(empty).count()
+    }
+
+    /// Returns the number of cells.
+    pub(super) const fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Returns a cell; `None` beyond the last one.
+    pub(super) fn get(&self, index: usize) -> Option<&[u8]> {
+        let end = *self.ends.get(index)?;
+        let start = index.checked_sub(1).map_or(0, |before| self.ends[before]);
+        self.text.get(start..end)
+    }
+
+    /// Returns the cells in the order of the line.
+    pub(super) fn iter(&self) -> impl Iterator<Item = &[u8]> {
+        (0..self.ends.len()).filter_map(|index| self.get(index))
+    }
+}
+
+/// Layout of a table in a text file. Lines are counted from 1.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Layout {
+    /// Separator of the cells.
+    pub(crate) delimiter: Delimiter,
+    /// Decimal sign of the numbers.
+    pub(crate) decimal: char,
+    /// Separator of thousands; `None` where numbers have none. Blanks within numbers are always ignored.
+    pub(crate) thousands: Option<char>,
+    /// Line with the names of the columns; `None` where they have none.
+    pub(crate) header_line: Option<u64>,
+    /// Line with the units of the columns; `None` where there is none.
+    pub(crate) units_line: Option<u64>,
+    /// First line of data.
+    pub(crate) first_line: u64,
+    /// Number of lines after the data.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub(crate) footer_lines: u64,
+    /// Cells that stand for a missing value, beside empty ones and words such as `NaN` and `OVER`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) missing: Vec<String>,
+}
+
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "the form that serde asks for"
+)]
+const fn is_zero(number: &u64) -> bool {
+    *number == 0
+}
+
+impl Layout {
+    /// Parses a cell as a finite number; `None` if it is none.
+    pub(super) fn number(&self, cell: &[u8]) -> Option<f64> {
+        let mut plain = [0_u8; 48];
+        let mut length = 0;
+        for &byte in cell {
+            let sign = char::from(byte);
+            let kept = match byte {
+                _ if sign == self.decimal => b'.',
+                b'0'..=b'9' | b'+' | b'-' | b'e' | b'E' => byte,
+                // the no-break space is C2 A0 in UTF-8 and A0 in Latin-1
+                b' ' | 0xc2 | 0xa0 => continue,
+                _ if self.thousands == Some(sign) => continue,
+                _ => return None,
+            };
+            *plain.get_mut(length)? = kept;
+            length += 1;
+        }
+        let digits = std::str::from_utf8(plain.get(..length)?).ok()?;
+        digits.parse().ok().filter(|value: &f64| value.is_finite())
+    }
+
+    /// Returns whether a cell stands for a missing value.
+    pub(super) fn is_missing(&self, cell: &[u8]) -> bool {
+        let cell = text(cell);
+        cell.is_empty() || means_missing(&cell) || self.missing.iter().any(|word| *word == cell)
+    }
+}
+
+/// Words that loggers and spreadsheets write for a missing value.
+const WORDS: [&str; 18] = [
+    "nan", "-nan", "na", "n/a", "null", "none", "-", "--", "---", "over", "ovr", "+over", "-over",
+    "burnout", "#n/a", "#div/0!", "#value!", "#wert!",
+];
+
+/// Returns whether a text is a known word for a missing value.
+pub(super) fn means_missing(word: &str) -> bool {
+    WORDS.contains(&word.to_lowercase().as_str())
+}
+
+/// Returns whether a line is empty or a comment.
+pub(super) fn is_comment(line: &[u8]) -> bool {
+    line.trim_ascii_start()
+        .first()
+        .is_none_or(|first| *first == b'#')
+}

@@ -1,0 +1,346 @@
+//! Proposal of a mapping from the columns of a raw file: which is the angle, which the gauges, in what unit.
+use super::{
+    logger::{self, Columns, Layout, Sample, Table, Time},
+    mapping::Edge,
+    role::{Role, role},
+};
+use crate::error::CaseError;
+use std::{fmt::Write as _, path::Path};
+use toml::Value;
+
+/// Proposed mapping as text, with what only a person can state.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MappingProposal {
+    /// Text of the mapping file, with comments.
+    pub text: String,
+    /// Keys that must be stated, each with its meaning; empty if the mapping is complete.
+    pub open: Vec<String>,
+}
+
+/// Facts about the case that a proposal uses.
+#[derive(Clone, Debug)]
+pub(super) struct Known {
+    /// Young's modulus of the head \[GPa\].
+    pub(super) young_gpa: f64,
+    /// The command that repeats the import.
+    pub(super) command: String,
+}
+
+/// Quotes a text for TOML.
+pub(super) fn quoted(text: &str) -> String {
+    Value::from(text).to_string()
+}
+
+/// Writes the heading of a mapping and its `files` and `[table]`.
+pub(super) fn heading(text: &mut String, known: &Known, files: &[String], layout: Option<&Layout>) {
+    let files: Vec<String> = files.iter().map(|file| quoted(file)).collect();
+    let _infallible = write!(
+        text,
+        "# Proposed from the content of the raw files: correct what is wrong, then repeat the import by\n\
+         #   {}\nfiles = [{}]\n",
+        known.command,
+        files.join(", ")
+    );
+    let Some(layout) = layout else { return };
+    text.push_str("\n[table]                              # lines are counted from 1\n");
+    // a layout is strings and whole numbers
+    text.push_str(&toml::to_string(layout).unwrap_or_default());
+}
+
+/// Proposes the mapping of the files of a logger, which have the layout of the first one.
+///
+/// # Errors
+/// Returns an error for a file without a table, and cells that are no numbers.
+pub(super) fn propose(
+    path: &Path,
+    files: &[String],
+    known: &Known,
+) -> Result<MappingProposal, CaseError> {
+    let sample = Sample::read(path)?;
+    let mut layout = logger::sniff(path, &sample)?;
+    let columns = Columns::read(path, &layout)?;
+    let time = logger::propose_time(&columns, &sample.rows(&layout), &layout);
+    let roles: Vec<Option<Role>> = columns
+        .names
+        .iter()
+        .zip(&columns.units)
+        .map(|(name, unit)| role(name, unit.as_deref()).filter(|_| !is_time(time.as_ref(), name)))
+        .collect();
+    let place = |wanted: Role| roles.iter().position(|role| *role == Some(wanted));
+    let angle = place(Role::Angle).or_else(|| place(Role::Pulse));
+    let curves = curves(&columns, &roles);
+    let mut wanted: Vec<&str> = angle.iter().map(|at| columns.names[*at].as_str()).collect();
+    wanted.extend(
+        curves
+            .iter()
+            .map(|curve| columns.names[curve.place].as_str()),
+    );
+    // missing numbers and the kind of the pulse are seen in the numbers alone
+    let table = logger::survey(path, &layout, &wanted)?;
+    layout.missing.extend(table.sentinels());
+    let mut text = String::new();
+    let mut open = Vec::new();
+    heading(&mut text, known, files, Some(&layout));
+    if !table.words.is_empty() {
+        let words: Vec<String> = table
+            .words
+            .iter()
+            .map(|(line, word)| format!("{} (line {line})", quoted(word)))
+            .collect();
+        let _infallible = writeln!(text, "# no numbers: {}", words.join(", "));
+        open.push(format!(
+            "table.missing: the cells that stand for a missing value, of {}",
+            words.join(", ")
+        ));
+    }
+    write_time(&mut text, &mut open, time.as_ref());
+    let direction = angle.map(|at| (at, roles[at] == Some(Role::Pulse)));
+    write_angle(&mut text, &mut open, &columns, direction, &table);
+    text.push_str("\n[curves]\n");
+    for curve in &curves {
+        write_curve(&mut text, &mut open, &columns, curve, known);
+    }
+    if !curves.iter().any(|curve| curve.name.starts_with("stress_")) {
+        text.push_str("# stress_1_mpa = { column = \"..\", unit = \"um/m\", young_gpa = 206.0 }\n");
+        open.push("curves: the column of each gauge, as stress_1_mpa .. stress_4_mpa".to_owned());
+    }
+    let used =
+        |place: usize| angle == Some(place) || curves.iter().any(|curve| curve.place == place);
+    let unused: Vec<&str> = (0..columns.names.len())
+        .filter(|place| !used(*place) && !is_time(time.as_ref(), &columns.names[*place]))
+        .map(|place| columns.names[place].as_str())
+        .collect();
+    if !unused.is_empty() {
+        let _infallible = writeln!(text, "# not used: {}", unused.join("; "));
+    }
+    Ok(MappingProposal { text, open })
+}
+
+/// Returns whether a column states the time.
+fn is_time(time: Option<&Time>, name: &str) -> bool {
+    match time {
+        Some(Time::Elapsed { column, .. }) => column == name,
+        Some(Time::Clock {
+            columns,
+            milliseconds,
+            ..
+        }) => columns
+            .iter()
+            .chain(milliseconds)
+            .any(|column| column == name),
+        Some(Time::Rate { .. }) | None => false,
+    }
+}
+
+/// Curve of a proposal: its name in the record, the place of its column, and whether the number of the gauge
+/// is a guess.
+struct ProposedCurve {
+    name: String,
+    place: usize,
+    guessed: bool,
+}
+
+/// Returns the curves of the columns: gauges by the numbers in their names, or four of them in their order.
+fn curves(columns: &Columns, roles: &[Option<Role>]) -> Vec<ProposedCurve> {
+    let gauges: Vec<(usize, Option<u8>)> = roles
+        .iter()
+        .enumerate()
+        .filter_map(|(place, role)| match role {
+            Some(Role::Gauge(number)) => Some((place, *number)),
+            _ => None,
+        })
+        .collect();
+    let mut numbers: Vec<u8> = gauges.iter().filter_map(|(_, number)| *number).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let distinct = numbers.len() == gauges.len();
+    let mut all: Vec<ProposedCurve> = Vec::new();
+    for (order, (place, number)) in (1_u8..=4).zip(&gauges) {
+        let number = number.filter(|_| distinct).unwrap_or(order);
+        all.push(ProposedCurve {
+            name: format!("stress_{number}_mpa"),
+            place: *place,
+            guessed: !distinct,
+        });
+    }
+    all.sort_by(|a, b| a.name.cmp(&b.name));
+    for (role, name) in [
+        (Role::Position, "polished_rod_position_m"),
+        (Role::Torque, "crank_torque_nm"),
+    ] {
+        if let Some(place) = roles.iter().position(|own| *own == Some(role)) {
+            all.push(ProposedCurve {
+                name: name.to_owned(),
+                place,
+                guessed: false,
+            });
+        }
+    }
+    all.retain(|curve| curve.place < columns.names.len());
+    all
+}
+
+fn write_time(text: &mut String, open: &mut Vec<String>, time: Option<&Time>) {
+    text.push_str("\n[time]\n");
+    if let Some(time) = time {
+        // a time is strings and numbers
+        text.push_str(&toml::to_string(time).unwrap_or_default());
+    } else {
+        text.push_str("# column = \"..\"                      # elapsed time, with unit = \"s\"\n");
+        text.push_str("# rate_hz = 100.0                    # or the sampling rate, where there is no column\n");
+        open.push("time: the column of the time, or `rate_hz`".to_owned());
+    }
+}
+
+/// Writes `[angle]`: the column, whether it is a pulse, and what can be seen in its numbers, which are the
+/// first column of the table.
+fn write_angle(
+    text: &mut String,
+    open: &mut Vec<String>,
+    columns: &Columns,
+    angle: Option<(usize, bool)>,
+    table: &Table,
+) {
+    text.push_str("\n[angle]                              # of the crank\n");
+    let Some((place, pulse)) = angle else {
+        text.push_str("# column = \"..\"                      # an angle, or pulse = \"..\", one pulse a turn\n");
+        open.push("angle: the column of the crank angle, or of one pulse a turn".to_owned());
+        return;
+    };
+    let name = quoted(&columns.names[place]);
+    if pulse {
+        let (level, edge) = pulse_level(&table.columns[0]);
+        let edge = match edge {
+            Edge::Rising => "rising",
+            Edge::Falling => "falling",
+        };
+        let _infallible = write!(
+            text,
+            "pulse = {name}\nlevel = {level:?}\nedge = \"{edge}\"\n\
+             # pulse_deg = 0.0                    # crank angle from bottom dead centre at that edge\n"
+        );
+        open.push(
+            "angle.pulse_deg: the crank angle at which the pulse comes, in degrees from bottom dead centre in \
+             the sense of rotation"
+                .to_owned(),
+        );
+    } else {
+        let unit = columns.units[place]
+            .clone()
+            .unwrap_or_else(|| "deg".to_owned());
+        let factor = logger::factor(&unit, "deg").unwrap_or(1.0);
+        let known = table.columns[0].iter().filter(|value| !value.is_nan());
+        let known: Vec<f64> = known.map(|value| value * factor).collect();
+        let step = |pair: &[f64]| (pair[1] - pair[0] + 180.0).rem_euclid(360.0) - 180.0;
+        let sum: f64 = known.windows(2).map(step).sum();
+        let direction = if sum < 0.0 {
+            "decreasing"
+        } else {
+            "increasing"
+        };
+        let _infallible = write!(
+            text,
+            "column = {name}\nunit = {}\ndirection = \"{direction}\"\n\
+             # bottom_dead_centre_deg = 0.0       # number of the column, in degrees, at bottom dead centre\n",
+            quoted(&unit)
+        );
+        open.push(
+            "angle.bottom_dead_centre_deg: the number of the column, in degrees, while the polished rod is lowest"
+                .to_owned(),
+        );
+    }
+    text.push_str("# uncertainty_deg = 0.1              # standard deviation of that angle\n");
+    open.push(
+        "angle.uncertainty_deg: how well that angle is known, one standard deviation in degrees"
+            .to_owned(),
+    );
+}
+
+/// Returns the level of a pulse, half way between its ends, and the edge at which it begins: away from the
+/// level at which the signal mostly rests.
+fn pulse_level(values: &[f64]) -> (f64, Edge) {
+    let mut sorted: Vec<f64> = values
+        .iter()
+        .copied()
+        .filter(|value| !value.is_nan())
+        .collect();
+    sorted.sort_by(f64::total_cmp);
+    let at = |share: f64| -> f64 {
+        let last = sorted.len().saturating_sub(1) as f64;
+        let place = crate::pumping_unit::record::whole((share * last).round());
+        usize::try_from(place)
+            .ok()
+            .and_then(|place| sorted.get(place))
+            .copied()
+            .unwrap_or_default()
+    };
+    let [low, median, high] = [at(0.0), at(0.5), at(1.0)];
+    let level = 0.5 * (low + high);
+    // two significant digits are enough for a threshold
+    let unit = libm::pow(10.0, (high - low).abs().max(1e-12).log10().floor() - 1.0);
+    let edge = if median > level {
+        Edge::Falling
+    } else {
+        Edge::Rising
+    };
+    ((level / unit).round() * unit, edge)
+}
+
+fn write_curve(
+    text: &mut String,
+    open: &mut Vec<String>,
+    columns: &Columns,
+    curve: &ProposedCurve,
+    known: &Known,
+) {
+    let column = quoted(&columns.names[curve.place]);
+    let Some(unit) = &columns.units[curve.place] else {
+        let example = if curve.name.starts_with("stress_") {
+            "\"um/m\", young_gpa = 206.0"
+        } else {
+            "\"..\""
+        };
+        let _infallible = writeln!(
+            text,
+            "# {} = {{ column = {column}, unit = {example} }}",
+            curve.name
+        );
+        open.push(format!(
+            "curves.{}: the unit of column {column}, or remove the line",
+            curve.name
+        ));
+        return;
+    };
+    let strain = logger::factor(unit, "m/m").is_some();
+    let bridge = if unit.eq_ignore_ascii_case("mV/V") {
+        ", gauge_factor = 2.0, active_arms = 1"
+    } else {
+        ""
+    };
+    let young = if strain {
+        format!("{bridge}, young_gpa = {:?}", known.young_gpa)
+    } else {
+        String::new()
+    };
+    let remark = if curve.guessed {
+        "  # the number is a guess"
+    } else {
+        ""
+    };
+    let _infallible = writeln!(
+        text,
+        "{} = {{ column = {column}, unit = {}{young} }}{remark}",
+        curve.name,
+        quoted(unit)
+    );
+    if curve.guessed {
+        open.push(format!(
+            "curves.{}: whether column {column} is gauge {}; then remove the remark",
+            curve.name,
+            curve
+                .name
+                .trim_start_matches("stress_")
+                .trim_end_matches("_mpa")
+        ));
+    }
+}
