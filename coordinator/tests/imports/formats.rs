@@ -190,3 +190,80 @@ fn a_recording_in_two_files_is_one_record() {
         "{said}"
     );
 }
+
+/// Imports changed lines of a raw file of a condition and returns what the command says.
+fn imported(file: &str, change: impl Fn(&mut Vec<String>)) -> String {
+    let folder = ImportFolder::new();
+    let mut lines = folder.raw_lines(&format!("{file}.csv.gz"));
+    change(&mut lines);
+    folder.write_raw(&format!("{file}.csv"), &lines);
+    let speed = file.trim_start_matches("strain_");
+    let import = format!("record import case/raw/{file}.csv --case case --condition {speed}");
+    folder.run(&import);
+    folder.state_zero(&format!("case/measured/test_{speed}.import.toml"));
+    let (code, said) = folder.run(&import);
+    assert_eq!(code, 0, "{said}");
+    said
+}
+
+/// Checks that turns with a lost pulse or a jump of the clock are left out and said, and the others kept.
+#[test]
+fn disturbed_turns_are_left_out() {
+    let lost = imported("strain_4rpm", |lines| {
+        for line in &mut lines[4500..5000] {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            cells[7] = "+    0.000".to_owned();
+            *line = cells.join(",");
+        }
+    });
+    assert!(lost.contains("left out: the turn from line 3"), "{lost}");
+    assert!(lost.contains("took 29.99 s, others 15.00 s"), "{lost}");
+    assert!(lost.contains("3 whole turns at 3.999 /min"), "{lost}");
+    let jump = imported("strain_5rpm", |lines| {
+        let end = lines.len() - 1;
+        for line in &mut lines[3000..end] {
+            let (time, rest) = line.split_once(';').unwrap();
+            let time: f64 = time.replace(',', ".").parse().unwrap();
+            *line = format!("{:.2};{rest}", time + 3600.0).replace('.', ",");
+        }
+    });
+    // the turn that the jump cuts in two
+    assert!(jump.contains("4 whole turns at 5.000 /min"), "{jump}");
+}
+
+/// Checks that samples denser than the record needs are averaged, and that a number that stands for a missing
+/// value is recognised.
+#[test]
+fn dense_samples_are_averaged() {
+    let said = imported("strain_5rpm", |lines| {
+        let data: Vec<Vec<f64>> = rows(lines)
+            .iter()
+            .filter_map(|row| row.iter().map(|cell| cell.parse().ok()).collect())
+            .collect();
+        lines.truncate(7);
+        for pair in data.windows(2) {
+            let turn = if pair[1][1] < pair[0][1] { 360.0 } else { 0.0 };
+            for tenth in 0..10_u32 {
+                let share = f64::from(tenth) / 10.0;
+                let cells = (0..8).map(|column| {
+                    let ahead = pair[1][column] + if column == 1 { turn } else { 0.0 };
+                    let value = pair[0][column] + share * (ahead - pair[0][column]);
+                    let value = if column == 1 { value % 360.0 } else { value };
+                    let missing = tenth == 5 && column == 3 && lines.len() % 1000 == 0;
+                    if missing {
+                        "-9999".to_owned()
+                    } else {
+                        format!("{value:.4}").replace('.', ",")
+                    }
+                });
+                let cells: Vec<String> = cells.collect();
+                lines.push(cells.join(";"));
+            }
+        }
+    });
+    assert!(
+        said.contains("every 4 samples are averaged to one"),
+        "{said}"
+    );
+    assert!(said.contains("5 whole turns at 5.000 /min"), "{said}");
+}

@@ -12,7 +12,7 @@ use std::{fmt::Write as _, path::Path};
 const ORDER: &str =
     "order = \"forward\"                    # or \"reversed\": from the last point to the first\n";
 
-/// Proposes the mapping of a dynamometer's card; `stroke_m` is the stroke of the case.
+/// Proposes the mapping of a dynamometer's card.
 ///
 /// # Errors
 /// Returns an error for a file without a table, and cells that are no numbers.
@@ -20,8 +20,8 @@ pub(super) fn propose(
     path: &Path,
     file: &str,
     known: &Known,
-    stroke_m: f64,
 ) -> Result<MappingProposal, CaseError> {
+    let stroke_m = known.rod_position_m.iter().copied().fold(0.0, f64::max);
     let mut text = String::new();
     let mut open = Vec::new();
     let files = [file.to_owned()];

@@ -209,14 +209,12 @@ impl ImportTarget {
             .collect();
         let known = proposal::Known {
             young_gpa: self.case.flexible_head.young_gpa,
+            rod_position_m: self.rod_position()?,
             command: self.command.clone(),
         };
         match kind {
             ImportKind::Record => proposal::propose(first, &names, &known),
-            ImportKind::Card => {
-                let stroke = self.rod_position()?.into_iter().fold(0.0, f64::max);
-                card_proposal::propose(first, &names[0], &known, stroke)
-            }
+            ImportKind::Card => card_proposal::propose(first, &names[0], &known),
         }
     }
 

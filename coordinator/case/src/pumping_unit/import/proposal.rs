@@ -17,11 +17,17 @@ pub struct MappingProposal {
     pub open: Vec<String>,
 }
 
+/// Name of the rod position in a record.
+const POSITION: &str = "polished_rod_position_m";
+
 /// Facts about the case that a proposal uses.
 #[derive(Clone, Debug)]
 pub(super) struct Known {
     /// Young's modulus of the head \[GPa\].
     pub(super) young_gpa: f64,
+    /// Position of the polished rod above its lowest one at equally spaced crank angles from bottom dead
+    /// centre \[m\].
+    pub(super) rod_position_m: Vec<f64>,
     /// The command that repeats the import.
     pub(super) command: String,
 }
@@ -95,7 +101,17 @@ pub(super) fn propose(
     }
     write_time(&mut text, &mut open, time.as_ref());
     let direction = angle.map(|at| (at, roles[at] == Some(Role::Pulse)));
-    write_angle(&mut text, &mut open, &columns, direction, &table);
+    let position = curves.iter().position(|curve| curve.name == POSITION);
+    let position = position.map(|at| at + usize::from(angle.is_some()));
+    let seen = (&table, position);
+    write_angle(
+        &mut text,
+        &mut open,
+        &columns,
+        direction,
+        seen,
+        &known.rod_position_m,
+    );
     text.push_str("\n[curves]\n");
     for curve in &curves {
         write_curve(&mut text, &mut open, &columns, curve, known);
@@ -165,7 +181,7 @@ fn curves(columns: &Columns, roles: &[Option<Role>]) -> Vec<ProposedCurve> {
     }
     all.sort_by(|a, b| a.name.cmp(&b.name));
     for (role, name) in [
-        (Role::Position, "polished_rod_position_m"),
+        (Role::Position, POSITION),
         (Role::Torque, "crank_torque_nm"),
     ] {
         if let Some(place) = roles.iter().position(|own| *own == Some(role)) {
@@ -193,13 +209,14 @@ fn write_time(text: &mut String, open: &mut Vec<String>, time: Option<&Time>) {
 }
 
 /// Writes `[angle]`: the column, whether it is a pulse, and what can be seen in its numbers, which are the
-/// first column of the table.
+/// first column of the table; the rod position is another one of it.
 fn write_angle(
     text: &mut String,
     open: &mut Vec<String>,
     columns: &Columns,
     angle: Option<(usize, bool)>,
-    table: &Table,
+    (table, position): (&Table, Option<usize>),
+    rod_position_m: &[f64],
 ) {
     text.push_str("\n[angle]                              # of the crank\n");
     let Some((place, pulse)) = angle else {
@@ -229,20 +246,38 @@ fn write_angle(
             .clone()
             .unwrap_or_else(|| "deg".to_owned());
         let factor = logger::factor(&unit, "deg").unwrap_or(1.0);
-        let known = table.columns[0].iter().filter(|value| !value.is_nan());
-        let known: Vec<f64> = known.map(|value| value * factor).collect();
-        let step = |pair: &[f64]| (pair[1] - pair[0] + 180.0).rem_euclid(360.0) - 180.0;
-        let sum: f64 = known.windows(2).map(step).sum();
+        let degrees: Vec<f64> = table.columns[0]
+            .iter()
+            .map(|value| value * factor)
+            .collect();
+        let known: Vec<f64> = degrees
+            .iter()
+            .copied()
+            .filter(|value| !value.is_nan())
+            .collect();
+        let sum: f64 = known.windows(2).map(|pair| step(pair[0], pair[1])).sum();
+        let sign = if sum < 0.0 { -1.0 } else { 1.0 };
         let direction = if sum < 0.0 {
             "decreasing"
         } else {
             "increasing"
         };
+        let lowest = position.and_then(|column| {
+            let angles: Vec<f64> = degrees.iter().map(|angle| sign * angle).collect();
+            lowest_deg(&angles, table.columns.get(column)?, rod_position_m)
+        });
+        let lowest = lowest.map(|angle| {
+            format!(
+                "; {:.1} by the rod position",
+                (sign * angle).rem_euclid(360.0)
+            )
+        });
         let _infallible = write!(
             text,
             "column = {name}\nunit = {}\ndirection = \"{direction}\"\n\
-             # bottom_dead_centre_deg = 0.0       # number of the column, in degrees, at bottom dead centre\n",
-            quoted(&unit)
+             # bottom_dead_centre_deg = 0.0       # number of the column, in degrees, at bottom dead centre{}\n",
+            quoted(&unit),
+            lowest.unwrap_or_default()
         );
         open.push(
             "angle.bottom_dead_centre_deg: the number of the column, in degrees, while the polished rod is lowest"
@@ -254,6 +289,54 @@ fn write_angle(
         "angle.uncertainty_deg: how well that angle is known, one standard deviation in degrees"
             .to_owned(),
     );
+}
+
+/// Returns the step from one angle to the next one, at most half a turn \[deg\].
+fn step(before: f64, after: f64) -> f64 {
+    (after - before + 180.0).rem_euclid(360.0) - 180.0
+}
+
+/// Returns the angle at which a recorded rod position begins its turn \[deg\]: the shift between its fundamental
+/// over an increasing angle and that of the kinematics, which begin at bottom dead centre.
+fn lowest_deg(angle_deg: &[f64], position: &[f64], rod_position_m: &[f64]) -> Option<f64> {
+    let samples: Vec<(f64, f64)> = angle_deg
+        .iter()
+        .zip(position)
+        .filter(|(angle, position)| !(angle.is_nan() || position.is_nan()))
+        .map(|(angle, position)| (*angle, *position))
+        .collect();
+    // whole turns only, since a part of one has a fundamental of its own
+    let span: f64 = samples
+        .windows(2)
+        .map(|pair| step(pair[0].0, pair[1].0))
+        .sum();
+    let whole = 360.0 * (span / 360.0 + 0.01).floor();
+    let mut passed = 0.0;
+    let phase =
+        |sum: [f64; 2]| (sum[0].hypot(sum[1]) > 0.0).then(|| sum[1].atan2(sum[0]).to_degrees());
+    let mut sum = [0.0; 2];
+    for pair in samples.windows(2) {
+        let width = step(pair[0].0, pair[1].0);
+        if passed + width > whole + 1e-9 {
+            break;
+        }
+        passed += width;
+        let (sin, cos) = pair[0].0.to_radians().sin_cos();
+        sum = [
+            sum[0] + width * pair[0].1 * cos,
+            sum[1] + width * pair[0].1 * sin,
+        ];
+    }
+    let count = rod_position_m.len() as f64;
+    let mut kinematics = [0.0; 2];
+    for (at, position) in rod_position_m.iter().enumerate() {
+        let (sin, cos) = (std::f64::consts::TAU * at as f64 / count).sin_cos();
+        kinematics = [
+            kinematics[0] + position * cos,
+            kinematics[1] + position * sin,
+        ];
+    }
+    Some((phase(sum)? - phase(kinematics)?).rem_euclid(360.0))
 }
 
 /// Returns the level of a pulse, half way between its ends, and the edge at which it begins: away from the

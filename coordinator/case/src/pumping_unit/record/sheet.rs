@@ -241,3 +241,66 @@ fn check_tolerance(document: &Document, tolerance: &Tolerance) -> Result<(), Cas
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{super::tolerance::KEYS, Sheet};
+    use crate::document::Document;
+    use std::{fs, path::Path};
+
+    /// Checks that the template of a data sheet states every key with the value that holds without it, and
+    /// that the manual has them all.
+    #[test]
+    fn every_key_of_a_data_sheet_is_documented() {
+        let template = include_str!("template.toml");
+        let sheet = |text: &str| {
+            let document = Document::new("sheet.toml".into(), text.to_owned());
+            Sheet::of(&document).map(|(sheet, notes)| {
+                assert!(notes.is_empty(), "{notes:?}");
+                sheet
+            })
+        };
+        sheet(template).unwrap();
+        let is_key = |line: &&str| {
+            line.split_once('=')
+                .is_some_and(|(key, _)| !key.trim().contains(' '))
+        };
+        let lines = template.lines().map(|line| {
+            let bare = line.strip_prefix("# ").unwrap_or(line);
+            Some(bare).filter(is_key).unwrap_or(line).to_owned() + "\n"
+        });
+        let full = sheet(&lines.collect::<String>()).unwrap();
+        let chain = [
+            full.samples_recorded.is_some(),
+            full.samples_lost.is_some(),
+            full.gauges.resolution_mpa.is_some(),
+            full.gauges.noise_rms_mpa.is_some(),
+            full.gauges.noise_correlation_per_sample.is_some(),
+            full.crank.index_tolerance_deg.is_some(),
+            full.crank.sense.is_some(),
+            full.load.cycle_to_cycle_variation.is_some(),
+            full.position.noise_rms_m.is_some(),
+            full.torque.noise_rms_nm.is_some(),
+        ];
+        assert_eq!(chain, [true; 10]);
+        let stated: Vec<(&str, f64)> = full.tolerance.stated().collect();
+        let usual: Vec<(&str, f64)> = KEYS.iter().map(|key| (key.0, key.1)).collect();
+        assert_eq!(stated, usual);
+        let manual = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/records.md");
+        let manual = fs::read_to_string(manual).unwrap();
+        let mut table = String::new();
+        for line in template.lines() {
+            if let Some(name) = line.strip_prefix('[') {
+                table = name.split(']').next().unwrap().to_owned() + ".";
+            }
+            let bare = line.strip_prefix("# ").unwrap_or(line);
+            if let Some((key, _)) = Some(bare)
+                .filter(is_key)
+                .and_then(|line| line.split_once('='))
+            {
+                let key = format!("`{table}{}`", key.trim());
+                assert!(manual.contains(&key), "docs/records.md has no {key}");
+            }
+        }
+    }
+}

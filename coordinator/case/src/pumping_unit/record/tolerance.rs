@@ -28,7 +28,7 @@ pub(super) struct Tolerance {
 }
 
 /// Model parameter that represents an instrument's error.
-enum ErrorModel {
+pub(super) enum ErrorModel {
     /// Parameter that sets the size of a library effect: identifier of the effect, name of the parameter.
     Effect(&'static str, &'static str),
     /// Parameter that sets the size of a library effect which only one sensor shows: sensor, identifier of
@@ -41,10 +41,10 @@ enum ErrorModel {
 /// Key of the `[tolerance]` table: name, default standard deviation where the sheet states none, unit,
 /// whether the error is never negative, and the model parameters that represent the error. The defaults are
 /// those of a good foil gauge, an index mark set by hand and a load cell of class 0.3.
-type Key = (&'static str, f64, &'static str, bool, &'static [ErrorModel]);
+pub(super) type Key = (&'static str, f64, &'static str, bool, &'static [ErrorModel]);
 
 /// All keys of the `[tolerance]` table, in its order.
-const KEYS: [Key; 8] = [
+pub(super) const KEYS: [Key; 8] = [
     (
         "gauge_factor",
         0.005,
