@@ -11,6 +11,9 @@ use std::{
 /// is a mistake or a compression bomb.
 pub const LIMIT: u64 = 1 << 30;
 
+/// First bytes of gzip data.
+const GZIP: [u8; 2] = [0x1f, 0x8b];
+
 /// Checks that a file exists.
 ///
 /// # Errors
@@ -65,14 +68,17 @@ pub fn is_packed(path: &Path) -> bool {
         .is_some_and(|end| end.eq_ignore_ascii_case("gz"))
 }
 
-/// Opens a file for reading, decompressed if its name ends in `.gz`; `role` is its purpose,
-/// for the error message.
+/// Opens a file for reading, decompressed if it is gzip data; `role` is its purpose, for the error message.
 ///
 /// # Errors
 /// Returns an error for a file that is missing or unreadable.
 pub fn open(path: &Path, role: &str) -> Result<Box<dyn BufRead>, CaseError> {
-    let file = BufReader::new(opened(path, role)?);
-    Ok(if is_packed(path) {
+    let mut file = BufReader::new(opened(path, role)?);
+    let start = file.fill_buf().map_err(|source| CaseError::Unreadable {
+        path: path.into(),
+        source,
+    })?;
+    Ok(if start.starts_with(&GZIP) {
         Box::new(BufReader::new(flate2::bufread::MultiGzDecoder::new(file)))
     } else {
         Box::new(file)
@@ -105,7 +111,7 @@ pub fn read(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
 /// As [`read`], and for a file that is not gzip data, is truncated or fails its checksum.
 pub fn read_gzip(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
     let packed = read(path, role)?;
-    if !packed.starts_with(&[0x1f, 0x8b]) {
+    if !packed.starts_with(&GZIP) {
         return Err(damaged(
             path,
             "the file is not gzip data",

@@ -12,7 +12,7 @@ use clap::{Args, Subcommand};
 use report::pumping_unit::{imported_card, turns};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use support::atomic_file;
+use support::atomic_file::Draft;
 
 /// Import gauge records and load cards from the files of loggers and dynamometers.
 #[derive(Debug, Args)]
@@ -87,28 +87,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         output,
     } = &arguments.action;
     let target = ImportTarget::new(case, condition.as_deref())?;
-    let mut groups: Vec<(ImportKind, Vec<PathBuf>)> = Vec::new();
-    for file in files {
-        let kind = kind_of(file)?;
-        match groups.iter_mut().find(|(own, _)| *own == kind) {
-            Some((_, group)) => group.push(file.clone()),
-            None => groups.push((kind, vec![file.clone()])),
-        }
-    }
-    if files.is_empty() {
-        for kind in [ImportKind::Card, ImportKind::Record] {
-            if target.mapping(kind).is_ok_and(|path| path.exists()) {
-                groups.push((kind, Vec::new()));
-            }
-        }
-    }
-    if groups.is_empty() {
-        return Err(Problem {
-            message: format!("condition `{}` has no import to repeat", target.name()),
-            remedy: "name the raw files to import".to_owned(),
-        }
-        .into());
-    }
+    let groups = groups(&target, files)?;
     let mut ready = Vec::new();
     let mut open = Vec::new();
     for (kind, files) in groups {
@@ -126,13 +105,21 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
         .into());
     }
-    let imports = ready.into_iter().map(|kind| match kind {
+    // everything is read before anything is written
+    let prepared = ready.into_iter().map(|kind| match kind {
         ImportKind::Record => import_record(&target),
         ImportKind::Card => import_card(&target),
     });
+    let prepared = prepared.collect::<anyhow::Result<Vec<_>>>()?;
+    publish(
+        &prepared
+            .iter()
+            .flat_map(|(_, files)| files)
+            .collect::<Vec<_>>(),
+    )?;
     let object = ImportOutput {
         condition: target.name().to_owned(),
-        imports: imports.collect::<anyhow::Result<_>>()?,
+        imports: prepared.into_iter().map(|(imported, _)| imported).collect(),
     };
     for imported in &object.imports {
         terminal::note(&imported.notes);
@@ -157,6 +144,36 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     terminal::print(output.output, text, &object)
 }
 
+/// Returns the raw files of each record and card to import; without files the imports that have a mapping.
+fn groups(
+    target: &ImportTarget,
+    files: &[PathBuf],
+) -> anyhow::Result<Vec<(ImportKind, Vec<PathBuf>)>> {
+    let mut groups: Vec<(ImportKind, Vec<PathBuf>)> = Vec::new();
+    for file in files {
+        let kind = kind_of(file)?;
+        match groups.iter_mut().find(|(own, _)| *own == kind) {
+            Some((_, group)) => group.push(file.clone()),
+            None => groups.push((kind, vec![file.clone()])),
+        }
+    }
+    if files.is_empty() {
+        for kind in [ImportKind::Card, ImportKind::Record] {
+            if target.mapping(kind).is_ok_and(|path| path.exists()) {
+                groups.push((kind, Vec::new()));
+            }
+        }
+    }
+    if groups.is_empty() {
+        return Err(Problem {
+            message: format!("condition `{}` has no import to repeat", target.name()),
+            remedy: "name the raw files to import".to_owned(),
+        }
+        .into());
+    }
+    Ok(groups)
+}
+
 /// Prepares the mapping of an import: writes a proposal where there is none. Returns what must be stated
 /// first, or `None` if the import can go on.
 fn prepare(
@@ -170,7 +187,7 @@ fn prepare(
         return Ok(None);
     }
     let MappingProposal { text, open } = target.propose(kind, files)?;
-    write(&path, text.as_bytes())?;
+    publish(&[&(path.clone(), text.clone().into_bytes())])?;
     terminal::tell(&format!("proposed {}:\n\n{text}", path.display()));
     Ok((!open.is_empty()).then(|| {
         let open = open.iter().map(|key| format!("\n  {key}"));
@@ -178,54 +195,70 @@ fn prepare(
     }))
 }
 
-fn import_record(target: &ImportTarget) -> anyhow::Result<Imported> {
+/// Path and content of each file that an import writes.
+type Files = Vec<(PathBuf, Vec<u8>)>;
+
+fn import_record(target: &ImportTarget) -> anyhow::Result<(Imported, Files)> {
     let record = target.import_record()?;
-    let mut files = Vec::new();
-    for (path, content) in &record.files {
-        write(path, content)?;
-        files.push(path.display().to_string());
-    }
-    let picture = target.mapping(ImportKind::Record)?.with_extension("svg");
     let figure = turns(&record.turn_deg, &record.channels, &record.cycles);
-    write(&picture, figure.svg.as_bytes())?;
-    files.push(picture.display().to_string());
-    Ok(Imported {
+    let picture = target.mapping(ImportKind::Record)?.with_extension("svg");
+    let mut files = record.files;
+    files.push((picture, figure.svg.into_bytes()));
+    let figures = RecordFigures {
+        samples: record.samples,
+        turns: record.turns,
+        speed_rpm: record.speed_rpm,
+        rate_hz: record.rate_hz,
+    };
+    let imported = Imported {
         kind: "record",
-        files,
-        record: Some(RecordFigures {
-            samples: record.samples,
-            turns: record.turns,
-            speed_rpm: record.speed_rpm,
-            rate_hz: record.rate_hz,
-        }),
+        files: names(&files),
+        record: Some(figures),
         notes: record.notes,
-    })
+    };
+    Ok((imported, files))
 }
 
-fn import_card(target: &ImportTarget) -> anyhow::Result<Imported> {
+fn import_card(target: &ImportTarget) -> anyhow::Result<(Imported, Files)> {
     let card = target.import_card()?;
-    let path = target.output(ImportKind::Card)?;
-    let picture = target.mapping(ImportKind::Card)?.with_extension("svg");
     let figure = imported_card(
         &card.turn_deg,
         &card.load_n,
         &card.position_m,
         &card.expected_m,
     );
-    write(&path, card.csv.as_bytes())?;
-    write(&picture, figure.svg.as_bytes())?;
-    Ok(Imported {
+    let picture = target.mapping(ImportKind::Card)?.with_extension("svg");
+    let files = vec![
+        (target.output(ImportKind::Card)?, card.csv.into_bytes()),
+        (picture, figure.svg.into_bytes()),
+    ];
+    let imported = Imported {
         kind: "card",
-        files: vec![path.display().to_string(), picture.display().to_string()],
+        files: names(&files),
         record: None,
         notes: card.notes,
-    })
+    };
+    Ok((imported, files))
 }
 
-/// Writes a file in one step, with the folder that it is in.
-fn write(path: &Path, content: &[u8]) -> anyhow::Result<()> {
-    let folder = path.parent().unwrap_or_else(|| Path::new("."));
-    std::fs::create_dir_all(folder)
-        .and_then(|()| atomic_file::replace(path, content))
-        .with_context(|| format!("cannot write {}", path.display()))
+fn names(files: &Files) -> Vec<String> {
+    files
+        .iter()
+        .map(|(path, _)| path.display().to_string())
+        .collect()
+}
+
+/// Writes files, with the folders that they are in: all are complete before any replaces what was there.
+fn publish(files: &[&(PathBuf, Vec<u8>)]) -> anyhow::Result<()> {
+    let cannot = |path: &Path| format!("cannot write {}", path.display());
+    let mut drafts = Vec::new();
+    for (path, content) in files {
+        let folder = path.parent().unwrap_or_else(|| Path::new("."));
+        let draft = std::fs::create_dir_all(folder).and_then(|()| Draft::new(path, content));
+        drafts.push((draft.with_context(|| cannot(path))?, path));
+    }
+    for (draft, path) in drafts {
+        draft.publish().with_context(|| cannot(path))?;
+    }
+    Ok(())
 }

@@ -118,7 +118,11 @@ const FAULTS: &[Fault] = &[
             });
         },
         NOTHING,
-        &["like most rows", "time = { rate_hz = 101 }"],
+        &[
+            "like most rows",
+            "state `rate_hz` alone",
+            "about 100 rows a second",
+        ],
     ),
     (
         "a saturated gauge",
@@ -187,7 +191,8 @@ const FAULTS: &[Fault] = &[
         },
         NOTHING,
         &[
-            "row 4000, column `DMS2 [\u{b5}m/m]`: a row that ends after 3 cells",
+            "row 4000",
+            "a row of 3 cells",
             "cut off",
             "footer_lines = 1",
         ],
@@ -239,6 +244,63 @@ const FAULTS: &[Fault] = &[
         },
         NOTHING,
         &["4.000 /min", "speed_rpm = 5"],
+    ),
+    (
+        "a row that lacks a cell in the middle of the file",
+        "strain_5rpm",
+        |lines| lines[2000] = lines[2000].replacen(';', "", 1),
+        NOTHING,
+        &[
+            "row 2001",
+            "a row of 7 cells",
+            "8 cells, as in the first row",
+        ],
+    ),
+    (
+        "a decimal comma among points",
+        "strain_5rpm",
+        |lines| {
+            cells(lines, FIRST, ';', |_, cells| {
+                cells[0] = cells[0].replace(',', ".");
+                cells[1] = cells[1].replace(',', ".");
+            });
+        },
+        ("# no numbers", "# no numbers"),
+        &[
+            "column `Moment Kurbel [kNm]`: `-6,03`",
+            "a number with `.` as decimal sign",
+            "table.decimal",
+        ],
+    ),
+    (
+        "a unit of time that is none",
+        "strain_5rpm",
+        |_| {},
+        ("unit = \"s\"", "unit = \"sekunden\""),
+        &["`time.unit` = \"sekunden\"", "a unit of time"],
+    ),
+    (
+        "a negative modulus",
+        "strain_5rpm",
+        |_| {},
+        ("young_gpa = 206.0", "young_gpa = -206.0"),
+        &["`curves.stress_1_mpa.young_gpa` = -206", "GPa"],
+    ),
+    (
+        "a gauge that is mostly missing",
+        "strain_5rpm",
+        |lines| {
+            cells(lines, FIRST, ';', |row, cells| {
+                if row % 3 > 0 {
+                    cells[4] = String::new();
+                }
+            });
+        },
+        NOTHING,
+        &[
+            "column `DMS3 [\u{b5}m/m]`: a value in 1",
+            "at least half of the rows",
+        ],
     ),
     (
         "less than one turn",

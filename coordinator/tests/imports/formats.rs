@@ -1,5 +1,6 @@
 //! The same measurement as other programs write it.
 use crate::{folder::ImportFolder, records};
+use std::collections::HashMap;
 
 /// Splits the rows of the file with a crank column into cells with decimal points.
 fn rows(lines: &[String]) -> Vec<Vec<String>> {
@@ -144,11 +145,10 @@ fn other_programs_write_the_same_measurement() {
                 "# column = \"..\"                      # elapsed",
                 "column = \"#1\"\nunit = \"s\" # elapsed",
             ),
-            (
-                "# column = \"..\"                      # an angle",
-                "column = \"#2\"\nunit = \"deg\"\ndirection = \"increasing\"\nbottom_dead_centre_deg = 37.4\n\
-                 uncertainty_deg = 0.06 # an angle",
-            ),
+            ("# column = \"..\"\n# unit", "column = \"#2\"\n# unit"),
+            ("# unit = \"deg\"", "unit = \"deg\""),
+            ("# direction", "direction"),
+            ("pulse_deg = 0.0 ", "# pulse_deg = 0.0 "),
             ("[curves]", &curves),
         ],
     );
@@ -266,4 +266,205 @@ fn dense_samples_are_averaged() {
         "{said}"
     );
     assert!(said.contains("5 whole turns at 5.000 /min"), "{said}");
+}
+
+/// Changes one cell of the rows from `from` to `to` of a raw file.
+fn change(
+    lines: &mut [String],
+    (from, to): (usize, usize),
+    (separator, place): (char, usize),
+    cell: impl Fn(&str) -> String,
+) {
+    for line in &mut lines[from..to] {
+        let mut cells: Vec<String> = line.split(separator).map(str::to_owned).collect();
+        cells[place] = cell(&cells[place]);
+        *line = cells.join(&separator.to_string());
+    }
+}
+
+/// Checks that a standstill, a lost pulse away from bottom dead centre, rows lost over a pulse and a long dropout
+/// of a gauge make no cycle, and that the others stay.
+#[test]
+fn only_regular_turns_become_cycles() {
+    // 30 s of standstill before the crank turns
+    let still = imported("strain_5rpm", |lines| {
+        let first = lines[300].clone();
+        let rest: Vec<String> = lines[300..].to_vec();
+        let time = |line: &str| {
+            line.split(';')
+                .next()
+                .unwrap()
+                .replace(',', ".")
+                .parse::<f64>()
+        };
+        let start = time(&first).unwrap();
+        lines.truncate(7);
+        for step in 0..3000_u32 {
+            let cells = first.split_once(';').unwrap().1;
+            lines.push(format!("{:.2};{cells}", 0.01 * f64::from(step)).replace('.', ","));
+        }
+        for line in rest {
+            lines.push(time(&line).map_or(line.clone(), |at| {
+                format!(
+                    "{:.2};{}",
+                    at - start + 30.0,
+                    line.split_once(';').unwrap().1
+                )
+                .replace('.', ",")
+            }));
+        }
+    });
+    assert!(still.contains("4 whole turns at 5.0"), "{still}");
+    // a gauge without values for 7.5 s
+    let dropout = imported("strain_5rpm", |lines| {
+        change(lines, (2000, 2750), (';', 4), |_| "OVER".to_owned());
+    });
+    assert!(
+        dropout.contains("a gap") && dropout.contains("750 missing values"),
+        "{dropout}"
+    );
+    assert!(
+        dropout.contains("3 whole turns at 5.0") || dropout.contains("4 whole turns at 5.0"),
+        "{dropout}"
+    );
+    // rows lost over the rise of a pulse: its time is not known
+    let lost = imported("strain_4rpm", |lines| drop(lines.drain(4530..4625)));
+    assert!(
+        lost.contains("left out: the turn from line") && lost.contains("3 whole turns"),
+        "{lost}"
+    );
+}
+
+/// Checks that a pulse at 30 deg whose successor was lost leaves out what is between the known ones.
+#[test]
+fn a_lost_pulse_spoils_no_turn_wherever_it_is() {
+    let folder = ImportFolder::new();
+    let mut lines = folder.raw_lines("strain_4rpm.csv.gz");
+    let pulses: Vec<String> = lines[16..]
+        .iter()
+        .map(|line| line.split(',').nth(7).unwrap().to_owned())
+        .collect();
+    for (at, line) in lines[16..].iter_mut().enumerate() {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        // 125 rows later is 30 deg; the second pulse is lost
+        let pulse = at
+            .checked_sub(125)
+            .map_or("+    0.000", |before| pulses[before].as_str());
+        cells[7] = if (1600..1900).contains(&at) {
+            "+    0.000"
+        } else {
+            pulse
+        }
+        .to_owned();
+        *line = cells.join(",");
+    }
+    folder.write_raw("strain_4rpm.csv", &lines);
+    let import = "record import case/raw/strain_4rpm.csv --case case --condition 4rpm";
+    folder.run(import);
+    let mapping = "case/measured/test_4rpm.import.toml";
+    folder.state_zero(mapping);
+    folder.replace(mapping, "pulse_deg = 0.0", "pulse_deg = 30.0");
+    let (code, said) = folder.run(import);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("it took 30.0"), "{said}");
+    assert!(
+        said.contains("2 whole turns at 4.0") || said.contains("3 whole turns at 4.0"),
+        "{said}"
+    );
+}
+
+/// Change of an angle, given its row.
+type Spoil = fn(usize, f64) -> f64;
+
+/// Checks that an encoder of coarse steps and one with noise give the angle without a bias.
+#[test]
+fn coarse_and_noisy_encoders_have_no_bias() {
+    let reference = ImportFolder::new();
+    reference.import("5rpm");
+    let expected = angles(&reference);
+    let spoils: [(&str, Spoil, f64); 3] = [
+        (
+            "steps of 2 deg",
+            |_, angle| (angle / 2.0).floor() * 2.0,
+            0.1,
+        ),
+        (
+            "held over 5 rows",
+            |at, angle| angle - 0.3 * (at % 5) as f64,
+            0.1,
+        ),
+        (
+            "noise",
+            |at, angle| angle + 0.6 * (((at * 7919) % 101) as f64 / 50.0 - 1.0),
+            0.15,
+        ),
+    ];
+    for (name, spoil, bound) in spoils {
+        let folder = ImportFolder::new();
+        let mut lines = folder.raw_lines("strain_5rpm.csv.gz");
+        let end = lines.len() - 1;
+        for (at, line) in lines[7..end].iter_mut().enumerate() {
+            let mut cells: Vec<String> = line.split(';').map(str::to_owned).collect();
+            let angle: f64 = cells[1].replace(',', ".").parse().unwrap();
+            // whole steps begin at the zero of the crank
+            let angle = (spoil(at, (angle - 37.4).rem_euclid(360.0)) + 37.4).rem_euclid(360.0);
+            cells[1] = format!("{angle:.3}").replace('.', ",");
+            *line = cells.join(";");
+        }
+        folder.write_raw("strain_5rpm.csv", &lines);
+        let import = "record import case/raw/strain_5rpm.csv --case case --condition 5rpm";
+        folder.run(import);
+        folder.state_zero("case/measured/test_5rpm.import.toml");
+        let (code, said) = folder.run(import);
+        assert_eq!(code, 0, "{name}: {said}");
+        let found = angles(&folder);
+        let off: Vec<f64> = found
+            .iter()
+            .filter_map(|(cells, angle)| {
+                Some((angle - expected.get(cells)? + 180.0).rem_euclid(360.0) - 180.0)
+            })
+            .collect();
+        let mean = off.iter().sum::<f64>() / off.len() as f64;
+        assert!(off.len() > 3000, "{name}: {}", off.len());
+        assert!(mean.abs() < bound, "{name}: {mean}");
+    }
+}
+
+/// Returns the angle of every sample of the imported record, by its other cells.
+fn angles(folder: &ImportFolder) -> HashMap<String, f64> {
+    let file = std::fs::File::open(folder.path("case/measured/test_5rpm.csv.gz")).unwrap();
+    let mut text = String::new();
+    std::io::Read::read_to_string(&mut flate2::read::GzDecoder::new(file), &mut text).unwrap();
+    let rows = text.lines().skip(1).map(|line| {
+        let mut cells = line.splitn(3, ',').skip(1);
+        let angle = cells.next().unwrap().parse().unwrap();
+        (cells.next().unwrap().to_owned(), angle)
+    });
+    rows.collect()
+}
+
+/// Checks that a card of several strokes and one that lacks a part are refused, and that one bad point is left
+/// out.
+#[test]
+fn a_card_is_one_whole_stroke() {
+    let folder = ImportFolder::new();
+    let card = std::fs::read_to_string(folder.path("case/raw/card_5rpm.dyn")).unwrap();
+    let points: Vec<&str> = card.lines().skip(1).take(360).collect();
+    let import = |points: &[&str]| {
+        let table = format!("Position (in),Load (lbf)\n{}\n", points.join("\n"));
+        std::fs::write(folder.path("case/raw/card.csv"), table).unwrap();
+        folder.run("record import case/raw/card.csv --case case --condition 5rpm")
+    };
+    let (code, said) = import(&[&points[..], &points[..]].concat());
+    assert_eq!(code, 2, "{said}");
+    assert!(said.contains("2 strokes; a card is one"), "{said}");
+    let (code, said) = import(&points[..320]);
+    assert_eq!(code, 2, "{said}");
+    assert!(said.contains("a part of the stroke is missing"), "{said}");
+    let mut spoilt = points.clone();
+    let bad = format!("{}, 99999", points[100].split(',').next().unwrap());
+    spoilt[100] = &bad;
+    let (code, said) = import(&spoilt);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("1 outliers of the load"), "{said}");
 }

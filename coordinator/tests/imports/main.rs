@@ -114,6 +114,9 @@ fn a_record_of_other_origin_is_not_replaced() {
     let (code, said) =
         folder.run("record import case/raw/strain_5rpm.csv.gz --case case --condition 5rpm");
     assert_eq!(code, 2, "{said}");
-    assert!(said.contains("exists and was not imported"), "{said}");
+    assert!(
+        said.contains("it exists, and no mapping beside it"),
+        "{said}"
+    );
     assert_eq!(fs::read(&record).unwrap(), b"by hand");
 }

@@ -9,11 +9,19 @@ use crate::document::Figure;
 use crate::number::unit;
 use protocol::case::Channel;
 
+/// Largest number of turns in a picture; of more, equally spaced ones are drawn.
+const MOST: usize = 40;
+
 /// Draws the turns of a record over each other, one strip per channel, from pale for the first turn to dark
 /// for the last; `cycles` has the curves of each turn in the order of the channels.
 pub fn turns(turn_deg: &[f64], channels: &[Channel], cycles: &[Vec<Vec<f64>>]) -> Figure {
     let last = cycles.len().saturating_sub(1);
+    let every = cycles.len().div_ceil(MOST).max(1);
     let of = |(place, channel): (usize, &Channel)| -> Strip {
+        let (factor, shown) = match channel.unit.as_str() {
+            "N.m" => (1e-3, "kN.m"),
+            shown => (1.0, shown),
+        };
         let turn = |(number, cycle): (usize, &Vec<Vec<f64>>)| -> Option<StripCurve> {
             let label = if number == 0 || number == last {
                 format!("turn {}", number + 1)
@@ -26,13 +34,18 @@ pub fn turns(turn_deg: &[f64], channels: &[Channel], cycles: &[Vec<Vec<f64>>]) -
                 STRENGTH.at(shade),
                 turn_deg,
                 cycle.get(place)?,
-                1.0,
+                factor,
             ))
         };
         strip(
-            format!("{} [{}]", channel.title, unit(&channel.unit)),
+            format!("{} [{}]", channel.title, unit(shown)),
             130.0,
-            cycles.iter().enumerate().filter_map(turn).collect(),
+            cycles
+                .iter()
+                .enumerate()
+                .filter(|(number, _)| number % every == 0 || *number == last)
+                .filter_map(turn)
+                .collect(),
         )
     };
     let strips: Vec<Strip> = channels.iter().enumerate().map(of).collect();

@@ -1,7 +1,10 @@
-//! Diagnosis of a record with strong hidden friction: killed, resumed, scored, its effect added to the case,
+//! Diagnosis of a record with strong hidden friction: imported from raw files, killed, resumed, scored, its effect added to the case,
 //! reported again and simulated, with equal numbers throughout. One test with one diagnosis, since it takes
 //! minutes.
-use crate::coarse::{FRICTION, Trial, run};
+use crate::{
+    coarse::{FRICTION, Trial, run},
+    raw::import_again,
+};
 use protocol::{curve::rounded, pumping_unit::Sensor};
 use serde_json::Value;
 use std::{collections::BTreeMap, fs, path::Path, process::Stdio, thread::sleep, time::Duration};
@@ -60,6 +63,8 @@ fn after(curves: &Path, condition: &str) -> [Vec<f64>; 4] {
 #[test]
 fn a_strong_friction_is_named_added_told_again_and_simulated_with_the_same_numbers() {
     let trial = Trial::make(&FRICTION);
+    // from the raw files of a logger and a dynamometer
+    import_again(&trial);
     // killed on the way
     let mut first = trial.diagnose();
     let mut first = first.stdout(Stdio::null()).spawn().expect("it starts");

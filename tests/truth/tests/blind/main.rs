@@ -12,3 +12,4 @@ mod coarse;
 mod friction;
 mod nothing;
 mod practice;
+mod raw;

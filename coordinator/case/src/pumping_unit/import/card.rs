@@ -1,17 +1,15 @@
 //! Load card from a dynamometer's file: load over position becomes load over crank angle.
 use super::{
-    logger,
+    cleaning, logger,
     mapping::{CardMapping, Order},
     paths::beside,
 };
 use crate::{
     document::{Document, DocumentStep},
     error::{CaseError, contradiction, damaged},
-    file,
     pumping_unit::record::SPEED_TOLERANCE,
 };
 use std::{fmt::Write as _, path::Path};
-use support::interpolation::periodic;
 
 /// Points of a dynamometer's card in the order of time, with what its file states beside them.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +56,9 @@ const STROKE_NOTED: f64 = 0.02;
 /// speed, as a share of the stroke, with which the points count as equally spaced in time.
 const EQUAL_TIMES: f64 = 0.01;
 
+/// Largest gap between the ends of a card, as a share of the stroke, beyond three of its largest steps.
+const OPEN: f64 = 0.02;
+
 /// Share of the stroke beside either dead centre in which the position does not tell the crank angle.
 const DEAD: f64 = 0.02;
 
@@ -78,6 +79,14 @@ pub(super) fn import(document: &Document, machine: &Machine) -> Result<ImportedC
     };
     let path = beside(&document.path, file);
     let mut points = match &mapping.table {
+        None if mapping.card.position.is_some() || mapping.card.load.is_some() => {
+            return Err(document.field(
+                &[DocumentStep::Key("card")],
+                "{ .. }",
+                "`position` and `load` only with `[table]`",
+                "state the table's layout; or remove both for a file of Theta's format",
+            ));
+        }
         None => theta(&path)?,
         Some(_) => table(document, &path, &mapping)?,
     };
@@ -110,6 +119,7 @@ fn over_angle(path: &Path, points: Points, machine: &Machine) -> Result<Imported
         mut load_n,
         ..
     } = points;
+    let mut card = ImportedCard::default();
     // some programs close the loop by repeating the first point
     if let (Some(first), Some(last)) = (position_m.first(), position_m.last())
         && first.total_cmp(last).is_eq()
@@ -117,6 +127,16 @@ fn over_angle(path: &Path, points: Points, machine: &Machine) -> Result<Imported
     {
         position_m.pop();
         load_n.pop();
+    }
+    let outliers = cleaning::remove_outliers(&mut load_n);
+    if outliers > 0 {
+        card.notes
+            .push(format!("{outliers} outliers of the load are left out"));
+        let known = position_m
+            .iter()
+            .zip(&load_n)
+            .filter(|(_, load)| !load.is_nan());
+        (position_m, load_n) = known.map(|(position, load)| (*position, *load)).unzip();
     }
     let count = position_m.len();
     if count < 24 {
@@ -132,8 +152,8 @@ fn over_angle(path: &Path, points: Points, machine: &Machine) -> Result<Imported
     }
     let stroke = position_m.iter().copied().fold(0.0, f64::max);
     let expected = machine.position_m.iter().copied().fold(0.0, f64::max);
-    let mut card = ImportedCard::default();
     check_stroke(path, stroke, expected, &mut card.notes)?;
+    check_loop(path, &position_m, stroke)?;
     let scale = expected / stroke;
     let bottom = argmin(&position_m);
     position_m.rotate_left(bottom);
@@ -214,6 +234,43 @@ fn check_stroke(
             "the card has a stroke of {stroke:.3} m, the case one of {expected:.3} m ({:+.1} %): the positions \
              are scaled to the case's",
             100.0 * off
+        ));
+    }
+    Ok(())
+}
+
+/// Checks that the points are one stroke up and down whose end meets its beginning.
+fn check_loop(path: &Path, position_m: &[f64], stroke: f64) -> Result<(), CaseError> {
+    let mut high = position_m.last().is_some_and(|last| *last > 0.5 * stroke);
+    let mut strokes = 0;
+    // the loop is closed: a stroke may begin in what the list ends with
+    for position in position_m.iter().chain(position_m.first()) {
+        if !high && *position > 0.75 * stroke {
+            high = true;
+            strokes += 1;
+        } else if high && *position < 0.25 * stroke {
+            high = false;
+        }
+    }
+    let help = "cut one whole stroke, up and down, out of a copy of the file; if it is the record of a logger, \
+                its gauges need columns with a name such as `Gauge 1` or a unit of strain or stress";
+    if strokes != 1 {
+        return Err(damaged(
+            path,
+            format!("the points are {strokes} strokes; a card is one"),
+            help,
+        ));
+    }
+    let steps = position_m.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let ends = position_m.first().zip(position_m.last());
+    let gap = ends.map_or(0.0, |(first, last)| (first - last).abs());
+    if gap > 3.0 * steps.fold(0.0, f64::max) + OPEN * stroke {
+        return Err(damaged(
+            path,
+            format!(
+                "the last point is {gap:.3} m from the first one: a part of the stroke is missing"
+            ),
+            help,
         ));
     }
     Ok(())
@@ -354,13 +411,43 @@ fn argmin(values: &[f64]) -> usize {
     least.unwrap_or_default()
 }
 
-/// Writes the load on equally spaced angles.
+/// Writes the load on equally spaced angles, on a cubic curve through the points: straight lines between some
+/// hundred points would smooth the peaks of the load.
 fn csv(card: &ImportedCard) -> String {
+    let count = card.turn_deg.len();
+    // points, counted on over the turn in both directions; the first one is 1
+    let at = |place: usize| {
+        let turn = match place {
+            0 => -360.0,
+            place if place > count => 360.0,
+            _ => 0.0,
+        };
+        let index = (place + count - 1) % count;
+        (card.turn_deg[index] + turn, card.load_n[index])
+    };
+    // slope of the parabola through a point and its neighbours
+    let slope = |place: usize| {
+        let ((x0, y0), (x1, y1), (x2, y2)) = (at(place - 1), at(place), at(place + 1));
+        let (before, after) = ((y1 - y0) / (x1 - x0), (y2 - y1) / (x2 - x1));
+        (before * (x2 - x1) + after * (x1 - x0)) / (x2 - x0)
+    };
     let mut text = "turn_deg,polished_rod_load_n\n".to_owned();
     for half in 0..720 {
         let angle = 0.5 * f64::from(half);
-        let load = periodic(&card.turn_deg, &card.load_n, angle, 360.0).unwrap_or_default();
-        let _infallible = writeln!(text, "{angle:.1},{load:.1}");
+        let passed = card.turn_deg.partition_point(|own| *own <= angle);
+        // before the first point the curve is that between the last one and it
+        let (from, x) = if passed == 0 {
+            (count, angle + 360.0)
+        } else {
+            (passed, angle)
+        };
+        let ((x0, y0), (x1, y1)) = (at(from), at(from + 1));
+        let (width, rise) = (x1 - x0, y1 - y0);
+        let share = (x - x0) / width;
+        let ends = [slope(from), slope(from % count + 1)];
+        let [first, last] = ends.map(|slope| slope * width - rise);
+        let bend = share * (1.0 - share) * (first * (1.0 - share) - last * share);
+        let _infallible = writeln!(text, "{angle:.1},{:.1}", y0 + share * rise + bend);
     }
     text
 }
@@ -412,12 +499,6 @@ fn table(document: &Document, path: &Path, mapping: &CardMapping) -> Result<Poin
     })
 }
 
-/// Size of an inch \[m\].
-const INCH: f64 = 0.0254;
-
-/// Size of a pound-force \[N\].
-const POUND: f64 = 4.448_221_615_260_5;
-
 /// Returns whether a text is a card in Theta's format: the number of points alone in the first line.
 pub(super) fn is_theta(text: &str) -> bool {
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
@@ -439,8 +520,7 @@ fn numbers(line: &str) -> Vec<Option<f64>> {
 /// Reads a card in Theta's format (`.DYN`): the number of points, the points as position \[in\] and load
 /// \[lbf\] in equal steps of time, the counterbalance effect, the strokes per minute.
 fn theta(path: &Path) -> Result<Points, CaseError> {
-    let bytes = file::read(path, "the card to import")?;
-    let text = file::text(path, bytes)?;
+    let text = logger::content(path)?;
     let mut lines = text
         .lines()
         .enumerate()
@@ -455,6 +535,8 @@ fn theta(path: &Path) -> Result<Points, CaseError> {
             "state `[table]` with `card.position` and `card.load` in the mapping for a table of another format",
         ));
     };
+    let size = |unit: &str, to: &str| logger::factor(unit, to).unwrap_or(f64::NAN);
+    let (inch, pound) = (size("in", "m"), size("lbf", "N"));
     let mut points = Points {
         position_m: Vec::new(),
         load_n: Vec::new(),
@@ -480,13 +562,21 @@ fn theta(path: &Path) -> Result<Points, CaseError> {
                 "correct a copy of the file, or export it again",
             ));
         };
-        points.position_m.push(position * INCH);
-        points.load_n.push(load * POUND);
+        points.position_m.push(position * inch);
+        points.load_n.push(load * pound);
     }
-    let rest: Vec<f64> = lines
-        .flat_map(|(_, line)| numbers(line))
-        .flatten()
-        .collect();
+    let rest: Vec<Vec<Option<f64>>> = lines.map(|(_, line)| numbers(line)).collect();
+    if rest
+        .first()
+        .is_some_and(|line| line.iter().flatten().count() == 2)
+    {
+        return Err(damaged(
+            path,
+            format!("there are more points than the {count} that line 1 states"),
+            "correct the number in a copy of the file, or export it again",
+        ));
+    }
+    let rest: Vec<f64> = rest.into_iter().flatten().flatten().collect();
     // a measured counterbalance effect is followed by its load and its place
     let speed = match rest.first() {
         Some(flag) if flag.abs() > 0.5 => rest.get(3),
@@ -574,7 +664,7 @@ mod tests {
                 .unwrap_err()
                 .to_string()
         };
-        let inches = error(points(steps(), 1.0 / INCH));
+        let inches = error(points(steps(), 1.0 / 0.0254));
         assert!(
             inches.contains("157.480 m") && inches.contains("have 4.000 m"),
             "{inches}"

@@ -2,8 +2,8 @@
 use super::{
     card::is_theta,
     logger::{self, Columns, Layout, Sample},
-    proposal::{Known, MappingProposal, heading, quoted},
-    role::{Role, role},
+    proposal::{Known, MappingProposal, heading},
+    role::{Role, place, quoted, role},
 };
 use crate::error::CaseError;
 use std::{fmt::Write as _, path::Path};
@@ -42,15 +42,22 @@ pub(super) fn propose(
         .zip(&columns.units)
         .map(|(name, unit)| role(name, unit.as_deref()))
         .collect();
-    // the first of three columns of a service's card is an angle or a share, and named position too
-    let last = |wanted: Role| roles.iter().rposition(|role| *role == Some(wanted));
     let bare = layout.header_line.is_none() && columns.names.len() == 2;
-    let position = last(Role::Position).or_else(|| bare.then_some(0));
-    let load = last(Role::Load).or_else(|| bare.then_some(1));
-    for (key, place) in [("position", position), ("load", load)] {
-        let Some(place) = place else {
+    let bare = |at: usize| Ok(bare.then_some(at));
+    for (key, role, only) in [
+        ("position", Role::Position, bare(0)),
+        ("load", Role::Load, bare(1)),
+    ] {
+        let found = match place(&columns, &roles, role) {
+            Ok(None) => only,
+            found => found,
+        };
+        let Ok(Some(place)) = found else {
             let _infallible = writeln!(text, "# {key} = {{ column = \"..\", unit = \"..\" }}");
-            open.push(format!("card.{key}: its column and unit"));
+            open.push(match found {
+                Err(names) => format!("card.{key}: which of the columns {names}"),
+                Ok(_) => format!("card.{key}: its column and unit"),
+            });
             continue;
         };
         let name = &columns.names[place];
@@ -103,6 +110,9 @@ fn fitting_unit(
     Ok(unit.map(|unit| (unit.to_owned(), "   # by the stroke of the case")))
 }
 
+/// Longest table that is taken for a card if it has an angle too \[lines\]: a card has some hundred points.
+const LONGEST: u64 = 1500;
+
 /// Returns whether a file is a load card: in Theta's format, or a table with a load and no gauge.
 pub(super) fn is_card(path: &Path) -> Result<bool, CaseError> {
     if is_theta_file(path)? {
@@ -111,15 +121,16 @@ pub(super) fn is_card(path: &Path) -> Result<bool, CaseError> {
     let sample = Sample::read(path)?;
     let layout = logger::sniff(path, &sample)?;
     let columns = Columns::read(path, &layout)?;
+    let short = sample.lines <= LONGEST;
     if layout.header_line.is_none() && columns.names.len() == 2 {
-        return Ok(true);
+        return Ok(short);
     }
     let roles = columns.names.iter().zip(&columns.units);
     let roles: Vec<Role> = roles
         .filter_map(|(name, unit)| role(name, unit.as_deref()))
         .collect();
     let gauge = roles.iter().any(|role| matches!(role, Role::Gauge(_)));
-    Ok(!gauge && roles.contains(&Role::Load) && roles.contains(&Role::Position))
+    Ok(!gauge && short && roles.contains(&Role::Load) && roles.contains(&Role::Position))
 }
 
 /// Returns whether the first lines of a file are those of Theta's format.

@@ -1,13 +1,13 @@
-//! Checks of a raw signal: constant, saturated, and single samples that are disturbed.
+//! Checks of a raw signal: constant, saturated, and outliers.
 use super::logger::Table;
 use crate::error::CaseError;
 
 /// Deviation of a sample from the median of five neighbours, relative to the one that nine of ten samples stay
-/// below, from which on it counts as disturbed. The largest of Gaussian noise in a million samples is 4, of
+/// below, from which on it counts as an outlier. The largest of Gaussian noise in a million samples is 4, of
 /// noise that rounding hides at times 8; a real shock lasts longer than two samples, which the median follows.
-const DISTURBED: f64 = 12.0;
+const OUTLIER: f64 = 12.0;
 
-/// Smallest deviation of a disturbed sample, relative to the range of the signal: the peaks of a smooth signal
+/// Smallest deviation of an outlier, relative to the range of the signal: the peaks of a smooth signal
 /// of 30 samples a turn deviate by 1 %.
 const LEAST: f64 = 0.03;
 
@@ -30,8 +30,8 @@ pub(super) fn resolution(values: &[f64]) -> Option<f64> {
         .min_by(f64::total_cmp)
 }
 
-/// Replaces disturbed samples by NaN and returns their number.
-pub(super) fn remove_disturbed(values: &mut [f64]) -> usize {
+/// Replaces outliers by NaN and returns their number.
+pub(super) fn remove_outliers(values: &mut [f64]) -> usize {
     let known: Vec<usize> = (0..values.len())
         .filter(|row| !values[*row].is_nan())
         .collect();
@@ -48,12 +48,12 @@ pub(super) fn remove_disturbed(values: &mut [f64]) -> usize {
     let usual = sizes.get(sizes.len() * 9 / 10).copied().unwrap_or_default();
     let mut sorted: Vec<f64> = known.iter().map(|row| values[*row]).collect();
     sorted.sort_by(f64::total_cmp);
-    // without the disturbed samples themselves
+    // without the outliers themselves
     let end = sorted.len() / 100;
     let ends = sorted.get(end).zip(sorted.iter().rev().nth(end));
     let range = ends.map_or(0.0, |(low, high)| high - low);
     let step = resolution(values).unwrap_or_default();
-    let limit = (DISTURBED * usual).max(3.0 * step).max(LEAST * range);
+    let limit = (OUTLIER * usual).max(3.0 * step).max(LEAST * range);
     let mut removed = 0;
     for (five, deviation) in known.windows(5).zip(deviations) {
         if deviation.abs() > limit {
@@ -161,7 +161,7 @@ mod tests {
 
     /// Checks that spikes of one or two samples are removed, and nothing of a clean or noisy curve.
     #[test]
-    fn disturbed_samples_are_removed() {
+    fn outliers_are_removed() {
         for step in [1e-6, 0.2] {
             let noise = |row: usize| 0.3 * (((row * 7919) % 101) as f64 / 50.0 - 1.0);
             let mut values: Vec<f64> = signal(|angle| 20.0 * angle.sin(), 1e-9)
@@ -169,13 +169,13 @@ mod tests {
                 .enumerate()
                 .map(|(row, value)| ((value + noise(row)) / step).round() * step)
                 .collect();
-            assert_eq!(remove_disturbed(&mut values.clone()), 0);
+            assert_eq!(remove_outliers(&mut values.clone()), 0);
             let mut smooth = signal(|angle| 20.0 * (40.0 * angle).sin(), 1e-6);
-            assert_eq!(remove_disturbed(&mut smooth), 0);
+            assert_eq!(remove_outliers(&mut smooth), 0);
             values[100] += 50.0;
             values[2000] -= 90.0;
             values[2001] -= 90.0;
-            assert_eq!(remove_disturbed(&mut values), 3);
+            assert_eq!(remove_outliers(&mut values), 3);
             assert!(values[100].is_nan() && values[2001].is_nan());
         }
     }

@@ -20,7 +20,7 @@ pub use proposal::MappingProposal;
 
 use super::{
     SHEET_TEMPLATE, geometry,
-    record::{Expected, GaugeRecord, grid, of, sheet_path},
+    record::{Expected, GaugeRecord, Samples, grid, of, sheet_path, whole},
     schema::{CaseFile, ConditionEntry},
 };
 use crate::{
@@ -30,8 +30,16 @@ use crate::{
     note::Note,
     source::{self, Overrides},
 };
-use protocol::{case::Channel, pumping_unit::Machine};
+use discrepancy::record::Record;
+use protocol::{
+    case::Channel,
+    pumping_unit::{Machine, Sensor},
+};
 use std::path::{Path, PathBuf};
+
+/// Difference between the stated zero of the angle and that by the rod position that is worth a remark \[deg\]:
+/// the shipped record has 0.2.
+const ZERO_NOTED: f64 = 3.0;
 
 /// Condition of a case to which raw files are imported.
 #[derive(Debug)]
@@ -122,10 +130,14 @@ impl ImportTarget {
             ));
         };
         let name = &names[index];
+        let quoted =
+            |text: &str| shlex::try_quote(text).map_or_else(|_| text.to_owned(), Into::into);
         let command = format!(
-            "horsehead record import --case {} --condition {name}",
-            folder.display()
-        );
+            "horsehead record import --case {} --condition {}",
+            quoted(&folder.display().to_string()),
+            quoted(name)
+        )
+        .replace(char::is_control, " ");
         Ok(Self {
             index,
             folder: folder.to_owned(),
@@ -191,7 +203,7 @@ impl ImportTarget {
         if output.exists() {
             return Err(damaged(
                 &output,
-                "it exists and was not imported: there is no mapping beside it",
+                "it exists, and no mapping beside it says from what: it would be lost",
                 "move it away, or name another file in the case; it is unchanged",
             ));
         }
@@ -202,6 +214,13 @@ impl ImportTarget {
                 "name the raw files to import",
             ));
         };
+        if let (ImportKind::Card, Some(second)) = (kind, files.get(1)) {
+            return Err(damaged(
+                second,
+                "it is a second card for the condition",
+                "import one card for each condition",
+            ));
+        }
         let beside = output.parent().unwrap_or_else(|| Path::new("."));
         let names: Vec<String> = files
             .iter()
@@ -231,6 +250,15 @@ impl ImportTarget {
         let stated = stated.into_iter().flatten().filter_map(toml::Value::as_str);
         let real = |path: PathBuf| path.canonicalize().unwrap_or(path);
         let stated: Vec<PathBuf> = stated.map(|file| real(folder.join(file))).collect();
+        let output = self.output(kind)?;
+        let results = [output.clone(), sheet_path(&output)].map(real);
+        if let Some(raw) = stated.iter().find(|raw| results.contains(raw)) {
+            return Err(damaged(
+                raw,
+                "it is a raw file and the file to write at once",
+                "name another record_file or card_file in the case: raw files are never changed",
+            ));
+        }
         let given: Vec<PathBuf> = files.iter().cloned().map(real).collect();
         if given.is_empty() || given == stated {
             return Ok(());
@@ -244,7 +272,8 @@ impl ImportTarget {
             "`files`",
             list(&stated),
             format!("the command names {}", list(&given)),
-            "correct `files` to import others by the same mapping, or remove the mapping for a new proposal",
+            "correct `files` to import others by the same mapping; for a new proposal move mapping and record \
+             away",
         ))
     }
 
@@ -274,7 +303,8 @@ impl ImportTarget {
             },
         )?;
         let output = self.output(ImportKind::Record)?;
-        let sheet = filled_sheet(&output, &mapping, &read)?;
+        let samples = Samples::read(&output, read.csv.as_bytes())?;
+        let sheet = filled_sheet(&output, &samples, &read)?;
         let GaugeRecord {
             channels,
             cycles,
@@ -282,6 +312,7 @@ impl ImportTarget {
             ..
         } = of(&output, read.csv.as_bytes(), &sheet, &expected)?;
         let mut all = read.notes;
+        all.extend(self.zero_note(&cycles)?);
         all.extend(notes.iter().map(|note: &Note| note.text.clone()));
         let packed = file::packed(&output, read.csv.as_bytes())?;
         let recorded = cycles.channels.iter();
@@ -292,10 +323,10 @@ impl ImportTarget {
                 (sheet_path(&output), sheet.text().as_bytes().to_vec()),
                 (output, packed),
             ],
-            samples: read.samples,
+            samples: samples.angle_deg.len(),
             turns: cycles.cycles.len(),
             speed_rpm: read.speed_rpm,
-            rate_hz: read.rate_hz,
+            rate_hz: 1.0 / samples.step_s,
             turn_deg: grid(expected.step_deg),
             cycles: cycles.cycles,
             notes: all,
@@ -317,6 +348,29 @@ impl ImportTarget {
         Ok(imported)
     }
 
+    /// Returns a note if the recorded rod position is lowest far from the stated bottom dead centre.
+    fn zero_note(&self, cycles: &Record) -> Result<Option<String>, CaseError> {
+        let turn = grid(self.case.run.output_step_deg);
+        let curve = Sensor::ALL
+            .iter()
+            .position(|sensor| *sensor == Sensor::Position);
+        let place = cycles
+            .channels
+            .iter()
+            .position(|own| Some(own.curve) == curve);
+        let Some(position) = place.and_then(|at| cycles.cycles.first()?.get(at)) else {
+            return Ok(None);
+        };
+        let found = proposal::lowest_deg(&turn, position, &self.rod_position()?);
+        let off = found.map(|angle| (angle + 180.0).rem_euclid(360.0) - 180.0);
+        Ok(off.filter(|off| off.abs() > ZERO_NOTED).map(|off| {
+            format!(
+                "by the rod position bottom dead centre is {off:+.1} deg from where the mapping states it: check \
+                 `angle`, and the sign of the position"
+            )
+        }))
+    }
+
     fn rod_position(&self) -> Result<Vec<f64>, CaseError> {
         geometry::rod_position(&self.case).ok_or_else(|| {
             damaged(
@@ -331,7 +385,7 @@ impl ImportTarget {
 /// Returns the data sheet with what the import measured: the present one, or the template.
 fn filled_sheet(
     output: &Path,
-    mapping: &Document,
+    samples: &Samples,
     read: &record::ConvertedRecord,
 ) -> Result<Document, CaseError> {
     let path = sheet_path(output);
@@ -344,16 +398,21 @@ fn filled_sheet(
         let scale = libm::pow(10.0, f64::from(places));
         (value * scale).round() / scale
     };
-    let count = |value: usize| i64::try_from(value).unwrap_or(i64::MAX);
-    let uncertainty = record::uncertainty_deg(mapping)?;
+    let count = |value: u64| i64::try_from(value).unwrap_or(i64::MAX);
+    let rows = samples.angle_deg.len() as u64;
+    let span = samples.angle_deg.last().unwrap_or(&0.0) - samples.angle_deg.first().unwrap_or(&0.0);
     let mut values = vec![
         ("", "strokes_per_minute", digits(read.speed_rpm, 3).into()),
-        ("", "sample_rate_hz", digits(read.rate_hz, 2).into()),
-        ("", "revolutions", count(read.turns).into()),
-        ("", "samples_recorded", count(read.samples).into()),
-        ("", "samples_lost", count(read.lost).into()),
+        ("", "sample_rate_hz", digits(1.0 / samples.step_s, 2).into()),
+        (
+            "",
+            "revolutions",
+            count(whole((span / 360.0).round())).into(),
+        ),
+        ("", "samples_recorded", count(rows).into()),
+        ("", "samples_lost", count(samples.lost).into()),
         ("gauges", "unit", "MPa".into()),
-        ("tolerance", "index_deg", uncertainty.into()),
+        ("tolerance", "index_deg", read.uncertainty_deg.into()),
     ];
     if let Some(resolution) = read.resolution_mpa {
         values.push(("gauges", "resolution_mpa", digits(resolution, 6).into()));

@@ -14,7 +14,14 @@ pub(super) fn beside(mapping: &Path, file: &Path) -> PathBuf {
             path.push(part);
         }
     }
-    path
+    // the folder above a symbolic link is not that of its target
+    if path.exists() {
+        return path;
+    }
+    mapping
+        .parent()
+        .unwrap_or_else(|| Path::new("."))
+        .join(file)
 }
 
 /// Returns a path relative to a folder, with `..` where it must; the path itself where either is unknown.

@@ -2,11 +2,10 @@
 use super::{
     logger::{self, Columns, Layout, Sample, Table, Time},
     mapping::Edge,
-    role::{Role, role},
+    role::{Role, place, quoted, role},
 };
 use crate::error::CaseError;
 use std::{fmt::Write as _, path::Path};
-use toml::Value;
 
 /// Proposed mapping as text, with what only a person can state.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,11 +29,6 @@ pub(super) struct Known {
     pub(super) rod_position_m: Vec<f64>,
     /// The command that repeats the import.
     pub(super) command: String,
-}
-
-/// Quotes a text for TOML.
-pub(super) fn quoted(text: &str) -> String {
-    Value::from(text).to_string()
 }
 
 /// Writes the heading of a mapping and its `files` and `[table]`.
@@ -72,9 +66,25 @@ pub(super) fn propose(
         .zip(&columns.units)
         .map(|(name, unit)| role(name, unit.as_deref()).filter(|_| !is_time(time.as_ref(), name)))
         .collect();
-    let place = |wanted: Role| roles.iter().position(|role| *role == Some(wanted));
-    let angle = place(Role::Angle).or_else(|| place(Role::Pulse));
-    let curves = curves(&columns, &roles);
+    let mut open = Vec::new();
+    let mut one = |wanted: Role, what: &str| {
+        place(&columns, &roles, wanted).unwrap_or_else(|names| {
+            open.push(format!("{what}: which of the columns {names}"));
+            None
+        })
+    };
+    let angle = one(Role::Angle, "angle.column").or_else(|| one(Role::Pulse, "angle.pulse"));
+    let others = [
+        (
+            one(Role::Position, "curves.polished_rod_position_m"),
+            POSITION,
+        ),
+        (
+            one(Role::Torque, "curves.crank_torque_nm"),
+            "crank_torque_nm",
+        ),
+    ];
+    let curves = curves(&roles, &others);
     let mut wanted: Vec<&str> = angle.iter().map(|at| columns.names[*at].as_str()).collect();
     wanted.extend(
         curves
@@ -85,7 +95,6 @@ pub(super) fn propose(
     let table = logger::survey(path, &layout, &wanted)?;
     layout.missing.extend(table.sentinels());
     let mut text = String::new();
-    let mut open = Vec::new();
     heading(&mut text, known, files, Some(&layout));
     if !table.words.is_empty() {
         let words: Vec<String> = table
@@ -120,32 +129,33 @@ pub(super) fn propose(
         text.push_str("# stress_1_mpa = { column = \"..\", unit = \"um/m\", young_gpa = 206.0 }\n");
         open.push("curves: the column of each gauge, as stress_1_mpa .. stress_4_mpa".to_owned());
     }
-    let used =
-        |place: usize| angle == Some(place) || curves.iter().any(|curve| curve.place == place);
-    let unused: Vec<&str> = (0..columns.names.len())
-        .filter(|place| !used(*place) && !is_time(time.as_ref(), &columns.names[*place]))
-        .map(|place| columns.names[place].as_str())
-        .collect();
-    if !unused.is_empty() {
-        let _infallible = writeln!(text, "# not used: {}", unused.join("; "));
-    }
+    let used = |place: usize| {
+        let curve = curves.iter().any(|curve| curve.place == place);
+        angle == Some(place) || curve || is_time(time.as_ref(), &columns.names[place])
+    };
+    write_unused(&mut text, &columns, used);
     Ok(MappingProposal { text, open })
+}
+
+/// Lists the columns that are not used.
+fn write_unused(text: &mut String, columns: &Columns, used: impl Fn(usize) -> bool) {
+    let unused = (0..columns.names.len()).filter(|place| !used(*place));
+    let unused: Vec<String> = unused.map(|place| quoted(&columns.names[place])).collect();
+    if !unused.is_empty() {
+        let _infallible = writeln!(text, "# not used: {}", unused.join(", "));
+    }
 }
 
 /// Returns whether a column states the time.
 fn is_time(time: Option<&Time>, name: &str) -> bool {
-    match time {
-        Some(Time::Elapsed { column, .. }) => column == name,
-        Some(Time::Clock {
-            columns,
-            milliseconds,
-            ..
-        }) => columns
+    time.is_some_and(|time| {
+        let named = time
+            .column
             .iter()
-            .chain(milliseconds)
-            .any(|column| column == name),
-        Some(Time::Rate { .. }) | None => false,
-    }
+            .chain(&time.columns)
+            .chain(&time.milliseconds);
+        named.into_iter().any(|column| column == name)
+    })
 }
 
 /// Curve of a proposal: its name in the record, the place of its column, and whether the number of the gauge
@@ -157,7 +167,7 @@ struct ProposedCurve {
 }
 
 /// Returns the curves of the columns: gauges by the numbers in their names, or four of them in their order.
-fn curves(columns: &Columns, roles: &[Option<Role>]) -> Vec<ProposedCurve> {
+fn curves(roles: &[Option<Role>], others: &[(Option<usize>, &str)]) -> Vec<ProposedCurve> {
     let gauges: Vec<(usize, Option<u8>)> = roles
         .iter()
         .enumerate()
@@ -180,19 +190,15 @@ fn curves(columns: &Columns, roles: &[Option<Role>]) -> Vec<ProposedCurve> {
         });
     }
     all.sort_by(|a, b| a.name.cmp(&b.name));
-    for (role, name) in [
-        (Role::Position, POSITION),
-        (Role::Torque, "crank_torque_nm"),
-    ] {
-        if let Some(place) = roles.iter().position(|own| *own == Some(role)) {
+    for (place, name) in others {
+        if let Some(place) = *place {
             all.push(ProposedCurve {
-                name: name.to_owned(),
+                name: (*name).to_owned(),
                 place,
                 guessed: false,
             });
         }
     }
-    all.retain(|curve| curve.place < columns.names.len());
     all
 }
 
@@ -208,6 +214,13 @@ fn write_time(text: &mut String, open: &mut Vec<String>, time: Option<&Time>) {
     }
 }
 
+/// Keys of `[angle]` for a file in which no column of it was recognised.
+const NO_ANGLE: &str = "# an angle:\n# column = \"..\"\n# unit = \"deg\"\n# direction = \"increasing\"\n\
+             # bottom_dead_centre_deg = 0.0       # number of the column, in degrees, at bottom dead centre\n\
+             # or one pulse a turn:\n# pulse = \"..\"\n# level = 2.5\n# edge = \"rising\"\n\
+             # pulse_deg = 0.0                    # crank angle from bottom dead centre at that edge\n\
+             # either way:\n# uncertainty_deg = 0.1              # standard deviation of that angle\n";
+
 /// Writes `[angle]`: the column, whether it is a pulse, and what can be seen in its numbers, which are the
 /// first column of the table; the rod position is another one of it.
 fn write_angle(
@@ -220,7 +233,7 @@ fn write_angle(
 ) {
     text.push_str("\n[angle]                              # of the crank\n");
     let Some((place, pulse)) = angle else {
-        text.push_str("# column = \"..\"                      # an angle, or pulse = \"..\", one pulse a turn\n");
+        text.push_str(NO_ANGLE);
         open.push("angle: the column of the crank angle, or of one pulse a turn".to_owned());
         return;
     };
@@ -242,9 +255,13 @@ fn write_angle(
                 .to_owned(),
         );
     } else {
-        let unit = columns.units[place]
-            .clone()
-            .unwrap_or_else(|| "deg".to_owned());
+        let unit = columns.units[place].clone();
+        let unit = unit.or_else(|| unit_by_range(&table.columns[0]).map(str::to_owned));
+        let stated = if unit.is_some() { "" } else { "# " };
+        if unit.is_none() {
+            open.push("angle.unit: the unit of the angle, deg, rad or rev".to_owned());
+        }
+        let unit = unit.unwrap_or_else(|| "deg".to_owned());
         let factor = logger::factor(&unit, "deg").unwrap_or(1.0);
         let degrees: Vec<f64> = table.columns[0]
             .iter()
@@ -274,7 +291,7 @@ fn write_angle(
         });
         let _infallible = write!(
             text,
-            "column = {name}\nunit = {}\ndirection = \"{direction}\"\n\
+            "column = {name}\n{stated}unit = {}\ndirection = \"{direction}\"\n\
              # bottom_dead_centre_deg = 0.0       # number of the column, in degrees, at bottom dead centre{}\n",
             quoted(&unit),
             lowest.unwrap_or_default()
@@ -291,6 +308,16 @@ fn write_angle(
     );
 }
 
+/// Returns the unit of an angle whose numbers run over one turn; `None` where they do not.
+fn unit_by_range(values: &[f64]) -> Option<&'static str> {
+    let known = values.iter().filter(|value| !value.is_nan());
+    let lowest = known.clone().copied().fold(f64::INFINITY, f64::min);
+    let highest = known.copied().fold(f64::NEG_INFINITY, f64::max);
+    let turns = [("deg", 360.0), ("rad", std::f64::consts::TAU), ("rev", 1.0)];
+    let fits = |(_, turn): &(&str, f64)| (0.95..1.001).contains(&((highest - lowest) / turn));
+    turns.iter().find(|turn| fits(turn)).map(|(unit, _)| *unit)
+}
+
 /// Returns the step from one angle to the next one, at most half a turn \[deg\].
 fn step(before: f64, after: f64) -> f64 {
     (after - before + 180.0).rem_euclid(360.0) - 180.0
@@ -298,7 +325,11 @@ fn step(before: f64, after: f64) -> f64 {
 
 /// Returns the angle at which a recorded rod position begins its turn \[deg\]: the shift between its fundamental
 /// over an increasing angle and that of the kinematics, which begin at bottom dead centre.
-fn lowest_deg(angle_deg: &[f64], position: &[f64], rod_position_m: &[f64]) -> Option<f64> {
+pub(super) fn lowest_deg(
+    angle_deg: &[f64],
+    position: &[f64],
+    rod_position_m: &[f64],
+) -> Option<f64> {
     let samples: Vec<(f64, f64)> = angle_deg
         .iter()
         .zip(position)
@@ -395,35 +426,34 @@ fn write_curve(
         return;
     };
     let strain = logger::factor(unit, "m/m").is_some();
-    let bridge = if unit.eq_ignore_ascii_case("mV/V") {
+    let bridge = unit.eq_ignore_ascii_case("mV/V");
+    let arms = if bridge {
         ", gauge_factor = 2.0, active_arms = 1"
     } else {
         ""
     };
     let young = if strain {
-        format!("{bridge}, young_gpa = {:?}", known.young_gpa)
+        format!("{arms}, young_gpa = {:?}", known.young_gpa)
     } else {
         String::new()
     };
-    let remark = if curve.guessed {
-        "  # the number is a guess"
-    } else {
-        ""
-    };
+    let open_sign = if curve.guessed || bridge { "# " } else { "" };
     let _infallible = writeln!(
         text,
-        "{} = {{ column = {column}, unit = {}{young} }}{remark}",
+        "{open_sign}{} = {{ column = {column}, unit = {}{young} }}",
         curve.name,
         quoted(unit)
     );
     if curve.guessed {
         open.push(format!(
-            "curves.{}: whether column {column} is gauge {}; then remove the remark",
-            curve.name,
-            curve
-                .name
-                .trim_start_matches("stress_")
-                .trim_end_matches("_mpa")
+            "curves.{}: the column of this gauge; {column} is a guess by the order of the columns",
+            curve.name
+        ));
+    }
+    if bridge {
+        open.push(format!(
+            "curves.{}: gauge factor and number of active arms of the bridge (1 quarter, 2 half, 4 full)",
+            curve.name
         ));
     }
 }

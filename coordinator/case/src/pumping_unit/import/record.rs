@@ -1,18 +1,18 @@
 //! Gauge record from the files of a data logger.
 use super::{
     cleaning,
-    logger::{self, Table},
+    logger::{self, Columns, Table},
     mapping::{CurveEntry, RecordMapping},
     paths::beside,
-    turns::{Stretch, turns},
+    turns::{Segment, turns},
 };
 use crate::{
     document::{Document, DocumentStep},
     error::{CaseError, contradiction, damaged},
-    pumping_unit::record::{CURVES, SPEED_TOLERANCE},
+    pumping_unit::record::{CURVES, SPEED_TOLERANCE, median, whole},
 };
 use protocol::pumping_unit::Sensor;
-use std::{fmt::Write as _, path::Path};
+use std::{fmt::Write as _, path::PathBuf};
 
 /// Gauge record as text, with what its data sheet states about it.
 #[derive(Debug, Default)]
@@ -21,14 +21,10 @@ pub(super) struct ConvertedRecord {
     pub(super) csv: String,
     /// Mean speed of the crank over the whole turns [1/min].
     pub(super) speed_rpm: f64,
-    pub(super) rate_hz: f64,
-    pub(super) samples: usize,
-    /// Number of samples that are missing by the time column.
-    pub(super) lost: usize,
-    /// Number of turns, rounded.
-    pub(super) turns: usize,
     /// Resolution of the gauges \[MPa\].
     pub(super) resolution_mpa: Option<f64>,
+    /// Standard deviation of the angle's zero \[deg\].
+    pub(super) uncertainty_deg: f64,
     /// Remarks for the user: what was left out, and why.
     pub(super) notes: Vec<String>,
 }
@@ -72,95 +68,164 @@ pub(super) fn import(
     let curves = curves(document, &mapping)?;
     let mut wanted = vec![angle.column()];
     wanted.extend(curves.iter().map(|curve| curve.entry.column.as_str()));
-    let mut tables: Vec<Table> = Vec::new();
+    let clock = mapping.time.clock(document)?;
+    check_files(document, &mapping)?;
+    let mut table: Option<Table> = None;
     for file in &mapping.files {
         let path = beside(&document.path, file);
-        let table = logger::read(&path, &mapping.table, Some(&mapping.time), &wanted)?;
-        // a file that does not continue the one before is a recording of its own
-        let apart = match tables.last_mut() {
-            Some(before) => before.append(table),
-            None => Some(table),
-        };
-        tables.extend(apart);
-    }
-    let mut record = Joined::new(curves.len());
-    let mut result = ConvertedRecord::default();
-    let (mut durations, mut missing) = (Vec::new(), vec![[0_usize; 2]; curves.len()]);
-    for table in &mut tables {
-        let turns = turns(table, &angle, 60.0 / condition.speed_rpm)?;
-        for (place, curve) in curves.iter().enumerate() {
-            let mut values = std::mem::take(&mut table.columns[place + 1]);
-            cleaning::check(table, &curve.entry.column, &values)?;
-            let step = cleaning::resolution(&values).map(|step| step * curve.factor.abs());
-            missing[place][0] += values.iter().filter(|value| value.is_nan()).count();
-            missing[place][1] += cleaning::remove_disturbed(&mut values);
-            for value in &mut values {
-                *value *= curve.factor;
-            }
-            if curve.sensor.is_gauge() && step > result.resolution_mpa {
-                result.resolution_mpa = step;
-            }
-            table.columns[place + 1] = values;
-        }
-        let notes = turns.left_out.iter();
-        result
-            .notes
-            .extend(notes.map(|note| format!("left out: {note}")));
-        durations.extend(turns.durations_s);
-        for stretch in &turns.stretches {
-            record.append(table, stretch);
+        let next = logger::read(&path, &mapping.table, Some(clock), &wanted)?;
+        match &mut table {
+            Some(table) => table.append(next),
+            None => table = Some(next),
         }
     }
-    if durations.is_empty() {
-        return Err(no_turn(&tables, angle.column()));
-    }
-    let shown = curves.iter().zip(&missing);
-    for (curve, [empty, disturbed]) in shown.filter(|(_, count)| **count != [0, 0]) {
-        result.notes.push(format!(
-            "column `{}`: {empty} missing and {disturbed} disturbed values; their rows are left out",
-            curve.entry.column
+    let Some(mut table) = table else {
+        return Err(document.field(
+            &[DocumentStep::Key("files")],
+            "[]",
+            "one file at least",
+            "name the raw files",
         ));
+    };
+    let mut result = ConvertedRecord {
+        uncertainty_deg: mapping.angle.uncertainty_deg,
+        ..ConvertedRecord::default()
+    };
+    clean(&mut table, &curves, &mut result)?;
+    let has_all = |row: &usize| {
+        table
+            .columns
+            .iter()
+            .skip(1)
+            .all(|column| !column[*row].is_nan())
+    };
+    let valid: Vec<usize> = (0..table.lines.len()).filter(has_all).collect();
+    let turns = turns(&table, &valid, &angle, 60.0 / condition.speed_rpm)?;
+    let notes = turns.left_out.iter();
+    result
+        .notes
+        .extend(notes.map(|note| format!("left out: {note}")));
+    let durations = turns.durations_s;
+    if durations.is_empty() {
+        return Err(no_turn(&table, angle.column()));
+    }
+    let mut record = Joined::new(curves.len(), &table);
+    for segment in &turns.segments {
+        record.append(&table, segment);
     }
     result.speed_rpm = 60.0 * durations.len() as f64 / durations.iter().sum::<f64>();
     if (result.speed_rpm / condition.speed_rpm - 1.0).abs() > SPEED_TOLERANCE {
         return Err(contradiction(
-            tables
-                .first()
-                .map_or(Path::new(""), |table| table.place(0).0),
+            table.place(0).0,
             format!("the speed by `time` and column `{}`", angle.column()),
             format!("{:.3} /min", result.speed_rpm),
             format!("the condition has speed_rpm = {}", condition.speed_rpm),
             "take the files of this condition, correct `time` in the mapping, or correct the case",
         ));
     }
-    record.thin_out(BLOCK * condition.step_deg, &mut result.notes);
+    record.decimate(BLOCK * condition.step_deg, &mut result.notes);
     record.write(&curves, &mut result);
     Ok(result)
 }
 
+/// Checks and cleans the curves of a table, whose columns follow that of the angle, and converts them to the
+/// units of the record.
+fn clean(
+    table: &mut Table,
+    curves: &[Curve<'_>],
+    result: &mut ConvertedRecord,
+) -> Result<(), CaseError> {
+    for (place, curve) in (1..).zip(curves) {
+        let name = &curve.entry.column;
+        let mut values = std::mem::take(&mut table.columns[place]);
+        let missing = values.iter().filter(|value| value.is_nan()).count();
+        if 2 * missing > values.len() {
+            return Err(table.fault(
+                0,
+                name,
+                format!(
+                    "a value in {} of {} rows",
+                    values.len() - missing,
+                    values.len()
+                ),
+                "a value in at least half of the rows",
+                "remove the column from `curves` in the mapping: rows without it are left out",
+            ));
+        }
+        let outliers = cleaning::remove_outliers(&mut values);
+        cleaning::check(table, name, &values)?;
+        let step = cleaning::resolution(&values).map(|step| step * curve.factor.abs());
+        if curve.sensor.is_gauge() && step > result.resolution_mpa {
+            result.resolution_mpa = step;
+        }
+        if missing + outliers > 0 {
+            result.notes.push(format!(
+                "column `{name}`: {missing} missing values and {outliers} outliers; their rows are left out"
+            ));
+        }
+        for value in &mut values {
+            *value *= curve.factor;
+        }
+        table.columns[place] = values;
+    }
+    Ok(())
+}
+
+/// Checks that no file is named twice, and that all have the columns of the first one.
+fn check_files(document: &Document, mapping: &RecordMapping) -> Result<(), CaseError> {
+    let paths: Vec<PathBuf> = mapping
+        .files
+        .iter()
+        .map(|file| beside(&document.path, file))
+        .collect();
+    let Some(first) = paths.first() else {
+        return Ok(());
+    };
+    let columns = Columns::read(first, &mapping.table)?;
+    for (at, path) in paths.iter().enumerate().skip(1) {
+        if paths.iter().take(at).any(|other| other == path) {
+            return Err(damaged(
+                path,
+                "`files` of the mapping names it twice",
+                "name every raw file once",
+            ));
+        }
+        let own = Columns::read(path, &mapping.table)?;
+        let pairs = columns
+            .names
+            .iter()
+            .zip(&columns.units)
+            .zip(own.names.iter().zip(&own.units));
+        let differs = pairs.into_iter().find(|(one, other)| one != other);
+        if let Some(((name, unit), (other, other_unit))) = differs {
+            let of = |name: &str, unit: &Option<String>| {
+                unit.as_ref()
+                    .map_or_else(|| name.to_owned(), |unit| format!("{name} in {unit}"))
+            };
+            return Err(contradiction(
+                path,
+                "a column",
+                format!("`{}`", of(other, other_unit)),
+                format!("{} has `{}` there", first.display(), of(name, unit)),
+                "all files of a record have one layout, stated by `table`: bring copies of them to the same one",
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// Creates the error for raw files without a whole turn.
-fn no_turn(tables: &[Table], column: &str) -> CaseError {
-    let first = tables.first().map(|table| table.place(0));
-    let last = tables
-        .last()
-        .map(|table| table.place(table.lines.len().saturating_sub(1)));
-    let (path, from) = first.unwrap_or((Path::new(""), 0));
+fn no_turn(table: &Table, column: &str) -> CaseError {
+    let (path, from) = table.place(0);
+    let (_, to) = table.place(table.lines.len().saturating_sub(1));
     damaged(
         path,
         format!(
-            "there is no whole turn of the crank by column `{column}` in lines {from} to {}",
-            last.unwrap_or((path, 0)).1
+            "there is no whole turn of the crank by column `{column}` in lines {from} to {to} of the file{}",
+            if table.files.len() > 1 { "s" } else { "" }
         ),
         "record at least one whole turn, better ten; or correct `angle` in the mapping",
     )
-}
-
-/// Returns the standard deviation of the angle's zero that a mapping states \[deg\].
-///
-/// # Errors
-/// Returns an error for a malformed mapping.
-pub(super) fn uncertainty_deg(document: &Document) -> Result<f64, CaseError> {
-    Ok(document.parse::<RecordMapping>()?.angle.uncertainty_deg)
 }
 
 /// Checks the curves of a mapping and computes their factors.
@@ -183,6 +248,26 @@ fn curves<'a>(
                 "{ .. }",
                 format!("a curve of a record: {names}"),
                 "correct the name, or remove the curve",
+            ));
+        }
+        let ranges = [
+            ("young_gpa", entry.young_gpa, 0.1..=1.0e3, "GPa"),
+            ("gauge_factor", entry.gauge_factor, 0.5..=500.0, "1"),
+            ("active_arms", entry.active_arms, 1.0..=4.0, "1"),
+        ];
+        for (key, value, range, unit) in ranges {
+            if let Some(value) = value {
+                document.within(&format!("curves.{name}.{key}"), value, range, unit)?;
+            }
+        }
+        let same =
+            |(other, own): &(&String, &CurveEntry)| *other < name && own.column == entry.column;
+        if let Some((other, _)) = mapping.curves.iter().find(same) {
+            return Err(document.field(
+                &way(name, "column"),
+                format!("\"{}\"", entry.column),
+                format!("another column than that of {other}"),
+                "state the column of each curve; the second one of a name is `NAME#2`",
             ));
         }
         if !entry.factor.is_finite() || entry.factor.abs() < f64::MIN_POSITIVE {
@@ -234,12 +319,24 @@ fn factor(
 ) -> Result<f64, (&'static str, &'static str, &'static str)> {
     let unit = logger::normal(&entry.unit).unwrap_or_default();
     let to = |other: &str| logger::factor(&unit, other);
+    let gauge = sensor.is_gauge();
+    let bridge = gauge && unit.eq_ignore_ascii_case("mV/V");
+    if !bridge && (entry.gauge_factor.is_some() || entry.active_arms.is_some()) {
+        return Err((
+            "unit",
+            "`gauge_factor` and `active_arms` only beside mV/V",
+            "remove them: the amplifier has converted the bridge's signal already",
+        ));
+    }
+    if !gauge && entry.young_gpa.is_some() {
+        return Err(("unit", "`young_gpa` only with gauges", "remove young_gpa"));
+    }
     let plain = match sensor {
         Sensor::Position => to("m").ok_or("a unit of length: m, mm, in, ft"),
         Sensor::Torque => to("N.m").ok_or("a unit of torque: N.m, kN.m, lbf.ft, lbf.in"),
         Sensor::Gauge(_) => {
             let young = entry.young_gpa.map(|gpa| 1e3 * gpa);
-            let strain = if unit == "mv/v" || unit == "mV/V" {
+            let strain = if bridge {
                 let (Some(gauge), arms) = (entry.gauge_factor, entry.active_arms.unwrap_or(1.0))
                 else {
                     return Err((
@@ -286,29 +383,35 @@ fn factor(
         })
 }
 
-/// Samples of all stretches, one after the other.
+/// Samples of all segments, one after the other.
 struct Joined {
     time_s: Vec<f64>,
     angle_deg: Vec<f64>,
     curves: Vec<Vec<f64>>,
-    /// Angle at which the last whole turn ends, counted over all stretches \[deg\].
+    /// Sample at which each segment begins.
+    starts: Vec<usize>,
+    /// Angle at which the last whole turn ends, counted over all segments \[deg\].
     end_deg: f64,
+    /// Median time between samples \[s\].
+    step_s: f64,
 }
 
 impl Joined {
-    fn new(curves: usize) -> Self {
+    fn new(curves: usize, table: &Table) -> Self {
         Self {
             time_s: Vec::new(),
             angle_deg: Vec::new(),
             curves: vec![Vec::new(); curves],
+            starts: Vec::new(),
             end_deg: 0.0,
+            step_s: median(table.time_s.windows(2).map(|pair| pair[1] - pair[0])),
         }
     }
 
-    /// Appends the samples of a stretch that have all values. Between stretches the time runs on: what is
-    /// left out has no place in the record.
-    fn append(&mut self, table: &Table, stretch: &Stretch) {
-        let [from, to] = stretch.whole_deg;
+    /// Appends the samples of a segment. Between segments the time runs on: what is left out has no place in
+    /// the record.
+    fn append(&mut self, table: &Table, segment: &Segment) {
+        let [from, to] = segment.whole_deg;
         let first = self.time_s.is_empty();
         while self
             .angle_deg
@@ -317,47 +420,46 @@ impl Joined {
         {
             self.angle_deg.pop();
             self.time_s.pop();
-            for curve in &mut self.curves {
-                curve.truncate(self.time_s.len());
-            }
         }
+        for curve in &mut self.curves {
+            curve.truncate(self.time_s.len());
+        }
+        self.starts.push(self.time_s.len());
+        let last = self.time_s.last().copied();
         let mut shift = None;
-        for (&row, &angle) in stretch.rows.iter().zip(&stretch.angle_deg) {
-            let values = || table.columns.iter().skip(1).map(|column| column[row]);
-            if (angle < from && !first) || values().any(f64::is_nan) {
+        for (&row, &angle) in segment.rows.iter().zip(&segment.angle_deg) {
+            if angle < from && !first {
                 continue;
             }
             let time = table.time_s[row];
-            let shift = *shift.get_or_insert_with(|| {
-                let step = median_step(&table.time_s);
-                self.time_s.last().map_or(-time, |last| last + step - time)
-            });
+            let shift =
+                *shift.get_or_insert_with(|| last.map_or(-time, |last| last + self.step_s - time));
             self.time_s.push(time + shift);
             self.angle_deg.push(angle - from + self.end_deg);
-            for (curve, value) in self.curves.iter_mut().zip(values()) {
-                curve.push(value);
+            for (curve, column) in self.curves.iter_mut().zip(table.columns.iter().skip(1)) {
+                curve.push(column[row]);
             }
         }
         self.end_deg += to - from;
     }
 
     /// Averages blocks of samples that are denser than the record needs; a block ends at a gap.
-    fn thin_out(&mut self, block_deg: f64, notes: &mut Vec<String>) {
+    fn decimate(&mut self, block_deg: f64, notes: &mut Vec<String>) {
         let span = self.angle_deg.last().unwrap_or(&0.0) - self.angle_deg.first().unwrap_or(&0.0);
         let step_deg = span / self.angle_deg.len().max(1) as f64;
-        let size = crate::pumping_unit::record::whole((block_deg / step_deg).floor());
+        let size = whole((block_deg / step_deg).floor());
         let Some(size) = usize::try_from(size).ok().filter(|size| *size > 1) else {
             return;
         };
-        let step = median_step(&self.time_s);
         let mut from = 0;
         let mut blocks = Vec::new();
         for row in 1..=self.time_s.len() {
             let ends = row == self.time_s.len()
                 || row - from == size
-                || self.time_s[row] - self.time_s[row - 1] > 1.5 * step;
+                || self.time_s[row] - self.time_s[row - 1] > 1.5 * self.step_s
+                || self.starts.binary_search(&row).is_ok();
             if ends {
-                // a block before a gap may be shorter, and then weighs less than its noise says
+                // the mean of much fewer samples would be noisier than the record says
                 if 2 * (row - from) >= size {
                     blocks.push(from..row);
                 }
@@ -380,17 +482,6 @@ impl Joined {
 
     /// Writes the samples as a table.
     fn write(&self, curves: &[Curve<'_>], result: &mut ConvertedRecord) {
-        let step = median_step(&self.time_s);
-        result.rate_hz = 1.0 / step;
-        result.samples = self.time_s.len();
-        let span = self.time_s.last().unwrap_or(&0.0) - self.time_s.first().unwrap_or(&0.0);
-        let count = |value: f64| {
-            let whole = crate::pumping_unit::record::whole(value.round());
-            usize::try_from(whole).unwrap_or(usize::MAX)
-        };
-        result.lost = (count(span / step) + 1).saturating_sub(result.samples);
-        let angles = self.angle_deg.last().unwrap_or(&0.0) - self.angle_deg.first().unwrap_or(&0.0);
-        result.turns = count(angles / 360.0);
         let text = &mut result.csv;
         text.push_str("time_s,crank_deg");
         for curve in curves {
@@ -408,14 +499,4 @@ impl Joined {
             text.push('\n');
         }
     }
-}
-
-/// Returns the median time between samples \[s\].
-fn median_step(time_s: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = steps.len() / 2;
-    if steps.is_empty() {
-        return 0.0;
-    }
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
 }

@@ -16,4 +16,4 @@ pub(super) use agreement::{Expected, SPEED_TOLERANCE};
 pub use read::count_samples;
 pub(super) use read::{GaugeRecord, channels, of, read, sheet_path};
 pub(super) use resample::grid;
-pub(super) use samples::{CURVES, whole};
+pub(super) use samples::{CURVES, Samples, median, whole};

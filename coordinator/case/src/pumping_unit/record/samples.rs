@@ -27,19 +27,19 @@ const IGNORED_COLUMNS: [&str; 1] = ["polished_rod_load_n"];
 
 /// Samples of a gauge record, before resampling on the output grid.
 #[derive(Debug)]
-pub(super) struct Samples {
+pub(in super::super) struct Samples {
     /// Crank angle unwrapped over the cycles: cycle x 360 + angle \[deg\]; never decreasing.
-    pub(super) angle_deg: Vec<f64>,
+    pub(in super::super) angle_deg: Vec<f64>,
     /// Sensor and values of each recorded curve (MPa, m, N m), gauges first.
     pub(super) curves: Vec<(Sensor, Vec<f64>)>,
     /// Names of the record's unused columns, each with the most similar known column that the record lacks.
     pub(super) unused: Vec<(String, Option<&'static str>)>,
     /// Time of the first sample after each index pulse \[s\].
-    pub(super) pulses_s: Vec<f64>,
+    pub(in super::super) pulses_s: Vec<f64>,
     /// Median time between samples \[s\].
-    pub(super) step_s: f64,
+    pub(in super::super) step_s: f64,
     /// Number of lost samples, from gaps in the time column.
-    pub(super) lost: u64,
+    pub(in super::super) lost: u64,
     /// Median crank angle between samples \[deg\].
     pub(super) step_deg: f64,
 }
@@ -50,7 +50,7 @@ impl Samples {
     /// # Errors
     /// Returns an error for any fault of the table; times that repeat or decrease; angles outside 0 to 360 or
     /// decreasing; no gauge; stress that is not in MPa judging by its magnitude; a gauge without signal.
-    pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Self, CaseError> {
+    pub(in super::super) fn read(path: &Path, bytes: &[u8]) -> Result<Self, CaseError> {
         let table = CsvTable::read_with(path, bytes, &COLUMNS, &CURVES.map(|(name, _)| name))?;
         let [time, crank, rest @ ..] = table.columns.as_slice() else {
             return Err(damaged(path, "no columns", "copy it again"));
@@ -212,7 +212,7 @@ fn check_stress(
 }
 
 /// Returns the median (the upper one of an even number of values); 0 without values.
-fn median(values: impl Iterator<Item = f64>) -> f64 {
+pub(in super::super) fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or_default()

@@ -1,33 +1,96 @@
 //! Times of the rows of a table: elapsed times, dates and clocks, or a sampling rate.
 use super::{columns::Columns, layout::Layout, unit};
+use crate::{
+    document::{Document, DocumentStep},
+    error::CaseError,
+};
 use jiff::{fmt::strtime::BrokenDownTime, tz::TimeZone};
 use serde::{Deserialize, Serialize};
 
-/// Statement of the time of each row of a table.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-#[serde(untagged, deny_unknown_fields)]
-pub(crate) enum Time {
-    /// Number in a column.
-    Elapsed {
-        /// Name of the column.
-        column: String,
-        /// Unit of time; `d` for the dates of spreadsheets.
-        unit: String,
-    },
-    /// Date and clock time in one or more columns.
-    Clock {
-        /// Names of the columns, whose cells are joined by blanks.
-        columns: Vec<String>,
-        /// Format in the notation of `strptime`.
-        format: String,
-        /// Name of a column with the milliseconds of the second.
-        milliseconds: Option<String>,
-    },
-    /// Equal steps: the rows are sampled at this rate \[Hz\].
-    Rate {
-        /// Sampling rate \[Hz\].
-        rate_hz: f64,
-    },
+/// Statement of the time of each row of a table: a number in `column`; date and clock time in `columns`; or
+/// the sampling rate.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Time {
+    /// Name of the column with a number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) column: Option<String>,
+    /// Unit of the number; `d` for the dates of spreadsheets.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) unit: Option<String>,
+    /// Names of the columns with date and clock time, whose cells are joined by blanks.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) columns: Vec<String>,
+    /// Format of the joined cells in the notation of `strptime`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) format: Option<String>,
+    /// Name of a column with the milliseconds of the second.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) milliseconds: Option<String>,
+    /// Sampling rate, where the rows are equally spaced \[Hz\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) rate_hz: Option<f64>,
+}
+
+/// Checked statement of the time of each row.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Clock<'a> {
+    /// Number in a column, and its factor to seconds.
+    Elapsed(&'a str, f64),
+    /// Date and clock time in columns, their format, and a column with milliseconds.
+    Calendar(&'a [String], &'a str, Option<&'a str>),
+    /// Equal steps \[s\].
+    Steps(f64),
+}
+
+impl Time {
+    /// Returns the statement as one of its three forms.
+    ///
+    /// # Errors
+    /// Returns an error for keys of several forms, missing keys, and a unit that is none of time.
+    pub(crate) fn clock(&self, document: &Document) -> Result<Clock<'_>, CaseError> {
+        let fault = |key: &str, value: String, allowed: &str, help: &str| {
+            document.field(
+                &[DocumentStep::Key("time"), DocumentStep::Key(key)],
+                value,
+                allowed,
+                help,
+            )
+        };
+        let parts = (
+            &self.column,
+            &self.unit,
+            &self.columns[..],
+            &self.format,
+            self.rate_hz,
+        );
+        match parts {
+            (Some(column), Some(unit), [], None, None) if self.milliseconds.is_none() => {
+                let factor = unit::factor(unit, "s").ok_or_else(|| {
+                    fault(
+                        "unit",
+                        format!("\"{unit}\""),
+                        "a unit of time",
+                        "state s, ms, min, h, or d for the dates of spreadsheets",
+                    )
+                })?;
+                Ok(Clock::Elapsed(column, factor))
+            }
+            (None, None, [_, ..], Some(format), None) => {
+                Ok(Clock::Calendar(&self.columns, format, self.milliseconds.as_deref()))
+            }
+            (None, None, [], None, Some(rate)) if self.milliseconds.is_none() => {
+                document.within("time.rate_hz", rate, 0.1..=1.0e7, "Hz")?;
+                Ok(Clock::Steps(1.0 / rate))
+            }
+            _ => Err(document.field(
+                &[DocumentStep::Key("time")],
+                "{ .. }",
+                "`column` and `unit`; or `columns` and `format`, and `milliseconds` if that is a column; or `rate_hz`",
+                "state one of the three",
+            )),
+        }
+    }
 }
 
 /// Formats of dates, by the order in which they are tried; `%d` before `%m` where both are possible.
@@ -135,7 +198,11 @@ pub(crate) fn propose(columns: &Columns, rows: &[Vec<String>], layout: &Layout) 
         .clone()
         .find(|place| names.get(*place).is_some_and(|name| named(name)) && of_time(place))
         .or_else(|| numeric.clone().find(of_time))
-        .or_else(|| numeric.find(|place| names.get(*place).is_some_and(|name| named(name))))?;
+        .or_else(|| {
+            // a unit in brackets that is not known, such as microseconds, is left to the user
+            let plain = |name: &String| named(name) && !name.contains(['[', '(']);
+            numeric.find(|place| names.get(*place).is_some_and(plain))
+        })?;
     let first = cells(place)
         .first()
         .and_then(|cell| layout.number(cell.as_bytes()));
@@ -143,23 +210,26 @@ pub(crate) fn propose(columns: &Columns, rows: &[Vec<String>], layout: &Layout) 
     let date = first.is_some_and(|first| (36_526.0..73_051.0).contains(&first));
     let unit = columns.units.get(place).cloned().flatten();
     let unit = unit.unwrap_or_else(|| if date { "d" } else { "s" }.to_owned());
-    Some(Time::Elapsed {
-        column: names.get(place)?.clone(),
-        unit,
+    Some(Time {
+        column: Some(names.get(place)?.clone()),
+        unit: Some(unit),
+        ..Time::default()
     })
 }
 
 fn clock(columns: &Columns, places: &[usize], format: String) -> Time {
     let after = places.last().map_or(0, |place| place + 1);
-    let is_ms = columns.units.get(after).and_then(Option::as_deref) == Some("ms")
-        || columns.names.get(after).is_some_and(|name| name == "ms");
-    Time::Clock {
+    let name = columns.names.get(after).map(|name| name.to_lowercase());
+    let named = name.is_some_and(|name| name == "ms" || name.starts_with("millisec"));
+    let is_ms = named || columns.units.get(after).and_then(Option::as_deref) == Some("ms");
+    Time {
         columns: places
             .iter()
             .filter_map(|place| columns.names.get(*place).cloned())
             .collect(),
-        format,
+        format: Some(format),
         milliseconds: columns.names.get(after).filter(|_| is_ms).cloned(),
+        ..Time::default()
     }
 }
 
@@ -170,14 +240,11 @@ fn format_of(cells: &[&str], layout: &Layout) -> Option<String> {
         return None;
     }
     let dates = DATES.iter().flat_map(|date| {
-        let zones = ["", "%:z", "%z", "Z"];
+        let zones = ["", "%:z", "%z", "Z", " %:z", " %z"];
         CLOCKS.iter().flat_map(move |clock| {
-            ["T", " "].into_iter().flat_map(move |between| {
-                zones.map(|zone| {
-                    let zone = if zone == "Z" { "Z" } else { zone };
-                    format!("{date}{between}{clock}{zone}")
-                })
-            })
+            ["T", " "]
+                .into_iter()
+                .flat_map(move |between| zones.map(|zone| format!("{date}{between}{clock}{zone}")))
         })
     });
     let bare = CLOCKS.iter().map(|clock| (*clock).to_owned());

@@ -9,7 +9,10 @@ use crate::{
     error::{CaseError, damaged},
 };
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::{collections::HashMap, path::Path};
+
+/// Largest number of columns.
+const MOST: usize = 1000;
 
 /// Column of a table and the unit of its numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
@@ -29,6 +32,10 @@ pub(crate) struct Columns {
     pub(crate) names: Vec<String>,
     /// Units by the line of units or the names; `None` where neither states a known one.
     pub(crate) units: Vec<Option<String>>,
+    /// Number of cells of the first row of data.
+    pub(super) usual: usize,
+    /// Line of the names.
+    pub(super) header: Vec<u8>,
 }
 
 impl Columns {
@@ -39,6 +46,7 @@ impl Columns {
     pub(crate) fn read(path: &Path, layout: &Layout) -> Result<Self, CaseError> {
         let (mut header, mut units) = (Cells::default(), Cells::default());
         let mut first = Cells::default();
+        let mut names = Vec::new();
         let mut lines = Lines::open(path)?;
         loop {
             let Some((number, line)) = lines.next()? else {
@@ -52,6 +60,7 @@ impl Columns {
                 ));
             };
             if layout.header_line == Some(number) {
+                line.clone_into(&mut names);
                 let line = line.trim_ascii_start();
                 let bare = line.strip_prefix(b"#").unwrap_or(line);
                 layout.delimiter.split(bare, &mut header);
@@ -62,15 +71,44 @@ impl Columns {
                 break;
             }
         }
-        let mut columns = Self::default();
-        for place in 0..header.filled().max(first.filled()) {
+        let width = header.filled().max(first.filled());
+        if width > MOST {
+            return Err(damaged(
+                path,
+                format!(
+                    "line {} has {width} cells; at most {MOST} are read",
+                    layout.first_line
+                ),
+                "export one line per sample, with the channels side by side",
+            ));
+        }
+        if layout.header_line.is_some() && header.filled() < first.filled() {
+            return Err(damaged(
+                path,
+                format!(
+                    "the header has {} cells, the first row of data {}",
+                    header.filled(),
+                    first.filled()
+                ),
+                "name every column in a copy, or remove `table.header_line` from the mapping and name columns \
+                 by their places, as `#1`",
+            ));
+        }
+        let mut columns = Self {
+            usual: first.len(),
+            header: names,
+            ..Self::default()
+        };
+        let mut counts: HashMap<String, usize> = HashMap::new();
+        for place in 0..width {
             let cell = |cells: &Cells| text(cells.get(place).unwrap_or_default()).into_owned();
             let name = cell(&header);
-            let before = columns.names.iter().filter(|own| base(own) == name);
-            columns.names.push(match (name.as_str(), before.count()) {
+            let count = counts.entry(name.clone()).or_default();
+            *count += 1;
+            columns.names.push(match (name.as_str(), *count) {
                 ("", _) => format!("#{}", place + 1),
-                (_, 0) => name.clone(),
-                (_, more) => format!("{name}#{}", more + 1),
+                (_, 1) => name.clone(),
+                (_, count) => format!("{name}#{count}"),
             });
             let unit = unit::normal(&cell(&units)).or_else(|| unit::stated(&name));
             columns.units.push(unit);
@@ -99,11 +137,4 @@ impl Columns {
             }
         })
     }
-}
-
-/// Returns a name without the number that makes it unique.
-fn base(name: &str) -> &str {
-    let numbered = name.rsplit_once('#');
-    let numbered = numbered.filter(|(_, number)| number.parse::<u32>().is_ok());
-    numbered.map_or(name, |(base, _)| base)
 }

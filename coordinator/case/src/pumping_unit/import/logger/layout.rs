@@ -139,22 +139,50 @@ const fn is_zero(number: &u64) -> bool {
 }
 
 impl Layout {
-    /// Parses a cell as a finite number; `None` if it is none.
+    /// Parses a cell as a finite number; `None` if it is none. Thousands may be separated by the separator of
+    /// the layout, blanks or apostrophes, with three digits after each.
     pub(super) fn number(&self, cell: &[u8]) -> Option<f64> {
+        if !cell.is_ascii() {
+            // the minus sign of typesetters, and blanks that do not break lines
+            let plain = text(cell)
+                .replace(['\u{2212}', '\u{2013}'], "-")
+                .replace(['\u{a0}', '\u{202f}'], " ");
+            return plain.is_ascii().then(|| self.number(plain.as_bytes()))?;
+        }
         let mut plain = [0_u8; 48];
         let mut length = 0;
+        // digits since the last separator of thousands, once there was one
+        let mut group: Option<u8> = None;
         for &byte in cell {
             let sign = char::from(byte);
-            let kept = match byte {
-                _ if sign == self.decimal => b'.',
-                b'0'..=b'9' | b'+' | b'-' | b'e' | b'E' => byte,
-                // the no-break space is C2 A0 in UTF-8 and A0 in Latin-1
-                b' ' | 0xc2 | 0xa0 => continue,
-                _ if self.thousands == Some(sign) => continue,
+            let separates = byte == b' ' || byte == b'\'' || self.thousands == Some(sign);
+            if separates && sign != self.decimal {
+                let after_digit = length > 0 && plain[length - 1].is_ascii_digit();
+                // `+    2.00`
+                if !after_digit && byte == b' ' {
+                    continue;
+                }
+                if !after_digit || group.is_some_and(|digits| digits != 3) {
+                    return None;
+                }
+                group = Some(0);
+                continue;
+            }
+            let kept = if sign == self.decimal { b'.' } else { byte };
+            match kept {
+                b'0'..=b'9' => group = group.map(|digits| digits.saturating_add(1)),
+                b'+' | b'-' | b'.' | b'e' | b'E' => {
+                    if group.take().is_some_and(|digits| digits != 3) {
+                        return None;
+                    }
+                }
                 _ => return None,
-            };
+            }
             *plain.get_mut(length)? = kept;
             length += 1;
+        }
+        if group.is_some_and(|digits| digits != 3) {
+            return None;
         }
         let digits = std::str::from_utf8(plain.get(..length)?).ok()?;
         digits.parse().ok().filter(|value: &f64| value.is_finite())
@@ -168,9 +196,9 @@ impl Layout {
 }
 
 /// Words that loggers and spreadsheets write for a missing value.
-const WORDS: [&str; 18] = [
-    "nan", "-nan", "na", "n/a", "null", "none", "-", "--", "---", "over", "ovr", "+over", "-over",
-    "burnout", "#n/a", "#div/0!", "#value!", "#wert!",
+const WORDS: [&str; 22] = [
+    "nan", "-nan", "inf", "-inf", "infinity", "1.#inf", "na", "n/a", "null", "none", "-", "--",
+    "---", "over", "ovr", "+over", "-over", "burnout", "#n/a", "#div/0!", "#value!", "#wert!",
 ];
 
 /// Returns whether a text is a known word for a missing value.
@@ -180,7 +208,15 @@ pub(super) fn means_missing(word: &str) -> bool {
 
 /// Returns whether a line is empty or a comment.
 pub(super) fn is_comment(line: &[u8]) -> bool {
-    line.trim_ascii_start()
-        .first()
-        .is_none_or(|first| *first == b'#')
+    let line = line.trim_ascii_start();
+    line.is_empty() || line.starts_with(b"#") || line.starts_with(b"%") || line.starts_with(b"//")
+}
+
+/// Returns the number for which a word stands, as in the column of a switch; `None` for any other word.
+pub(super) fn switch(cell: &[u8]) -> Option<f64> {
+    match text(cell).to_lowercase().as_str() {
+        "true" | "on" => Some(1.0),
+        "false" | "off" => Some(0.0),
+        _ => None,
+    }
 }

@@ -5,7 +5,7 @@ use crate::{
 };
 use std::{
     borrow::Cow,
-    io::{BufRead, BufReader, Cursor, Read},
+    io::{BufRead, Cursor, Read},
     path::Path,
 };
 
@@ -34,12 +34,23 @@ impl<'a> Lines<'a> {
                 start,
                 [1..=255, 0, 1..=255, 0, ..] | [0, 1..=255, 0, 1..=255, ..]
             );
-        if wide {
+        // line ends of old Macintosh programs
+        let returns = !wide && start.contains(&b'\r') && !start.contains(&b'\n');
+        if wide || returns {
             let mut bytes = Vec::new();
-            from.read_to_end(&mut bytes)
+            from.take(file::LIMIT + 1)
+                .read_to_end(&mut bytes)
                 .map_err(|source| unreadable(path, source))?;
-            let text = file::decoded(&bytes).into_owned();
-            from = Box::new(BufReader::new(Cursor::new(text)));
+            if bytes.len() as u64 > file::LIMIT {
+                return Err(file::too_large(path));
+            }
+            let mut text = file::decoded(&bytes).into_owned();
+            if returns {
+                text.iter_mut()
+                    .filter(|byte| **byte == b'\r')
+                    .for_each(|byte| *byte = b'\n');
+            }
+            from = Box::new(Cursor::new(text));
         }
         Ok(Self {
             path,
@@ -106,4 +117,18 @@ pub(super) fn text(bytes: &[u8]) -> Cow<'_, str> {
         |_| Cow::Owned(bytes.iter().map(|byte| char::from(*byte)).collect()),
         Cow::Borrowed,
     )
+}
+
+/// Reads the whole text of a small file: plain or gzipped, in UTF-8, UTF-16 or Latin-1.
+///
+/// # Errors
+/// As [`Lines::open`] and [`Lines::next`].
+pub(crate) fn content(path: &Path) -> Result<String, CaseError> {
+    let mut lines = Lines::open(path)?;
+    let mut all = String::new();
+    while let Some((_, line)) = lines.next()? {
+        all.push_str(&text(line));
+        all.push('\n');
+    }
+    Ok(all)
 }

@@ -14,6 +14,7 @@ mod unit;
 pub(super) use clock::{Time, propose as propose_time};
 pub(super) use columns::{Columns, Quantity};
 pub(super) use layout::Layout;
+pub(super) use lines::content;
 pub(super) use read::{Table, read, survey};
 pub(super) use sniff::{Sample, sniff};
 pub(super) use unit::{factor, normal};

@@ -1,10 +1,9 @@
 //! Reading of the requested columns of a table of known layout.
 use super::{
-    clock::{self, Time},
+    clock::{self, Clock},
     columns::Columns,
-    layout::{Cells, Layout, is_comment},
+    layout::{Cells, Layout, is_comment, switch},
     lines::{Lines, text},
-    unit,
 };
 use crate::{
     error::{CaseError, damaged},
@@ -31,8 +30,14 @@ pub(crate) struct Table {
     pub(crate) words: Vec<(u64, String)>,
 }
 
+/// Largest number of columns that are read at once: an angle and the curves of a record.
+const MOST_VALUES: usize = 16;
+
 /// Largest number of different cells that a survey lists.
 const WORDS: usize = 12;
+
+/// Step to a number that stands for a missing value, relative to the one that nine of ten steps stay below.
+const JUMP: f64 = 20.0;
 
 /// Numbers that programs write for a missing value.
 const SENTINELS: [f64; 8] = [
@@ -41,6 +46,9 @@ const SENTINELS: [f64; 8] = [
 
 /// Largest gap between files that continue each other, in steps of the time.
 const CONTINUES: f64 = 5.0;
+
+/// Time between recordings that do not continue each other \[s\]: longer than any turn.
+const APART: f64 = 3600.0;
 
 impl Table {
     /// Returns the file and the line of a row.
@@ -72,44 +80,51 @@ impl Table {
         }
     }
 
-    /// Appends a table if its times follow without a gap; returns it otherwise.
-    pub(crate) fn append(&mut self, other: Self) -> Option<Self> {
+    /// Appends a table. Its times stay where they follow without a gap; else it is another recording, and is
+    /// moved to an hour later.
+    pub(crate) fn append(&mut self, other: Self) {
         let rows = self.time_s.len();
-        let ends = self
-            .time_s
-            .first()
-            .zip(self.time_s.last())
-            .zip(other.time_s.first());
-        let follows = ends.is_some_and(|((first, last), next)| {
-            let step = (last - first) / (rows as f64 - 1.0);
-            next > last && next - last < CONTINUES * step
-        });
-        if !follows {
-            return Some(other);
-        }
-        let shifted = other
-            .files
-            .into_iter()
-            .map(|(first, path)| (rows + first, path));
-        self.files.extend(shifted);
-        self.time_s.extend(other.time_s);
+        let first = self.time_s.first().copied().unwrap_or_default();
+        let last = self.time_s.last().copied().unwrap_or_default();
+        let next = other.time_s.first().copied().unwrap_or_default();
+        let step = (last - first) / (rows.max(2) as f64 - 1.0);
+        let shift = if next > last && next - last < CONTINUES * step {
+            0.0
+        } else {
+            last + APART - next
+        };
+        let files = other.files.into_iter();
+        self.files
+            .extend(files.map(|(first, path)| (rows + first, path)));
+        self.time_s
+            .extend(other.time_s.iter().map(|time| time + shift));
         self.lines.extend(other.lines);
         for (column, more) in self.columns.iter_mut().zip(other.columns) {
             column.extend(more);
         }
-        None
     }
 
-    /// Returns the numbers that stand for missing values in a column, as text: a known one at the end of the
-    /// column's range, far from all other numbers.
+    /// Returns the numbers that stand for missing values in a column, as text: a known one that
+    /// is reached and left by jumps alone.
     pub(crate) fn sentinels(&self) -> Vec<String> {
         let stands_apart = |sentinel: &f64, column: &Vec<f64>| {
-            let is = |value: &&f64| (**value - sentinel).abs() < 1e-9 * sentinel.abs();
-            let others = column.iter().filter(|value| !value.is_nan() && !is(value));
-            let lowest = others.clone().copied().fold(f64::INFINITY, f64::min);
-            let highest = others.copied().fold(f64::NEG_INFINITY, f64::max);
-            let away = (lowest - sentinel).max(sentinel - highest);
-            column.iter().any(|value| is(&value)) && away > 3.0 * (highest - lowest)
+            let is = |value: f64| (value - sentinel).abs() < 1e-9 * sentinel.abs();
+            let known: Vec<f64> = column
+                .iter()
+                .copied()
+                .filter(|value| !value.is_nan())
+                .collect();
+            let mut steps: Vec<f64> = known
+                .windows(2)
+                .filter(|pair| !is(pair[0]) && !is(pair[1]))
+                .map(|pair| (pair[1] - pair[0]).abs())
+                .collect();
+            steps.sort_by(f64::total_cmp);
+            let usual = steps.get(steps.len() * 9 / 10).copied().unwrap_or_default();
+            // it is reached and left by jumps alone
+            let edges = known.windows(2).filter(|pair| is(pair[0]) != is(pair[1]));
+            let mut jumps = edges.map(|pair| (pair[1] - pair[0]).abs() > JUMP * usual);
+            known.iter().any(|value| is(*value)) && jumps.all(|jump| jump)
         };
         let stands = |sentinel: &&f64| {
             self.columns
@@ -128,13 +143,17 @@ impl Table {
 struct Wanted<'a> {
     path: &'a Path,
     layout: &'a Layout,
-    time: Option<&'a Time>,
+    time: Option<Clock<'a>>,
     /// Place and name of each column of the time.
     times: Vec<(usize, &'a str)>,
     /// Place and name of each requested column.
     values: Vec<(usize, &'a str)>,
     /// Number of columns of the table.
     width: usize,
+    /// Number of cells of the first row.
+    usual: usize,
+    /// Line of the names, which may be repeated where a recording was continued.
+    header: Vec<u8>,
     /// Numbers that stand for missing values.
     missing: Vec<f64>,
     /// Whether cells that are no numbers are listed in place of an error.
@@ -150,7 +169,7 @@ struct Wanted<'a> {
 pub(crate) fn read(
     path: &Path,
     layout: &Layout,
-    time: Option<&Time>,
+    time: Option<Clock<'_>>,
     wanted: &[&str],
 ) -> Result<Table, CaseError> {
     read_with(path, layout, time, wanted, false)
@@ -168,24 +187,20 @@ pub(crate) fn survey(path: &Path, layout: &Layout, wanted: &[&str]) -> Result<Ta
 fn read_with(
     path: &Path,
     layout: &Layout,
-    time: Option<&Time>,
+    time: Option<Clock<'_>>,
     wanted: &[&str],
     survey: bool,
 ) -> Result<Table, CaseError> {
     let columns = Columns::read(path, layout)?;
     let place = |name: &&'_ str| columns.place(path, name);
     let names: Vec<&str> = match time {
-        Some(Time::Elapsed { column, .. }) => vec![column],
-        Some(Time::Clock {
-            columns,
-            milliseconds,
-            ..
-        }) => columns
+        Some(Clock::Elapsed(column, _)) => vec![column],
+        Some(Clock::Calendar(columns, _, milliseconds)) => columns
             .iter()
-            .chain(milliseconds)
             .map(String::as_str)
+            .chain(milliseconds)
             .collect(),
-        Some(Time::Rate { .. }) | None => Vec::new(),
+        Some(Clock::Steps(_)) | None => Vec::new(),
     };
     let places = |names: &[&str]| names.iter().map(place).collect::<Result<Vec<_>, _>>();
     let wanted = Wanted {
@@ -201,6 +216,8 @@ fn read_with(
             .zip(wanted.iter().copied())
             .collect(),
         width: columns.names.len(),
+        usual: columns.usual,
+        header: columns.header,
         missing: {
             let words = layout.missing.iter();
             words
@@ -220,7 +237,7 @@ fn read_with(
     let mut cells = Cells::default();
     let mut held: VecDeque<(u64, Vec<u8>)> = VecDeque::new();
     while let Some((number, line)) = lines.next()? {
-        if number < layout.first_line || is_comment(line) {
+        if number < layout.first_line || is_comment(line) || wanted.repeats_header(number, line) {
             continue;
         }
         if layout.footer_lines == 0 {
@@ -235,6 +252,12 @@ fn read_with(
             wanted.row(number, &line, &mut cells, &mut table)?;
         }
     }
+    // of several files one may have no footer
+    for (number, line) in held {
+        if wanted.row(number, &line, &mut cells, &mut table).is_err() {
+            break;
+        }
+    }
     if table.lines.is_empty() {
         return Err(damaged(
             path,
@@ -247,6 +270,12 @@ fn read_with(
 }
 
 impl Wanted<'_> {
+    /// Returns whether a line is the header once more.
+    fn repeats_header(&self, number: u64, line: &[u8]) -> bool {
+        let header = self.layout.header_line;
+        header.is_some_and(|own| own != number) && !self.header.is_empty() && line == self.header
+    }
+
     /// Reads a row.
     fn row(
         &self,
@@ -256,27 +285,36 @@ impl Wanted<'_> {
         table: &mut Table,
     ) -> Result<(), CaseError> {
         self.layout.delimiter.split(line, cells);
-        if cells.filled() > self.width && !self.survey {
+        let filled = cells.filled();
+        let cut = cells.len() < self.usual;
+        if (filled > self.width || cut) && !self.survey {
             return Err(self.fault(
                 (number, ""),
-                format!("a row of {} cells", cells.filled()),
-                format!("at most {} cells, as in the header", self.width),
-                "a decimal comma or a stray separator cuts a cell in two: correct `table.delimiter` and \
-                 `table.decimal` in the mapping",
+                format!("a row of {} cells", if cut { cells.len() } else { filled }),
+                format!("{} cells, as in the first row", self.usual),
+                if cut {
+                    "if the file ends here it was cut off: copy it again, or leave the row out by \
+                     `footer_lines = 1` in `[table]` of the mapping; else write the missing cell into a copy"
+                } else {
+                    "a decimal comma or a stray separator cuts a cell in two: correct `table.delimiter` and \
+                     `table.decimal` in the mapping"
+                },
             ));
         }
         let rows = table.time_s.len();
-        table.time_s.push(match self.time {
+        let time = match self.time {
             None => rows as f64,
-            Some(Time::Rate { rate_hz }) => rows as f64 / rate_hz,
-            Some(time) => self.time(time, number, cells)?,
-        });
-        for (column, &(place, name)) in table.columns.iter_mut().zip(&self.values) {
+            Some(Clock::Steps(step)) => rows as f64 * step,
+            Some(clock) => self.time(clock, number, cells)?,
+        };
+        // a row that is no data must not leave half of its values
+        let mut values = [f64::NAN; MOST_VALUES];
+        for (value, &(place, name)) in values.iter_mut().zip(&self.values) {
             let cell = match self.cell((number, name), place, cells) {
                 Err(_) if self.survey => b"",
                 cell => cell?,
             };
-            column.push(match self.value((number, name), cell) {
+            *value = match self.value((number, name), cell) {
                 Err(_) if self.survey => {
                     let word = text(cell).into_owned();
                     let known = table.words.iter().any(|(_, other)| *other == word);
@@ -286,51 +324,51 @@ impl Wanted<'_> {
                     f64::NAN
                 }
                 value => value?,
-            });
+            };
+        }
+        table.time_s.push(time);
+        for (column, value) in table.columns.iter_mut().zip(values) {
+            column.push(value);
         }
         table.lines.push(u32::try_from(number).unwrap_or(u32::MAX));
         Ok(())
     }
 
     /// Returns the time of a row.
-    fn time(&self, time: &Time, number: u64, cells: &Cells) -> Result<f64, CaseError> {
+    fn time(&self, clock: Clock<'_>, number: u64, cells: &Cells) -> Result<f64, CaseError> {
         let name = self.times.first().map_or("", |(_, name)| name);
-        match time {
-            Time::Rate { .. } => Ok(0.0),
-            Time::Elapsed { unit, .. } => {
+        let (columns, format) = match clock {
+            Clock::Steps(_) => return Ok(0.0),
+            Clock::Elapsed(_, factor) => {
                 let place = self.times.first().map_or(0, |(place, _)| *place);
                 let cell = self.cell((number, name), place, cells)?;
-                let value = self.number((number, name), cell)?;
-                Ok(value * unit::factor(unit, "s").unwrap_or(1.0))
+                return Ok(self.number((number, name), cell)? * factor);
             }
-            Time::Clock {
-                columns, format, ..
-            } => {
-                let (clock, more) = self.times.split_at(columns.len());
-                let mut written = String::new();
-                for &(place, name) in clock {
-                    let cell = self.cell((number, name), place, cells)?;
-                    if !written.is_empty() {
-                        written.push(' ');
-                    }
-                    written.push_str(&text(cell));
-                }
-                let mut seconds =
-                    clock::seconds(format, &written, self.layout).ok_or_else(|| {
-                        self.fault(
-                            (number, name),
-                            format!("`{}`", clip(&written, 40)),
-                            format!("a time of the format `{format}`"),
-                            "correct `time.format` in the mapping, or the row",
-                        )
-                    })?;
-                for &(place, name) in more {
-                    let cell = self.cell((number, name), place, cells)?;
-                    seconds += 1e-3 * self.number((number, name), cell)?;
-                }
-                Ok(seconds)
+            Clock::Calendar(columns, format, _) => (columns, format),
+        };
+        let (clock, more) = self.times.split_at(columns.len());
+        let mut written = String::new();
+        for &(place, name) in clock {
+            let cell = self.cell((number, name), place, cells)?;
+            if !written.is_empty() {
+                written.push(' ');
             }
+            written.push_str(&text(cell));
         }
+        let mut seconds = clock::seconds(format, &written, self.layout).ok_or_else(|| {
+            self.fault(
+                (number, name),
+                format!("`{}`", clip(&written, 40)),
+                format!("a time of the format `{format}`"),
+                "correct `time.format` in the mapping, or the row; if the data end before it, state \
+                 `footer_lines` in `[table]`",
+            )
+        })?;
+        for &(place, name) in more {
+            let cell = self.cell((number, name), place, cells)?;
+            seconds += 1e-3 * self.number((number, name), cell)?;
+        }
+        Ok(seconds)
     }
 
     /// Returns a cell of a row; an error where the row ends before it.
@@ -366,13 +404,14 @@ impl Wanted<'_> {
     }
 
     fn number(&self, at: (u64, &str), cell: &[u8]) -> Result<f64, CaseError> {
-        self.layout.number(cell).ok_or_else(|| {
+        self.layout.number(cell).or_else(|| switch(cell)).ok_or_else(|| {
             self.fault(
                 at,
                 format!("`{}`", clip(&text(cell), 40)),
                 format!("a number with `{}` as decimal sign", self.layout.decimal),
-                "if it stands for a missing value, add it to `table.missing` in the mapping; if the data end \
-                 before it, state `table.footer_lines`",
+                "if it stands for a missing value, add it to `table.missing` in the mapping; if it is a number, \
+                 correct `table.decimal` and `table.thousands`; if the data end before it, state \
+                 `table.footer_lines`",
             )
         })
     }
@@ -396,7 +435,7 @@ impl Wanted<'_> {
 
     /// Removes the passing of midnight and checks that the times ascend.
     fn finish(&self, table: &mut Table) -> Result<(), CaseError> {
-        if let Some(Time::Clock { format, .. }) = self.time
+        if let Some(Clock::Calendar(_, format, _)) = self.time
             && !format.contains("%d")
         {
             clock::over_midnight(&mut table.time_s);
@@ -414,16 +453,22 @@ impl Wanted<'_> {
             (
                 format!("{:.3} s before the row above", before - after),
                 "the clock was set while it recorded: split the file there and import the parts, or state \
-                 the sampling rate by `time = { rate_hz = .. }` in the mapping"
+                 `rate_hz` alone in `[time]` of the mapping"
                     .to_owned(),
             )
         } else if 2 * repeated.count() > table.lines.len() && span > 0.0 {
-            let rate = (table.lines.len() as f64 / span).round();
+            // the rows of the last reading of the clock are as many as of any other
+            let tick = table.time_s.windows(2).map(|pair| pair[1] - pair[0]);
+            let tick = tick
+                .filter(|step| *step > 0.0)
+                .fold(f64::INFINITY, f64::min);
+            let rate = (table.lines.len() as f64 / (span + tick)).round();
             (
                 "the same time as the row above, like most rows".to_owned(),
                 format!(
-                    "the clock is coarser than the sampling: state the rate by `time = {{ rate_hz = {rate} }}` \
-                     in the mapping (there are about {rate} rows a second), or the column with the milliseconds"
+                    "the clock is coarser than the sampling: state `rate_hz` alone in `[time]` of the mapping \
+                     (there are about {rate} rows a second, with lost ones somewhat more), or add the column \
+                     with the milliseconds"
                 ),
             )
         } else {

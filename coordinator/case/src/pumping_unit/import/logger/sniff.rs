@@ -14,6 +14,8 @@ pub(crate) struct Sample {
     pub(crate) head: Vec<(u64, Vec<u8>)>,
     /// Last lines with their numbers; they may overlap with the first ones.
     tail: VecDeque<(u64, Vec<u8>)>,
+    /// Number of lines of the file.
+    pub(crate) lines: u64,
 }
 
 /// Number of lines that are looked at from the start of a file: preambles have dozens.
@@ -38,6 +40,7 @@ impl Sample {
         let mut sample = Self {
             head: Vec::new(),
             tail: VecDeque::new(),
+            lines: 0,
         };
         while let Some((number, line)) = lines.next()? {
             if sample.head.len() < HEAD {
@@ -47,6 +50,7 @@ impl Sample {
                 sample.tail.pop_front();
             }
             sample.tail.push_back((number, line.to_owned()));
+            sample.lines = number;
         }
         if sample.head.iter().all(|(_, line)| is_comment(line)) {
             return Err(damaged(
@@ -172,7 +176,7 @@ fn is_value(cell: &[u8]) -> bool {
     let signed = matches!(first, b'+' | b'-');
     let blank = |byte: &u8| matches!(byte, b' ' | 0xc2 | 0xa0);
     let inner = |(index, byte): (usize, &u8)| match byte {
-        b'0'..=b'9' | b'.' | b',' | b'-' | b'/' | b':' | b'+' | b'e' | b'E' => true,
+        b'0'..=b'9' | b'.' | b',' | b'-' | b'/' | b':' | b'+' | b'e' | b'E' | b'\'' => true,
         b'T' | b'Z' | b'A' | b'P' | b'M' | b'a' | b'p' | b'm' => of_time,
         // `+    2.00`, `1 008,5`, `1.5.2024 12:00:00`
         _ if blank(byte) => {
@@ -224,9 +228,6 @@ fn decimal(columns: &[Vec<String>], delimiter: Delimiter) -> (char, Option<char>
     if !all().any(|cell| cell.contains(',')) {
         return ('.', None);
     }
-    if all().any(|cell| cell.contains('.')) {
-        return ('.', Some(','));
-    }
     // `1,008` after `996`: every comma has three digits after it, and no number of four digits lacks one
     let groups = |cell: &String| {
         let digits = cell.trim_start_matches(['+', '-']);
@@ -237,12 +238,19 @@ fn decimal(columns: &[Vec<String>], delimiter: Delimiter) -> (char, Option<char>
             && (rest.is_empty() || !first.starts_with('0'))
             && rest.iter().all(|part| part.len() == 3)
     };
-    let whole = columns
-        .iter()
-        .filter(|column| column.iter().any(|cell| cell.contains(',')))
-        .all(|column| column.iter().all(groups) && column.iter().any(|cell| !cell.contains(',')));
-    if whole || delimiter == Delimiter::Comma && all().all(groups) {
+    let with_comma = || {
+        columns
+            .iter()
+            .filter(|column| column.iter().any(|cell| cell.contains(',')))
+    };
+    let whole = |column: &Vec<String>| {
+        column.iter().all(groups) && column.iter().any(|cell| !cell.contains(','))
+    };
+    if with_comma().all(whole) || (delimiter == Delimiter::Comma && all().all(groups)) {
         ('.', Some(','))
+    } else if all().any(|cell| cell.contains('.')) {
+        // columns that disagree: the cells of the others are listed as no numbers
+        ('.', None)
     } else {
         (',', None)
     }
@@ -251,13 +259,19 @@ fn decimal(columns: &[Vec<String>], delimiter: Delimiter) -> (char, Option<char>
 /// Finds the lines of names and of units above the data.
 fn header(sample: &Sample, layout: &mut Layout, width: usize) {
     let mut cells = Cells::default();
+    let delimiter = layout.delimiter;
     let above: Vec<&(u64, Vec<u8>)> = {
         let before = sample.head.iter();
         let before = before.take_while(|(number, _)| *number < layout.first_line);
         let filled = before.filter(|(_, line)| !line.trim_ascii().is_empty());
         filled.collect()
     };
-    let mut last = above.iter().rev();
+    let mut last = above.iter().rev().filter(|(_, line)| {
+        // the name of a section between header and data is neither
+        let mut cells = Cells::default();
+        delimiter.split(line, &mut cells);
+        !is_comment(line) || 2 * cells.filled() > width
+    });
     let mut next = || last.next().map(|(number, line)| (*number, line.as_slice()));
     let Some((number, line)) = next() else { return };
     layout.delimiter.split(line, &mut cells);
@@ -269,7 +283,11 @@ fn header(sample: &Sample, layout: &mut Layout, width: usize) {
     let filled = cells.iter().filter(|cell| !cell.is_empty()).count();
     let units = cells.iter().filter(|cell| normal(&text(cell)).is_some());
     let units = units.count();
-    if 2 * units >= filled
+    // names with blanks in them cannot be told apart where blanks separate the cells
+    if delimiter == Delimiter::Blanks && cells.len() != width {
+        return;
+    }
+    if 3 * units >= filled
         && let Some((names, line)) = next()
     {
         layout.delimiter.split(line, &mut cells);
@@ -282,23 +300,19 @@ fn header(sample: &Sample, layout: &mut Layout, width: usize) {
     layout.header_line = Some(number);
 }
 
-/// Returns the number of lines after the data: those that begin with a word.
+/// Returns the number of lines after the data, without empty ones and comments.
 fn footer(sample: &Sample, delimiter: Delimiter) -> u64 {
     let mut cells = Cells::default();
-    let mut count = 0;
-    let mut end = 0;
-    for (_, line) in sample.tail.iter().rev() {
-        count += 1;
+    let lines = sample
+        .tail
+        .iter()
+        .rev()
+        .filter(|(_, line)| !is_comment(line));
+    let footer = lines.take_while(|(_, line)| {
         delimiter.split(line, &mut cells);
-        let begins = cells.iter().find(|cell| !cell.is_empty());
-        if begins.is_some_and(|cell| is_value(cell) || is_word(cell)) {
-            break;
-        }
-        if !line.trim_ascii().is_empty() {
-            end = count;
-        }
-    }
-    end
+        !is_row(&cells) && !cells.get(0).is_some_and(is_value)
+    });
+    footer.count() as u64
 }
 
 #[cfg(test)]

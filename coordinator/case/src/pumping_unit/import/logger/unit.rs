@@ -34,6 +34,9 @@ const SPELLINGS: &[(&str, &str)] = &[
     ("degree", "deg"),
     ("degrees", "deg"),
     ("turn", "rev"),
+    ("revs", "rev"),
+    ("revolution", "rev"),
+    ("revolutions", "rev"),
     ("turns", "rev"),
     ("sec", "s"),
     ("secs", "s"),
@@ -103,9 +106,9 @@ pub(crate) fn stated(name: &str) -> Option<String> {
     for (open, close) in [('[', ']'), ('(', ')'), ('{', '}')] {
         if let Some((_, rest)) = name.rsplit_once(open)
             && let Some((inner, _)) = rest.split_once(close)
-            && let Some(unit) = normal(inner)
         {
-            return Some(unit);
+            // what is in brackets and no unit, such as `x10 kN.m`, says that the unit is another one
+            return normal(inner);
         }
     }
     [" in ", ", ", "_", " ", "/"].iter().find_map(|between| {
@@ -152,6 +155,8 @@ mod tests {
             ("Position/in", Some("in")),
             ("Gauge 3", None),
             ("Channel m", None),
+            ("Torque (x10 kN.m)", None),
+            ("Torque (1000 ft-lb)", None),
         ] {
             assert_eq!(stated(name).as_deref(), unit, "{name}");
         }
