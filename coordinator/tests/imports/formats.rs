@@ -468,3 +468,42 @@ fn a_card_is_one_whole_stroke() {
     assert_eq!(code, 0, "{said}");
     assert!(said.contains("1 outliers of the load"), "{said}");
 }
+
+/// Checks a card as services write it: angle, position and load without units, sections in comments, rows that
+/// lack a cell at the end.
+#[test]
+fn the_card_of_a_service_is_read() {
+    let folder = ImportFolder::new();
+    let card = std::fs::read_to_string(folder.path("case/raw/card_5rpm.dyn")).unwrap();
+    let points = card.lines().skip(1).take(360).enumerate();
+    let rows = points.map(|(at, line)| {
+        let section = if at == 180 { "# right\n" } else { "" };
+        format!("{section}{at},{line}\n")
+    });
+    let rows: String = rows.collect();
+    let text = format!("# well 7\n# 1715678560\nposition,length,weight\n# left\n{rows}360,0.00\n");
+    std::fs::write(folder.path("case/raw/service.csv"), text).unwrap();
+    let import = "record import case/raw/service.csv --case case --condition 5rpm";
+    let (code, said) = folder.run(import);
+    assert_eq!(code, 2, "{said}");
+    assert!(
+        said.contains("position = { column = \"length\", unit = \"in\" }"),
+        "{said}"
+    );
+    assert!(
+        said.contains("card.load: the unit of column \"weight\""),
+        "{said}"
+    );
+    folder.replace("case/measured/card_5rpm.import.toml", "# load", "load");
+    let (code, said) = folder.run(import);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("1 rows that lack a cell"), "{said}");
+    let of = |case: std::path::PathBuf| {
+        let file = case.join("measured/card_5rpm.csv");
+        case::pumping_unit::read_card(&file, protocol::pumping_unit::Smoothing::None, "a card")
+            .unwrap()
+    };
+    let (new, old) = (of(folder.path("case")), of(crate::folder::shipped()));
+    let difference = crate::rms(new.load_n.iter().zip(&old.load_n).map(|(a, b)| a - b));
+    assert!(difference < 50.0, "{difference}");
+}

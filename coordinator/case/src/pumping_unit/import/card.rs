@@ -14,6 +14,8 @@ use std::{fmt::Write as _, path::Path};
 /// Points of a dynamometer's card in the order of time, with what its file states beside them.
 #[derive(Clone, Debug, PartialEq)]
 struct Points {
+    /// Number of rows that lack a cell and were left out.
+    short: usize,
     position_m: Vec<f64>,
     load_n: Vec<f64>,
     strokes_per_minute: Option<f64>,
@@ -115,11 +117,16 @@ pub(super) fn import(document: &Document, machine: &Machine) -> Result<ImportedC
 /// Converts the points to crank angles and resamples the load.
 fn over_angle(path: &Path, points: Points, machine: &Machine) -> Result<ImportedCard, CaseError> {
     let Points {
+        short,
         mut position_m,
         mut load_n,
         ..
     } = points;
     let mut card = ImportedCard::default();
+    if short > 0 {
+        card.notes
+            .push(format!("{short} rows that lack a cell are left out"));
+    }
     // some programs close the loop by repeating the first point
     if let (Some(first), Some(last)) = (position_m.first(), position_m.last())
         && first.total_cmp(last).is_eq()
@@ -493,6 +500,7 @@ fn table(document: &Document, path: &Path, mapping: &CardMapping) -> Result<Poin
     let known = both.filter(|(position, load)| !(position.is_nan() || load.is_nan()));
     let (position_m, load_n) = known.map(|(p, l)| (p * length, l * force)).unzip();
     Ok(Points {
+        short: table.short,
         position_m,
         load_n,
         strokes_per_minute: None,
@@ -538,6 +546,7 @@ fn theta(path: &Path) -> Result<Points, CaseError> {
     let size = |unit: &str, to: &str| logger::factor(unit, to).unwrap_or(f64::NAN);
     let (inch, pound) = (size("in", "m"), size("lbf", "N"));
     let mut points = Points {
+        short: 0,
         position_m: Vec::new(),
         load_n: Vec::new(),
         strokes_per_minute: None,
@@ -612,6 +621,7 @@ mod tests {
     fn points(angles: impl Iterator<Item = f64>, scale: f64) -> Points {
         let (position_m, load_n) = angles.map(|a| (scale * position(a) - 1.0, load(a))).unzip();
         Points {
+            short: 0,
             position_m,
             load_n,
             strokes_per_minute: None,

@@ -124,6 +124,7 @@ mod tests {
             columns: Vec::new(),
             lines: (2..rows + 2).collect(),
             words: Vec::new(),
+            short: 0,
         }
     }
 

@@ -110,8 +110,13 @@ impl Columns {
                 (_, 1) => name.clone(),
                 (_, count) => format!("{name}#{count}"),
             });
-            let unit = unit::normal(&cell(&units)).or_else(|| unit::stated(&name));
-            columns.units.push(unit);
+            // a name and a line of units that contradict each other state nothing
+            columns
+                .units
+                .push(match (unit::normal(&cell(&units)), unit::stated(&name)) {
+                    (Some(unit), Some(other)) => Some(unit).filter(|unit| *unit == other),
+                    (unit, other) => unit.or(other),
+                });
         }
         Ok(columns)
     }

@@ -25,6 +25,8 @@ pub(crate) struct Table {
     pub(crate) columns: Vec<Vec<f64>>,
     /// Line of each row in the file.
     pub(crate) lines: Vec<u32>,
+    /// Number of rows that lack a cell and were left out; in a table with times they are an error.
+    pub(crate) short: usize,
     /// Cells of the requested columns that [`survey`] found to be no numbers, different ones with their first
     /// line.
     pub(crate) words: Vec<(u64, String)>,
@@ -232,6 +234,7 @@ fn read_with(
         columns: vec![Vec::new(); wanted.values.len()],
         lines: Vec::new(),
         words: Vec::new(),
+        short: 0,
     };
     let mut lines = Lines::open(path)?;
     let mut cells = Cells::default();
@@ -287,6 +290,10 @@ impl Wanted<'_> {
         self.layout.delimiter.split(line, cells);
         let filled = cells.filled();
         let cut = cells.len() < self.usual;
+        if cut && self.time.is_none() && !self.survey {
+            table.short += 1;
+            return Ok(());
+        }
         if (filled > self.width || cut) && !self.survey {
             return Err(self.fault(
                 (number, ""),
