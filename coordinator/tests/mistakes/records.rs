@@ -140,4 +140,21 @@ pub(crate) const RECORDS: &[Mistake] = &[
         2,
         &["`beam.inertia_kg_m2` = 24", "at least 795 kg m2"],
     ),
+    (
+        "another speed with the card of the first one",
+        |d| {
+            d.replace(
+                "case/case.toml",
+                "[objective]",
+                "[[conditions]]\nname = \"8rpm\"\nspeed_rpm = 8.0\ncounterweight_moment_n_m = 106.2e3\n\
+                 card_file = \"measured/card_5rpm.csv\"\n\n[objective]",
+            );
+        },
+        "simulate case --condition 8rpm",
+        0,
+        &[
+            "condition `8rpm` (8 /min) has the load card of `5rpm` (5 /min)",
+            "no prediction for `8rpm`",
+        ],
+    ),
 ];

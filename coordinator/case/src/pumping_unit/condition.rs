@@ -18,6 +18,9 @@ use protocol::{
 };
 use std::path::{Path, PathBuf};
 
+/// Difference of two speeds, relative, with which a load card counts as taken at both: the slip of a belt.
+const SAME_SPEED: f64 = 0.03;
+
 /// Inputs from which the working conditions of a pumping-unit case are read.
 #[derive(Debug, Clone, Copy)]
 struct Conditions<'a> {
@@ -56,8 +59,11 @@ pub(super) fn read_all(
     let mut faults = Faults::default();
     let indices = 0..file.conditions.len();
     let read = indices.filter_map(|index| faults.take(all.condition(index)));
-    let read = read.collect();
+    let mut read: Vec<ReadCondition> = read.collect();
     faults.end()?;
+    for (index, condition) in read.iter_mut().enumerate() {
+        condition.notes.extend(all.borrowed_card(index));
+    }
     Ok(read)
 }
 
@@ -143,6 +149,24 @@ impl Conditions<'_> {
                 cycles: None,
                 notes: not_repeated.into_iter().collect(),
             },
+        })
+    }
+
+    /// Returns a note if a condition has the load card of an earlier one with another speed.
+    fn borrowed_card(&self, index: usize) -> Option<Note> {
+        let entry = self.file.conditions.get(index)?;
+        let lender = self.file.conditions.iter().take(index).find(|other| {
+            let apart = (other.speed_rpm / entry.speed_rpm - 1.0).abs() > SAME_SPEED;
+            other.card_file == entry.card_file && apart
+        })?;
+        Some(Note {
+            path: self.source.document.path.clone(),
+            text: format!(
+                "condition `{}` ({} /min) has the load card of `{}` ({} /min): the load of a pump changes with its \
+                 speed, so that this is no prediction for `{0}`; measure its card, or compute it with a program for \
+                 rod strings",
+                entry.name, entry.speed_rpm, lender.name, lender.speed_rpm
+            ),
         })
     }
 

@@ -177,11 +177,14 @@ fn curves(roles: &[Option<Role>], others: &[(Option<usize>, &str)]) -> Vec<Propo
         })
         .collect();
     let mut numbers: Vec<u8> = gauges.iter().filter_map(|(_, number)| *number).collect();
+    let numbered = numbers.len();
     numbers.sort_unstable();
     numbers.dedup();
-    let distinct = numbers.len() == gauges.len();
+    // with distinct numbers those without one are other gauges
+    let distinct = numbered > 0 && numbers.len() == numbered;
+    let meant = |(_, number): &&(usize, Option<u8>)| !distinct || number.is_some();
     let mut all: Vec<ProposedCurve> = Vec::new();
-    for (order, (place, number)) in (1_u8..=4).zip(&gauges) {
+    for (order, (place, number)) in (1_u8..=4).zip(gauges.iter().filter(meant)) {
         let number = number.filter(|_| distinct).unwrap_or(order);
         all.push(ProposedCurve {
             name: format!("stress_{number}_mpa"),

@@ -90,8 +90,7 @@ impl Columns {
                     header.filled(),
                     first.filled()
                 ),
-                "name every column in a copy, or remove `table.header_line` from the mapping and name columns \
-                 by their places, as `#1`",
+                "name every column, in a copy of the file: without that no column is known by its name",
             ));
         }
         let mut columns = Self {
