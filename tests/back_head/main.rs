@@ -72,6 +72,7 @@ fn gauges(table: &serde_json::Value) -> Vec<Gauge> {
         let number = |key: &str| entry[key].as_f64().unwrap();
         Gauge {
             position: [number("x_m"), number("y_m"), number("z_m")],
+            direction: [0.0, 1.0, 0.0],
             length: number("length_m"),
         }
     };

@@ -181,6 +181,7 @@ fn a_mesh_by_gmsh_gives_what_another_program_gives() {
         serde_json::from_slice(&fs::read(arm.join("reference.json")).unwrap()).unwrap();
     let gauge = Gauge {
         position: [-0.46, 0.03, 0.04],
+        direction: [0.0, 1.0, 0.0],
         length: 0.02,
     };
     let stations = [141.0, 163.0, 180.0, 205.0].map(f64::to_radians);

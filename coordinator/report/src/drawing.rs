@@ -2,6 +2,7 @@
 use super::data::{SimulationView, SingleRun};
 use super::document::{Figure, Section, Table};
 use super::folder::ReportError;
+use super::machine_check::{ComparedChannel, MachineCheck};
 use protocol::case::{Case, Unknown};
 use std::path::{Path, PathBuf};
 
@@ -34,6 +35,17 @@ pub trait ModelReport: Sync {
     /// Returns the tables of one simulation: first the table of the ranges of its curves, then tables of all
     /// other numbers.
     fn tables(&self, run: &SingleRun) -> Vec<Table>;
+
+    /// Returns the quantities of the machine by which an engineer judges a fit under a condition, from the
+    /// channels of the condition; empty where there are none.
+    fn checks(
+        &self,
+        _case: &Case,
+        _condition: usize,
+        _channels: &[ComparedChannel<'_>],
+    ) -> Vec<MachineCheck> {
+        Vec::new()
+    }
 
     /// Writes files specific to the kind of model with the data behind the figures of named simulations.
     /// Returns the paths.

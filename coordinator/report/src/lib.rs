@@ -22,6 +22,7 @@ pub mod folder;
 mod general;
 pub mod identification;
 pub mod kind;
+mod machine_check;
 pub mod number;
 pub mod orthogonal;
 pub mod pumping_unit;
@@ -39,8 +40,9 @@ pub use document::{Block, Figure, Report, Section, Table, page, text};
 pub use drawing::ModelReport;
 pub use folder::ReportError;
 pub use general::GenericReport;
-pub use section::{derivatives, genes, hosts, jobs, slot_time};
+pub use machine_check::{ComparedChannel, MachineCheck};
+pub use section::{checks, condition_checks, derivatives, flags, genes, hosts, jobs, slot_time};
 pub use write::{
-    agreement, calibration, individual, parameters, ranges, rivals, running_calibration, script,
-    simulation, structure, write_calibration, write_simulation,
+    agreement, calibration, individual, machine, parameters, ranges, rivals, running_calibration,
+    script, simulation, structure, write_calibration, write_simulation,
 };

@@ -3,6 +3,7 @@ use super::csv;
 use super::data::{Calibration, ConditionResult, SingleRun};
 use super::document::{Report, SCRIPT, Section, Table, section_text};
 use super::folder::{ReportError, stream, write_report};
+use super::machine_check::MachineCheck;
 use super::{kind, section, table, words};
 use protocol::case::Case;
 use std::path::{Path, PathBuf};
@@ -36,9 +37,20 @@ pub fn individual(
     section::individual(case, (number, genes), conditions)
 }
 
-/// Renders the tables of a calibration's parameters and errors for a terminal; `styled` if it supports bold.
+/// Renders the tables of a calibration's parameters, errors and machine quantities for a terminal; `styled` if it
+/// supports bold.
 pub fn parameters(calibration: &Calibration, styled: bool) -> String {
-    section_text(&section::parameters(calibration), styled)
+    let tables = section_text(&section::parameters(calibration), styled);
+    format!(
+        "{tables}\n{}",
+        machine(&section::checks(calibration), styled)
+    )
+}
+
+/// Renders quantities of the machine with the recommended and the optimised parameters, and their flags, for a
+/// terminal; `styled` if it supports bold.
+pub fn machine(checks: &[MachineCheck], styled: bool) -> String {
+    section_text(&section::machine(checks), styled)
 }
 
 /// States that the search found fits of other families with nearly the same objective; `None` if it found none.

@@ -23,7 +23,7 @@ use protocol::{
     wire,
 };
 use report::pumping_unit::{
-    HeadPicture, head_mode_table, head_pair, head_statics, write_head_modes,
+    HeadPicture, head_gauges, head_mode_table, head_pair, head_statics, write_head_modes,
 };
 use report::table;
 use std::path::PathBuf;
@@ -124,13 +124,16 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.family == FamilyChoice::Coupled {
         spec.patterns = patterns(machine, &turn);
     }
-    if arguments.vtu.is_some() {
-        spec.fields = Some(hardest(machine, &turn));
-    }
+    spec.wrap = hardest(machine, &turn);
+    spec.fields = arguments.vtu.is_some();
     check_size(&spec)?;
     let head = reduce_once(unit.clone(), &spec)?;
     let wrapped = wrapped_turn(&turn, machine.back_head.rope_anchor_deg);
-    let comparison = compare_head(&head, &machine.modal_head, &wrapped, machine.run.modes);
+    let mut comparison = compare_head(&head, &machine.modal_head, &wrapped, machine.run.modes);
+    if machine.modal_head.frequencies_hz.is_empty() {
+        comparison.influence_difference = [f64::NAN; 4];
+        comparison.half_ranges.table = [f64::NAN; 4];
+    }
     let mut written = Vec::new();
     if let Some(folder) = &arguments.vtu {
         written.push(files::write_vtu(folder, &spec.mesh, &head)?);
@@ -145,16 +148,18 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     for path in &written {
         terminal::tell(&format!("wrote {}", path.display()));
     }
-    let object = output::head::head((case, &name), &source.mesh_blake3, &head, &comparison);
+    let object = output::head::head((case, &name), &source, &head, &comparison);
     let tables = || {
         let styled = terminal::styled();
         let modes = table::text(&head_mode_table(&head, &comparison), styled);
         let statics = head_statics(&comparison, &name, machine.run.modes);
+        let gauges = head_gauges(&head, &source.gauges, source.surface_distances_m());
         let pair = head.twin.iter().zip(&machine.twin_ropes);
         let pair = pair.map(|(twin, ropes)| head_pair(twin, ropes.offset_m));
         let pair = pair.map(|table| format!("\n{}", table::text(&table, styled)));
         let pair: String = pair.collect();
-        format!("{modes}\n{}{pair}", table::text(&statics, styled))
+        let [statics, gauges] = [statics, gauges].map(|own| table::text(&own, styled));
+        format!("{modes}\n{statics}\n{gauges}{pair}")
     };
     terminal::print(arguments.output.output, tables, &object)
 }
@@ -242,7 +247,12 @@ fn spec(
             offset_m: twins.offset_m,
             modes: twins.modes,
         }),
-        fields: None,
+        wrap: RopeWrap {
+            tension_n: 0.0,
+            anchor_deg: 0.0,
+            leaves_deg: 0.0,
+        },
+        fields: false,
     }
 }
 
@@ -293,7 +303,7 @@ fn check_size(spec: &ReduceHeadSpec) -> Result<(), Problem> {
     let field = size_of::<[f32; 3]>() * nodes;
     let stress = size_of::<[f32; 6]>() * elements;
     let fields = (spec.modes + 1) * field + stress;
-    if spec.fields.is_some() && fields > ROOM {
+    if spec.fields && fields > ROOM {
         let most = ROOM.saturating_sub(stress + field) / field.max(1);
         let help = format!("ask for at most {most} modes with --vtu (--modes {most})");
         return Err(too_long(&format!("--vtu with {} modes", spec.modes), help));
@@ -305,6 +315,8 @@ fn check_size(spec: &ReduceHeadSpec) -> Result<(), Problem> {
 fn reduce_once(mut unit: PumpingUnit, spec: &ReduceHeadSpec) -> anyhow::Result<ReducedHead> {
     // a worker builds the machine first: not with tables that are yet to come
     unit.machine.twin_ropes = None;
+    let known = unit.machine.modal_head.frequencies_hz.len();
+    unit.machine.run.modes = unit.machine.run.modes.min(known);
     with_temporary_run(&unit.into_case()?, "head", 1, async |bus, stop| {
         reduce_head(bus, spec, stop).await
     })

@@ -52,6 +52,8 @@ pub struct Crank {
     pub sense: TurnSense,
     /// Angle by which the counterweight leads the crank pin \[deg\].
     pub counterweight_phase_deg: f64,
+    /// Rated torque of the reducer at the crank shaft [N m]; `None` if not stated.
+    pub reducer_rating_n_m: Option<f64>,
 }
 
 /// Connecting rods and crossbeam, one planar rigid body between crank pin and back rope.

@@ -40,9 +40,11 @@ pub struct ReduceHeadSpec {
     /// Pair of ropes on the head of a twin-rope machine, for which the antisymmetric tables are returned as
     /// well.
     pub pair: Option<RopePair>,
-    /// Static load whose displacement and stress fields are returned; with it the fields of all modes are
-    /// returned too.
-    pub fields: Option<RopeWrap>,
+    /// Static load under which the stress of the gauges and its gradient are returned.
+    pub wrap: RopeWrap,
+    /// Whether the displacement fields of all modes are returned, and displacement and stress under the
+    /// static load.
+    pub fields: bool,
 }
 
 /// Finite-element mesh of a head that is symmetric about z = 0, whole or half.
@@ -91,11 +93,13 @@ impl ElementKind {
     }
 }
 
-/// Strain gauge in the y direction; its stress reading is Young's modulus times strain.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// Strain gauge; its stress reading is Young's modulus times the mean strain over its length.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeadGauge {
     /// Centre of the gauge in the beam frame \[m\].
     pub position_m: [f64; 3],
+    /// Unit vector along the gauge in the beam frame.
+    pub direction: [f64; 3],
     /// Gauge length \[m\].
     pub length_m: f64,
 }
@@ -143,6 +147,11 @@ pub struct ReducedHead {
     /// Static gauge stress per unit acceleration of the beam along x and y [MPa per m/s2] and about the pivot
     /// [MPa per rad/s2]; 3 x 4.
     pub inertia_stress_mpa: [[f64; 4]; 3],
+    /// Stress of each gauge under the static load \[MPa\].
+    pub wrap_stress_mpa: [f64; 4],
+    /// Change of that stress when the gauge is moved along x, y and z [MPa/m]; `None` along an axis on which
+    /// the body ends on both sides of the gauge.
+    pub wrap_gradient_mpa_per_m: [[Option<f64>; 3]; 4],
     /// Outward radial displacement of the arc at point j per newton of inward force at point i [m/N]; p x p.
     pub compliance_m_per_n: Vec<Vec<f64>>,
     /// Antisymmetric modes and influence lines of the head for twin ropes; `None` unless requested.

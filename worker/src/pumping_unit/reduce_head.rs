@@ -23,6 +23,7 @@ pub(super) fn run(spec: &ReduceHeadSpec) -> Result<ReducedHead, Failure> {
     let mesh = mesh(spec);
     let gauges = spec.gauges.map(|gauge| Gauge {
         position: gauge.position_m,
+        direction: gauge.direction,
         length: gauge.length_m,
     });
     let radians = |degrees: &[f64]| degrees.iter().map(|x| x.to_radians()).collect::<Vec<f64>>();
@@ -44,7 +45,7 @@ pub(super) fn run(spec: &ReduceHeadSpec) -> Result<ReducedHead, Failure> {
         center: spec.center_m,
         stations: &radians(&spec.arc_deg),
         probes: &radians(&spec.probes_deg),
-        wrap: spec.fields.map(wrap),
+        wrap: Some(wrap(spec.wrap)),
         patterns: &spec.patterns.iter().copied().map(wrap).collect::<Vec<_>>(),
         pair: spec.pair.map(|pair| Pair {
             offset: pair.offset_m,
@@ -52,7 +53,7 @@ pub(super) fn run(spec: &ReduceHeadSpec) -> Result<ReducedHead, Failure> {
         }),
         modes: spec.modes,
         families: &families,
-        fields: spec.fields.is_some(),
+        fields: spec.fields,
     })
     .map_err(|error| Failure::misconfigured("flexible_head", error.to_string()))?;
     let wall_s = started.elapsed().as_secs_f64();
@@ -93,6 +94,15 @@ fn check(spec: &ReduceHeadSpec) -> Result<(), Failure> {
             "pair.offset_m",
             format!("is {}; it must be a positive number", pair.offset_m),
         ));
+    }
+    for gauge in &spec.gauges {
+        let square: f64 = gauge.direction.iter().map(|x| x * x).sum();
+        if !((square - 1.0).abs() < 1e-6 && gauge.position_m.iter().all(|x| x.is_finite())) {
+            return Err(Failure::misconfigured(
+                "gauges",
+                "a gauge needs a finite position and a direction of length 1",
+            ));
+        }
     }
     if spec.modes == 0 || spec.families.is_empty() {
         return Err(Failure::misconfigured(
@@ -137,6 +147,15 @@ fn four(pascal: &[f64]) -> [f64; 4] {
     let mut four = [0.0; 4];
     for (to, from) in four.iter_mut().zip(pascal) {
         *to = from * MEGAPASCAL_PER_PASCAL;
+    }
+    four
+}
+
+/// Converts the gradients of four gauges from pascals to megapascals per metre.
+fn gradient(pascal: &[[Option<f64>; 3]]) -> [[Option<f64>; 3]; 4] {
+    let mut four = [[None; 3]; 4];
+    for (to, from) in four.iter_mut().zip(pascal) {
+        *to = from.map(|own| own.map(|x| x * MEGAPASCAL_PER_PASCAL));
     }
     four
 }
@@ -189,6 +208,8 @@ fn assemble(spec: &ReduceHeadSpec, reduction: &Reduction, wall_s: f64) -> Reduce
         },
         inertia_stress_mpa: reduction.inertia_stress.each_ref().map(|row| four(row)),
         twin: reduction.sway.as_ref().map(|sway| twin(spec, sway)),
+        wrap_stress_mpa: four(&reduction.wrap_reading),
+        wrap_gradient_mpa_per_m: gradient(&reduction.wrap_gradient),
         compliance_m_per_n: reduction.compliance.clone(),
         mass_kg: reduction.mass,
         center_of_mass_m: reduction.center_of_mass,
@@ -196,7 +217,7 @@ fn assemble(spec: &ReduceHeadSpec, reduction: &Reduction, wall_s: f64) -> Reduce
         unknowns: reduction.unknowns,
         lanczos_steps: reduction.lanczos_steps,
         wall_s,
-        fields: spec.fields.map(|_| fields(reduction)),
+        fields: spec.fields.then(|| fields(reduction)),
     }
 }
 

@@ -1,6 +1,8 @@
 //! Key figures of a pumping-unit case, as printed by `horsehead case check`.
 use super::{
+    flexible::ReadHead,
     geometry::Envelope,
+    head::{GaugePlace, UPWARDS},
     read::{Resolved, read},
     record::RecordFacts,
 };
@@ -35,6 +37,8 @@ pub struct KeyFigures {
     pub twin_ropes: Option<(f64, [f64; 2], Vec<f64>)>,
     /// Mass of the back head according to its mesh \[kg\].
     pub head_mass_kg: f64,
+    /// Gauges of the back head; empty without their places.
+    pub gauges: Vec<GaugeFigures>,
     /// Unknowns of the case.
     pub genes: Vec<Unknown>,
     /// Effects that the case adds to the baseline model.
@@ -58,6 +62,18 @@ pub struct ConditionFigures {
     pub load_n: [f64; 2],
     /// Key figures of the condition's gauge record, if there is one.
     pub record: Option<RecordFigures>,
+}
+
+/// Place of a gauge on the back head, and its stress under the rope at its largest tension.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GaugeFigures {
+    /// Place, direction and length of the gauge.
+    pub place: GaugePlace,
+    /// Distance from the surface of the body \[m\]; `None` without a mesh.
+    pub surface_distance_m: Option<f64>,
+    /// Stress under the largest tension \[MPa\] and its change when the gauge is moved along x, y and z
+    /// [MPa/m]; `None` if the tables do not state them.
+    pub stress: Option<(f64, [Option<f64>; 3])>,
 }
 
 /// Key figures of a gauge record.
@@ -109,6 +125,7 @@ fn of(source: &RecordFolder<'_>) -> Result<KeyFigures, CaseError> {
         facts,
         envelope,
         machine,
+        head,
         ..
     } = read(source)?;
     let case = loaded.case;
@@ -133,6 +150,7 @@ fn of(source: &RecordFolder<'_>) -> Result<KeyFigures, CaseError> {
             (twins.offset_m, longer, modes.copied().collect())
         }),
         head_mass_kg: machine.modal_head.mass_kg,
+        gauges: gauges(&head),
         conditions: conditions(&case, &machine, facts),
         objective: (calibrated_conditions(&case), case.objective.terms.clone()),
         notes: loaded.notes,
@@ -140,6 +158,21 @@ fn of(source: &RecordFolder<'_>) -> Result<KeyFigures, CaseError> {
         genes: case.unknowns,
         name: case.name,
     })
+}
+
+/// Returns the figures of the gauges whose places are known.
+fn gauges(head: &ReadHead) -> Vec<GaugeFigures> {
+    let wrap = head.provenance.largest_wrap;
+    let places = head.provenance.gauges.iter().flatten().enumerate();
+    let figures = places.map(|(at, gauge)| GaugeFigures {
+        place: GaugePlace::from(*gauge),
+        surface_distance_m: head
+            .mesh
+            .as_ref()
+            .map(|(mesh, _)| mesh.surface_distance_m(gauge.position_m)),
+        stress: wrap.map(|wrap| (wrap.stress_mpa[at], wrap.gradient_mpa_per_m[at])),
+    });
+    figures.collect()
 }
 
 /// Returns the key figures of each condition.
@@ -237,6 +270,9 @@ impl KeyFigures {
             self.head_mass_kg,
             modes.join(", ")
         )?;
+        for (number, gauge) in (1..).zip(&self.gauges) {
+            writeln!(to, "  gauge {number}   {gauge}")?;
+        }
         if let Some((offset, [back, front], modes)) = &self.twin_ropes {
             let modes: Vec<String> = modes.iter().map(|f| format!("{f:.1}")).collect();
             writeln!(
@@ -276,6 +312,44 @@ impl KeyFigures {
             writeln!(to, "effect      {}: {}", effect.id, numbers.join(", "))?;
         }
         Ok(())
+    }
+}
+
+impl fmt::Display for GaugeFigures {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let GaugePlace {
+            x_m,
+            y_m,
+            z_m,
+            length_m,
+            direction,
+        } = self.place;
+        let along = match direction {
+            UPWARDS => "y".to_owned(),
+            [x, y, z] => format!("({x:.2}, {y:.2}, {z:.2})"),
+        };
+        write!(
+            to,
+            "at ({x_m:.4}, {y_m:.4}, {z_m:.4}) m, {:.0} mm along {along}",
+            1e3 * length_m
+        )?;
+        if let Some(distance_m) = self.surface_distance_m {
+            write!(to, ", {:.1} mm from the surface", 1e3 * distance_m)?;
+        }
+        let Some((stress, gradient)) = self.stress else {
+            return Ok(());
+        };
+        write!(
+            to,
+            "; {stress:.1} MPa at the largest tension, moved by 1 mm along x, y, z: "
+        )?;
+        let changes = gradient.map(|own| {
+            own.map_or_else(
+                || "-".to_owned(),
+                |per_m| format!("{:+.1} %", 0.1 * per_m / stress),
+            )
+        });
+        write!(to, "{}", changes.join(", "))
     }
 }
 

@@ -1,12 +1,18 @@
 //! Reading of the flexible head of a case: its tables and its mesh, with a check that they belong together.
-use super::{head, mesh, schema::CaseFile, twin};
+use super::{
+    geometry, head, mesh,
+    record::whole,
+    schema::{CaseFile, FlexibleHead},
+    twin,
+};
 use crate::{
     document::{Document, DocumentStep},
-    error::{CaseError, Faults},
+    error::{CaseError, Faults, contradiction, damaged},
     file,
+    note::Note,
 };
-use protocol::pumping_unit::{ModalHead, TwinRopes};
-use std::path::Path;
+use protocol::pumping_unit::{HeadGauge, Influence, ModalHead, StressRecovery, TwinRopes};
+use std::path::{Path, PathBuf};
 
 /// Flexible back head of a pumping unit as read from its files: modes, influence lines and mesh.
 pub(super) struct ReadHead {
@@ -21,9 +27,13 @@ pub(super) struct ReadHead {
     /// Error that explains why the head's tables of modes and influence lines are out of date or do not fit
     /// together; `None` if they are valid.
     pub(super) stale: Option<CaseError>,
+    /// Note about the mesh, if there is one.
+    pub(super) notes: Option<Note>,
 }
 
 /// Reads the back head's modes and influence lines and, if the case names one, the mesh that they belong to.
+/// Tables that are missing but follow from mesh and gauges are replaced by empty ones, with the reason in
+/// [`ReadHead::stale`].
 pub(super) fn read(
     folder: &Path,
     document: &Document,
@@ -31,30 +41,19 @@ pub(super) fn read(
 ) -> Result<ReadHead, CaseError> {
     let flexible = &file.flexible_head;
     let modes_file = folder.join(&flexible.modes_file);
-    let mut faults = Faults::default();
-    let named = [&flexible.modes_file, &flexible.influence_file].into_iter();
-    for name in named.chain(&flexible.mesh_file) {
-        let role = format!(
-            "a table of the back head, named in {}",
-            document.path.display()
-        );
-        faults.take(file::require_exists(&folder.join(name), &role));
-    }
-    faults.end()?;
-    let (mut head, provenance) = head::read(&modes_file, &folder.join(&flexible.influence_file))?;
-    head.stress = flexible.stress;
-    let mut read = ReadHead {
-        head,
-        provenance,
-        mesh: None,
-        source_blake3: None,
-        twins: None,
-        stale: None,
-    };
+    let mut read = tables(folder, document, file)?;
+    read.head.stress = flexible.stress;
+    let unreduced = read.head.frequencies_hz.is_empty();
     if let Some(name) = &flexible.mesh_file {
         let path = folder.join(name);
-        let (mesh, hash) = mesh::read_hashed(&path)?;
-        read.stale = mesh::check_hash(&path, &hash, &read.provenance, &modes_file).err();
+        let (mesh, hash) = mesh::read_hashed(&path, mesh_unit_m(document, flexible)?)?;
+        mesh::check_rim(&path, &mesh, &file.back_head)?;
+        if unreduced {
+            read.head.mass_kg = mesh.volume_m3() * flexible.density_kg_m3;
+        } else {
+            let outdated = mesh::check_hash(&path, &hash, &read.provenance, &modes_file).err();
+            read.stale = outdated.or(read.stale);
+        }
         // what belongs to another mesh has another mass: the hash says it better
         if read.stale.is_none() {
             let mass = (modes_file.as_path(), read.head.mass_kg);
@@ -66,6 +65,7 @@ pub(super) fn read(
             read.stale =
                 mesh::check_origin(&modes_file, mesh::Origin::Source, Some(&source), stated).err();
         }
+        read.notes = mesh.straightened_m.map(|off_m| straightened(path, off_m));
         read.source_blake3 = Some(source);
         read.mesh = Some((mesh, hash));
     }
@@ -79,7 +79,7 @@ pub(super) fn read(
         read.stale = read.stale.or(pair.unfit);
     }
     let available = read.head.frequencies_hz.len();
-    if file.run.modes > available {
+    if file.run.modes > available && !unreduced {
         return Err(document.field(
             &[DocumentStep::Key("run"), DocumentStep::Key("modes")],
             file.run.modes,
@@ -91,6 +91,199 @@ pub(super) fn read(
         ));
     }
     Ok(read)
+}
+
+/// Returns the note that the edges of second-order elements were straightened.
+fn straightened(path: PathBuf, off_m: f64) -> Note {
+    Note {
+        path,
+        text: format!(
+            "of second-order bricks the corners are used, as bricks with incompatible modes; mid-edge \
+             nodes lie up to {:.3} mm beside the straight edges",
+            1e3 * off_m
+        ),
+    }
+}
+
+/// Reads the tables of modes and influence lines, with the places of the gauges.
+fn tables(folder: &Path, document: &Document, file: &CaseFile) -> Result<ReadHead, CaseError> {
+    let flexible = &file.flexible_head;
+    let stated = stated_gauges(document, flexible)?;
+    let from_mesh = flexible.mesh_file.is_some() && stated.is_some();
+    let help = match (&flexible.mesh_file, &stated) {
+        (Some(_), Some(_)) => "`horsehead head CASE --write` computes both tables from the mesh",
+        (Some(_), None) => {
+            "state the places of the gauges, flexible_head.gauges: then `horsehead head CASE --write` computes it"
+        }
+        (None, _) => {
+            "copy it to this place, or name a mesh, flexible_head.mesh_file, to compute it from"
+        }
+    };
+    let missing = |name: &PathBuf| {
+        let path = folder.join(name);
+        (!path.exists()).then(|| CaseError::Missing {
+            path: path.into(),
+            role: format!(
+                "a table of the back head, named in {}",
+                document.path.display()
+            )
+            .into(),
+            help: help.into(),
+        })
+    };
+    let mut faults = Faults::default();
+    if let Some(mesh) = &flexible.mesh_file {
+        let role = format!(
+            "the mesh of the back head, named in {}",
+            document.path.display()
+        );
+        faults.take(file::require_exists(&folder.join(mesh), &role));
+    }
+    let absent: Vec<CaseError> = [&flexible.modes_file, &flexible.influence_file]
+        .into_iter()
+        .filter_map(missing)
+        .collect();
+    let empty = |head, provenance, stale| ReadHead {
+        head,
+        provenance,
+        mesh: None,
+        source_blake3: None,
+        twins: None,
+        stale,
+        notes: None,
+    };
+    if from_mesh && !absent.is_empty() {
+        faults.end()?;
+        let provenance = head::Provenance {
+            gauges: stated,
+            ..head::Provenance::default()
+        };
+        let stale = absent.into_iter().next();
+        return Ok(empty(unreduced(document, file)?, provenance, stale));
+    }
+    for fault in absent {
+        faults.take::<()>(Err(fault));
+    }
+    faults.end()?;
+    let modes_file = folder.join(&flexible.modes_file);
+    let influence_file = folder.join(&flexible.influence_file);
+    let (head, mut provenance) = head::read(&modes_file, &influence_file)?;
+    let moved = matches!((stated, provenance.gauges), (Some(here), Some(there)) if here != there);
+    let stale = moved.then(|| {
+        contradiction(
+            &modes_file,
+            "gauges",
+            "those for which the tables were computed",
+            format!(
+                "{}: flexible_head.gauges has others",
+                document.path.display()
+            ),
+            "`horsehead head CASE --write` computes the tables again",
+        )
+    });
+    provenance.gauges = stated.or(provenance.gauges);
+    Ok(empty(head, provenance, stale))
+}
+
+/// Returns the length of the unit in which the mesh is given.
+///
+/// # Errors
+/// Returns an error for a factor that is no unit of length.
+fn mesh_unit_m(document: &Document, flexible: &FlexibleHead) -> Result<f64, CaseError> {
+    let unit_m = flexible.mesh_unit_m;
+    if (1e-6..=1e3).contains(&unit_m) {
+        return Ok(unit_m);
+    }
+    Err(document.field(
+        &["flexible_head", "mesh_unit_m"].map(DocumentStep::Key),
+        unit_m,
+        "the unit's length in metres, 1e-6 to 1e3",
+        "state 1.0 for a mesh in metres, 0.001 for millimetres, 0.0254 for inches",
+    ))
+}
+
+/// Returns the places of the gauges that a case states.
+///
+/// # Errors
+/// Returns an error if they are not those of the gauges 1 to 4.
+fn stated_gauges(
+    document: &Document,
+    flexible: &FlexibleHead,
+) -> Result<Option<[HeadGauge; 4]>, CaseError> {
+    let Some(gauges) = &flexible.gauges else {
+        return Ok(None);
+    };
+    let way = ["flexible_head", "gauges"].map(DocumentStep::Key);
+    let places = head::places(gauges).filter(|_| gauges.len() == 4);
+    let places = places.ok_or_else(|| {
+        document.field(
+            &way,
+            format!("{{ {} }}", gauges.keys().cloned().collect::<Vec<_>>().join(", ")),
+            "the gauges 1, 2, 3 and 4",
+            "add gauges.N = { x_m = .., y_m = .., z_m = .., length_m = .. } for each, in the frame of the beam",
+        )
+    })?;
+    for gauge in &places {
+        let numbers = gauge.position_m.iter().chain(&gauge.direction);
+        // a direction of no length has become not a number
+        let finite = numbers.copied().all(f64::is_finite);
+        if !(finite && gauge.length_m > 0.0 && gauge.length_m < 1.0) {
+            return Err(document.field(
+                &way,
+                format!(
+                    "{:?}, length {}, direction {:?}",
+                    gauge.position_m, gauge.length_m, gauge.direction
+                ),
+                "finite coordinates in metres, a grid length above 0 and below 1 m, and a direction that is \
+                 not zero",
+                "correct the place; lengths are in metres",
+            ));
+        }
+    }
+    Ok(Some(places))
+}
+
+/// Damping ratio of the head's modes where no modes file states another: that of welded steel.
+const DAMPING_RATIO: f64 = 0.01;
+
+/// Angle by which the stations of the influence lines go beyond the rope's anchor and its last contact \[deg\].
+const BEYOND_DEG: f64 = 7.0;
+
+/// Returns a head without modes, with the stations at which it is to be reduced: every degree of the arc that
+/// the rope touches.
+///
+/// # Errors
+/// Returns an error if the crank cannot complete a turn.
+fn unreduced(document: &Document, file: &CaseFile) -> Result<ModalHead, CaseError> {
+    let envelope = geometry::envelope(file).map_err(|_| {
+        damaged(
+            &document.path,
+            "the crank cannot complete a turn with these lengths",
+            "correct the lengths of crank, rod and ropes",
+        )
+    })?;
+    let [lowest, highest] = envelope.contact_deg;
+    let first = (lowest.min(file.back_head.rope_anchor_deg) - BEYOND_DEG).floor();
+    let count = whole((highest + BEYOND_DEG).ceil() - first) + 1;
+    let arc_deg: Vec<f64> = (0..count).map(|at| first + at as f64).collect();
+    let zero = vec![[0.0; 4]; arc_deg.len()];
+    Ok(ModalHead {
+        frequencies_hz: Vec::new(),
+        damping_ratio: DAMPING_RATIO,
+        radial: Vec::new(),
+        tangential: Vec::new(),
+        gauge_stress_mpa: Vec::new(),
+        participation: Vec::new(),
+        inertia_stress_mpa: [[0.0; 4]; 3],
+        stress: StressRecovery::default(),
+        mass_kg: 0.0,
+        influence: Influence {
+            psi_deg: arc_deg.clone(),
+            normal_mpa_per_n: zero.clone(),
+            tangential_mpa_per_n: zero,
+        },
+        arc_deg,
+    })
 }
 
 /// Returns the content hash of all inputs of a reduction: mesh, material, arc, stations and gauges.
@@ -113,7 +306,14 @@ fn source_hash(mesh: &str, file: &CaseFile, read: &ReadHead) -> String {
     for gauge in read.provenance.gauges.iter().flatten() {
         take(&gauge.position_m);
         take(&[gauge.length_m]);
+        // as it was when all gauges were vertical
+        if gauge.direction != head::UPWARDS {
+            take(&gauge.direction);
+        }
     }
     take(&read.head.arc_deg);
+    if flexible.mesh_unit_m != 1.0 {
+        take(&[flexible.mesh_unit_m]);
+    }
     hasher.finalize().to_hex().to_string()
 }

@@ -25,16 +25,19 @@ struct ModesFile {
     participation: Vec<[f64; 3]>,
     inertia_stress_mpa: [[f64; 4]; 3],
     mass_kg: f64,
-    /// Locations of the gauges by name; needed only for a new reduction of the head.
+    /// Locations of the gauges by name, for which the tables were computed.
     gauges: Option<BTreeMap<String, GaugePlace>>,
+    /// Stress of the gauges under the largest tension; absent if the tables were not reduced by this program.
+    largest_wrap: Option<WrapStress>,
     /// Content hash of the mesh file that the tables were computed from, if they were.
     mesh_blake3: Option<String>,
     /// Content hash of all inputs of the reduction; absent if the tables were not reduced by this program.
     source_blake3: Option<String>,
 }
 
-/// Location of a gauge in the modes file.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+/// Location of a gauge, in the case file or the modes file.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct GaugePlace {
     /// Coordinate along the machine, from the beam pivot towards the well \[m\].
     pub x_m: f64,
@@ -44,6 +47,43 @@ pub struct GaugePlace {
     pub z_m: f64,
     /// Length of the strain gauge's measuring grid \[m\].
     pub length_m: f64,
+    /// Vector along the grid, of any length; upwards unless stated.
+    #[serde(default = "upwards", skip_serializing_if = "is_upwards")]
+    pub direction: [f64; 3],
+}
+
+/// Direction of a gauge that reads vertical strain.
+pub(super) const UPWARDS: [f64; 3] = [0.0, 1.0, 0.0];
+
+const fn upwards() -> [f64; 3] {
+    UPWARDS
+}
+
+fn is_upwards(direction: &[f64; 3]) -> bool {
+    *direction == UPWARDS
+}
+
+impl From<HeadGauge> for GaugePlace {
+    fn from(gauge: HeadGauge) -> Self {
+        let [x_m, y_m, z_m] = gauge.position_m;
+        Self {
+            x_m,
+            y_m,
+            z_m,
+            length_m: gauge.length_m,
+            direction: gauge.direction,
+        }
+    }
+}
+
+/// Static stress of the gauges under the rope at its largest tension, and what moving a gauge changes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WrapStress {
+    /// Stress of each gauge \[MPa\].
+    pub stress_mpa: [f64; 4],
+    /// Change of that stress when the gauge is moved along x, y and z [MPa/m]; `None` along an axis on which
+    /// the body ends on both sides of the gauge.
+    pub gradient_mpa_per_m: [[Option<f64>; 3]; 4],
 }
 
 /// Provenance of the head's tables, as stated in the modes file.
@@ -51,24 +91,38 @@ pub struct GaugePlace {
 pub(super) struct Provenance {
     /// Locations of the four gauges, if the file states them.
     pub(super) gauges: Option<[HeadGauge; 4]>,
+    /// Stress of the gauges under the largest tension, if the file states it.
+    pub(super) largest_wrap: Option<WrapStress>,
     /// Content hash of the mesh that the tables were computed from.
     pub(super) mesh_blake3: Option<String>,
     /// Content hash of all inputs of the reduction.
     pub(super) source_blake3: Option<String>,
 }
 
+/// Returns the places of the gauges 1 to 4 by their names; `None` if one is missing.
+pub(super) fn places(gauges: &BTreeMap<String, GaugePlace>) -> Option<[HeadGauge; 4]> {
+    let place = |name: &str| {
+        let place = gauges.get(name)?;
+        let square: f64 = place.direction.iter().map(|x| x * x).sum();
+        let length = if place.direction == UPWARDS {
+            1.0
+        } else {
+            square.sqrt()
+        };
+        Some(HeadGauge {
+            position_m: [place.x_m, place.y_m, place.z_m],
+            direction: place.direction.map(|x| x / length),
+            length_m: place.length_m,
+        })
+    };
+    Some([place("1")?, place("2")?, place("3")?, place("4")?])
+}
+
 impl Provenance {
     fn new(file: &ModesFile) -> Self {
-        let place = |name: &str| {
-            let place = file.gauges.as_ref()?.get(name)?;
-            Some(HeadGauge {
-                position_m: [place.x_m, place.y_m, place.z_m],
-                length_m: place.length_m,
-            })
-        };
-        let four = || Some([place("1")?, place("2")?, place("3")?, place("4")?]);
         Self {
-            gauges: four(),
+            gauges: file.gauges.as_ref().and_then(places),
+            largest_wrap: file.largest_wrap,
             mesh_blake3: file.mesh_blake3.clone(),
             source_blake3: file.source_blake3.clone(),
         }

@@ -37,6 +37,14 @@ pub struct HeadSource {
     pub twin_file: Option<PathBuf>,
 }
 
+impl HeadSource {
+    /// Returns the distance of each gauge from the surface of the mesh \[m\].
+    pub fn surface_distances_m(&self) -> [f64; 4] {
+        self.gauges
+            .map(|gauge| self.mesh.surface_distance_m(gauge.position_m))
+    }
+}
+
 /// Loads a case with the inputs of its back head's reduction. Tables computed from another mesh are accepted
 /// here.
 ///
@@ -64,8 +72,8 @@ pub fn load_head(folder: &Path) -> Result<(PumpingUnit, HeadSource), CaseError> 
     let Some(gauges) = head.provenance.gauges else {
         return Err(damaged(
             &modes_file,
-            "`gauges` does not place the gauges 1 to 4",
-            "add \"gauges\": {\"1\": {\"x_m\": .., \"y_m\": .., \"z_m\": .., \"length_m\": ..}, ..}",
+            "neither it nor the case places the gauges 1 to 4",
+            "add gauges.1 = { x_m = .., y_m = .., z_m = .., length_m = .. } to 4 to [flexible_head] of case.toml",
         ));
     };
     let source = HeadSource {

@@ -29,10 +29,10 @@ use crate::{document::Document, error::CaseError};
 use std::path::PathBuf;
 
 pub use card::read as read_card;
-pub use figures::{ConditionFigures, KeyFigures, RecordFigures, figures};
+pub use figures::{ConditionFigures, GaugeFigures, KeyFigures, RecordFigures, figures};
 pub use genes::unknown;
 pub use geometry::{Envelope, QuasiStaticTurn, quasi_static};
-pub use head::GaugePlace;
+pub use head::{GaugePlace, WrapStress};
 pub use head_comparison::{
     HalfRanges, HeadComparison, ModeMatch, WrappedTurn, compare_head, wrapped_turn,
 };

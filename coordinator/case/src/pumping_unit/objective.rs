@@ -27,7 +27,9 @@ pub(super) fn read(
             None => Ok(Objective {
                 condition: 0,
                 others: Vec::new(),
-                terms: (1..=4).map(|gauge| term(gauge, 1.0)).collect(),
+                terms: (1..=4)
+                    .map(|gauge| term(Sensor::Gauge(gauge), 1.0))
+                    .collect(),
             }),
             Some(recorded) => Err(document.field(
                 &[DocumentStep::Key("objective")],
@@ -47,10 +49,9 @@ pub(super) fn read(
     let objective = Objective {
         condition,
         others,
-        terms: entry
-            .gauges
-            .iter()
-            .map(|part| term(part.gauge, part.weight))
+        terms: stated_terms(entry)
+            .into_iter()
+            .map(|own| own.term)
             .collect(),
     };
     let bare = objective
@@ -69,7 +70,78 @@ pub(super) fn read(
         ));
     }
     check_gauges(document, &entry.gauges)?;
+    for (key, weight) in [
+        (POSITION, entry.position_weight_mpa2_per_m2),
+        (TORQUE, entry.torque_weight_mpa2_per_kn2_m2),
+    ] {
+        if let Some(weight) = weight.filter(|weight| !(*weight > 0.0 && *weight <= 1.0e9)) {
+            return Err(document.field(
+                &["objective", key].map(DocumentStep::Key),
+                weight,
+                "above 0, at most 1e9",
+                "remove the key if it is not part of the objective",
+            ));
+        }
+    }
     Ok(objective)
+}
+
+/// Key of the weight of the rod position.
+const POSITION: &str = "position_weight_mpa2_per_m2";
+/// Key of the weight of the crank torque.
+const TORQUE: &str = "torque_weight_mpa2_per_kn2_m2";
+
+/// Square newton metres in a square kilonewton metre.
+const KILO_SQUARED: f64 = 1.0e6;
+
+/// Term of the objective as the case file states it.
+struct StatedTerm {
+    term: Term,
+    /// Whether the term is dropped if the record lacks its channel.
+    optional: bool,
+    /// Path to the key that states the term.
+    way: Vec<DocumentStep<'static>>,
+    /// Value of that key.
+    value: String,
+    /// Column of the record from which the channel is read.
+    column: String,
+}
+
+/// Returns the terms that the case file states: gauges, rod position, crank torque.
+fn stated_terms(entry: &ObjectiveEntry) -> Vec<StatedTerm> {
+    let gauge = |(at, own): (usize, &GaugeWeight)| StatedTerm {
+        term: term(Sensor::Gauge(own.gauge), own.weight),
+        optional: own.optional,
+        way: vec![
+            DocumentStep::Key("objective"),
+            DocumentStep::Key("gauges"),
+            DocumentStep::Index(at),
+            DocumentStep::Key("gauge"),
+        ],
+        value: own.gauge.to_string(),
+        column: format!("stress_{}_mpa", own.gauge),
+    };
+    let other = |sensor, key, (weight, unit): (Option<f64>, f64), column: &str| {
+        weight.map(|weight| StatedTerm {
+            term: term(sensor, weight / unit),
+            optional: false,
+            way: vec![DocumentStep::Key("objective"), DocumentStep::Key(key)],
+            value: weight.to_string(),
+            column: column.to_owned(),
+        })
+    };
+    let position = (entry.position_weight_mpa2_per_m2, 1.0);
+    let torque = (entry.torque_weight_mpa2_per_kn2_m2, KILO_SQUARED);
+    let gauges = entry.gauges.iter().enumerate().map(gauge);
+    gauges
+        .chain(other(
+            Sensor::Position,
+            POSITION,
+            position,
+            "polished_rod_position_m",
+        ))
+        .chain(other(Sensor::Torque, TORQUE, torque, "crank_torque_nm"))
+        .collect()
 }
 
 /// Returns the channels with the treatment of the sensor's zero (free or fixed offset) that the objective
@@ -84,8 +156,8 @@ pub(super) fn with_offset(
         .map(move |own| Channel { offset, ..own })
 }
 
-/// Restricts the objective to the gauges that the records of its conditions contain, provided the others are
-/// optional: a gauge that one of several records lacks counts under the other conditions, one that all lack is
+/// Restricts the objective to the channels that the records of its conditions contain, provided the others are
+/// optional: one that one of several records lacks counts under the other conditions, one that all lack is
 /// dropped. Returns notes on the restriction.
 ///
 /// # Errors
@@ -105,6 +177,7 @@ pub(super) fn restrict_to_recorded(
             "no [objective]: the case is simulated only; a calibration needs one, and a record";
         return Ok(vec![note(text.to_owned())]);
     };
+    let stated = stated_terms(entry);
     let mut notes = Vec::new();
     let mut found_anywhere = vec![false; objective.terms.len()];
     for condition in objective.conditions() {
@@ -122,14 +195,12 @@ pub(super) fn restrict_to_recorded(
             .map(|term| recorded.contains(&&*term.channel))
             .collect();
         let kept = there.contains(&true);
-        let lost = there
-            .iter()
-            .zip(&entry.gauges)
-            .position(|(there, gauge)| !there && (!kept || !gauge.optional));
-        if let Some(at) = lost {
+        let mut pairs = there.iter().zip(&stated);
+        let lost = pairs.find(|(there, own)| !**there && (!kept || !own.optional));
+        if let Some((_, lost)) = lost {
             let facts = facts.get(condition).and_then(Option::as_ref);
             let unused = facts.map_or(&[][..], |facts| &facts.unused);
-            return Err(missing_gauge(document, (entry, at), &recorded, unused));
+            return Err(missing_channel(document, lost, &recorded, unused));
         }
         let missing = objective.terms.iter().zip(&there);
         let missing = missing.filter(|(_, there)| !**there);
@@ -157,40 +228,37 @@ pub(super) fn restrict_to_recorded(
     Ok(notes)
 }
 
-/// Builds the error for a gauge of the objective, the `at`-th of its entry, that a record lacks; `recorded` are
-/// the channels that the record has, `unused` its columns that are not read.
-fn missing_gauge(
+/// Builds the error for a channel of the objective that a record lacks; `recorded` are the channels that the
+/// record has, `unused` its columns that are not read.
+fn missing_channel(
     document: &Document,
-    (entry, at): (&ObjectiveEntry, usize),
+    lost: &StatedTerm,
     recorded: &[&str],
     unused: &[String],
 ) -> CaseError {
-    let gauge = entry.gauges.get(at).map_or(0, |gauge| gauge.gauge);
-    let way = [
-        DocumentStep::Key("objective"),
-        DocumentStep::Key("gauges"),
-        DocumentStep::Index(at),
-        DocumentStep::Key("gauge"),
-    ];
     let unused = if unused.is_empty() {
         String::new()
     } else {
         format!(" (not used there: {})", clip(&unused.join(", "), 120))
     };
-    document.field(
-        &way,
-        gauge,
-        format!("a gauge that the record has: {}", recorded.join(", ")),
-        &format!(
-            "name its column stress_{gauge}_mpa{unused}; or say that the objective may do without it: \
-             {{ gauge = {gauge}, weight = 1.0, optional = true }}"
+    let without = match Sensor::gauge(&lost.term.channel) {
+        Some(gauge) => format!(
+            "say that the objective may do without it: {{ gauge = {gauge}, weight = 1.0, optional = true }}"
         ),
+        None => "remove the key".to_owned(),
+    };
+    let column = &lost.column;
+    document.field(
+        &lost.way,
+        &lost.value,
+        format!("a channel that the record has: {}", recorded.join(", ")),
+        &format!("name its column {column}{unused}; or {without}"),
     )
 }
 
-fn term(gauge: u8, weight: f64) -> Term {
+fn term(sensor: Sensor, weight: f64) -> Term {
     Term {
-        channel: Sensor::Gauge(gauge).name(),
+        channel: sensor.name(),
         weight,
     }
 }

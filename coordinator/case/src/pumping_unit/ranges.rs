@@ -17,6 +17,7 @@ const ANGLE: Range = Range(-360.0, 360.0, "deg");
 const MOMENT: Range = Range(-1.0e6, 1.0e6, "N m");
 const PITCH: Range = Range(1.0e-3, 1.0, "m");
 const CYLINDERS: Range = Range(2.0, 5000.0, "cylinders");
+const RATING: Range = Range(1.0e3, 1.0e6, "N.m");
 const DENSITY: Range = Range(100.0, 3.0e4, "kg/m3");
 const MODULUS: Range = Range(1.0, 1.0e3, "GPa");
 const POISSON: Range = Range(0.0, 0.49, "(no unit)");
@@ -56,6 +57,7 @@ fn bodies(case: &CaseFile) -> Vec<Number> {
         crank.counterweight_phase_deg,
         beam.gravity_height_moment_n_m,
     );
+    let rating = crank.reducer_rating_n_m.unwrap_or(RATING.0);
     vec![
         ("gravity_m_s2", case.gravity_m_s2, Range(0.0, 100.0, "m/s2")),
         ("beam.inertia_kg_m2", beam.inertia_kg_m2, INERTIA),
@@ -65,6 +67,7 @@ fn bodies(case: &CaseFile) -> Vec<Number> {
         ("crank.center_x_m", crank.center_x_m, PLACE),
         ("crank.center_y_m", crank.center_y_m, PLACE),
         ("crank.counterweight_phase_deg", phase, ANGLE),
+        ("crank.reducer_rating_n_m", rating, RATING),
         ("rod.length_m", rod.length_m, LENGTH),
         ("rod.mass_kg", rod.mass_kg, MASS),
         ("rod.center_of_mass_m", rod.center_of_mass_m, PLACE),

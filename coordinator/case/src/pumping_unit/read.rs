@@ -13,6 +13,7 @@ use crate::{
     effect::{self, CaseEffect},
     error::{CaseError, Faults, damaged},
     loaded::{Loaded, Records},
+    note::Note,
     source::RecordFolder,
 };
 use discrepancy::record::Record;
@@ -65,7 +66,8 @@ pub(super) fn resolve(source: &RecordFolder<'_>) -> Result<Resolved, CaseError> 
     } = parts(source, &file)?;
     let stated = file.objective.as_ref();
     unknowns.extend(file.effects.iter().flat_map(CaseEffect::genes));
-    let (mut notes, mut facts) = (Vec::new(), Vec::new());
+    let mut notes: Vec<Note> = head.notes.iter().cloned().collect();
+    let mut facts = Vec::new();
     let (mut cycles, mut channels) = (Vec::new(), Vec::new());
     let (mut conditions, mut working) = (Vec::new(), Vec::new());
     for read in read {

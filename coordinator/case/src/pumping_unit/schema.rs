@@ -1,6 +1,6 @@
 //! Schema of `case.toml`: keys and their types. Allowed values are checked where the data that they concern
 //! are read.
-use super::recommended::Recommended;
+use super::{head::GaugePlace, recommended::Recommended};
 use crate::{
     diagnose::DiagnoseEntry, effect::CaseEffect, fitted_conditions::FittedConditions,
     loaded::Records, prior::PriorEntry,
@@ -91,6 +91,11 @@ pub(super) struct FlexibleHead {
     /// Poisson's ratio of the meshed head's material \[1\]; steel unless stated.
     #[serde(default = "steel_poisson")]
     pub(super) poisson: f64,
+    /// Length of the unit in which the mesh is given \[m\].
+    #[serde(default = "metre")]
+    pub(super) mesh_unit_m: f64,
+    /// Places of the gauges 1 to 4, from which the head is reduced; those in the modes file unless stated.
+    pub(super) gauges: Option<BTreeMap<String, GaugePlace>>,
 }
 
 /// Elastic constants of the cylinders that represent the rope.
@@ -140,6 +145,10 @@ const fn steel_gpa() -> f64 {
     206.0
 }
 
+const fn metre() -> f64 {
+    1.0
+}
+
 const fn steel_poisson() -> f64 {
     0.3
 }
@@ -177,12 +186,16 @@ const fn no_smoothing() -> Smoothing {
     Smoothing::None
 }
 
-/// Objective of a calibration: working conditions and weighted gauges.
+/// Objective of a calibration: working conditions, weighted gauges, and weights of position and torque.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ObjectiveEntry {
     pub(super) condition: FittedConditions,
     pub(super) gauges: Vec<GaugeWeight>,
+    /// Weight of the mean squared error of the rod position [MPa2/m2].
+    pub(super) position_weight_mpa2_per_m2: Option<f64>,
+    /// Weight of the mean squared error of the crank torque [MPa2/(kN m)2].
+    pub(super) torque_weight_mpa2_per_kn2_m2: Option<f64>,
     pub(super) offset: Offset,
 }
 

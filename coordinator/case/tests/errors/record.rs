@@ -157,7 +157,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
         },
         &[
             "case.toml: `objective.gauges[0].gauge` = 1",
-            "a gauge that the record has: gauge_2, gauge_3, gauge_4",
+            "a channel that the record has: gauge_2, gauge_3, gauge_4",
             "name its column stress_1_mpa (not used there: sigma_a)",
             "optional = true",
         ],

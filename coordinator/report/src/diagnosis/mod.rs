@@ -2,6 +2,7 @@
 //! the added effects with their validation and certainty, and the provenance.
 //!
 //! All numbers are those of the diagnosis; only the paper's two error measures are computed here.
+mod checks;
 mod condition_curves;
 mod csv;
 mod effects;
@@ -12,6 +13,7 @@ mod table;
 mod words;
 mod write;
 
+pub use checks::checks;
 pub use effects::{effects, effects_toml, starts};
 pub use subject::DiagnosisInput;
 pub use write::{report, write};

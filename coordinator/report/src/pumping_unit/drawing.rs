@@ -1,9 +1,10 @@
 //! Report content of the pumping unit, as an implementation of [`ModelReport`].
-use super::{animation, card::card, contact::contact, csv, revolution, single};
+use super::{animation, card::card, check, contact::contact, csv, revolution, single};
 use crate::data::{SimulationView, SingleRun};
 use crate::document::{Block, Figure, Section, Table};
 use crate::drawing::ModelReport;
 use crate::folder::{ReportError, stream};
+use crate::machine_check::{ComparedChannel, MachineCheck};
 use maud::html;
 use protocol::case::{Case, Unknown};
 use protocol::pumping_unit::{Coefficient, Machine, Simulation};
@@ -77,6 +78,15 @@ impl ModelReport for PumpingUnitReport {
                 ]
             },
         )
+    }
+
+    fn checks(
+        &self,
+        case: &Case,
+        condition: usize,
+        channels: &[ComparedChannel<'_>],
+    ) -> Vec<MachineCheck> {
+        check::checks(case, condition, channels)
     }
 
     fn files(

@@ -4,8 +4,7 @@ use super::name::mode_family;
 use crate::document::{Row, Table};
 use crate::number::{MISSING, fixed, percent};
 use case::pumping_unit::HeadComparison;
-use protocol::pumping_unit::TwinHead;
-use protocol::pumping_unit::{OmittedMode, ReducedHead};
+use protocol::pumping_unit::{HeadGauge, OmittedMode, ReducedHead, TwinHead};
 
 /// Note below the table of modes that defines the coupling of a mode: the largest share of the static energy
 /// under a load pattern.
@@ -140,6 +139,51 @@ pub fn head_pair(tables: &TwinHead, offset_m: f64) -> Table {
     .with_notes([
         "Largest displacement of the rope at +z (mm) and gauge stress (GPa) per unit modal \
              coordinate (kg^1/2 m).",
+    ])
+}
+
+/// Builds the table of the gauges: place, distance from the surface of the mesh \[m\], and stress under the rope at
+/// its largest tension with its change when the gauge is moved.
+pub fn head_gauges(
+    head: &ReducedHead,
+    gauges: &[HeadGauge; 4],
+    surface_distance_m: [f64; 4],
+) -> Table {
+    let rows = (0..4).map(|at| {
+        let HeadGauge {
+            position_m,
+            direction,
+            ..
+        } = gauges[at];
+        let list = |values: [f64; 3], digits| values.map(|x| fixed(x, digits)).join(", ");
+        let stress = head.wrap_stress_mpa[at];
+        let change = head.wrap_gradient_mpa_per_m[at].map(|own| {
+            own.map_or_else(
+                || MISSING.to_owned(),
+                |per_m| percent(1e-3 * per_m / stress),
+            )
+        });
+        let place = [
+            list(position_m, 4),
+            list(direction, 2),
+            fixed(1e3 * surface_distance_m[at], 1),
+            fixed(stress, 1),
+        ];
+        Row::new(format!("gauge {}", at + 1), place.into_iter().chain(change))
+    });
+    let head = [
+        "",
+        "x, y, z (m)",
+        "direction",
+        "from the surface (mm)",
+        "stress (MPa)",
+        "per mm along x",
+        "along y",
+        "along z",
+    ];
+    Table::new("Gauges, with the rope at its largest tension", head, rows.collect()).with_notes([
+        "Per mm: change of the stress when the gauge is moved by 1 mm, over its length on both sides; a gauge whose \
+         place is known to 2 mm has twice this as the uncertainty of its reading.",
     ])
 }
 

@@ -20,6 +20,8 @@ const MARGIN: f64 = 12.0;
 const LABEL: f64 = 22.0;
 /// Drawn size of the largest deflection, as a share of the head's larger side.
 const DEFLECTION: f64 = 0.09;
+/// Half of the length of the line that shows a gauge's direction [px].
+const GAUGE: f64 = 5.0;
 /// Threshold below which a mode counts as inert: its largest arc deflection relative to that of the mode that
 /// moves the arc most.
 const INERT: f64 = 1e-6;
@@ -206,6 +208,12 @@ impl Sheet<'_> {
             let [x, y, _] = gauge.position_m;
             let place = self.at((x, y));
             self.canvas.dot(place, 1.8, BLUE);
+            let [along_x, along_y, _] = gauge.direction.map(|x| GAUGE * x);
+            let ends = [
+                (place.0 - along_x, place.1 + along_y),
+                (place.0 + along_x, place.1 - along_y),
+            ];
+            self.canvas.line(&ends, Pen::new(BLUE, 1.0));
             let lettering = TextStyle::new(9.0, BLUE).above();
             self.canvas
                 .text((place.0 + 3.0, place.1), &number.to_string(), lettering);
@@ -273,6 +281,7 @@ mod tests {
         let nodes = [[-1.0, -0.5, 0.0], [-1.0, 0.5, 0.0], [-2.0, 0.0, 0.1]];
         let gauge = HeadGauge {
             position_m: [-1.2, 0.1, 0.1],
+            direction: [0.0, 1.0, 0.0],
             length_m: 0.01,
         };
         let picture = HeadPicture {
@@ -297,7 +306,7 @@ mod tests {
         let polylines = |svg: &str| svg.matches("<polyline").count();
         assert!(svg.contains("1: 116.2 Hz, symmetric"), "{svg}");
         assert!(svg.contains("2: 124.1 Hz, antisymmetric, arc at rest"));
-        assert_eq!(polylines(&svg), 2 + 1);
+        assert_eq!(polylines(&svg), 2 * (1 + 2) + 1);
         assert_eq!(svg.matches("<circle").count(), 2 * (2 * 2 + 2));
         // whatever its size, a mode is drawn alike
         let scaled = alone.radial.iter().map(|x| 30.0 * x).collect();

@@ -4,6 +4,7 @@
 //! Uses the report's axes and tables, and does not depend on the position within a report.
 mod animation;
 mod card;
+mod check;
 mod contact;
 pub mod csv;
 mod drawing;
@@ -16,7 +17,7 @@ mod single;
 pub mod vtu;
 
 pub use drawing::PumpingUnitReport;
-pub use head::{head_modes as head_mode_table, head_pair, head_statics};
+pub use head::{head_gauges, head_modes as head_mode_table, head_pair, head_statics};
 pub use head_modes::{HeadPicture, write_head_modes};
 pub use import::{imported_card, turns};
 pub use name::{integrator_name, mode_family};

@@ -1,4 +1,5 @@
 //! Report section with the outcome of a calibration in words: change of the error by condition and channel.
+use super::machine;
 use crate::chart;
 use crate::data::{Calibration, SingleRun};
 use crate::document::{Block, Section, figures};
@@ -13,6 +14,8 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
     blocks.extend(figures(
         fitted.and_then(|result| chart::fitted(&calibration.case, result)),
     ));
+    let checks = machine::checks(calibration);
+    blocks.extend(machine::calibration(&checks).blocks);
     blocks.extend(words::rivals(calibration).map(|said| Block::Warning(vec![said])));
     blocks.extend(words::model_error(calibration).map(|said| Block::Warning(vec![said])));
     blocks.extend(words::noise_level(calibration).map(Block::Text));

@@ -199,6 +199,7 @@ fn times_noise(calibration: &Calibration) -> Option<(&Channel, f64)> {
     let fitted = calibration.conditions.iter();
     let fitted = fitted.filter(|result| case.objective.holds(result.condition));
     let left = fitted.flat_map(|result| result.optimised.gaps(case, result.condition));
+    let left = left.filter(|(channel, _)| case.objective.names(&channel.name));
     let left = left.filter_map(|(channel, gap)| Some((channel, gap.over_noise()?)));
     left.max_by(|a, b| a.1.total_cmp(&b.1))
 }

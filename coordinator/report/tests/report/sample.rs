@@ -106,6 +106,7 @@ fn machine() -> Machine {
             radius_m: 1.0973,
             sense: TurnSense::Clockwise,
             counterweight_phase_deg: 0.0,
+            reducer_rating_n_m: Some(37.0e3),
         },
         rod: Rod {
             length_m: 2.876,

@@ -91,7 +91,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         condition: &arguments.condition,
         wall_s: started.elapsed().as_secs_f64(),
         scores: score::condition(&case, recommended, optimised),
+        machine: report::condition_checks(&case, &result),
     };
-    let tables = || table::text(&table::table_4(&case, &result), terminal::styled());
+    let tables = || {
+        let table = table::text(&table::table_4(&case, &result), terminal::styled());
+        let machine = report::machine(&object.machine, terminal::styled());
+        format!("{table}\n{machine}")
+    };
     terminal::print(arguments.output.output, tables, &object)
 }

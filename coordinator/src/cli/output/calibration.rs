@@ -78,6 +78,7 @@ pub(crate) fn show(run: &Run, found: &Found, wall_s: f64, output: Output) -> any
     object
         .unknowns
         .add_identifiability(&calibration.identifiability);
+    object.machine = report::checks(&calibration);
     let rivals = calibration.rivals.iter();
     object.rivals = rivals
         .map(|rival| RivalOutput::new(&run.case, rival))
@@ -92,7 +93,8 @@ pub(crate) fn show(run: &Run, found: &Found, wall_s: f64, output: Output) -> any
         report::rivals(&calibration),
         report::structure(&calibration),
     ];
-    for note in said.into_iter().flatten() {
+    let flags = report::flags(&object.machine);
+    for note in flags.into_iter().chain(said.into_iter().flatten()) {
         terminal::tell(&format!("note: {note}"));
     }
     let tables = || report::parameters(&calibration, terminal::styled());
@@ -142,6 +144,7 @@ fn result_object<'a>(
         rivals: Vec::new(),
         channels: calibrated.channels,
         other_conditions,
+        machine: Vec::new(),
         log_digest: log.digest(),
         files,
     }

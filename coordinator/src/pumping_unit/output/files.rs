@@ -1,8 +1,8 @@
 //! Files written from a reduced head: the tables of the case, and a VTU file for `ParaView`.
 use crate::cli::run::bus::PROGRAM;
 use anyhow::Context as _;
-use case::pumping_unit::{GaugePlace, HeadSource, TwinFile};
-use protocol::pumping_unit::{HeadMesh, Machine, ModeFamily, ReducedHead, TwinHead};
+use case::pumping_unit::{GaugePlace, HeadSource, TwinFile, WrapStress};
+use protocol::pumping_unit::{HeadGauge, HeadMesh, Machine, ModeFamily, ReducedHead, TwinHead};
 use report::pumping_unit::vtu::{self, Field};
 use serde::Serialize;
 use std::{
@@ -33,6 +33,7 @@ struct ModesFile<'a> {
     inertia_about_pivot_kg_m2: f64,
     inertia_stress_mpa: [[f64; 4]; 3],
     gauges: BTreeMap<String, GaugePlace>,
+    largest_wrap: WrapStress,
 }
 
 /// Replaces the tables of a case (modes file, influence file, and the twin rope file where there is one) and
@@ -42,16 +43,8 @@ pub(crate) fn write_tables(
     source: &HeadSource,
     head: &ReducedHead,
 ) -> anyhow::Result<Vec<PathBuf>> {
-    let place = |(number, gauge): (usize, &protocol::pumping_unit::HeadGauge)| {
-        let [x_m, y_m, z_m] = gauge.position_m;
-        let place = GaugePlace {
-            x_m,
-            y_m,
-            z_m,
-            length_m: gauge.length_m,
-        };
-        (number.to_string(), place)
-    };
+    let place =
+        |(number, gauge): (usize, &HeadGauge)| (number.to_string(), GaugePlace::from(*gauge));
     let file = ModesFile {
         mesh_blake3: &source.mesh_blake3,
         source_blake3: &source.source_blake3,
@@ -69,6 +62,10 @@ pub(crate) fn write_tables(
         inertia_about_pivot_kg_m2: head.inertia_about_pivot_kg_m2,
         inertia_stress_mpa: head.inertia_stress_mpa,
         gauges: (1..).zip(&source.gauges).map(place).collect(),
+        largest_wrap: WrapStress {
+            stress_mpa: head.wrap_stress_mpa,
+            gradient_mpa_per_m: head.wrap_gradient_mpa_per_m,
+        },
     };
     let mut modes = serde_json::to_string(&file)?;
     modes.push('\n');

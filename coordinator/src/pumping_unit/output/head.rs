@@ -1,5 +1,5 @@
 //! Output object of `horsehead head`.
-use case::pumping_unit::HeadComparison;
+use case::pumping_unit::{HeadComparison, HeadSource};
 use protocol::{
     case::Case,
     pumping_unit::{ModeFamily, OmittedMode, ReducedHead},
@@ -55,20 +55,27 @@ pub(crate) struct HeadGaugeOutput {
     mode_displacement_half_range_mpa: f64,
     mode_displacement_offset_mpa: f64,
     influence_difference: f64,
+    /// Distance of the gauge from the surface of the mesh (m).
+    surface_distance_m: f64,
+    /// Stress under the rope at its largest tension (MPa), and its change when the gauge is moved along x, y and z
+    /// (MPa/m); null along an axis on which the body ends on both sides of the gauge.
+    largest_wrap_stress_mpa: f64,
+    largest_wrap_gradient_mpa_per_m: [Option<f64>; 3],
 }
 
 pub(crate) fn head<'a>(
     (case, condition): (&'a Case, &'a str),
-    mesh_blake3: &'a str,
+    source: &'a HeadSource,
     head: &'a ReducedHead,
     comparison: &'a HeadComparison,
 ) -> HeadOutput<'a> {
     let ranges = &comparison.half_ranges;
+    let surface_distance_m = source.surface_distances_m();
     let modes = head.modes.iter().zip(&comparison.modes);
     HeadOutput {
         case: &case.name,
         condition,
-        mesh_blake3,
+        mesh_blake3: &source.mesh_blake3,
         wall_s: head.wall_s,
         unknowns: head.unknowns,
         lanczos_steps: head.lanczos_steps,
@@ -93,6 +100,9 @@ pub(crate) fn head<'a>(
                     mode_displacement_half_range_mpa: ranges.displacement[gauge],
                     mode_displacement_offset_mpa: ranges.displacement_offset[gauge],
                     influence_difference: comparison.influence_difference[gauge],
+                    surface_distance_m: surface_distance_m[gauge],
+                    largest_wrap_stress_mpa: head.wrap_stress_mpa[gauge],
+                    largest_wrap_gradient_mpa_per_m: head.wrap_gradient_mpa_per_m[gauge],
                 };
                 ((gauge + 1).to_string(), output)
             })

@@ -1,20 +1,33 @@
 //! Strain gauges: linear map from the displacement field to the stress reading of a gauge at a given
 //! position.
 //!
-//! A gauge reads `E (u_y(p + l/2) - u_y(p - l/2)) / l`: the mean vertical strain over its length times
-//! Young's modulus, from the displacements of the elements that contain its ends. This is the quantity that a
-//! bonded strip measures, for elements of any kind; it is also more accurate than stress at a point, which
-//! jumps between elements.
+//! A gauge along the unit vector d reads `E d . (u(p + l/2 d) - u(p - l/2 d)) / l`: the mean strain over its
+//! length times Young's modulus, from the displacements of the elements that contain its ends. This is the
+//! quantity that a bonded strip measures, for elements of any kind; it is also more accurate than stress at a
+//! point, which jumps between elements.
 use super::{error::ReductionError, mesh::Mesh};
 use nalgebra::Vector3;
 
-/// Strain gauge that measures vertical strain.
+/// Strain gauge on a head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gauge {
     /// Position of the gauge's middle in the beam frame \[m\].
     pub position: [f64; 3],
-    /// Length of the gauge along y \[m\].
+    /// Unit vector along the gauge in the beam frame.
+    pub direction: [f64; 3],
+    /// Length of the gauge \[m\].
     pub length: f64,
+}
+
+/// Contribution of the displacement of one node to the reading of a gauge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Term {
+    /// Index of the node.
+    pub(super) node: usize,
+    /// Factors of the node's displacements along x, y and z [Pa/m].
+    pub(super) factors: [f64; 3],
+    /// Whether the displacement is that of the node's mirror image, which the half of a mesh lacks.
+    pub(super) image: bool,
 }
 
 /// Largest distance, in reference coordinates, by which a point may lie outside an element and still be
@@ -22,8 +35,9 @@ pub struct Gauge {
 const SLACK: f64 = 1e-3;
 
 impl Gauge {
-    /// Computes the gauge's reading as a linear function of nodal displacements: pairs of a node and a factor
-    /// [Pa/m]; the reading \[Pa\] is the sum of factor times `u_y` of the node.
+    /// Computes the gauge's reading as a linear function of nodal displacements; the reading \[Pa\] is the
+    /// sum over all terms. On the half of a mesh, an end of the gauge at z < 0 is looked up at its mirror
+    /// image.
     ///
     /// # Errors
     /// [`ReductionError::Gauge`], with `number`, if an end of the gauge lies in no element.
@@ -32,17 +46,49 @@ impl Gauge {
         mesh: &Mesh,
         young: f64,
         number: usize,
-    ) -> Result<Vec<(usize, f64)>, ReductionError> {
+    ) -> Result<Vec<Term>, ReductionError> {
         let mut row = Vec::with_capacity(16);
         for side in [1.0, -1.0] {
-            let [x, y, z] = self.position;
-            let end = Vector3::new(x, y + 0.5 * side * self.length, z);
+            let along = Vector3::from(self.direction);
+            let mut end = Vector3::from(self.position) + 0.5 * side * self.length * along;
+            let image = mesh.half && end.z < 0.0;
+            if image {
+                end.z = -end.z;
+            }
             let (nodes, point) = locate(mesh, &end, number)?;
             let factor = side * young / self.length;
             let shape = mesh.law().shape(&point);
-            row.extend(nodes.iter().copied().zip(shape.iter().map(|n| factor * n)));
+            row.extend(nodes.iter().zip(shape).map(|(&node, share)| Term {
+                node,
+                factors: self.direction.map(|along| factor * share * along),
+                image,
+            }));
         }
         Ok(row)
+    }
+
+    /// Computes how the gauge's reading under a load changes when the gauge is moved along x, y and z [Pa/m],
+    /// by differences over its own length; on one side only where the other has left the body. Returns `None`
+    /// for an axis on which both have. `reading` evaluates a row under the load.
+    pub(super) fn gradient(
+        &self,
+        mesh: &Mesh,
+        young: f64,
+        reading: &dyn Fn(&[Term]) -> f64,
+    ) -> [Option<f64>; 3] {
+        [0, 1, 2].map(|axis| {
+            let moved = |by: f64| {
+                let mut there = *self;
+                there.position[axis] += by;
+                let row = there.row(mesh, young, 0).ok()?;
+                Some((by, reading(&row)))
+            };
+            let step = 0.5 * self.length;
+            let ends = [-step, 0.0, step].map(moved);
+            let mut inside = ends.into_iter().flatten();
+            let (first, last) = (inside.next()?, inside.last()?);
+            Some((last.1 - first.1) / (last.0 - first.0))
+        })
     }
 }
 

@@ -10,6 +10,7 @@ use super::{
     eigen::{dot, lowest},
     element::Steel,
     error::ReductionError,
+    gauge::{Gauge, Term},
     mesh::{Half, Mesh},
     request::{Family, ReductionRequest, Wrap},
     result::{Mode, Reduction, Row},
@@ -26,8 +27,18 @@ fn rigid(mesh: &Mesh) -> [Vec<[f64; 3]>; 3] {
     ]
 }
 
-/// Displacement of every node \[m\] and stress at every element's centre \[Pa\].
-type Fields = (Vec<[f64; 3]>, Vec<[f64; 6]>);
+/// Response of the head to a wrapped rope.
+#[derive(Default)]
+struct Wrapped {
+    /// Reading of each gauge \[Pa\].
+    reading: Vec<f64>,
+    /// Change of each reading when the gauge is moved along x, y and z [Pa/m].
+    gradient: Vec<[Option<f64>; 3]>,
+    /// Displacement of every node \[m\].
+    field: Vec<[f64; 3]>,
+    /// Stress at every element's centre \[Pa\].
+    stress: Vec<[f64; 6]>,
+}
 
 /// Outputs evaluated for each mode: displacement at rope stations, gauge readings and optionally the
 /// displacement field of all nodes.
@@ -164,25 +175,35 @@ impl<'a> Problem<'a> {
     }
 
     /// Returns the reading of a gauge \[Pa\] for a displacement field of the half.
-    fn reading(&self, row: &Row, field: &[[f64; 3]]) -> f64 {
-        let factors = row.0.iter();
-        let sum: f64 = factors.map(|&(n, factor)| factor * field[n][1]).sum();
-        self.sign(row) * sum
+    fn reading(&self, row: &[Term], field: &[[f64; 3]]) -> f64 {
+        let reading = |term: &Term| {
+            let factors = self.factors(term);
+            let products = factors.iter().zip(&field[term.node]).map(|(f, u)| f * u);
+            products.sum::<f64>()
+        };
+        row.iter().map(reading).sum()
     }
 
-    /// Returns the factor that converts a reading at the gauge's mirror image on the half to that of the
-    /// gauge: the family's mirror sign if the gauge lies at z < 0, else 1.
-    pub(super) const fn sign(&self, (_, image): &Row) -> f64 {
-        if *image { self.family.image()[1] } else { 1.0 }
+    /// Returns the factors of a term for displacements of the half: those of a mirror image with the family's
+    /// signs.
+    fn factors(&self, term: &Term) -> [f64; 3] {
+        let signs = if term.image {
+            self.family.image()
+        } else {
+            [1.0; 3]
+        };
+        [0, 1, 2].map(|axis| signs[axis] * term.factors[axis])
     }
 
     /// Computes the influence field of each gauge on the half, with one linear solve per gauge; a gauge's
     /// reading under a load is the inner product of load and influence field.
     pub(super) fn lines(&self, rows: &[Row]) -> Vec<Vec<[f64; 3]>> {
-        let line = |(row, _): &Row| {
+        let line = |row: &Row| {
             let mut load = vec![[0.0; 3]; self.half.mesh.nodes.len()];
-            for &(node, factor) in row {
-                load[node][1] += factor;
+            for term in row {
+                for (load, factor) in load[term.node].iter_mut().zip(self.factors(term)) {
+                    *load += factor;
+                }
             }
             self.solve(&load)
         };
@@ -213,9 +234,9 @@ impl<'a> Problem<'a> {
         };
         let [x, y, turn] = rigid(&self.half.mesh);
         let mass = total(0, &x);
-        let (wrap_field, wrap_stress) = match &request.wrap {
-            Some(wrap) => self.wrapped(request, rim, wrap)?,
-            None => (Vec::new(), Vec::new()),
+        let wrapped = match &request.wrap {
+            Some(wrap) => self.wrapped(request, rim, wrap, rows)?,
+            None => Wrapped::default(),
         };
         Ok(Reduction {
             modes: Vec::new(),
@@ -227,8 +248,10 @@ impl<'a> Problem<'a> {
                 .collect(),
             inertia_stress,
             compliance: self.compliance(request, rim)?,
-            wrap_field,
-            wrap_stress,
+            wrap_reading: wrapped.reading,
+            wrap_gradient: wrapped.gradient,
+            wrap_field: wrapped.field,
+            wrap_stress: wrapped.stress,
             sway: None,
             mass,
             center_of_mass: [total(2, &y) / mass, -total(2, &x) / mass],
@@ -277,14 +300,26 @@ impl<'a> Problem<'a> {
         Ok(force)
     }
 
-    /// Returns displacement and stress of the whole mesh under a wrapped rope.
+    /// Returns the response of gauges and, if fields are requested, of the whole mesh to a wrapped rope.
     fn wrapped(
         &self,
         request: &ReductionRequest<'_>,
         rim: &Rim<'_>,
         wrap: &Wrap,
-    ) -> Result<Fields, ReductionError> {
+        rows: &[Row],
+    ) -> Result<Wrapped, ReductionError> {
         let moved = self.solve(&self.wrap_force(rim, wrap)?);
+        let reading = |row: &[Term]| self.reading(row, &moved);
+        let gradient =
+            |gauge: &Gauge| gauge.gradient(&self.half.mesh, request.steel.young, &reading);
+        let of_gauges = Wrapped {
+            reading: rows.iter().map(|row| reading(row)).collect(),
+            gradient: request.gauges.iter().map(gradient).collect(),
+            ..Wrapped::default()
+        };
+        if !request.fields {
+            return Ok(of_gauges);
+        }
         let field = self.half.unfold(&moved, self.family.image());
         let stress = request.mesh.elements().map(|element| {
             let moved: Vec<[f64; 3]> = element.iter().map(|&node| field[node]).collect();
@@ -292,8 +327,11 @@ impl<'a> Problem<'a> {
             let law = request.mesh.law();
             law.center_stress(&request.steel, &nodes, &moved)
         });
-        let stress = stress.collect();
-        Ok((field, stress))
+        Ok(Wrapped {
+            stress: stress.collect(),
+            field,
+            ..of_gauges
+        })
     }
 }
 

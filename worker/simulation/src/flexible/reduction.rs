@@ -7,7 +7,6 @@
 use super::arc::{Rim, Station};
 use super::coupling::{CANDIDATES, Patterns, pick};
 use super::error::ReductionError;
-use super::gauge::Gauge;
 use super::mesh::Half;
 use super::problem::{ModeOutputs, Problem};
 use super::request::{Family, ReductionRequest};
@@ -74,13 +73,8 @@ pub fn reduce(request: &ReductionRequest<'_>) -> Result<Reduction, ReductionErro
 
 fn gauge_rows(request: &ReductionRequest<'_>, half: &Half) -> Result<Vec<Row>, ReductionError> {
     let young = request.steel.young;
-    let row = |(k, gauge): (usize, &Gauge)| {
-        let [x, y, z] = gauge.position;
-        let there = Gauge {
-            position: [x, y, z.abs()],
-            ..*gauge
-        };
-        Ok((there.row(&half.mesh, young, k + 1)?, z < 0.0))
-    };
-    request.gauges.iter().enumerate().map(row).collect()
+    let numbered = (1..).zip(request.gauges);
+    numbered
+        .map(|(number, gauge)| gauge.row(&half.mesh, young, number))
+        .collect()
 }

@@ -38,7 +38,8 @@ pub struct ReductionRequest<'a> {
     /// Angles of the probes, the rim points between which the static compliance is computed \[rad\]; their
     /// number is called p.
     pub probes: &'a [f64],
-    /// Wrapped rope for which the static displacement and stress of the whole mesh are computed, if any.
+    /// Wrapped rope under which the stress of the gauges and its gradient are computed, if any; with `fields`
+    /// also the static displacement and stress of the whole mesh.
     pub wrap: Option<Wrap>,
     /// Pair of ropes beside the plane of symmetry; `None` for a single rope.
     pub pair: Option<Pair>,
@@ -49,7 +50,7 @@ pub struct ReductionRequest<'a> {
     /// Wrapped ropes, as they occur over a revolution, used as load patterns: the modes that couple most to
     /// them and to the beam's motion are kept. If empty, the lowest modes are kept.
     pub patterns: &'a [Wrap],
-    /// Whether to return the displacement fields of the modes on all nodes.
+    /// Whether to return the displacement fields of the modes and of the wrapped rope on all nodes.
     pub fields: bool,
 }
 

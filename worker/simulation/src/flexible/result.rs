@@ -1,6 +1,6 @@
 //! Results of the model reduction of a head: modes, static influence lines, and the antisymmetric tables for
 //! two ropes.
-use super::request::Family;
+use super::{gauge::Term, request::Family};
 
 /// Vibration mode of the head with unit modal mass.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,11 +38,17 @@ pub struct Reduction {
     pub tangential_influence: Vec<Vec<f64>>,
     /// Static gauge stress per unit acceleration of the base in x, in y and about the pivot; 3 x g.
     pub inertia_stress: [Vec<f64>; 3],
+    /// Stress of the gauges under the wrapped rope \[Pa\]; length g, empty without a wrapped rope.
+    pub wrap_reading: Vec<f64>,
+    /// Change of that stress when a gauge is moved along x, y and z [Pa/m], `None` where the body ends on both
+    /// sides; length g, empty without a wrapped rope.
+    pub wrap_gradient: Vec<[Option<f64>; 3]>,
     /// Outward radial displacement at probe j per newton inwards at probe i [m/N]; p x p.
     pub compliance: Vec<Vec<f64>>,
-    /// Displacement of every mesh node under the wrapped rope \[m\]; empty without a wrapped rope.
+    /// Displacement of every mesh node under the wrapped rope \[m\]; empty unless fields are requested.
     pub wrap_field: Vec<[f64; 3]>,
-    /// Stress at the centre of every element under the wrapped rope \[Pa\]: xx, yy, zz, xy, yz, zx.
+    /// Stress at the centre of every element under the wrapped rope \[Pa\]: xx, yy, zz, xy, yz, zx; empty
+    /// unless fields are requested.
     pub wrap_stress: Vec<[f64; 6]>,
     /// Antisymmetric modes and influence lines for a pair of ropes; `None` for a single rope.
     pub sway: Option<SwayTables>,
@@ -94,6 +100,5 @@ pub struct SwayTables {
     pub lateral_influence: Vec<Vec<f64>>,
 }
 
-/// Weights of nodal displacements `u_y` whose sum gives a gauge's reading on the half model, and whether the
-/// gauge lies on the mirrored half (z < 0).
-pub(super) type Row = (Vec<(usize, f64)>, bool);
+/// Terms of nodal displacements whose sum gives a gauge's reading on the half model.
+pub(super) type Row = Vec<Term>;

@@ -44,10 +44,7 @@ impl Problem<'_> {
         let lines = self.lines(rows);
         // a newton on the half that is solved has its image on the other
         let stress = |of: &dyn Fn(&[[f64; 3]]) -> f64| -> Vec<f64> {
-            let signed = lines.iter().zip(rows);
-            signed
-                .map(|(line, row)| self.sign(row) * of(line))
-                .collect()
+            lines.iter().map(|line| of(line)).collect()
         };
         for s in &stations {
             tables

@@ -80,6 +80,7 @@ fn sector() -> Mesh {
 fn reduced() -> Reduction {
     let gauge = |z: f64| Gauge {
         position: [-1.7, 0.1, z],
+        direction: [0.0, 1.0, 0.0],
         length: 0.02,
     };
     reduce(&ReductionRequest {
@@ -105,7 +106,7 @@ fn reduced() -> Reduction {
         modes: 6,
         families: &[Family::Symmetric, Family::Antisymmetric],
         patterns: &[],
-        fields: false,
+        fields: true,
     })
     .unwrap()
 }

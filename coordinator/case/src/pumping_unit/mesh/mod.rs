@@ -5,9 +5,10 @@
 mod body;
 mod msh;
 mod origin;
+mod surface;
 mod volume;
 
 pub use body::{Mesh, SURFACES, SYMMETRY, VOLUME};
 pub use msh::read;
 pub(super) use msh::read_hashed;
-pub(super) use origin::{Origin, check_hash, check_mass, check_origin};
+pub(super) use origin::{Origin, check_hash, check_mass, check_origin, check_rim};

@@ -1,6 +1,7 @@
 //! Check that the head's tables belong to its mesh, by content hashes and by mass.
 use super::{super::head::Provenance, body::Mesh};
 use crate::error::{CaseError, contradiction};
+use protocol::pumping_unit::BackHead;
 use std::path::Path;
 
 /// Remedy for tables computed from another mesh.
@@ -75,6 +76,39 @@ pub(in super::super) fn check_hash(
         )),
         Some(_) | None => Ok(()),
     }
+}
+
+/// Share of the head's radius by which the rope surface of its mesh may lie beside it in the mean.
+const RIM_TOLERANCE: f64 = 0.05;
+
+/// Checks that the rope surface of a mesh lies at the head's radius about its centre, as it does only in the
+/// frame of the beam and in metres.
+///
+/// # Errors
+/// Returns an error if the mean distance of its nodes differs by more than [`RIM_TOLERANCE`].
+pub(in super::super) fn check_rim(
+    path: &Path,
+    mesh: &Mesh,
+    head: &BackHead,
+) -> Result<(), CaseError> {
+    let rim = mesh.surfaces.get("rope_surface").into_iter().flatten();
+    let distances = rim.filter_map(|node| {
+        let [x, y, _] = mesh.nodes_m.get(*node)?;
+        Some((x - head.center_x_m).hypot(y - head.center_y_m))
+    });
+    let distances: Vec<f64> = distances.collect();
+    let mean = distances.iter().sum::<f64>() / distances.len() as f64;
+    if (mean / head.radius_m - 1.0).abs() <= RIM_TOLERANCE {
+        return Ok(());
+    }
+    Err(contradiction(
+        path,
+        "the mean distance of the group `rope_surface` from the head's centre",
+        format!("{mean:.4} m"),
+        format!("case.toml: back_head.radius_m = {}", head.radius_m),
+        "the mesh must be in the frame of the beam: origin at the pivot, x towards the well, y up; a mesh in \
+         millimetres needs flexible_head.mesh_unit_m = 0.001, one in inches 0.0254",
+    ))
 }
 
 /// Checks that the mass of the mesh equals the mass stated with the head's modes.

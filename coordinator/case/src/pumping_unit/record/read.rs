@@ -106,8 +106,9 @@ pub(in super::super) fn of(
     let places = Sensor::ALL.iter().zip(&channels).enumerate();
     let recorded = places
         .filter(|(_, (sensor, _))| cycles.channels.contains(sensor))
-        .map(|(curve, (_, channel))| Recorded {
+        .map(|(curve, (sensor, channel))| Recorded {
             correlation: sheet.correlation(samples.step_deg / expected.step_deg),
+            scored: sensor.is_gauge(),
             ..Recorded::new(curve, channel)
         });
     Ok(GaugeRecord {
@@ -138,7 +139,7 @@ pub(in super::super) fn sheet_path(record: &Path) -> PathBuf {
     record.with_file_name(format!("{stem}.toml"))
 }
 
-/// Stores the averaged records in the channels of the recorded gauges; every grid angle must have a value.
+/// Stores the averaged records in the recorded channels; every grid angle must have a value.
 fn average(
     path: &Path,
     cycles: &resample::Cycles,

@@ -57,7 +57,6 @@ pub(super) fn cycles(samples: &Samples, step_deg: f64) -> Cycles {
         values.push(samples.curves.iter().map(resample).collect());
     }
     let channels: Vec<Sensor> = samples.curves.iter().map(|(sensor, _)| *sensor).collect();
-    let gauges = channels.iter().filter(|sensor| sensor.is_gauge()).count();
     let mut cycles = Cycles {
         gaps: 0,
         mean: Vec::new(),
@@ -66,11 +65,11 @@ pub(super) fn cycles(samples: &Samples, step_deg: f64) -> Cycles {
         channels,
         single: filled(&values),
     };
-    for gauge in 0..gauges {
+    for channel in 0..cycles.channels.len() {
         let column = |at: usize| {
             values
                 .iter()
-                .filter_map(move |cycle| cycle.get(gauge).and_then(|curve| *curve.get(at)?))
+                .filter_map(move |cycle| cycle.get(channel).and_then(|curve| *curve.get(at)?))
         };
         let statistics: Vec<(Option<f64>, f64, usize)> =
             (0..count).map(|at| mean_and_spread(column(at))).collect();

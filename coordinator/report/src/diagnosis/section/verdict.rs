@@ -1,11 +1,13 @@
 //! Report section with the verdict: one sentence, the effect sizes, the confidence and the recommended next
 //! steps.
 use crate::chart::{self, BeforeAfter, GapComparison};
+use crate::diagnosis::checks::checks;
 use crate::diagnosis::condition_curves::condition_curves;
 use crate::diagnosis::subject::DiagnosisInput;
 use crate::diagnosis::words;
 use crate::document::{Block, Figure, Section, figures};
 use crate::number::unit;
+use crate::section::machine_blocks;
 use crate::words::{SYNTHETIC, capitalised};
 
 pub(super) fn section(subject: &DiagnosisInput<'_>) -> Section {
@@ -19,6 +21,8 @@ pub(super) fn section(subject: &DiagnosisInput<'_>) -> Section {
         blocks.push(Block::List(effects));
     }
     blocks.extend(figures(best_channel(subject)));
+    let heads = ["without the added effects", "with them"];
+    blocks.extend(machine_blocks(&checks(subject), heads));
     let numbers = words::gap_numbers(subject);
     if !numbers.is_empty() {
         blocks.push(Block::Facts(numbers));

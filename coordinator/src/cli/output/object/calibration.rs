@@ -1,7 +1,7 @@
 //! JSON objects of `horsehead calibrate` and `horsehead verify`.
 use super::score::{ConditionOutput, RecommendedAndOptimised, ScoreOutput, Unknowns};
 use protocol::case::Case;
-use report::RivalFit;
+use report::{MachineCheck, RivalFit};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -31,6 +31,9 @@ pub(crate) struct CalibrateOutput<'a> {
     /// Scores of the recommended and the optimised parameters at all other conditions with a measured record,
     /// calibrated or not, by condition name.
     pub(crate) other_conditions: BTreeMap<String, ConditionOutput>,
+    /// Quantities of the machine under every condition: stroke and crank torque of a pumping unit, with the
+    /// recommended (`before`) and the optimised (`after`) parameters.
+    pub(crate) machine: Vec<MachineCheck>,
     /// Hash of the search's evaluation log, in id order, by which two runs can be compared.
     pub(crate) log_digest: String,
     /// Paths of the result files that were written.
@@ -71,4 +74,6 @@ pub(crate) struct VerifyOutput<'a> {
     /// Scores of the recommended and the optimised parameters at the condition.
     #[serde(flatten)]
     pub(crate) scores: ConditionOutput,
+    /// Quantities of the machine, as those of a calibration.
+    pub(crate) machine: Vec<MachineCheck>,
 }

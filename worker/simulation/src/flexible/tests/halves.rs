@@ -2,6 +2,29 @@
 //! tables against directly applied loads, and rejected inputs.
 use super::*;
 
+/// Gauge with a vertical grid on the side z < 0.
+const VERTICAL: Gauge = Gauge {
+    position: [-0.7, 0.12, -0.1],
+    direction: [0.0, 1.0, 0.0],
+    length: 0.02,
+};
+
+/// Gauge whose inclined grid crosses the plane z = 0.
+const OBLIQUE: Gauge = Gauge {
+    position: [-0.6, 0.1, -0.004],
+    direction: [0.48, 0.6, 0.64],
+    length: 0.03,
+};
+
+/// Returns the reading of a gauge for a displacement field of the whole body.
+fn reading(row: &[gauge::Term], field: &[[f64; 3]]) -> f64 {
+    let products = row.iter().map(|term| {
+        let pairs = term.factors.iter().zip(&field[term.node]);
+        pairs.map(|(factor, u)| factor * u).sum::<f64>()
+    });
+    products.sum()
+}
+
 /// Returns the same body as a mesh of bricks and as a mesh of tetrahedra.
 fn of_every_kind() -> [Mesh; 2] {
     let bricks = mirrored();
@@ -46,10 +69,7 @@ fn a_half_is_as_good_as_the_whole() {
     for whole in of_every_kind() {
         let half = mesh::Half::new(&whole).unwrap().mesh;
         assert!(half.half && half.nodes.len() < whole.nodes.len());
-        let gauges = [Gauge {
-            position: [-0.7, 0.12, -0.1],
-            length: 0.02,
-        }];
+        let gauges = [VERTICAL, OBLIQUE];
         let families = [Family::Symmetric, Family::Antisymmetric];
         let stations = [std::f64::consts::PI - 1.2];
         let [of_whole, of_half] = [&whole, &half].map(|mesh| {
@@ -72,15 +92,13 @@ fn a_half_is_as_good_as_the_whole() {
 #[test]
 fn influence_lines_are_the_stress_under_each_load() {
     for mesh in of_every_kind() {
-        influence_is_stress(&mesh);
+        for gauge in [VERTICAL, OBLIQUE] {
+            influence_is_stress(&mesh, gauge);
+        }
     }
 }
 
-fn influence_is_stress(mesh: &Mesh) {
-    let gauge = Gauge {
-        position: [-0.7, 0.12, -0.1],
-        length: 0.02,
-    };
+fn influence_is_stress(mesh: &Mesh, gauge: Gauge) {
     let psi = std::f64::consts::PI - 1.2;
     let mut whole = request(mesh, std::slice::from_ref(&gauge), &[Family::Symmetric]);
     let stations = [psi];
@@ -100,11 +118,56 @@ fn influence_is_stress(mesh: &Mesh) {
         let mut answer = unknowns.gather(&force);
         factor.solve(&mut answer);
         let field = unknowns.spread(&answer);
-        let direct: f64 = row.iter().map(|&(n, f)| f * field[n][1]).sum();
+        let direct: f64 = reading(&row, &field);
         assert!(
             direct.abs() > 0.1 && (line[0][0] / direct - 1.0).abs() < 1e-9,
             "{direct}"
         );
+    }
+}
+
+/// Checks that stress and gradient of a gauge under the wrapped rope are those of the displacement field that is
+/// returned with them; also at a gauge whose one side is outside the body.
+#[test]
+fn a_moved_gauge_reads_what_the_gradient_says() {
+    const STEP: f64 = 0.01;
+    for mesh in of_every_kind() {
+        let surface = Gauge {
+            position: [-0.7, 0.12, -0.266],
+            ..VERTICAL
+        };
+        let gauges = [VERTICAL, OBLIQUE, surface];
+        let mut asked = request(&mesh, &gauges, &[Family::Symmetric]);
+        let half_turn = std::f64::consts::PI;
+        asked.wrap = Some(Wrap {
+            tension: 1e4,
+            anchor: half_turn - 1.15,
+            leaves: half_turn - 0.6,
+        });
+        let reduction = reduce(&asked).unwrap();
+        for (g, gauge) in gauges.iter().enumerate() {
+            let at = |axis: usize, by: f64| {
+                let mut there = *gauge;
+                there.position[axis] += by;
+                let row = there.row(&mesh, STEEL.young, 1).ok()?;
+                Some(reading(&row, &reduction.wrap_field))
+            };
+            let here = at(0, 0.0).unwrap();
+            assert!((reduction.wrap_reading[g] / here - 1.0).abs() < 1e-9);
+            for axis in 0..3 {
+                let step = 0.5 * gauge.length;
+                let (low, high) = (at(axis, -step), at(axis, step));
+                let width = f64::from(u8::from(low.is_some()) + u8::from(high.is_some())) * step;
+                let slope = (high.unwrap_or(here) - low.unwrap_or(here)) / width;
+                let ours = reduction.wrap_gradient[g][axis].unwrap();
+                assert!(
+                    (ours - slope).abs() < 1e-6 * here.abs() / STEP,
+                    "{ours} {slope}"
+                );
+            }
+        }
+        let [.., z] = reduction.wrap_gradient[2];
+        assert!(z.is_some(), "one side is inside");
     }
 }
 
@@ -119,16 +182,11 @@ fn a_pair_of_ropes_strains_the_whole_as_its_tables_say() {
 }
 
 fn pair_strains_the_whole(mesh: &Mesh) {
-    let gauges = [
-        Gauge {
-            position: [-0.7, 0.12, -0.1],
-            length: 0.02,
-        },
-        Gauge {
-            position: [-0.6, 0.1, 0.05],
-            length: 0.02,
-        },
-    ];
+    let right = Gauge {
+        position: [-0.6, 0.1, 0.05],
+        ..VERTICAL
+    };
+    let gauges = [VERTICAL, right, OBLIQUE];
     let psi = std::f64::consts::PI - 1.2;
     let stations = [psi];
     let offset = 0.06;
@@ -161,7 +219,7 @@ fn pair_strains_the_whole(mesh: &Mesh) {
         let field = unknowns.spread(&answer);
         for (g, gauge) in gauges.iter().enumerate() {
             let row = gauge.row(mesh, STEEL.young, g + 1).unwrap();
-            let direct: f64 = row.iter().map(|&(n, f)| f * field[n][1]).sum();
+            let direct: f64 = reading(&row, &field);
             assert!(
                 direct.abs() > 0.05 && (line[0][g] / direct - 1.0).abs() < 1e-8,
                 "{direct} {}",
@@ -226,6 +284,7 @@ fn what_cannot_be_reduced_says_why() {
     ));
     let beside = Gauge {
         position: [-0.7, 0.12, 0.5],
+        direction: [0.0, 1.0, 0.0],
         length: 0.02,
     };
     assert!(matches!(

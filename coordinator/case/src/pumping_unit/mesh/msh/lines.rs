@@ -2,9 +2,9 @@
 use crate::error::{CaseError, damaged};
 use std::path::Path;
 
-/// Remedy text for an unreadable mesh: to save it again as MSH 4.1 ASCII.
-pub(super) const SAVE_AGAIN: &str = "save the mesh again as MSH 4.1 ASCII (gmsh -format msh41), \
-                          8-node hexahedra of order 1 or 10-node tetrahedra";
+/// Remedy text for an unreadable mesh: to save it again as ASCII of a known version.
+pub(super) const SAVE_AGAIN: &str = "save the mesh again as ASCII of MSH 4.1 or 2.2 \
+                          (gmsh -format msh41 or msh22), of bricks or of 10-node tetrahedra";
 
 /// Lines of the mesh file with the current line number.
 pub(super) struct Lines<'a> {
@@ -30,6 +30,10 @@ impl<'a> Lines<'a> {
     /// Returns the line number, from 1, of the mesh-file line that was read last.
     pub(super) const fn number(&self) -> usize {
         self.number
+    }
+
+    pub(super) const fn path(&self) -> &'a Path {
+        self.path
     }
 
     /// Builds an error at the mesh-file line that was read last, with the remedy [`SAVE_AGAIN`].

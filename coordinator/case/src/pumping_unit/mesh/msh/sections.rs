@@ -1,15 +1,30 @@
 //! Reading of the mesh file sections for group names, entities and nodes.
-use super::{super::body::Mesh, lines::Lines};
+use super::{super::body::Mesh, elements::Block, lines::Lines};
 use crate::error::CaseError;
 use std::collections::BTreeMap;
+
+/// Version of the file format.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Version {
+    /// MSH 2.2: nodes and elements are plain lists, elements name their physical group.
+    V22,
+    /// MSH 4.1: nodes and elements stand in blocks, geometric entities name their physical groups.
+    #[default]
+    V41,
+}
 
 /// Contents of those sections of the mesh file that have been read so far.
 #[derive(Debug, Default)]
 pub(super) struct Sections {
+    pub(super) version: Version,
+    /// Length of the unit in which the file's positions are \[m\].
+    pub(super) unit_m: f64,
     /// Map from (dimension, physical tag) to the name of the physical group.
     pub(super) names: BTreeMap<(usize, i64), String>,
     /// Map from (dimension, entity tag) to the tags of the physical groups that contain the entity.
     pub(super) groups: BTreeMap<(usize, i64), Vec<i64>>,
+    /// Elements as read, in the order of the file.
+    pub(super) blocks: Vec<Block>,
     /// Map from the tag of a node in the file to its index in the mesh.
     pub(super) index: BTreeMap<i64, usize>,
     pub(super) mesh: Mesh,
@@ -71,8 +86,37 @@ fn integer(value: f64) -> i64 {
     integer
 }
 
-/// Reads the mesh file's blocks of nodes: in each block first the tags, then the positions.
+/// Reads the nodes of the file's version.
 pub(super) fn nodes(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(), CaseError> {
+    let total = match sections.version {
+        Version::V22 => flat_nodes(lines, sections)?,
+        Version::V41 => node_blocks(lines, sections)?,
+    };
+    if i64::try_from(sections.index.len()) != Ok(total) {
+        return Err(lines.wrong(&format!(
+            "the section declares {total} nodes but contains {}",
+            sections.index.len()
+        )));
+    }
+    lines.end("$EndNodes")
+}
+
+/// Reads the nodes of MSH 2.2, each a line of tag and position; returns their stated number.
+fn flat_nodes(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<i64, CaseError> {
+    let [total] = lines.integers::<1>()?;
+    for _ in 0..total {
+        let numbers = lines.numbers::<f64>(4)?;
+        let Some(&[tag, x, y, z]) = numbers.first_chunk::<4>() else {
+            return Err(lines.wrong("a tag and a position are expected here"));
+        };
+        sections.add_tag(lines, integer(tag))?;
+        sections.add_position(lines, [x, y, z])?;
+    }
+    Ok(total)
+}
+
+/// Reads the nodes of MSH 4.1, in blocks of first the tags, then the positions; returns their stated number.
+fn node_blocks(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<i64, CaseError> {
     let [blocks, total, _, _] = lines.integers::<4>()?;
     for _ in 0..blocks {
         let [_, _, parametric, count] = lines.integers::<4>()?;
@@ -81,29 +125,41 @@ pub(super) fn nodes(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<()
         }
         for _ in 0..count {
             let [tag] = lines.integers::<1>()?;
-            let index = sections.index.len();
-            if sections.index.insert(tag, index).is_some() {
-                return Err(lines.wrong(&format!("node {tag} is defined twice")));
-            }
+            sections.add_tag(lines, tag)?;
         }
         for _ in 0..count {
             let position = lines.numbers::<f64>(3)?;
             let Some(position) = position.first_chunk::<3>() else {
                 return Err(lines.wrong("a position is expected here"));
             };
-            if position.iter().any(|x| x.is_nan() || x.abs() >= 100.0) {
-                return Err(
-                    lines.wrong("a position outside -100 to 100 m: the mesh is not in metres")
-                );
-            }
-            sections.mesh.nodes_m.push(*position);
+            sections.add_position(lines, *position)?;
         }
     }
-    if i64::try_from(sections.index.len()) != Ok(total) {
-        return Err(lines.wrong(&format!(
-            "the section declares {total} nodes but contains {}",
-            sections.index.len()
-        )));
+    Ok(total)
+}
+
+impl Sections {
+    fn add_tag(&mut self, lines: &Lines<'_>, tag: i64) -> Result<(), CaseError> {
+        let index = self.index.len();
+        match self.index.insert(tag, index) {
+            Some(_) => Err(lines.wrong(&format!("node {tag} is defined twice"))),
+            None => Ok(()),
+        }
     }
-    lines.end("$EndNodes")
+
+    fn add_position(&mut self, lines: &Lines<'_>, position: [f64; 3]) -> Result<(), CaseError> {
+        let position_m = position.map(|x| x * self.unit_m);
+        if position_m.iter().any(|x| x.is_nan() || x.abs() >= 100.0) {
+            return Err(lines.wrong_with(
+                &format!(
+                    "a position outside -100 to 100 m, the unit of the mesh being {} m",
+                    self.unit_m
+                ),
+                "state the unit: flexible_head.mesh_unit_m = 0.001 for a mesh in millimetres, \
+                 0.0254 for inches",
+            ));
+        }
+        self.mesh.nodes_m.push(position_m);
+        Ok(())
+    }
 }

@@ -1,7 +1,7 @@
 //! Tests of the mesh reader with a mesh of one tetrahedron, and of the messages for invalid meshes.
 use super::{
     super::body::{Mesh, SYMMETRY, VOLUME},
-    reader::read,
+    reader::read_hashed,
 };
 use protocol::pumping_unit::ElementKind;
 use std::{fmt::Write as _, fs};
@@ -29,12 +29,53 @@ const PIN_B: Block = (2, 2, 9, &[1, 4, 3, 8, 9, 7]);
 const ROPE: Block = (2, 3, 9, &[2, 3, 4, 6, 9, 10]);
 const FLOOR: Block = (2, 4, 9, &[1, 3, 2, 7, 6, 5]);
 
+/// Names of the physical groups of every test mesh; `floor` is that of surface 4.
+fn names(floor: &str) -> String {
+    format!(
+        "$PhysicalNames\n5\n2 1 \"pin_a\"\n2 2 \"pin_b\"\n2 3 \"rope_surface\"\n2 4 \"{floor}\"\n3 1 \"steel\"\n\
+         $EndPhysicalNames\n"
+    )
+}
+
+/// Reads a mesh file with the given text, whose unit is `unit_m` metres.
+fn read_text(text: &str, unit_m: f64) -> Result<Mesh, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("head.msh");
+    fs::write(&path, text).unwrap();
+    let read = read_hashed(&path, unit_m).map(|(mesh, _)| mesh);
+    read.map_err(|error| error.to_string())
+}
+
+/// Reads a test mesh in the format MSH 2.2.
+fn read_flat(blocks: &[Block], nodes: &[[f64; 3]], unit_m: f64) -> Result<Mesh, String> {
+    let mut text = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{}$Nodes\n{}\n",
+        names("floor"),
+        nodes.len()
+    );
+    for (tag, [x, y, z]) in (1..).zip(nodes) {
+        writeln!(text, "{tag} {x} {y} {z}").unwrap();
+    }
+    // points and lines of the geometry, which carry nothing
+    let count = blocks.len() + 2;
+    write!(
+        text,
+        "$EndNodes\n$Elements\n{count}\n1 15 2 0 1 1\n2 1 2 0 1 1 2\n"
+    )
+    .unwrap();
+    for (tag, (_, entity, kind, element)) in (3..).zip(blocks) {
+        let words: Vec<String> = element.iter().map(ToString::to_string).collect();
+        writeln!(text, "{tag} {kind} 2 {entity} 7 {}", words.join(" ")).unwrap();
+    }
+    text += "$EndElements\n";
+    read_text(&text, unit_m)
+}
+
 /// Reads a test mesh made of the given element blocks; `floor` is the group name of surface 4.
 fn read_blocks(blocks: &[Block], nodes: &[[f64; 3]], floor: &str) -> Result<Mesh, String> {
     let mut text = format!(
-        "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n2 1 \"pin_a\"\n2 2 \"pin_b\"\n\
-         2 3 \"rope_surface\"\n2 4 \"{floor}\"\n3 1 \"steel\"\n$EndPhysicalNames\n\
-         $Entities\n0 0 4 1\n"
+        "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n{}$Entities\n0 0 4 1\n",
+        names(floor)
     );
     for tag in [1, 2, 3, 4, 1] {
         writeln!(text, "{tag} 0 0 0 0 0 0 1 {tag} 0").unwrap();
@@ -62,10 +103,134 @@ fn read_blocks(blocks: &[Block], nodes: &[[f64; 3]], floor: &str) -> Result<Mesh
         .unwrap();
     }
     text += "$EndElements\n";
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("head.msh");
-    fs::write(&path, text).unwrap();
-    read(&path).map_err(|error| error.to_string())
+    read_text(&text, 1.0)
+}
+
+#[test]
+fn both_versions_of_the_format_give_the_same_mesh() {
+    let blocks = [PIN_A, PIN_B, ROPE, FLOOR, TETRAHEDRON];
+    let flat = read_flat(&blocks, &NODES, 1.0).unwrap();
+    assert_eq!(Ok(flat), read_blocks(&blocks, &NODES, "floor"));
+}
+
+#[test]
+fn a_mesh_in_millimetres_is_converted_by_the_stated_unit() {
+    let blocks = [PIN_A, PIN_B, ROPE, FLOOR, TETRAHEDRON];
+    let millimetres = NODES.map(|node| node.map(|x| 1e3 * x));
+    let mesh = read_flat(&blocks, &millimetres, 1e-3).unwrap();
+    assert_eq!(mesh.nodes_m, NODES);
+    let message = read_flat(&blocks, &millimetres, 1.0).unwrap_err();
+    for part in [
+        "line 15",
+        "a position outside -100 to 100 m",
+        "help: state the unit: flexible_head.mesh_unit_m = 0.001",
+    ] {
+        assert!(message.contains(part), "{part}\n{message}");
+    }
+}
+
+/// Corners of the unit cube, then the midpoints of its edges in Gmsh's order of a 20-node brick.
+const CUBE: [[f64; 3]; 20] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [1.0, 0.0, 1.0],
+    [1.0, 1.0, 1.0],
+    [0.0, 1.0, 1.0],
+    [0.5, 0.0, 0.0],
+    [0.0, 0.5, 0.0],
+    [0.0, 0.0, 0.5],
+    [1.0, 0.5, 0.0],
+    [1.0, 0.0, 0.5],
+    [0.5, 1.0, 0.0],
+    [1.0, 1.0, 0.5],
+    [0.0, 1.0, 0.5],
+    [0.5, 0.0, 1.0],
+    [0.0, 0.5, 1.0],
+    [1.0, 0.5, 1.0],
+    [0.5, 1.0, 1.0],
+];
+
+const BRICK: Block = (
+    3,
+    1,
+    17,
+    &[
+        1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20,
+    ],
+);
+const LEFT: Block = (2, 1, 16, &[1, 4, 8, 5, 10, 16, 18, 11]);
+const RIGHT: Block = (2, 2, 16, &[2, 3, 7, 6, 12, 15, 19, 13]);
+const TOP: Block = (2, 3, 16, &[4, 3, 7, 8, 14, 15, 20, 16]);
+
+/// Checks that a second-order brick is read by its corners, with the distance of its mid-edge nodes from the
+/// straight edges; as it is in both versions of the format.
+#[test]
+fn second_order_bricks_are_read_by_their_corners() {
+    let mut nodes = CUBE;
+    let blocks = [LEFT, RIGHT, TOP, BRICK];
+    for read in [
+        read_flat(&blocks, &nodes, 1.0).unwrap(),
+        read_blocks(&blocks, &nodes, "floor").unwrap(),
+    ] {
+        assert_eq!(read.kind, ElementKind::Hexahedron);
+        assert_eq!(read.nodes_m, nodes[..8]);
+        assert_eq!(read.volumes[VOLUME], (0..8).collect::<Vec<_>>());
+        assert_eq!(read.surfaces["rope_surface"], [3, 2, 6, 7]);
+        assert!((read.volume_m3() - 1.0).abs() < 1e-15);
+        assert_eq!(read.straightened_m, Some(0.0));
+    }
+    nodes[18][0] += 0.03;
+    let bent = read_flat(&blocks, &nodes, 1.0).unwrap();
+    assert!((bent.straightened_m.unwrap() - 0.03).abs() < 1e-15);
+    let first_order = read_flat(&[PIN_A, PIN_B, ROPE, TETRAHEDRON], &NODES, 1.0).unwrap();
+    assert_eq!(first_order.straightened_m, None);
+}
+
+/// Checks that prisms beside bricks, triangles on them and files that end in an element are refused with line and
+/// remedy.
+#[test]
+fn what_does_not_fit_beside_bricks_is_refused() {
+    let prism: Block = (
+        3,
+        1,
+        18,
+        &[1, 2, 3, 5, 6, 7, 9, 10, 11, 12, 13, 15, 17, 18, 19],
+    );
+    let triangle: Block = (2, 3, 9, &[4, 3, 7, 14, 15, 20]);
+    let cut: Block = (3, 1, 17, &[1, 2, 3, 4, 5, 6, 7, 8]);
+    let cases: [(&[Block], &[&str]); 3] = [
+        (
+            &[LEFT, RIGHT, TOP, BRICK, prism],
+            &[
+                "line 43",
+                "15-node prisms",
+                "prisms lock beside hexahedra",
+                "help: mesh all volumes",
+            ],
+        ),
+        (
+            &[LEFT, RIGHT, triangle, BRICK],
+            &[
+                "line 41: 6-node triangles, but line 42 has 20-node hexahedra",
+                "help: mesh all",
+            ],
+        ),
+        (
+            &[LEFT, RIGHT, TOP, cut],
+            &["line 42", "20 nodes are expected here", "help: "],
+        ),
+    ];
+    for (blocks, expected) in cases {
+        let message = read_flat(blocks, &CUBE, 1.0).unwrap_err();
+        for part in ["head.msh"].iter().chain(expected) {
+            assert!(message.contains(part), "{part}\n{message}");
+        }
+    }
+    let message = read_text("$MeshFormat\n4.0 0 8\n$EndMeshFormat\n", 1.0).unwrap_err();
+    assert!(message.contains("`4.1 0 8` or `2.2 0 8`"), "{message}");
 }
 
 #[test]
@@ -114,9 +279,9 @@ fn what_cannot_be_taken_is_named_with_its_line_and_a_remedy() {
         (
             with(3, (3, 1, 5, &[1, 2, 3, 4, 5, 6, 7, 8])),
             &[
-                "line 52",
-                "8-node hexahedra, but line 46 has 6-node triangles",
-                "help: mesh all volumes alike",
+                "line 46",
+                "6-node triangles, but line 52 has 8-node hexahedra",
+                "help: mesh all volumes with bricks",
             ],
         ),
         (
@@ -124,7 +289,7 @@ fn what_cannot_be_taken_is_named_with_its_line_and_a_remedy() {
             &[
                 "line 52",
                 "6-node prisms",
-                "11 (10-node tetrahedron)",
+                "10-node tetrahedra (type 11)",
                 "help: ",
             ],
         ),

@@ -13,7 +13,7 @@ use discrepancy::{
     },
     verdict::Verdict,
 };
-use report::diagnosis::DiagnosisInput;
+use report::{MachineCheck, diagnosis::DiagnosisInput};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -64,6 +64,9 @@ pub(crate) struct DiagnoseOutput {
     /// Further measurements that would distinguish the pairs in `inseparable`, in the order of the pairs.
     data_worth: Vec<IndistinguishablePair>,
     gap: GapOutput,
+    /// Quantities of the machine under every condition: stroke and crank torque of a pumping unit, without
+    /// (`before`) and with (`after`) the added effects.
+    machine: Vec<MachineCheck>,
     /// Predictive scores, on all data excluded from the fit, of the accepted model or, if none was accepted,
     /// of the withheld suspected effect.
     prediction: Vec<PredictionOutput>,
@@ -211,6 +214,7 @@ pub(crate) fn object(subject: &DiagnosisInput<'_>) -> DiagnoseOutput {
             .collect(),
         data_worth: diagnosis.look_alikes.clone(),
         gap: gap(&diagnosis.rows),
+        machine: report::diagnosis::checks(subject),
         prediction: predictions(subject.case, &diagnosis.prediction),
         whiteness: diagnosis
             .whiteness
