@@ -15,7 +15,8 @@ use std::{
 };
 use tests::process::{Process, coordinator_program, wait_until};
 
-fn copy(from: &Path, to: &Path) {
+/// Copies the files of a folder, without its folders.
+pub(crate) fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).unwrap();
     for entry in fs::read_dir(from).unwrap() {
         let entry = entry.unwrap();

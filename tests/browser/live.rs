@@ -3,10 +3,11 @@
 use super::{
     Site,
     driver::{Browser, LIMIT},
+    folder::copy,
     picture, shown,
 };
 use rustix::process::Signal;
-use std::path::Path;
+use std::{fs, path::Path};
 use tests::process::{Process, wait_until};
 
 /// Number of evaluations in the first row of the page's progress.
@@ -22,10 +23,10 @@ fn a_page_follows_a_run_that_is_killed_and_resumed_to_its_end() {
         return;
     };
     let site = Site::new(None);
-    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
+    copy_with_another_speed(&site);
     let words = [
         "calibrate",
-        case.to_str().unwrap(),
+        "case",
         "--preset",
         "random",
         "--set",
@@ -57,6 +58,19 @@ fn a_page_follows_a_run_that_is_killed_and_resumed_to_its_end() {
     fits_every_window(&browser);
     is_frozen_in_the_report(&browser, &site);
     assert_eq!(browser.console(), Vec::<String>::new());
+}
+
+/// Copies the shipped case and adds a condition with another speed and the load card of an existing one.
+fn copy_with_another_speed(site: &Site) {
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
+    for part in ["", "back_head", "measured"] {
+        copy(&shipped.join(part), &site.path("case").join(part));
+    }
+    let file = site.path("case/case.toml");
+    let condition = "[[conditions]]\nname = \"6rpm\"\nspeed_rpm = 6.0\ncounterweight_moment_n_m = 106.2e3\n\
+                     card_file = \"measured/card_5rpm.csv\"\nsmoothing = \"none\"\n\n[objective]";
+    let text = fs::read_to_string(&file).unwrap();
+    fs::write(&file, text.replace("[objective]", condition)).unwrap();
 }
 
 /// Checks that results arrive, and that the best individual so far is simulated and drawn.
@@ -116,6 +130,25 @@ fn agrees_with_the_result(browser: &Browser, site: &Site) {
         let number = shown(&result["objective"][number]);
         assert!(summary.contains(&number), "{number}: {summary}");
     }
+    let machine = result["machine"].as_array().unwrap();
+    let stroke = machine.iter().find(|own| own["quantity"] == "stroke");
+    let stroke = stroke.unwrap()["after"].as_f64().unwrap();
+    for part in [
+        "Stroke and torque",
+        "peak torque",
+        "37.0",
+        &format!("{stroke:.3}"),
+    ] {
+        assert!(summary.contains(part), "{part}: {summary}");
+    }
+    for flag in machine.iter().filter_map(|own| own["flag"].as_str()) {
+        assert!(summary.contains(flag), "{flag}: {summary}");
+    }
+    let notes = browser.text("#notes");
+    assert!(
+        notes.contains("this is no prediction for `6rpm`"),
+        "{notes}"
+    );
     let changes = browser.text("#changes");
     let evaluations = format!("{} evaluations", result["evaluations"]);
     assert!(changes.contains(&evaluations), "{changes}");

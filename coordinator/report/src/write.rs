@@ -1,7 +1,7 @@
 //! Assembly and output of calibration and simulation reports with their data.
 use super::csv;
 use super::data::{Calibration, ConditionResult, SingleRun};
-use super::document::{Report, SCRIPT, Section, Table, section_text};
+use super::document::{Block, Report, SCRIPT, Section, Table, section_text};
 use super::folder::{ReportError, stream, write_report};
 use super::machine_check::MachineCheck;
 use super::{kind, section, table, words};
@@ -40,11 +40,11 @@ pub fn individual(
 /// Renders the tables of a calibration's parameters, errors and machine quantities for a terminal; `styled` if it
 /// supports bold.
 pub fn parameters(calibration: &Calibration, styled: bool) -> String {
-    let tables = section_text(&section::parameters(calibration), styled);
-    format!(
-        "{tables}\n{}",
-        machine(&section::checks(calibration), styled)
-    )
+    let mut section = section::parameters(calibration);
+    let checks = section::checks(calibration);
+    let machine = section::machine_table(&checks, ["recommended", "optimised"]);
+    section.blocks.extend(machine.map(Block::Table));
+    section_text(&section, styled)
 }
 
 /// Renders quantities of the machine with the recommended and the optimised parameters, and their flags, for a

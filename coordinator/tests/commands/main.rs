@@ -4,6 +4,8 @@
     clippy::unwrap_used,
     reason = "helpers of tests: a command that cannot be run or read has failed"
 )]
+mod head_from_mesh;
+
 use serde_json::Value;
 use std::{fs, path::Path, process::Command};
 

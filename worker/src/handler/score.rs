@@ -37,7 +37,8 @@ pub(super) fn evaluation(
     let curves = case.channels_of(condition).zip(&seen.curves);
     let compared: Vec<Compared<'_>> = curves
         .filter_map(|((at, channel), simulated)| {
-            let record = channel.record.as_ref()?;
+            // a channel that takes no part in the objective may not have been simulated
+            let record = channel.record.as_ref().filter(|_| !simulated.is_empty())?;
             let (score, residual) = compared(at, channel, record, simulated);
             Some(Compared {
                 name: &channel.name,

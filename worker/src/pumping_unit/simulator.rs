@@ -7,7 +7,7 @@ use protocol::{
     announce::EffectDescriptor,
     case::Case,
     job::{Column, Curves, Failure, Observation, SimulateSpec},
-    pumping_unit::{Machine, REDUCE_HEAD},
+    pumping_unit::{Machine, REDUCE_HEAD, Sensor},
     wire,
 };
 use simulation::observe::Recorder;
@@ -54,8 +54,12 @@ impl Simulator for PumpingUnits {
 
 impl Model for Machines {
     fn observe(&self, spec: &SimulateSpec, scored_only: bool) -> Result<Observation, Failure> {
-        // gauges are what is scored, and recording them alone costs less
-        let recorder = if scored_only {
+        // recording the gauges alone costs less, where they alone are scored
+        let terms = &self.unit.case.objective.terms;
+        let gauges_only = terms
+            .iter()
+            .all(|term| Sensor::gauge(&term.channel).is_some());
+        let recorder = if scored_only && gauges_only {
             Recorder::gauges_only()
         } else {
             Recorder::everything(0)

@@ -9,7 +9,7 @@ use super::scale::AxisScale;
 use crate::color::{BAND, GREY, INK, VERMILLION};
 use crate::data::{ConditionResult, Run};
 use crate::document::Figure;
-use crate::number::{fixed, percent, unit};
+use crate::number::{percent, significant, unit};
 use crate::{kind, words};
 use protocol::case::{Case, Channel, ChannelRecord, Offset};
 use protocol::job::{ChannelScore, Verdict};
@@ -39,6 +39,16 @@ const fn shift(offset: Offset, score: Option<&ChannelScore>) -> f64 {
     }
 }
 
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+fn extremes(values: &[f64]) -> (f64, f64) {
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    (low, high)
+}
+
 impl Side {
     fn new(
         heading: &'static str,
@@ -49,30 +59,42 @@ impl Side {
         let grid = &channel.abscissa.points;
         let mut scores = run.evaluation.channels.iter();
         let score = scores.find(|score| score.channel == at);
-        let shift = shift(channel.offset, score);
+        let complete = run.curves.verdict == Verdict::Complete;
+        let shift = match (channel.offset, score) {
+            (Offset::Free, None) if complete => mean(&record.mean) - mean(values),
+            (offset, score) => shift(offset, score),
+        };
         let simulated = points(grid, values)
             .into_iter()
             .map(|(x, y)| (x, y + shift))
             .collect();
         // measured and simulated values stand at the same places
         let rows = grid.iter().zip(record.mean.iter().zip(values));
-        let residual = rows
+        let residual: Vec<(f64, f64)> = rows
             .map(|(&x, (measured, simulated))| (x, measured - simulated - shift))
             .collect();
         let remark = match (run.curves.verdict, score) {
             (verdict @ Verdict::Failed { .. }, _) => {
                 format!("{}; not shifted", words::verdict(&verdict))
             }
-            (Verdict::Complete, Some(score)) => {
+            (Verdict::Complete, score) => {
                 let unit = unit(&channel.unit);
+                let squares: Vec<f64> = residual.iter().map(|(_, y)| y * y).collect();
+                let rms = score
+                    .map_or_else(|| mean(&squares), |score| score.mse)
+                    .sqrt();
+                let (low, high) = extremes(&record.mean);
+                let share = score.map_or_else(
+                    || 2.0 * rms / (high - low),
+                    |score| score.rmse_over_half_range,
+                );
                 format!(
                     "rms error {} {unit}, {} of half the range; shifted by {} {unit}",
-                    fixed(score.mse.sqrt(), 2),
-                    percent(score.rmse_over_half_range),
-                    fixed(shift, 2),
+                    significant(rms),
+                    percent(share),
+                    significant(shift),
                 )
             }
-            (Verdict::Complete, None) => String::new(),
         };
         Self {
             heading,

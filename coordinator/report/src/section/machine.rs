@@ -3,7 +3,7 @@ use crate::data::{Calibration, ConditionResult};
 use crate::document::{Block, Row, Section, Table};
 use crate::kind;
 use crate::machine_check::{ComparedChannel, MachineCheck};
-use crate::number::{MISSING, fixed, percent};
+use crate::number::{MISSING, fixed, percent, unit};
 use protocol::case::Case;
 
 /// Returns the quantities of the machine under every condition of a calibration.
@@ -48,7 +48,7 @@ pub(crate) fn blocks(checks: &[MachineCheck], heads: [&str; 2]) -> Vec<Block> {
 
 /// Builds the table of machine quantities; `heads` names the columns before and after the fit. `None` if there is
 /// nothing to show.
-fn table(checks: &[MachineCheck], heads: [&str; 2]) -> Option<Table> {
+pub(crate) fn table(checks: &[MachineCheck], heads: [&str; 2]) -> Option<Table> {
     if checks.is_empty() {
         return None;
     }
@@ -72,7 +72,7 @@ fn table(checks: &[MachineCheck], heads: [&str; 2]) -> Option<Table> {
         rows.push(Row::new(
             check.quantity,
             [
-                check.unit.replace('.', " "),
+                unit(check.unit),
                 write(check.measured),
                 write(check.before),
                 format!("{}{mark}", write(check.after)),
@@ -85,7 +85,7 @@ fn table(checks: &[MachineCheck], heads: [&str; 2]) -> Option<Table> {
     let head = ["", "unit", "measured", before, after, "error", "limit"];
     let table = Table::new("Stroke and torque", head, rows);
     let flagged = checks.iter().any(|check| check.flag.is_some());
-    let note = flagged.then(|| "* flagged, see above.".to_owned());
+    let note = flagged.then(|| "* A reason not to trust the fit.".to_owned());
     Some(table.with_notes(note))
 }
 

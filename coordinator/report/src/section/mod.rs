@@ -24,7 +24,9 @@ use super::kind;
 pub use derivative::derivatives;
 pub use gene::genes;
 pub(super) use individual::one as individual;
-pub(super) use machine::{blocks as machine_blocks, calibration as machine};
+pub(super) use machine::{
+    blocks as machine_blocks, calibration as machine, table as machine_table,
+};
 pub use machine::{checks, condition_checks, flags};
 pub(super) use parameters::calibration as parameters;
 use summary::changes;

@@ -15,11 +15,19 @@ const DEFINITIONS: [&str; 3] = [
     "Offset: measured minus simulated mean; sensors have no absolute zero.",
 ];
 
-/// Returns the indices of the case's channels that have a score under the condition, channels of the
-/// objective first.
+/// Returns the indices of the case's channels that have a score under the condition or belong to the objective,
+/// channels of the objective first.
 fn scored(case: &Case, result: &ConditionResult) -> Vec<usize> {
+    let has_score = |at: usize| {
+        let runs = [&result.recommended, &result.optimised];
+        let mut scores = runs.iter().flat_map(|run| &run.evaluation.channels);
+        scores.any(|score| score.channel == at)
+    };
     let measured = case.measured(result.condition);
-    let mut scored: Vec<usize> = measured.map(|(at, ..)| at).collect();
+    let mut scored: Vec<usize> = measured
+        .map(|(at, ..)| at)
+        .filter(|&at| has_score(at) || words::is_fitted(case, at))
+        .collect();
     scored.sort_by_key(|&at| !words::is_fitted(case, at));
     scored
 }

@@ -93,6 +93,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         scores: score::condition(&case, recommended, optimised),
         machine: report::condition_checks(&case, &result),
     };
+    for note in &run.manifest.notes {
+        terminal::tell(&format!("note: {note}"));
+    }
     let tables = || {
         let table = table::text(&table::table_4(&case, &result), terminal::styled());
         let machine = report::machine(&object.machine, terminal::styled());
