@@ -48,8 +48,8 @@ fn printed(words: &[&str], folder: &Path) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-/// Checks that mesh and gauges alone make the tables, which a calibration then uses; that a gauge that is moved or
-/// turned makes them out of date; and that `case check` says what moving it changes.
+/// Checks that mesh and gauges alone make the tables, which a calibration then uses, and that `case check` says what
+/// moving a gauge changes.
 #[test]
 fn mesh_and_gauges_alone_make_a_case_that_calibrates() {
     let scratch = tempfile::tempdir().unwrap();
@@ -113,17 +113,23 @@ fn mesh_and_gauges_alone_make_a_case_that_calibrates() {
         "{stroke}"
     );
 
-    let text = fs::read_to_string(&case_file).unwrap();
+    refuses_other_gauges(folder, &case_file);
+}
+
+/// Checks that gauges that are moved or turned make the tables out of date, and that gauges and units that cannot be
+/// are refused.
+fn refuses_other_gauges(folder: &Path, case_file: &Path) {
+    let text = fs::read_to_string(case_file).unwrap();
     let turned =
         "x_m = -1.060622, y_m = 0.235, z_m = 0.16, length_m = 0.012, direction = [1.0, 1.0, 0.0]";
     let place = "x_m = -1.060622, y_m = 0.235, z_m = 0.16, length_m = 0.012";
-    fs::write(&case_file, text.replace(place, turned)).unwrap();
+    fs::write(case_file, text.replace(place, turned)).unwrap();
     let stale = failed(&["case", "check", "case"], folder);
     for part in ["gauges", "computes the tables again"] {
         assert!(stale.contains(part), "{part}: {stale}");
     }
     let beside = place.replace("z_m = 0.16", "z_m = 0.30");
-    fs::write(&case_file, text.replace(place, &beside)).unwrap();
+    fs::write(case_file, text.replace(place, &beside)).unwrap();
     let outside = failed(&["head", "case"], folder);
     assert!(outside.contains("gauge 1"), "{outside}");
     for (wrong, expected) in [
@@ -144,7 +150,7 @@ fn mesh_and_gauges_alone_make_a_case_that_calibrates() {
             "the mean distance of the group `rope_surface` from the head's centre",
         ),
     ] {
-        fs::write(&case_file, wrong).unwrap();
+        fs::write(case_file, wrong).unwrap();
         let errors = failed(&["head", "case", "--write"], folder);
         assert!(errors.contains(expected), "{expected}: {errors}");
         assert!(errors.contains("help: "), "{errors}");

@@ -3,6 +3,7 @@ use super::{
     flexible::ReadHead,
     geometry::Envelope,
     head::{GaugePlace, UPWARDS},
+    mesh::surface_distance_m,
     read::{Resolved, read},
     record::RecordFacts,
 };
@@ -169,7 +170,7 @@ fn gauges(head: &ReadHead) -> Vec<GaugeFigures> {
         surface_distance_m: head
             .mesh
             .as_ref()
-            .map(|(mesh, _)| mesh.surface_distance_m(gauge.position_m)),
+            .map(|(mesh, _)| surface_distance_m(mesh, gauge.position_m)),
         stress: wrap.map(|wrap| (wrap.stress_mpa[at], wrap.gradient_mpa_per_m[at])),
     });
     figures.collect()

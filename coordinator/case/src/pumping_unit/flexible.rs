@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     document::{Document, DocumentStep},
-    error::{CaseError, Faults, contradiction, damaged},
+    error::{CaseError, Faults, contradiction},
     file,
     note::Note,
 };
@@ -105,32 +105,42 @@ fn straightened(path: PathBuf, off_m: f64) -> Note {
     }
 }
 
-/// Reads the tables of modes and influence lines, with the places of the gauges.
-fn tables(folder: &Path, document: &Document, file: &CaseFile) -> Result<ReadHead, CaseError> {
-    let flexible = &file.flexible_head;
-    let stated = stated_gauges(document, flexible)?;
-    let from_mesh = flexible.mesh_file.is_some() && stated.is_some();
-    let help = match (&flexible.mesh_file, &stated) {
-        (Some(_), Some(_)) => "`horsehead head CASE --write` computes both tables from the mesh",
-        (Some(_), None) => {
+/// Returns an error for each table of the head that does not exist; its remedy depends on whether the case has a mesh
+/// and the places of the gauges.
+fn absent(
+    folder: &Path,
+    document: &Document,
+    (flexible, has_gauges): (&FlexibleHead, bool),
+) -> Vec<CaseError> {
+    let help = match (&flexible.mesh_file, has_gauges) {
+        (Some(_), true) => "`horsehead head CASE --write` computes both tables from the mesh",
+        (Some(_), false) => {
             "state the places of the gauges, flexible_head.gauges: then `horsehead head CASE --write` computes it"
         }
         (None, _) => {
             "copy it to this place, or name a mesh, flexible_head.mesh_file, to compute it from"
         }
     };
-    let missing = |name: &PathBuf| {
-        let path = folder.join(name);
-        (!path.exists()).then(|| CaseError::Missing {
-            path: path.into(),
-            role: format!(
-                "a table of the back head, named in {}",
-                document.path.display()
-            )
-            .into(),
-            help: help.into(),
-        })
+    let tables = [&flexible.modes_file, &flexible.influence_file].into_iter();
+    let places = tables.map(|name| folder.join(name));
+    let absent = places.filter(|path| !path.exists());
+    let fault = |path: PathBuf| CaseError::Missing {
+        path: path.into(),
+        role: format!(
+            "a table of the back head, named in {}",
+            document.path.display()
+        )
+        .into(),
+        help: help.into(),
     };
+    absent.map(fault).collect()
+}
+
+/// Reads the tables of modes and influence lines, with the places of the gauges.
+fn tables(folder: &Path, document: &Document, file: &CaseFile) -> Result<ReadHead, CaseError> {
+    let flexible = &file.flexible_head;
+    let stated = stated_gauges(document, flexible)?;
+    let from_mesh = flexible.mesh_file.is_some() && stated.is_some();
     let mut faults = Faults::default();
     if let Some(mesh) = &flexible.mesh_file {
         let role = format!(
@@ -139,10 +149,7 @@ fn tables(folder: &Path, document: &Document, file: &CaseFile) -> Result<ReadHea
         );
         faults.take(file::require_exists(&folder.join(mesh), &role));
     }
-    let absent: Vec<CaseError> = [&flexible.modes_file, &flexible.influence_file]
-        .into_iter()
-        .filter_map(missing)
-        .collect();
+    let absent = absent(folder, document, (flexible, stated.is_some()));
     let empty = |head, provenance, stale| ReadHead {
         head,
         provenance,
@@ -152,17 +159,24 @@ fn tables(folder: &Path, document: &Document, file: &CaseFile) -> Result<ReadHea
         stale,
         notes: None,
     };
-    if from_mesh && !absent.is_empty() {
+    // a geometry that cannot be is a fault of its own
+    if from_mesh
+        && !absent.is_empty()
+        && let Some(head) = unreduced(file)
+    {
         faults.end()?;
         let provenance = head::Provenance {
             gauges: stated,
             ..head::Provenance::default()
         };
-        let stale = absent.into_iter().next();
-        return Ok(empty(unreduced(document, file)?, provenance, stale));
+        let mut missing = Faults::default();
+        for fault in absent {
+            missing.add(fault);
+        }
+        return Ok(empty(head, provenance, missing.end().err()));
     }
     for fault in absent {
-        faults.take::<()>(Err(fault));
+        faults.add(fault);
     }
     faults.end()?;
     let modes_file = folder.join(&flexible.modes_file);
@@ -250,24 +264,15 @@ const DAMPING_RATIO: f64 = 0.01;
 const BEYOND_DEG: f64 = 7.0;
 
 /// Returns a head without modes, with the stations at which it is to be reduced: every degree of the arc that
-/// the rope touches.
-///
-/// # Errors
-/// Returns an error if the crank cannot complete a turn.
-fn unreduced(document: &Document, file: &CaseFile) -> Result<ModalHead, CaseError> {
-    let envelope = geometry::envelope(file).map_err(|_| {
-        damaged(
-            &document.path,
-            "the crank cannot complete a turn with these lengths",
-            "correct the lengths of crank, rod and ropes",
-        )
-    })?;
+/// the rope touches. `None` if the crank cannot complete a turn.
+fn unreduced(file: &CaseFile) -> Option<ModalHead> {
+    let envelope = geometry::envelope(file).ok()?;
     let [lowest, highest] = envelope.contact_deg;
     let first = (lowest.min(file.back_head.rope_anchor_deg) - BEYOND_DEG).floor();
     let count = whole((highest + BEYOND_DEG).ceil() - first) + 1;
     let arc_deg: Vec<f64> = (0..count).map(|at| first + at as f64).collect();
     let zero = vec![[0.0; 4]; arc_deg.len()];
-    Ok(ModalHead {
+    Some(ModalHead {
         frequencies_hz: Vec::new(),
         damping_ratio: DAMPING_RATIO,
         radial: Vec::new(),
@@ -307,12 +312,12 @@ fn source_hash(mesh: &str, file: &CaseFile, read: &ReadHead) -> String {
         take(&gauge.position_m);
         take(&[gauge.length_m]);
         // as it was when all gauges were vertical
-        if gauge.direction != head::UPWARDS {
+        if !head::is_upwards(&gauge.direction) {
             take(&gauge.direction);
         }
     }
     take(&read.head.arc_deg);
-    if flexible.mesh_unit_m != 1.0 {
+    if flexible.mesh_unit_m.to_bits() != 1.0_f64.to_bits() {
         take(&[flexible.mesh_unit_m]);
     }
     hasher.finalize().to_hex().to_string()

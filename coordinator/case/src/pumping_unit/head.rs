@@ -59,8 +59,9 @@ const fn upwards() -> [f64; 3] {
     UPWARDS
 }
 
-fn is_upwards(direction: &[f64; 3]) -> bool {
-    *direction == UPWARDS
+/// Returns whether a gauge reads vertical strain.
+pub(super) fn is_upwards(direction: &[f64; 3]) -> bool {
+    direction.map(f64::to_bits) == UPWARDS.map(f64::to_bits)
 }
 
 impl From<HeadGauge> for GaugePlace {
@@ -104,14 +105,9 @@ pub(super) fn places(gauges: &BTreeMap<String, GaugePlace>) -> Option<[HeadGauge
     let place = |name: &str| {
         let place = gauges.get(name)?;
         let square: f64 = place.direction.iter().map(|x| x * x).sum();
-        let length = if place.direction == UPWARDS {
-            1.0
-        } else {
-            square.sqrt()
-        };
         Some(HeadGauge {
             position_m: [place.x_m, place.y_m, place.z_m],
-            direction: place.direction.map(|x| x / length),
+            direction: place.direction.map(|x| x / square.sqrt()),
             length_m: place.length_m,
         })
     };

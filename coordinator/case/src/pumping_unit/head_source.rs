@@ -1,7 +1,7 @@
 //! Inputs of a reduction of a case's back head (mesh, material, gauges) and the files for its results.
 use super::{
     mesh,
-    read::{Resolved, resolve},
+    read::{Resolved, StaleTables, resolve},
 };
 use crate::{
     error::{CaseError, damaged},
@@ -41,7 +41,7 @@ impl HeadSource {
     /// Returns the distance of each gauge from the surface of the mesh \[m\].
     pub fn surface_distances_m(&self) -> [f64; 4] {
         self.gauges
-            .map(|gauge| self.mesh.surface_distance_m(gauge.position_m))
+            .map(|gauge| mesh::surface_distance_m(&self.mesh, gauge.position_m))
     }
 }
 
@@ -60,7 +60,10 @@ pub fn load_head(folder: &Path) -> Result<(PumpingUnit, HeadSource), CaseError> 
         flexible,
         twins,
         ..
-    } = resolve(&RecordFolder::new(folder, &overrides, &document))?;
+    } = resolve(
+        &RecordFolder::new(folder, &overrides, &document),
+        StaleTables::Accepted,
+    )?;
     let (Some((mesh, mesh_blake3)), Some(source_blake3)) = (head.mesh, head.source_blake3) else {
         return Err(damaged(
             &folder.join("case.toml"),

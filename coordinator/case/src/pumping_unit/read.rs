@@ -13,7 +13,6 @@ use crate::{
     effect::{self, CaseEffect},
     error::{CaseError, Faults, damaged},
     loaded::{Loaded, Records},
-    note::Note,
     source::RecordFolder,
 };
 use discrepancy::record::Record;
@@ -27,11 +26,17 @@ use protocol::{
 /// # Errors
 /// Returns all faults found; see [`CaseError`].
 pub(super) fn read(source: &RecordFolder<'_>) -> Result<Resolved, CaseError> {
-    let mut resolved = resolve(source)?;
-    match resolved.head.stale.take() {
-        Some(stale) => Err(stale),
-        None => Ok(resolved),
-    }
+    resolve(source, StaleTables::Refused)
+}
+
+/// Treatment of tables of the head that are missing although they follow from its mesh, or were computed from
+/// another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum StaleTables {
+    /// Tables that are out of date are an error.
+    Refused,
+    /// Tables that are out of date are accepted, because they are to be computed again.
+    Accepted,
 }
 
 /// Case with its machine and the data of its flexible head.
@@ -42,7 +47,7 @@ pub(super) struct Resolved {
     /// Range of motion of beam and ropes over one crank turn.
     pub(super) envelope: Envelope,
     pub(super) machine: Machine,
-    /// Flexible head of the machine; tables computed from another mesh are not refused yet.
+    /// Flexible head of the machine.
     pub(super) head: ReadHead,
     pub(super) flexible: FlexibleHead,
     pub(super) twins: Option<TwinRopesEntry>,
@@ -51,8 +56,11 @@ pub(super) struct Resolved {
 /// Reads a case and all its files.
 ///
 /// # Errors
-/// As [`read`], except that tables computed from another mesh are accepted.
-pub(super) fn resolve(source: &RecordFolder<'_>) -> Result<Resolved, CaseError> {
+/// As [`read`], except for tables of the head that are out of date and accepted.
+pub(super) fn resolve(
+    source: &RecordFolder<'_>,
+    stale: StaleTables,
+) -> Result<Resolved, CaseError> {
     let RecordFolder {
         measured, document, ..
     } = *source;
@@ -63,11 +71,10 @@ pub(super) fn resolve(source: &RecordFolder<'_>) -> Result<Resolved, CaseError> 
         mut objective,
         mut unknowns,
         conditions: read,
-    } = parts(source, &file)?;
+    } = parts(source, &file, stale)?;
     let stated = file.objective.as_ref();
     unknowns.extend(file.effects.iter().flat_map(CaseEffect::genes));
-    let mut notes: Vec<Note> = head.notes.iter().cloned().collect();
-    let mut facts = Vec::new();
+    let (mut notes, mut facts) = (Vec::from_iter(head.notes.clone()), Vec::new());
     let (mut cycles, mut channels) = (Vec::new(), Vec::new());
     let (mut conditions, mut working) = (Vec::new(), Vec::new());
     for read in read {
@@ -149,7 +156,11 @@ struct Parts {
 ///
 /// # Errors
 /// Returns the faults of all parts.
-fn parts(source: &RecordFolder<'_>, file: &CaseFile) -> Result<Parts, CaseError> {
+fn parts(
+    source: &RecordFolder<'_>,
+    file: &CaseFile,
+    stale: StaleTables,
+) -> Result<Parts, CaseError> {
     let RecordFolder {
         folder, document, ..
     } = *source;
@@ -157,7 +168,11 @@ fn parts(source: &RecordFolder<'_>, file: &CaseFile) -> Result<Parts, CaseError>
     // geometry of numbers that cannot be right would be faults that are none
     let ranged = faults.take(ranges::check(document, file));
     let envelope = ranged.and_then(|()| faults.take(machine::check(document, file)));
-    let head = faults.take(flexible::read(folder, document, file));
+    let mut head = faults.take(flexible::read(folder, document, file));
+    if stale == StaleTables::Refused {
+        let stale = head.as_mut().and_then(|head| head.stale.take());
+        faults.take(stale.map_or(Ok(()), Err));
+    }
     if let (Some(envelope), Some(head)) = (&envelope, &head) {
         let arc = &head.head.arc_deg;
         faults.take(machine::check_contact_on_arc(document, file, arc, envelope));

@@ -183,6 +183,7 @@ fn a_calibration_has_the_fields_that_programs_rely_on() {
         objective: scores.objective,
         channels: scores.channels,
         other_conditions: BTreeMap::from([("4rpm".to_owned(), condition(&case, &before, &after))]),
+        machine: Vec::new(),
         log_digest: "00".to_owned(),
         files: Vec::new(),
     };
@@ -197,6 +198,7 @@ fn a_calibration_has_the_fields_that_programs_rely_on() {
             "files",
             "genes",
             "log_digest",
+            "machine",
             "objective",
             "other_conditions",
             "preset",

@@ -2,7 +2,7 @@
 use super::body::{Mesh, SYMMETRY};
 use nalgebra::Vector3;
 use protocol::pumping_unit::ElementKind;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Corners of the faces of a brick, in Gmsh's order of nodes.
 const BRICK: [[usize; 4]; 6] = [
@@ -17,50 +17,47 @@ const BRICK: [[usize; 4]; 6] = [
 /// Corners of the faces of a tetrahedron, in Gmsh's order of nodes; the last one is repeated.
 const TETRAHEDRON: [[usize; 4]; 4] = [[0, 2, 1, 1], [0, 1, 3, 3], [0, 3, 2, 2], [3, 1, 2, 2]];
 
-impl Mesh {
-    /// Returns the distance of a point from the surface of the body \[m\], inside or outside; faces between
-    /// two elements and those on the plane of a half's symmetry are not part of the surface. Curved faces are
-    /// taken as the plane triangles between their corners.
-    pub fn surface_distance_m(&self, point: [f64; 3]) -> f64 {
-        let [x, y, z] = point;
-        let point = Vector3::new(x, y, if self.half { z.abs() } else { z });
-        let place =
-            |node: usize| Vector3::from(self.nodes_m.get(node).copied().unwrap_or_default());
-        let faces = self.free_faces();
-        let triangles = faces
-            .iter()
-            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
-        let squares = triangles.map(|corners| {
-            let triangle = corners.map(place);
-            (closest(&triangle, &point) - point).norm_squared()
-        });
-        squares.fold(f64::INFINITY, f64::min).sqrt()
-    }
+/// Returns the distance of a point from the surface of the body \[m\], inside or outside; faces between
+/// two elements and those on the plane of a half's symmetry are not part of the surface. Curved faces are
+/// taken as the plane triangles between their corners.
+pub(in super::super) fn surface_distance_m(mesh: &Mesh, point: [f64; 3]) -> f64 {
+    let [x, y, z] = point;
+    let point = Vector3::new(x, y, if mesh.half { z.abs() } else { z });
+    let place = |node: usize| Vector3::from(mesh.nodes_m.get(node).copied().unwrap_or_default());
+    let faces = free_faces(mesh);
+    let triangles = faces
+        .iter()
+        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    let squares = triangles.map(|corners| {
+        let triangle = corners.map(place);
+        (closest(&triangle, &point) - point).norm_squared()
+    });
+    squares.fold(f64::INFINITY, f64::min).sqrt()
+}
 
-    /// Returns the corners of the faces that belong to one element only and not to the plane of symmetry.
-    fn free_faces(&self) -> Vec<[usize; 4]> {
-        let corners: &[[usize; 4]] = match self.kind {
-            ElementKind::Hexahedron => &BRICK,
-            ElementKind::Tetrahedron => &TETRAHEDRON,
-        };
-        let mut free: HashMap<[usize; 4], Option<[usize; 4]>> = HashMap::new();
-        let elements = self.volumes.values();
-        for element in elements.flat_map(|group| group.chunks_exact(self.kind.nodes())) {
-            for face in corners {
-                let face = face.map(|corner| element[corner]);
-                let mut key = face;
-                key.sort_unstable();
-                let seen = free.entry(key);
-                seen.and_modify(|face| *face = None).or_insert(Some(face));
-            }
+/// Returns the corners of the faces that belong to one element only and not to the plane of symmetry.
+fn free_faces(mesh: &Mesh) -> Vec<[usize; 4]> {
+    let corners: &[[usize; 4]] = match mesh.kind {
+        ElementKind::Hexahedron => &BRICK,
+        ElementKind::Tetrahedron => &TETRAHEDRON,
+    };
+    let mut free: HashMap<[usize; 4], Option<[usize; 4]>> = HashMap::new();
+    let elements = mesh.volumes.values();
+    for element in elements.flat_map(|group| group.chunks_exact(mesh.kind.nodes())) {
+        for face in corners {
+            let face = face.map(|corner| element[corner]);
+            let mut key = face;
+            key.sort_unstable();
+            let seen = free.entry(key);
+            seen.and_modify(|face| *face = None).or_insert(Some(face));
         }
-        let cut = self.surfaces.get(SYMMETRY).into_iter().flatten();
-        let cut: std::collections::HashSet<&usize> = cut.collect();
-        let whole = free.into_values().flatten();
-        whole
-            .filter(|face| !face.iter().all(|node| cut.contains(node)))
-            .collect()
     }
+    let cut = mesh.surfaces.get(SYMMETRY).into_iter().flatten();
+    let cut: HashSet<&usize> = cut.collect();
+    let whole = free.into_values().flatten();
+    whole
+        .filter(|face| !face.iter().all(|node| cut.contains(node)))
+        .collect()
 }
 
 /// Returns the point of a triangle that is closest to a point (Ericson, Real-Time Collision Detection, 5.1.5):
@@ -114,7 +111,7 @@ mod tests {
         let mut mesh = cubes();
         assert!((mesh.volume_m3() - 2.0).abs() < 1e-12);
         let close = |mesh: &Mesh, point, expected: f64| {
-            let distance = mesh.surface_distance_m(point);
+            let distance = surface_distance_m(mesh, point);
             assert!((distance - expected).abs() < 1e-12, "{point:?} {distance}");
         };
         // in the middle, where the faces between the elements do not count
