@@ -127,7 +127,7 @@ const GATED: &[(&str, &[&str])] = &[
     ),
     (
         "nalgebra",
-        &["simulation", "search", "discrepancy", "oscillator"],
+        &["case", "simulation", "search", "discrepancy", "oscillator"],
     ),
     ("amd", &["simulation"]),
     ("faer", &["simulation"]),

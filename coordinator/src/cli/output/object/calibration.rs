@@ -31,8 +31,8 @@ pub(crate) struct CalibrateOutput<'a> {
     /// Scores of the recommended and the optimised parameters at all other conditions with a measured record,
     /// calibrated or not, by condition name.
     pub(crate) other_conditions: BTreeMap<String, ConditionOutput>,
-    /// Quantities of the machine under every condition: stroke and crank torque of a pumping unit, with the
-    /// recommended (`before`) and the optimised (`after`) parameters.
+    /// Quantities of the machine under every condition by which the fit is judged, with the recommended (`before`) and
+    /// the optimised (`after`) parameters; empty for kinds of model that have none.
     pub(crate) machine: Vec<MachineCheck>,
     /// Hash of the search's evaluation log, in id order, by which two runs can be compared.
     pub(crate) log_digest: String,

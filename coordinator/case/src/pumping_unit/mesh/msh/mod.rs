@@ -4,6 +4,7 @@
 //! entities, without which pin holes cannot be identified, and it panics on a malformed node count. The tests
 //! use it as a reference for nodes and elements.
 mod elements;
+mod kind;
 mod lines;
 mod reader;
 mod sections;

@@ -1,5 +1,5 @@
 //! Reading of the mesh file sections for group names, entities and nodes.
-use super::{super::body::Mesh, elements::Block, lines::Lines};
+use super::{super::body::Mesh, kind::Block, lines::Lines};
 use crate::error::CaseError;
 use std::collections::BTreeMap;
 

@@ -64,8 +64,8 @@ pub(crate) struct DiagnoseOutput {
     /// Further measurements that would distinguish the pairs in `inseparable`, in the order of the pairs.
     data_worth: Vec<IndistinguishablePair>,
     gap: GapOutput,
-    /// Quantities of the machine under every condition: stroke and crank torque of a pumping unit, without
-    /// (`before`) and with (`after`) the added effects.
+    /// Quantities of the machine under every condition by which the answer is judged, without (`before`) and with
+    /// (`after`) the added effects; empty for kinds of model that have none.
     machine: Vec<MachineCheck>,
     /// Predictive scores, on all data excluded from the fit, of the accepted model or, if none was accepted,
     /// of the withheld suspected effect.
