@@ -123,6 +123,10 @@ impl Block {
         }
         Ok(())
     }
+
+    const fn is_volume(&self) -> bool {
+        matches!(self.of.shape, Shape::Brick | Shape::Tetrahedron)
+    }
 }
 
 fn allowed(lines: &Lines<'_>, number: i64) -> Result<Type, CaseError> {

@@ -66,9 +66,3 @@ pub(super) struct Block {
     /// Node indices, element after element.
     pub(super) nodes: Vec<usize>,
 }
-
-impl Block {
-    pub(super) const fn is_volume(&self) -> bool {
-        matches!(self.of.shape, Shape::Brick | Shape::Tetrahedron)
-    }
-}
