@@ -66,7 +66,7 @@ pub trait Model: fmt::Debug + Send + Sync {
     /// Simulates an individual, and returns the curves of the condition's channels exactly as computed, with
     /// the derivatives that the job requests: [`protocol::job::Derivative::none`] for a model that gives
     /// none, and no derivatives of a run that fails. Requesting derivatives changes no bit of the curves.
-    /// With `scored_only`, only curves of channels with a measured record are required.
+    /// With `scored_only`, only curves of the objective's channels are required; others may be empty.
     ///
     /// # Errors
     /// [`Failure::Misconfigured`] where the job does not fit the case.

@@ -45,22 +45,15 @@ impl ComparedChannel<'_> {
             .map(|curve| (complete > 0 && curve.len() == complete).then(|| quantity(curve)))
     }
 
-    /// Returns the root mean square difference between the measured and each simulated curve, without a
-    /// constant difference where the channel has no absolute zero; `None` for curves that are not complete.
+    /// Returns the root mean square difference between the measured and each simulated curve; `None` for curves that are
+    /// not complete.
     pub fn misfits(&self) -> [Option<f64>; 2] {
         let [measured, ..] = self.values(|_| 0.0);
         [self.before, self.after].map(|curve| {
             measured.filter(|_| curve.len() == self.measured.len())?;
             let pairs = curve.iter().zip(self.measured);
-            let differences: Vec<f64> = pairs.map(|(own, record)| own - record).collect();
-            let count = differences.len() as f64;
-            let mean = if self.channel.is_absolute() {
-                0.0
-            } else {
-                differences.iter().sum::<f64>() / count
-            };
-            let squares = differences.iter().map(|own| (own - mean).powi(2));
-            Some((squares.sum::<f64>() / count).sqrt())
+            let squares = pairs.map(|(own, record)| (own - record).powi(2));
+            Some((squares.sum::<f64>() / curve.len() as f64).sqrt())
         })
     }
 }

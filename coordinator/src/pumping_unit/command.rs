@@ -120,11 +120,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let name = case.conditions[chosen].name.clone();
     let turn = quasi_static(machine, &machine.conditions[chosen])
         .context("the crank of this case cannot complete a revolution")?;
-    let mut spec = spec(machine, &source, modes, arguments.family.families());
+    let wrap = hardest(machine, &turn);
+    let mut spec = spec(machine, &source, wrap, (modes, arguments.family.families()));
     if arguments.family == FamilyChoice::Coupled {
         spec.patterns = patterns(machine, &turn);
     }
-    spec.wrap = hardest(machine, &turn);
     spec.fields = arguments.vtu.is_some();
     check_size(&spec)?;
     let head = reduce_once(unit.clone(), &spec)?;
@@ -143,17 +143,22 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         written.push(write_head_modes(folder, &picture)?);
     }
     if arguments.write {
-        written.extend(files::write_tables(machine, &source, &head)?);
+        written.extend(files::write_tables(
+            machine,
+            &source,
+            (&head, wrap.tension_n),
+        )?);
     }
     for path in &written {
         terminal::tell(&format!("wrote {}", path.display()));
     }
-    let object = output::head::head((case, &name), &source, &head, &comparison);
+    let distances_m = source.surface_distances_m();
+    let object = output::head::head((case, &name), (&source, &distances_m), &head, &comparison);
     let tables = || {
         let styled = terminal::styled();
         let modes = table::text(&head_mode_table(&head, &comparison), styled);
         let statics = head_statics(&comparison, &name, machine.run.modes);
-        let gauges = head_gauges(&head, &source.gauges, source.surface_distances_m());
+        let gauges = head_gauges((&head, wrap.tension_n), &source.gauges, &distances_m);
         let pair = head.twin.iter().zip(&machine.twin_ropes);
         let pair = pair.map(|(twin, ropes)| head_pair(twin, ropes.offset_m));
         let pair = pair.map(|table| format!("\n{}", table::text(&table, styled)));
@@ -224,12 +229,12 @@ fn wraps(machine: &Machine, turn: &QuasiStaticTurn) -> impl Iterator<Item = Rope
 }
 
 /// Builds the job that reduces the head of a case; the influence lines are sampled at the arc stations of the
-/// case's present tables.
+/// case's present tables, or at those that its geometry needs.
 fn spec(
     machine: &Machine,
     source: &HeadSource,
-    modes: usize,
-    families: Vec<ModeFamily>,
+    wrap: RopeWrap,
+    (modes, families): (usize, Vec<ModeFamily>),
 ) -> ReduceHeadSpec {
     ReduceHeadSpec {
         mesh: mesh(&source.mesh),
@@ -247,11 +252,7 @@ fn spec(
             offset_m: twins.offset_m,
             modes: twins.modes,
         }),
-        wrap: RopeWrap {
-            tension_n: 0.0,
-            anchor_deg: 0.0,
-            leaves_deg: 0.0,
-        },
+        wrap,
         fields: false,
     }
 }

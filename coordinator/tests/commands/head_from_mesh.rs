@@ -82,7 +82,7 @@ fn mesh_and_gauges_alone_make_a_case_that_calibrates() {
     let summary = printed(&["case", "check", "case"], folder);
     for part in [
         "gauge 1   at (-1.0606, 0.2350, 0.1600) m, 12 mm along y, 0.0 mm from the surface",
-        "moved by 1 mm along x, y, z: +2.3 %",
+        "kN of rope tension, moved by 1 mm along x, y, z: +2.3 %",
     ] {
         assert!(summary.contains(part), "{part}: {summary}");
     }
@@ -116,6 +116,50 @@ fn mesh_and_gauges_alone_make_a_case_that_calibrates() {
     refuses_other_gauges(folder, &case_file);
 }
 
+/// Checks that the objective is the weighted sum of the errors of gauges, position and torque, in the units that the
+/// case states.
+#[test]
+fn position_and_torque_are_terms_of_the_objective() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path();
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb/back_head");
+    let case_file = without_tables(&folder.join("case"));
+    for name in ["back_head_modes.json", "back_head_influence.csv"] {
+        fs::copy(shipped.join(name), folder.join("case/back_head").join(name)).unwrap();
+    }
+    let text = fs::read_to_string(&case_file).unwrap();
+    let terms = "position_weight_mpa2_per_m2 = 250.0\ntorque_weight_mpa2_per_kn2_m2 = 0.5\noffset = \"free\"";
+    fs::write(&case_file, text.replace("offset = \"free\"", terms)).unwrap();
+    let calibrate = [
+        "calibrate",
+        "case",
+        "--preset",
+        "random",
+        "--set",
+        "points=3",
+        "--run",
+        "a",
+        "--output",
+        "json",
+    ];
+    let result: Value = serde_json::from_str(&printed(&calibrate, folder)).unwrap();
+    for which in ["recommended", "optimised"] {
+        let mse = |channel: &str, key: &str| {
+            let value = &result["channels"][channel][which][key];
+            value
+                .as_f64()
+                .unwrap_or_else(|| panic!("{channel}: {value}"))
+        };
+        let sum = mse("1", "mse")
+            + mse("3", "mse")
+            + 250.0 * mse("position", "mse")
+            + 0.5e-6 * mse("torque", "mse_fixed_offset");
+        let objective = result["objective"][which].as_f64().unwrap();
+        assert!(mse("torque", "mse") > 1e4, "{result}");
+        assert!((sum / objective - 1.0).abs() < 1e-9, "{sum} {objective}");
+    }
+}
+
 /// Checks that gauges that are moved or turned make the tables out of date, and that gauges and units that cannot be
 /// are refused.
 fn refuses_other_gauges(folder: &Path, case_file: &Path) {
@@ -128,6 +172,12 @@ fn refuses_other_gauges(folder: &Path, case_file: &Path) {
     for part in ["gauges", "computes the tables again"] {
         assert!(stale.contains(part), "{part}: {stale}");
     }
+    printed(&["head", "case", "--write"], folder);
+    let summary = printed(&["case", "check", "case"], folder);
+    assert!(
+        summary.contains("12 mm along (0.71, 0.71, 0.00)"),
+        "{summary}"
+    );
     let beside = place.replace("z_m = 0.16", "z_m = 0.30");
     fs::write(case_file, text.replace(place, &beside)).unwrap();
     let outside = failed(&["head", "case"], folder);

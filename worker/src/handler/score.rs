@@ -34,8 +34,15 @@ pub(super) fn evaluation(
             counters,
         });
     }
-    let curves = case.channels_of(condition).zip(&seen.curves);
-    let compared: Vec<Compared<'_>> = curves
+    let curves = || case.channels_of(condition).zip(&seen.curves);
+    let lacking = curves().find(|((_, channel), curve)| {
+        curve.is_empty() && channel.record.is_some() && case.objective.names(&channel.name)
+    });
+    if let Some(((_, channel), _)) = lacking {
+        let problem = format!("the model simulates no curve of `{}`", channel.name);
+        return Err(Failure::misconfigured("channels", problem));
+    }
+    let compared: Vec<Compared<'_>> = curves()
         .filter_map(|((at, channel), simulated)| {
             // a channel that takes no part in the objective may not have been simulated
             let record = channel.record.as_ref().filter(|_| !simulated.is_empty())?;

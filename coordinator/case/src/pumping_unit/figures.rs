@@ -3,7 +3,7 @@ use super::{
     flexible::ReadHead,
     geometry::Envelope,
     head::{GaugePlace, UPWARDS},
-    mesh::surface_distance_m,
+    mesh::surface_distances_m,
     read::{Resolved, read},
     record::RecordFacts,
 };
@@ -16,7 +16,7 @@ use crate::{
 };
 use protocol::{
     case::{Case, Term, Unknown},
-    pumping_unit::Machine,
+    pumping_unit::{HeadGauge, Machine},
 };
 use std::{fmt, path::Path};
 
@@ -72,9 +72,9 @@ pub struct GaugeFigures {
     pub place: GaugePlace,
     /// Distance from the surface of the body \[m\]; `None` without a mesh.
     pub surface_distance_m: Option<f64>,
-    /// Stress under the largest tension \[MPa\] and its change when the gauge is moved along x, y and z
+    /// Tension of the rope \[N\], stress under it \[MPa\] and its change when the gauge is moved along x, y and z
     /// [MPa/m]; `None` if the tables do not state them.
-    pub stress: Option<(f64, [Option<f64>; 3])>,
+    pub stress: Option<(f64, f64, [Option<f64>; 3])>,
 }
 
 /// Key figures of a gauge record.
@@ -164,14 +164,20 @@ fn of(source: &RecordFolder<'_>) -> Result<KeyFigures, CaseError> {
 /// Returns the figures of the gauges whose places are known.
 fn gauges(head: &ReadHead) -> Vec<GaugeFigures> {
     let wrap = head.provenance.largest_wrap;
-    let places = head.provenance.gauges.iter().flatten().enumerate();
-    let figures = places.map(|(at, gauge)| GaugeFigures {
+    let places: Vec<HeadGauge> = head.provenance.gauges.into_iter().flatten().collect();
+    let points: Vec<[f64; 3]> = places.iter().map(|gauge| gauge.position_m).collect();
+    let distances = head.mesh.as_ref();
+    let distances = distances.map(|(mesh, _)| surface_distances_m(mesh, &points));
+    let figures = places.iter().enumerate().map(|(at, gauge)| GaugeFigures {
         place: GaugePlace::from(*gauge),
-        surface_distance_m: head
-            .mesh
-            .as_ref()
-            .map(|(mesh, _)| surface_distance_m(mesh, gauge.position_m)),
-        stress: wrap.map(|wrap| (wrap.stress_mpa[at], wrap.gradient_mpa_per_m[at])),
+        surface_distance_m: distances.as_ref().and_then(|all| all.get(at).copied()),
+        stress: wrap.map(|wrap| {
+            (
+                wrap.tension_n,
+                wrap.stress_mpa[at],
+                wrap.gradient_mpa_per_m[at],
+            )
+        }),
     });
     figures.collect()
 }
@@ -337,12 +343,13 @@ impl fmt::Display for GaugeFigures {
         if let Some(distance_m) = self.surface_distance_m {
             write!(to, ", {:.1} mm from the surface", 1e3 * distance_m)?;
         }
-        let Some((stress, gradient)) = self.stress else {
+        let Some((tension_n, stress, gradient)) = self.stress else {
             return Ok(());
         };
         write!(
             to,
-            "; {stress:.1} MPa at the largest tension, moved by 1 mm along x, y, z: "
+            "; {stress:.1} MPa under {:.1} kN of rope tension, moved by 1 mm along x, y, z: ",
+            1e-3 * tension_n
         )?;
         let changes = gradient.map(|own| {
             own.map_or_else(

@@ -7,11 +7,13 @@ use super::{
 };
 use crate::{
     document::{Document, DocumentStep},
-    error::{CaseError, Faults, contradiction},
+    error::{CaseError, Faults, contradiction, damaged},
     file,
     note::Note,
 };
-use protocol::pumping_unit::{HeadGauge, Influence, ModalHead, StressRecovery, TwinRopes};
+use protocol::pumping_unit::{
+    BackHead, HeadGauge, Influence, ModalHead, StressRecovery, TwinRopes,
+};
 use std::path::{Path, PathBuf};
 
 /// Flexible back head of a pumping unit as read from its files: modes, influence lines and mesh.
@@ -29,6 +31,21 @@ pub(super) struct ReadHead {
     pub(super) stale: Option<CaseError>,
     /// Note about the mesh, if there is one.
     pub(super) notes: Option<Note>,
+}
+
+impl ReadHead {
+    /// Creates a head without mesh and second rope.
+    const fn new(head: ModalHead, provenance: head::Provenance, stale: Option<CaseError>) -> Self {
+        Self {
+            head,
+            provenance,
+            mesh: None,
+            source_blake3: None,
+            twins: None,
+            stale,
+            notes: None,
+        }
+    }
 }
 
 /// Reads the back head's modes and influence lines and, if the case names one, the mesh that they belong to.
@@ -65,7 +82,11 @@ pub(super) fn read(
             read.stale =
                 mesh::check_origin(&modes_file, mesh::Origin::Source, Some(&source), stated).err();
         }
-        read.notes = mesh.straightened_m.map(|off_m| straightened(path, off_m));
+        let visible = mesh.straightened_m.filter(|off_m| *off_m > 1e-6);
+        read.notes = visible.map(|off_m| straightened(path.clone(), off_m));
+        if unreduced {
+            clip_stations(&mut read.head, &mesh, &file.back_head);
+        }
         read.source_blake3 = Some(source);
         read.mesh = Some((mesh, hash));
     }
@@ -80,15 +101,24 @@ pub(super) fn read(
     }
     let available = read.head.frequencies_hz.len();
     if file.run.modes > available && !unreduced {
-        return Err(document.field(
-            &[DocumentStep::Key("run"), DocumentStep::Key("modes")],
+        let from_mesh = read.mesh.is_some() && read.provenance.gauges.is_some();
+        let fault = document.field(
+            &["run", "modes"].map(DocumentStep::Key),
             file.run.modes,
             format!(
                 "0 to {available}, the modes of {}",
                 flexible.modes_file.display()
             ),
-            "take fewer modes, or reduce the head with more",
-        ));
+            if from_mesh {
+                "take fewer modes; or `horsehead head CASE --write` computes as many from the mesh"
+            } else {
+                "take fewer modes, or tables with more"
+            },
+        );
+        if !from_mesh {
+            return Err(fault);
+        }
+        read.stale = read.stale.or(Some(fault));
     }
     Ok(read)
 }
@@ -141,6 +171,14 @@ fn tables(folder: &Path, document: &Document, file: &CaseFile) -> Result<ReadHea
     let flexible = &file.flexible_head;
     let stated = stated_gauges(document, flexible)?;
     let from_mesh = flexible.mesh_file.is_some() && stated.is_some();
+    if flexible.modes_file == flexible.influence_file {
+        return Err(document.field(
+            &["flexible_head", "influence_file"].map(DocumentStep::Key),
+            flexible.influence_file.display(),
+            "another file than modes_file",
+            "give each table a file of its own",
+        ));
+    }
     let mut faults = Faults::default();
     if let Some(mesh) = &flexible.mesh_file {
         let role = format!(
@@ -149,54 +187,73 @@ fn tables(folder: &Path, document: &Document, file: &CaseFile) -> Result<ReadHea
         );
         faults.take(file::require_exists(&folder.join(mesh), &role));
     }
-    let absent = absent(folder, document, (flexible, stated.is_some()));
-    let empty = |head, provenance, stale| ReadHead {
-        head,
-        provenance,
-        mesh: None,
-        source_blake3: None,
-        twins: None,
-        stale,
-        notes: None,
-    };
-    // a geometry that cannot be is a fault of its own
-    if from_mesh
-        && !absent.is_empty()
-        && let Some(head) = unreduced(file)
-    {
-        faults.end()?;
-        let provenance = head::Provenance {
-            gauges: stated,
-            ..head::Provenance::default()
-        };
-        let mut missing = Faults::default();
-        for fault in absent {
-            missing.add(fault);
-        }
-        return Ok(empty(head, provenance, missing.end().err()));
-    }
-    for fault in absent {
-        faults.add(fault);
-    }
-    faults.end()?;
     let modes_file = folder.join(&flexible.modes_file);
     let influence_file = folder.join(&flexible.influence_file);
-    let (head, mut provenance) = head::read(&modes_file, &influence_file)?;
+    let mut missing = Faults::default();
+    for fault in absent(folder, document, (flexible, stated.is_some())) {
+        missing.add(fault);
+    }
+    let present = missing.end();
+    let read = match present.and_then(|()| head::read(&modes_file, &influence_file)) {
+        Ok(tables) => Ok(of_tables(
+            document,
+            (&modes_file, tables),
+            (stated, from_mesh),
+        )),
+        // what is missing or damaged is computed again; a geometry that cannot be is a fault of its own
+        Err(fault) => match unreduced(file).filter(|_| from_mesh) {
+            Some(head) => Ok(to_be_reduced(head, &modes_file, (stated, fault))),
+            None => Err(fault),
+        },
+    };
+    let read = faults.take(read);
+    faults.end()?;
+    read.ok_or_else(|| damaged(&document.path, "it cannot be read", "copy it again"))
+}
+
+/// Returns a head that is to be reduced for the gauges of the case because of a fault of its tables, with the damping and
+/// the stations of its modes file where that can be read.
+fn to_be_reduced(
+    mut head: ModalHead,
+    modes_file: &Path,
+    (gauges, fault): (Option<[HeadGauge; 4]>, CaseError),
+) -> ReadHead {
+    if let Ok((damping_ratio, arc_deg)) = head::reduction_settings(modes_file) {
+        head = with_stations(arc_deg);
+        head.damping_ratio = damping_ratio;
+    }
+    let provenance = head::Provenance {
+        gauges,
+        ..head::Provenance::default()
+    };
+    ReadHead::new(head, provenance, Some(fault))
+}
+
+/// Returns a head as its tables have it, which are out of date if the case places the gauges elsewhere.
+fn of_tables(
+    document: &Document,
+    (modes_file, (head, mut provenance)): (&Path, (ModalHead, head::Provenance)),
+    (stated, from_mesh): (Option<[HeadGauge; 4]>, bool),
+) -> ReadHead {
     let moved = matches!((stated, provenance.gauges), (Some(here), Some(there)) if here != there);
     let stale = moved.then(|| {
         contradiction(
-            &modes_file,
+            modes_file,
             "gauges",
             "those for which the tables were computed",
             format!(
                 "{}: flexible_head.gauges has others",
                 document.path.display()
             ),
-            "`horsehead head CASE --write` computes the tables again",
+            if from_mesh {
+                "`horsehead head CASE --write` computes the tables again"
+            } else {
+                "state the gauges of the tables, or name a mesh, flexible_head.mesh_file, to compute them again"
+            },
         )
     });
     provenance.gauges = stated.or(provenance.gauges);
-    Ok(empty(head, provenance, stale))
+    ReadHead::new(head, provenance, stale)
 }
 
 /// Returns the length of the unit in which the mesh is given.
@@ -241,14 +298,14 @@ fn stated_gauges(
         let numbers = gauge.position_m.iter().chain(&gauge.direction);
         // a direction of no length has become not a number
         let finite = numbers.copied().all(f64::is_finite);
-        if !(finite && gauge.length_m > 0.0 && gauge.length_m < 1.0) {
+        if !(finite && (1e-4..=1.0).contains(&gauge.length_m)) {
             return Err(document.field(
                 &way,
                 format!(
                     "{:?}, length {}, direction {:?}",
                     gauge.position_m, gauge.length_m, gauge.direction
                 ),
-                "finite coordinates in metres, a grid length above 0 and below 1 m, and a direction that is \
+                "finite coordinates in metres, a grid length of 1e-4 to 1 m, and a direction that is \
                  not zero",
                 "correct the place; lengths are in metres",
             ));
@@ -270,9 +327,15 @@ fn unreduced(file: &CaseFile) -> Option<ModalHead> {
     let [lowest, highest] = envelope.contact_deg;
     let first = (lowest.min(file.back_head.rope_anchor_deg) - BEYOND_DEG).floor();
     let count = whole((highest + BEYOND_DEG).ceil() - first) + 1;
-    let arc_deg: Vec<f64> = (0..count).map(|at| first + at as f64).collect();
+    Some(with_stations(
+        (0..count).map(|at| first + at as f64).collect(),
+    ))
+}
+
+/// Returns a head without modes that is to be reduced at the stations `arc_deg`.
+fn with_stations(arc_deg: Vec<f64>) -> ModalHead {
     let zero = vec![[0.0; 4]; arc_deg.len()];
-    Some(ModalHead {
+    ModalHead {
         frequencies_hz: Vec::new(),
         damping_ratio: DAMPING_RATIO,
         radial: Vec::new(),
@@ -288,7 +351,44 @@ fn unreduced(file: &CaseFile) -> Option<ModalHead> {
             tangential_mpa_per_n: zero,
         },
         arc_deg,
-    })
+    }
+}
+
+/// Restricts the stations of a head to the angles that the rope surface of its mesh spans, with a station at an end of
+/// the surface that cuts them off.
+fn clip_stations(head: &mut ModalHead, mesh: &mesh::Mesh, arc: &BackHead) {
+    /// Distance of the last station from the end of the surface \[deg\].
+    const INSIDE_DEG: f64 = 1e-6;
+    /// Distance by which a station may be beyond the end of the surface by rounding \[deg\].
+    const ROUNDING_DEG: f64 = 1e-2;
+    let (Some(&first), Some(&last)) = (head.arc_deg.first(), head.arc_deg.last()) else {
+        return;
+    };
+    let middle = 0.5 * (first + last);
+    let nodes = mesh.surfaces.get("rope_surface").into_iter().flatten();
+    let angles = nodes.filter_map(|node| {
+        let [x, y, _] = mesh.nodes_m.get(*node)?;
+        let angle = (y - arc.center_y_m).atan2(x - arc.center_x_m).to_degrees();
+        Some(angle + 360.0 * ((middle - angle) / 360.0).round())
+    });
+    let span = angles.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], angle| {
+        [low.min(angle), high.max(angle)]
+    });
+    let mut arc_deg = head.arc_deg.clone();
+    arc_deg.retain(|psi| *psi >= span[0] - ROUNDING_DEG && *psi <= span[1] + ROUNDING_DEG);
+    if span[0] > first + ROUNDING_DEG {
+        arc_deg.insert(0, span[0] + INSIDE_DEG);
+    }
+    if span[1] < last - ROUNDING_DEG {
+        arc_deg.push(span[1] - INSIDE_DEG);
+    }
+    arc_deg.dedup_by(|b, a| *b <= *a);
+    *head = ModalHead {
+        damping_ratio: head.damping_ratio,
+        stress: head.stress,
+        mass_kg: head.mass_kg,
+        ..with_stations(arc_deg)
+    };
 }
 
 /// Returns the content hash of all inputs of a reduction: mesh, material, arc, stations and gauges.

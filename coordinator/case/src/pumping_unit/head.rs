@@ -26,7 +26,7 @@ struct ModesFile {
     inertia_stress_mpa: [[f64; 4]; 3],
     mass_kg: f64,
     /// Locations of the gauges by name, for which the tables were computed.
-    gauges: Option<BTreeMap<String, GaugePlace>>,
+    gauges: Option<BTreeMap<String, TolerantPlace>>,
     /// Stress of the gauges under the largest tension; absent if the tables were not reduced by this program.
     largest_wrap: Option<WrapStress>,
     /// Content hash of the mesh file that the tables were computed from, if they were.
@@ -50,6 +50,38 @@ pub struct GaugePlace {
     /// Vector along the grid, of any length; upwards unless stated.
     #[serde(default = "upwards", skip_serializing_if = "is_upwards")]
     pub direction: [f64; 3],
+}
+
+/// Location of a gauge in a modes file, whose keys other than those of [`GaugePlace`] are ignored.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(try_from = "serde_json::Map<String, serde_json::Value>")]
+struct TolerantPlace(GaugePlace);
+
+impl TryFrom<serde_json::Map<String, serde_json::Value>> for TolerantPlace {
+    type Error = serde_json::Error;
+
+    fn try_from(mut keys: serde_json::Map<String, serde_json::Value>) -> Result<Self, Self::Error> {
+        const KNOWN: [&str; 5] = ["x_m", "y_m", "z_m", "length_m", "direction"];
+        keys.retain(|key, _| KNOWN.contains(&key.as_str()));
+        serde_json::from_value(keys.into()).map(Self)
+    }
+}
+
+/// Returns the unit vector along a direction; a gauge reads the same in the opposite direction, so that the one with a
+/// positive y, x or z is taken. A vector that has length 1 up to rounding stays as it is, so that one that was written and
+/// read again is the same.
+fn unit_vector(direction: [f64; 3]) -> [f64; 3] {
+    let square: f64 = direction.iter().map(|x| x * x).sum();
+    let length = if (square - 1.0).abs() < 1e-12 {
+        1.0
+    } else {
+        square.sqrt()
+    };
+    let [x, y, z] = direction;
+    let leading = [y, x, z].into_iter().find(|part| part.abs() > 0.0);
+    let signed = length.copysign(leading.unwrap_or(1.0));
+    // no negative zeros
+    direction.map(|part| part / signed + 0.0)
 }
 
 /// Direction of a gauge that reads vertical strain.
@@ -80,6 +112,8 @@ impl From<HeadGauge> for GaugePlace {
 /// Static stress of the gauges under the rope at its largest tension, and what moving a gauge changes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WrapStress {
+    /// Tension of the rope \[N\].
+    pub tension_n: f64,
     /// Stress of each gauge \[MPa\].
     pub stress_mpa: [f64; 4],
     /// Change of that stress when the gauge is moved along x, y and z [MPa/m]; `None` along an axis on which
@@ -104,10 +138,9 @@ pub(super) struct Provenance {
 pub(super) fn places(gauges: &BTreeMap<String, GaugePlace>) -> Option<[HeadGauge; 4]> {
     let place = |name: &str| {
         let place = gauges.get(name)?;
-        let square: f64 = place.direction.iter().map(|x| x * x).sum();
         Some(HeadGauge {
             position_m: [place.x_m, place.y_m, place.z_m],
-            direction: place.direction.map(|x| x / square.sqrt()),
+            direction: unit_vector(place.direction),
             length_m: place.length_m,
         })
     };
@@ -117,7 +150,10 @@ pub(super) fn places(gauges: &BTreeMap<String, GaugePlace>) -> Option<[HeadGauge
 impl Provenance {
     fn new(file: &ModesFile) -> Self {
         Self {
-            gauges: file.gauges.as_ref().and_then(places),
+            gauges: file.gauges.as_ref().and_then(|gauges| {
+                let gauges = gauges.iter();
+                places(&gauges.map(|(name, own)| (name.clone(), own.0)).collect())
+            }),
             largest_wrap: file.largest_wrap,
             mesh_blake3: file.mesh_blake3.clone(),
             source_blake3: file.source_blake3.clone(),
@@ -153,6 +189,20 @@ pub(super) fn read(modes: &Path, influence: &Path) -> Result<(ModalHead, Provena
         influence,
     };
     Ok((head, provenance))
+}
+
+/// Returns the damping ratio and the stations of a modes file, with which its head is reduced again.
+///
+/// # Errors
+/// As [`read`], for the modes file.
+pub(super) fn reduction_settings(modes: &Path) -> Result<(f64, Vec<f64>), CaseError> {
+    let bytes = file::read(
+        modes,
+        "the modes of the back head, `flexible_head.modes_file`",
+    )?;
+    let read: ModesFile = document::json(modes, &bytes)?;
+    check_modes(modes, &read)?;
+    Ok((read.damping_ratio, read.arc_deg))
 }
 
 /// Checks that the head's modes ascend in frequency and have values in range.

@@ -39,9 +39,9 @@ pub struct HeadSource {
 
 impl HeadSource {
     /// Returns the distance of each gauge from the surface of the mesh \[m\].
-    pub fn surface_distances_m(&self) -> [f64; 4] {
-        self.gauges
-            .map(|gauge| mesh::surface_distance_m(&self.mesh, gauge.position_m))
+    pub fn surface_distances_m(&self) -> Vec<f64> {
+        let points = self.gauges.map(|gauge| gauge.position_m);
+        mesh::surface_distances_m(&self.mesh, &points)
     }
 }
 

@@ -7,7 +7,7 @@ use crate::{
     note::Note,
     table::clip,
 };
-use protocol::case::{Channel, Objective, Term};
+use protocol::case::{Channel, Objective, Offset, Term};
 use protocol::pumping_unit::Sensor;
 
 /// Reads the objective, with its conditions by index. A case without gauge records needs none, because it is
@@ -144,16 +144,21 @@ fn stated_terms(entry: &ObjectiveEntry) -> Vec<StatedTerm> {
         .collect()
 }
 
-/// Returns the channels with the treatment of the sensor's zero (free or fixed offset) that the objective
-/// states.
+/// Returns the channels with the treatment of their sensors' zero: that of the gauges as the objective states it; the
+/// zero of the rod position is where the sensor was mounted, that of the torque is absolute.
 pub(super) fn with_offset(
     entry: Option<&ObjectiveEntry>,
     channels: Vec<Channel>,
 ) -> impl Iterator<Item = Channel> {
     let offset = entry.map(|entry| entry.offset).unwrap_or_default();
-    channels
-        .into_iter()
-        .map(move |own| Channel { offset, ..own })
+    channels.into_iter().map(move |own| {
+        let offset = match Sensor::named(&own.name) {
+            Some(Sensor::Position) => Offset::Free,
+            Some(Sensor::Torque) => Offset::Fixed,
+            Some(Sensor::Gauge(_)) | None => offset,
+        };
+        Channel { offset, ..own }
+    })
 }
 
 /// Restricts the objective to the channels that the records of its conditions contain, provided the others are

@@ -1,5 +1,5 @@
 //! Faults of a gauge record and its data sheet that must be reported.
-use super::spoilt::{RECORD, SHEET, Spoilt, cell, scaled};
+use super::spoilt::{RECORD, SHEET, Spoilt, TOML, cell, scaled};
 use std::fs;
 
 pub(super) const FAULTS: &[Spoilt] = &[
@@ -160,6 +160,43 @@ pub(super) const FAULTS: &[Spoilt] = &[
             "a channel that the record has: gauge_2, gauge_3, gauge_4",
             "name its column stress_1_mpa (not used there: sigma_a)",
             "optional = true",
+        ],
+    ),
+    (
+        "torque of the objective not recorded",
+        |c| {
+            c.replace(
+                TOML,
+                "offset = \"free\"",
+                "torque_weight_mpa2_per_kn2_m2 = 0.5\noffset = \"free\"",
+            );
+            c.lines(RECORD, |at, line| {
+                Some(if at == 1 {
+                    line.replace("crank_torque_nm", "moment")
+                } else {
+                    line.into()
+                })
+            });
+        },
+        &[
+            "case.toml: `objective.torque_weight_mpa2_per_kn2_m2` = 0.5",
+            "a channel that the record has: gauge_1, gauge_2, gauge_3, gauge_4, position",
+            "name its column crank_torque_nm",
+            "or remove the key",
+        ],
+    ),
+    (
+        "weight of the position below zero",
+        |c| {
+            c.replace(
+                TOML,
+                "offset = \"free\"",
+                "position_weight_mpa2_per_m2 = -1.0\noffset = \"free\"",
+            );
+        },
+        &[
+            "case.toml: `objective.position_weight_mpa2_per_m2` = -1",
+            "above 0",
         ],
     ),
     (

@@ -145,9 +145,9 @@ pub fn head_pair(tables: &TwinHead, offset_m: f64) -> Table {
 /// Builds the table of the gauges: place, distance from the surface of the mesh \[m\], and stress under the rope at
 /// its largest tension with its change when the gauge is moved.
 pub fn head_gauges(
-    head: &ReducedHead,
+    (head, tension_n): (&ReducedHead, f64),
     gauges: &[HeadGauge; 4],
-    surface_distance_m: [f64; 4],
+    surface_distance_m: &[f64],
 ) -> Table {
     let rows = (0..4).map(|at| {
         let HeadGauge {
@@ -181,7 +181,11 @@ pub fn head_gauges(
         "along y",
         "along z",
     ];
-    Table::new("Gauges, with the rope at its largest tension", head, rows.collect()).with_notes([
+    let title = format!(
+        "Gauges, with the rope at its largest tension, {} kN",
+        fixed(1e-3 * tension_n, 1)
+    );
+    Table::new(title, head, rows.collect()).with_notes([
         "Per mm: change of the stress when the gauge is moved by 1 mm, over its length on both sides; a gauge whose \
          place is known to 2 mm has twice this as the uncertainty of its reading.",
     ])

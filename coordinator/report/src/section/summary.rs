@@ -15,7 +15,7 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
         fitted.and_then(|result| chart::fitted(&calibration.case, result)),
     ));
     let checks = machine::checks(calibration);
-    blocks.extend(machine::calibration(&checks).blocks);
+    blocks.extend(machine::blocks(&checks, ["recommended", "optimised"]));
     blocks.extend(words::rivals(calibration).map(|said| Block::Warning(vec![said])));
     blocks.extend(words::model_error(calibration).map(|said| Block::Warning(vec![said])));
     blocks.extend(words::noise_level(calibration).map(Block::Text));

@@ -2,7 +2,7 @@
 use crate::data::{Calibration, ConditionResult};
 use crate::document::{Row, Table};
 use crate::kind;
-use crate::number::{MISSING, fixed, percent, ratio, significant, squared, unit};
+use crate::number::{MISSING, percent, ratio, significant, squared, unit};
 use crate::words::{self, condition_name};
 use protocol::case::Case;
 use protocol::job::{ChannelScore, Verdict};
@@ -83,7 +83,7 @@ const MEASURES: [Measure; 6] = [
         title: "Offset",
         unit,
         of: |score| score.offset,
-        write: |value| fixed(value, 2),
+        write: significant,
         has_ratio: false,
     },
 ];

@@ -14,10 +14,10 @@ use crate::cli::{
         terminal,
     },
     run::{
-        bus,
         calibration::{Calibration, calibrate, identifiability},
-        folder::{IDENTIFIABILITY, RunFolder},
-        manifest::{self, FirstTable, Manifest, Start},
+        folder::IDENTIFIABILITY,
+        manifest::{self, DEFAULT_PRESET, FirstTable, Manifest, Start},
+        name::RunName,
         opened::Run,
         session::Session,
     },
@@ -50,7 +50,7 @@ pub(super) struct Arguments {
     /// How to search; see below.
     #[arg(
         long,
-        default_value = "quick",
+        default_value = DEFAULT_PRESET,
         env = "HORSEHEAD_PRESET",
         hide_possible_values = true,
         value_parser = PossibleValuesParser::new(CATALOGUE.iter().map(|preset| preset.name))
@@ -67,8 +67,8 @@ pub(super) struct Arguments {
     /// Fixes every random choice: the same seed gives the same bits.
     #[arg(long, default_value_t = 1, env = "HORSEHEAD_SEED")]
     seed: u64,
-    /// Run folder [default: runs/CASE-PRESET-seedN, with what --set changes, and with --measured also
-    /// the folder's name and the start of its records' hash].
+    /// Run folder [default: runs/CASE-PRESET-seedN, with what --set changes, --genes, the effects of the case and
+    /// --measured].
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
     #[command(flatten)]
@@ -188,13 +188,18 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Calibration> {
     let path = if let Some(path) = &arguments.run {
         path.clone()
     } else {
-        let replaced = arguments.choice.measured.as_deref();
         let mut decides = chosen.set.clone();
-        if let Some(table) = &table {
-            let hash = bus::content_hash(&table.individuals)?.to_string();
-            decides.push(["start-", hash.get(..8).unwrap_or_default()].concat());
-        }
-        RunFolder::default_path(&case, preset.name, &decides, replaced, arguments.seed)?
+        decides.extend(table.as_ref().map(FirstTable::word).transpose()?);
+        decides.extend(start.as_ref().map(Start::word).transpose()?);
+        let name = RunName {
+            case_folder: &arguments.choice.case,
+            case: &case,
+            what: preset.name,
+            set: &decides,
+            measured: arguments.choice.measured.as_deref(),
+            seed: arguments.seed,
+        };
+        name.path()?
     };
     let earlier = Calibration::open(&path).ok().map(|run| run.manifest);
     let settings = earlier.as_ref().map(|earlier| &earlier.settings);

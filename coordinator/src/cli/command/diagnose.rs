@@ -5,7 +5,6 @@ use crate::cli::{
     output::{diagnosis::DiagnosisOutput, problem::EXIT_CODES, progress::StageDisplay, terminal},
     run::{
         diagnosis::{Diagnosis, DiagnosisSettings, diagnose},
-        folder::RunFolder,
         manifest::DIAGNOSE,
         opened::Run,
         session::Session,
@@ -58,11 +57,11 @@ pub(super) struct Arguments {
     /// Append what is found to the case's case.toml.
     #[arg(long, env = "HORSEHEAD_ADD")]
     add: bool,
-    /// Fixes every random choice: the same seed gives the same bits.
-    #[arg(long, default_value_t = 1, env = "HORSEHEAD_SEED")]
-    seed: u64,
-    /// Run folder [default: runs/CASE-diagnose-seedN, with --measured also the folder's name and the
-    /// start of its records' hash].
+    /// Fixes every random choice: the same seed gives the same bits [default: that of the calibration, or 1].
+    #[arg(long, env = "HORSEHEAD_SEED")]
+    seed: Option<u64>,
+    /// Run folder [default: runs/CASE-diagnose-seedN, with what distinguishes the calibration, --genes, the effects of the
+    /// case and --measured].
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
     #[command(flatten)]
@@ -79,11 +78,14 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         arguments.measured.as_deref(),
         arguments.genes.as_deref(),
     )?;
-    let path = if let Some(path) = &arguments.run {
-        path.clone()
-    } else {
-        let measured = target.measured.as_deref();
-        RunFolder::default_path(&target.loaded.case, DIAGNOSE, &[], measured, arguments.seed)?
+    let seed = target.seed(arguments.seed);
+    let path = match &arguments.run {
+        Some(path) => path.clone(),
+        // after --add the case has what the run found
+        None => match target.earlier_path(DIAGNOSE, seed)? {
+            Some(earlier) => earlier,
+            None => target.run_path(DIAGNOSE, seed)?,
+        },
     };
     let stated = target.loaded.effects.len();
     if let Ok(earlier) = Diagnosis::open(&path) {
@@ -100,7 +102,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         },
         differences: arguments.differences,
     };
-    let manifest = target.manifest(arguments.seed, settings)?;
+    let manifest = target.manifest(seed, settings)?;
     let run = Run::begin(&path, manifest, target.loaded.case.clone())?;
     let found = session.work(&run, async |bus, stop| {
         let mut display = StageDisplay::new();

@@ -4,7 +4,6 @@ use crate::cli::{
     argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
     output::{identification::show, problem::EXIT_CODES, progress::StageDisplay, terminal},
     run::{
-        folder::RunFolder,
         identification::{IdentificationSettings, identify},
         manifest::IDENTIFY,
         opened::Run,
@@ -44,11 +43,11 @@ pub(super) struct Arguments {
     /// Take every derivative as a difference of whole simulations, as if the model gave none: slower.
     #[arg(long, env = "HORSEHEAD_DIFFERENCES")]
     differences: bool,
-    /// Fixes every random choice: the same seed gives the same bits.
-    #[arg(long, default_value_t = 1, env = "HORSEHEAD_SEED")]
-    seed: u64,
-    /// Run folder [default: runs/CASE-identify-seedN, with --measured also the folder's name and the
-    /// start of its records' hash].
+    /// Fixes every random choice: the same seed gives the same bits [default: that of the calibration, or 1].
+    #[arg(long, env = "HORSEHEAD_SEED")]
+    seed: Option<u64>,
+    /// Run folder [default: runs/CASE-identify-seedN, with what distinguishes the calibration, --genes, the effects of the
+    /// case and --measured].
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
     #[command(flatten)]
@@ -65,18 +64,17 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         arguments.measured.as_deref(),
         arguments.genes.as_deref(),
     )?;
-    let path = if let Some(path) = &arguments.run {
-        path.clone()
-    } else {
-        let measured = target.measured.as_deref();
-        RunFolder::default_path(&target.loaded.case, IDENTIFY, &[], measured, arguments.seed)?
+    let seed = target.seed(arguments.seed);
+    let path = match &arguments.run {
+        Some(path) => path.clone(),
+        None => target.run_path(IDENTIFY, seed)?,
     };
     terminal::note(&target.loaded.notes);
     let settings = IdentificationSettings {
         orders: Thresholds::default().orders,
         differences: arguments.differences,
     };
-    let manifest = target.manifest(arguments.seed, settings)?;
+    let manifest = target.manifest(seed, settings)?;
     let run = Run::begin(&path, manifest, target.loaded.case.clone())?;
     let found = session.work(&run, async |bus, stop| {
         let mut display = StageDisplay::new();

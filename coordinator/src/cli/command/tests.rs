@@ -11,13 +11,14 @@ use crate::cli::{
         calibration::Calibration,
         folder::RunFolder,
         manifest::{CALIBRATE, DIAGNOSE, FORMAT, Manifest, Start},
+        name::{RunName, belongs_to_another},
         opened::Run,
     },
 };
 use ::case::{Overrides, load, read_genes, write_genes};
 use dispatch::journal;
 use protocol::{
-    case::Case,
+    case::{Case, EffectSetting},
     pumping_unit::{Machine, PumpingUnit},
 };
 use search::{
@@ -190,13 +191,84 @@ fn completions_exist_for_every_shell() {
     }
 }
 
+/// Returns the default path of a run with seed 3 on the shipped case's folder.
+fn name(case: &Case, what: &str, set: &[String], measured: Option<&Path>) -> PathBuf {
+    let name = RunName {
+        case_folder: &shipped(),
+        case,
+        what,
+        set,
+        measured,
+        seed: 3,
+    };
+    name.path().unwrap()
+}
+
+/// Checks that the effects of a case and the values from which a run starts are part of its name, and that long parts
+/// are replaced by their hash.
+#[test]
+fn a_name_states_what_distinguishes_a_run() {
+    let mut case = load(&shipped(), &Overrides::default()).unwrap();
+    let effect = |id: &str| EffectSetting {
+        id: id.to_owned(),
+        ..EffectSetting::default()
+    };
+    case.effects = vec![effect("pivot_friction")];
+    let path = name(&case, "quick", &["genes-01234567".to_owned()], None);
+    let expected = "runs/cyjs10-5-37hb-quick-genes-01234567-with-pivot-friction-seed3";
+    assert_eq!(path, Path::new(expected));
+    case.effects = vec![
+        effect("post_compliance"),
+        effect("stuffing_box_friction"),
+        effect("head_profile_wear"),
+        effect("pivot_friction"),
+    ];
+    let long = name(&case, "quick", &[], None).display().to_string();
+    let hash = long.strip_prefix("runs/cyjs10-5-37hb-quick-with-").unwrap();
+    assert_eq!(hash.len(), "01234567-seed3".len(), "{long}");
+}
+
+/// Checks that two case folders of the same name have runs in folders of their own, which each finds again, and that a
+/// case folder that was moved keeps its runs.
+#[test]
+fn case_folders_of_one_name_do_not_share_a_run() {
+    let scratch = tempfile::tempdir().unwrap();
+    let case = load(&shipped(), &Overrides::default()).unwrap();
+    let [first, second] = ["a", "b"].map(|above| scratch.path().join(above).join("unit"));
+    for folder in [&first, &second] {
+        std::fs::create_dir_all(folder).unwrap();
+    }
+    let run = scratch.path().join("run");
+    std::fs::create_dir(&run).unwrap();
+    let belongs = |folder: &Path| {
+        let text = format!("{{\"case_folder\": {:?}}}", folder.display().to_string());
+        std::fs::write(run.join("run.json"), text).unwrap();
+        let here = std::fs::canonicalize(&first).unwrap();
+        belongs_to_another(&run, &here)
+    };
+    assert!(belongs(&second));
+    assert!(!belongs(&first));
+    assert!(!belongs(&scratch.path().join("moved/unit")));
+    let folder = |case_folder| {
+        let name = RunName {
+            case_folder,
+            case: &case,
+            what: "quick",
+            set: &[],
+            measured: None,
+            seed: 1,
+        };
+        name.path().unwrap()
+    };
+    assert_eq!(folder(&first), folder(&second), "while neither has a run");
+    assert_eq!(folder(&first), Path::new("runs/unit-quick-seed1"));
+}
+
 #[test]
 fn a_run_folder_goes_on_with_the_same_run_and_refuses_another() {
     let scratch = tempfile::tempdir().unwrap();
     let case = load(&shipped(), &Overrides::default()).unwrap();
-    let path = scratch
-        .path()
-        .join(RunFolder::default_path(&case, "quick", &[], None, 3).unwrap());
+    let path = scratch.path().join(name(&case, "quick", &[], None));
     assert!(path.ends_with("runs/cyjs10-5-37hb-quick-seed3"));
     // other records in a folder of the same name are another run
     let changed = |change: fn(&mut Machine)| {
@@ -207,7 +279,7 @@ fn a_run_folder_goes_on_with_the_same_run_and_refuses_another() {
     let other = changed(|machine| machine.conditions[0].speed_rpm += 1.0);
     let beside = |case| {
         let records = Path::new("tests/of/march");
-        RunFolder::default_path(case, "diagnose", &[], Some(records), 3).unwrap()
+        name(case, "diagnose", &[], Some(records))
     };
     assert_ne!(beside(&case), beside(&other));
     let named = beside(&case).display().to_string();
@@ -362,7 +434,7 @@ fn settings_by_name_make_another_run_in_a_folder_of_its_own() {
     let gray = chosen("paper", &[("encoding", "gray"), ("threshold", "0.5")], 1).unwrap();
     assert_eq!(gray.set, ["threshold=0.5", "encoding=gray"]);
 
-    let path = |set: &[String]| RunFolder::default_path(&case, "paper", set, None, 3).unwrap();
+    let path = |set: &[String]| name(&case, "paper", set, None);
     assert!(path(&plain.set).ends_with("cyjs10-5-37hb-paper-seed3"));
     let own = path(&gray.set);
     assert!(

@@ -218,6 +218,12 @@ pub(crate) fn content_hash(content: &impl Serialize) -> anyhow::Result<ContentHa
     Ok(ContentHash::of(&wire::encode(content)?))
 }
 
+/// Returns the first eight hexadecimal digits of a value's content hash, for names.
+pub(crate) fn short_hash(value: &impl Serialize) -> anyhow::Result<String> {
+    let hash = content_hash(value)?.to_string();
+    Ok(hash.get(..8).unwrap_or_default().to_owned())
+}
+
 /// Computes the content hash of a case as hexadecimal digits.
 pub(crate) fn case_hash(case: &Case) -> anyhow::Result<String> {
     Ok(content_hash(case)?.to_string())

@@ -3,7 +3,6 @@
 //! `run.json` and `case.json` make the folder independent of the case folder: `verify` and `report` need
 //! nothing else. The journal, which the dispatcher keeps in the same folder, holds every result.
 use super::{
-    bus::content_hash,
     command_line::quote_path,
     manifest::{CALIBRATE, DIAGNOSE, FORMAT, calibrate},
 };
@@ -33,10 +32,6 @@ pub(crate) const GENES: &str = "calibrated.toml";
 /// Name of the folder that holds the keys of workers that the run itself launches.
 pub(crate) const KEYS: &str = "keys";
 
-/// Maximum length of the settings in a run folder's default name (bytes); longer settings are replaced by
-/// their hash.
-const LONGEST_SET: usize = 60;
-
 /// Manifest fields that all kinds of run have in common.
 #[derive(Debug, Deserialize)]
 pub(crate) struct ManifestHeader {
@@ -57,43 +52,6 @@ impl RunFolder {
     pub(crate) fn new(path: &Path) -> Self {
         let path = path.to_owned();
         Self { path }
-    }
-
-    /// Returns the default path `runs/CASE-WHAT[-SETTING...][-RECORDS-HASH]-seedN`, relative to the current
-    /// folder, so that repeating a command finds its run. `set` lists the settings that differ from the
-    /// default; `measured` is the folder of records that replace the case's. Since many such folders have the
-    /// same name, the start of the records' hash is appended.
-    pub(crate) fn default_path(
-        case: &Case,
-        what: &str,
-        set: &[String],
-        measured: Option<&Path>,
-        seed: u64,
-    ) -> anyhow::Result<PathBuf> {
-        let plain = |text: &str| -> String {
-            let one = |c: char| match c {
-                '.' => '.',
-                c if c.is_ascii_alphanumeric() => c.to_ascii_lowercase(),
-                _ => '-',
-            };
-            text.chars().map(one).collect()
-        };
-        let word = plain(&case.name).replace('.', "-");
-        let words = set.iter().flat_map(|one| ["-".to_owned(), plain(one)]);
-        let mut set: String = words.collect();
-        if set.len() > LONGEST_SET {
-            let hash = content_hash(&set)?.to_string();
-            set = format!("-set-{}", hash.get(..8).unwrap_or_default());
-        }
-        let mut records = String::new();
-        if let Some(folder) = measured {
-            if let Some(name) = folder.file_name() {
-                records = format!("-{}", name.to_string_lossy());
-            }
-            let hash = content_hash(&(&case.model, &case.conditions))?.to_string();
-            records.extend(["-", hash.get(..8).unwrap_or_default()]);
-        }
-        Ok(Path::new("runs").join(format!("{word}-{what}{set}{records}-seed{seed}")))
     }
 
     /// Opens the folder of a run of any kind.

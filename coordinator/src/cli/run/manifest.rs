@@ -18,6 +18,9 @@ pub(crate) const FORMAT: u32 = 1;
 /// Maximum number of differing settings that are listed by name when two runs differ.
 const MAX_LISTED_DIFFERENCES: usize = 3;
 
+/// Preset of `horsehead calibrate` where none is named.
+pub(crate) const DEFAULT_PRESET: &str = "quick";
+
 /// Kind of run in the manifest of a calibration; assumed for manifests without a kind.
 pub(crate) const CALIBRATE: &str = "calibrate";
 /// Kind of run in the manifest of a diagnosis.
@@ -135,6 +138,13 @@ pub(crate) struct FirstTable {
     pub(crate) individuals: Vec<Vec<f64>>,
 }
 
+impl FirstTable {
+    /// Returns the word that names the individuals in a run's default name.
+    pub(crate) fn word(&self) -> anyhow::Result<String> {
+        Ok(format!("start-{}", bus::short_hash(&self.individuals)?))
+    }
+}
+
 /// Values of the unknowns at which a run starts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Start {
@@ -145,6 +155,11 @@ pub(crate) struct Start {
 }
 
 impl Start {
+    /// Returns the word that names the start in a run's default name.
+    pub(crate) fn word(&self) -> anyhow::Result<String> {
+        Ok(format!("genes-{}", bus::short_hash(&self.genes)?))
+    }
+
     /// Reads the starting values of a run from a gene file; returns `None` if no file is given.
     ///
     /// # Errors
@@ -170,6 +185,17 @@ impl<S> Manifest<S> {
     pub(crate) fn first_individuals(&self) -> Option<&[Vec<f64>]> {
         let table = self.table.as_ref();
         table.map(|table| table.individuals.as_slice())
+    }
+
+    /// Returns the words that distinguish this run from the default one of its case: preset, settings, and the values
+    /// from which it started.
+    pub(crate) fn words(&self) -> anyhow::Result<Vec<String>> {
+        let preset = [&self.preset].into_iter();
+        let preset = preset.filter(|preset| !preset.is_empty() && *preset != DEFAULT_PRESET);
+        let mut words: Vec<String> = preset.chain(&self.set).cloned().collect();
+        words.extend(self.table.as_ref().map(FirstTable::word).transpose()?);
+        words.extend(self.start.as_ref().map(Start::word).transpose()?);
+        Ok(words)
     }
 
     /// Returns the search space of the run.

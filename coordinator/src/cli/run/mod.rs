@@ -9,6 +9,7 @@ pub(super) mod interrupt;
 pub(super) mod kind;
 pub(super) mod launch;
 pub(super) mod manifest;
+pub(super) mod name;
 pub(super) mod opened;
 pub(super) mod orthogonal;
 pub(super) mod scaling;

@@ -5,9 +5,11 @@ use super::{
     diagnosis::Diagnosis,
     folder::{GENES, RunFolder},
     manifest::{CALIBRATE, Manifest, RunIdentity, Start},
+    name::RunName,
 };
 use crate::cli::output::problem::Problem;
 use case::{Loaded, Overrides, load_with_notes, require_record};
+use protocol::case::Case;
 use std::path::{Path, PathBuf};
 
 /// Case to fit, with its measured records and the places from which both were read.
@@ -20,6 +22,10 @@ pub(crate) struct Target {
     pub(crate) loaded: Loaded,
     /// Values of the unknowns from which the recalibration starts; `None` for the recommended values.
     pub(crate) start: Option<Start>,
+    /// Words that distinguish a run on this target from others on its case: those of the calibration, or the start.
+    words: Vec<String>,
+    /// Seed of the calibration; 1 for a case folder.
+    seed: u64,
 }
 
 impl Target {
@@ -35,9 +41,12 @@ impl Target {
         genes: Option<&Path>,
     ) -> anyhow::Result<Self> {
         let folder = RunFolder::new(target);
+        let (mut words, mut seed) = (Vec::new(), 1);
         let (case, records, own) = if folder.is_begun() {
             let calibration = finished(&folder)?;
             let manifest = calibration.manifest;
+            words = manifest.words()?;
+            seed = manifest.seed;
             let records = manifest.replaced_records().map(ToOwned::to_owned);
             (manifest.case_folder, records, Some(folder.file(GENES)))
         } else {
@@ -49,14 +58,60 @@ impl Target {
         };
         let loaded = load_with_notes(&case, &overrides)?;
         require_record(&case, &loaded.case, loaded.case.objective.condition)?;
+        let is_given = genes.is_some();
         let genes = genes.map(ToOwned::to_owned).or(own);
         let start = Start::read(genes.as_deref(), &loaded.case)?;
+        if let Some(start) = start.as_ref().filter(|_| is_given) {
+            words = vec![start.word()?];
+        }
         Ok(Self {
             folder: case,
             measured,
             loaded,
             start,
+            words,
+            seed,
         })
+    }
+
+    /// Returns the seed of a run on this target: the given one, or that of the calibration.
+    pub(crate) fn seed(&self, given: Option<u64>) -> u64 {
+        given.unwrap_or(self.seed)
+    }
+
+    /// Returns the default path of the run folder of a command on this target.
+    pub(crate) fn run_path(&self, command: &str, seed: u64) -> anyhow::Result<PathBuf> {
+        self.path_of(command, seed, &self.loaded.case)
+    }
+
+    /// Returns the default path of the run folder of an earlier diagnosis of this target that added the last effects of
+    /// the case; `None` if there is none.
+    pub(crate) fn earlier_path(&self, command: &str, seed: u64) -> anyhow::Result<Option<PathBuf>> {
+        let stated = &self.loaded.case.effects;
+        for kept in 0..stated.len() {
+            let mut case = self.loaded.case.clone();
+            case.effects.truncate(kept);
+            let path = self.path_of(command, seed, &case)?;
+            let Ok(earlier) = Diagnosis::open(&path) else {
+                continue;
+            };
+            if earlier.as_begun(self.loaded.clone())?.effects.len() == kept {
+                return Ok(Some(path));
+            }
+        }
+        Ok(None)
+    }
+
+    fn path_of(&self, command: &str, seed: u64, case: &Case) -> anyhow::Result<PathBuf> {
+        let name = RunName {
+            case_folder: &self.folder,
+            case,
+            what: command,
+            set: &self.words,
+            measured: self.measured.as_deref(),
+            seed,
+        };
+        name.path()
     }
 
     /// Creates the manifest of a new run on this target with the given seed and settings.

@@ -41,7 +41,7 @@ struct ModesFile<'a> {
 pub(crate) fn write_tables(
     machine: &Machine,
     source: &HeadSource,
-    head: &ReducedHead,
+    (head, tension_n): (&ReducedHead, f64),
 ) -> anyhow::Result<Vec<PathBuf>> {
     let place =
         |(number, gauge): (usize, &HeadGauge)| (number.to_string(), GaugePlace::from(*gauge));
@@ -63,6 +63,7 @@ pub(crate) fn write_tables(
         inertia_stress_mpa: head.inertia_stress_mpa,
         gauges: (1..).zip(&source.gauges).map(place).collect(),
         largest_wrap: WrapStress {
+            tension_n,
             stress_mpa: head.wrap_stress_mpa,
             gradient_mpa_per_m: head.wrap_gradient_mpa_per_m,
         },
@@ -81,6 +82,8 @@ pub(crate) fn write_tables(
     // all are complete before any replaces what was there
     let mut drafts = Vec::new();
     for (path, text) in all {
+        let folder = path.parent().unwrap_or(path);
+        fs::create_dir_all(folder).with_context(|| cannot_write(folder))?;
         let draft = Draft::new(path, text.as_bytes());
         drafts.push((draft.with_context(|| cannot_write(path))?, path.clone()));
     }

@@ -65,12 +65,11 @@ pub(crate) struct HeadGaugeOutput {
 
 pub(crate) fn head<'a>(
     (case, condition): (&'a Case, &'a str),
-    source: &'a HeadSource,
+    (source, surface_distance_m): (&'a HeadSource, &[f64]),
     head: &'a ReducedHead,
     comparison: &'a HeadComparison,
 ) -> HeadOutput<'a> {
     let ranges = &comparison.half_ranges;
-    let surface_distance_m = source.surface_distances_m();
     let modes = head.modes.iter().zip(&comparison.modes);
     HeadOutput {
         case: &case.name,

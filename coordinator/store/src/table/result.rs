@@ -82,7 +82,7 @@ fn outcome(case: &Case) -> Columns<Brief> {
     for (channel, places) in measured(case) {
         let name = squared(&format!("mse_{}", channel.name), &channel.unit);
         let about = format!(
-            "mean squared error of {} [{}^2]",
+            "mean squared error of {}, in the square of its unit [{}]",
             channel.title, channel.unit
         );
         columns = columns.real(&name, &about, move |row| row.mse(&places));
@@ -127,10 +127,14 @@ fn outcome(case: &Case) -> Columns<Brief> {
 }
 
 /// Returns the distinct names of measured channels over all conditions, each with the indices of its channels
-/// in the case.
+/// in the case. A channel in another unit than all channels of the objective is left out: it need not be simulated.
 fn measured(case: &Case) -> Vec<(&Channel, Vec<usize>)> {
     let mut named: Vec<(&Channel, Vec<usize>)> = Vec::new();
     let all = (0..case.conditions.len()).flat_map(|condition| case.measured(condition));
+    let fitted = case.channels.iter();
+    let fitted = fitted.filter(|own| case.objective.names(&own.name));
+    let units: Vec<&String> = fitted.map(|own| &own.unit).collect();
+    let all = all.filter(|(_, channel, _)| units.is_empty() || units.contains(&&channel.unit));
     for (at, channel, _) in all {
         match named
             .iter_mut()

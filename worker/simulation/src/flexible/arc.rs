@@ -141,11 +141,11 @@ impl<'a> Rim<'a> {
         Ok(Station::new(psi, weights.into_iter()))
     }
 
-    /// Clamps an angle to the rim's angular range; an angle outside by more than a rounding error is an
-    /// error.
+    /// Clamps an angle to the rim's angular range; an angle outside by more than a hundredth of a degree, to which
+    /// meshes are written, is an error.
     fn within(&self, psi: f64) -> Result<f64, ReductionError> {
         let [from, to] = self.span;
-        let slack = 1e-6;
+        let slack = 2e-4;
         if !(from - slack..=to + slack).contains(&psi) {
             return Err(self.missing(psi));
         }

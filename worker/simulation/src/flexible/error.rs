@@ -79,12 +79,10 @@ pub enum ReductionError {
     },
     /// An end of a gauge lies in no element.
     #[error(
-        "an end of gauge {gauge} lies {distance_mm:.2} mm outside the mesh: check the gauge's position and length"
+        "an end of gauge {gauge} lies more than 1 mm outside the mesh: check the gauge's position, direction and length"
     )]
     Gauge {
         /// Number of the gauge with an end outside the mesh, from 1.
         gauge: usize,
-        /// Approximate distance of the gauge's end from the nearest element \[mm\].
-        distance_mm: f64,
     },
 }

@@ -34,6 +34,10 @@ pub(super) struct Term {
 /// assigned to it.
 const SLACK: f64 = 1e-3;
 
+/// Largest distance by which an end of a gauge may lie outside the body \[m\]: places are measured no better, and straight
+/// edges lie beside a curved surface. The displacement there is that of the nearest element, continued.
+const OFF_BODY: f64 = 1e-3;
+
 impl Gauge {
     /// Computes the gauge's reading as a linear function of nodal displacements; the reading \[Pa\] is the
     /// sum over all terms. On the half of a mesh, an end of the gauge at z < 0 is looked up at its mirror
@@ -92,7 +96,7 @@ impl Gauge {
     }
 }
 
-/// Finds the element that contains a position and the reference coordinates in it.
+/// Finds the element that contains a position, or is at most [`OFF_BODY`] from it, and the reference coordinates in it.
 fn locate<'a>(
     mesh: &'a Mesh,
     place: &Vector3<f64>,
@@ -100,7 +104,6 @@ fn locate<'a>(
 ) -> Result<(&'a [usize], [f64; 3]), ReductionError> {
     let law = mesh.law();
     let mut best: Option<(&[usize], [f64; 3], f64)> = None;
-    let mut nearest = f64::INFINITY;
     for element in mesh.elements() {
         let nodes = mesh.places(element);
         let center = nodes
@@ -111,25 +114,19 @@ fn locate<'a>(
             .iter()
             .map(|node| (Vector3::from(*node) - center).norm())
             .fold(0.0, f64::max);
-        let distance = (place - center).norm() - size;
-        nearest = nearest.min(distance.max(0.0));
         // Newton wanders off for points far outside; they are not inside anyway
-        if distance > 0.0 {
+        if (place - center).norm() - size > OFF_BODY {
             continue;
         }
         let Some(point) = law.invert(&nodes, place) else {
             continue;
         };
         let outside = law.outside(&point);
-        if best.as_ref().is_none_or(|(.., least)| outside < *least) {
+        let is_near = outside <= SLACK || outside * size <= OFF_BODY;
+        if is_near && best.as_ref().is_none_or(|(.., least)| outside < *least) {
             best = Some((element, point, outside));
         }
     }
-    match best {
-        Some((element, point, outside)) if outside <= SLACK => Ok((element, point)),
-        Some(_) | None => Err(ReductionError::Gauge {
-            gauge: number,
-            distance_mm: nearest * 1e3,
-        }),
-    }
+    best.map(|(element, point, _)| (element, point))
+        .ok_or(ReductionError::Gauge { gauge: number })
 }

@@ -162,6 +162,11 @@ pub(super) fn quoted(text: &str) -> String {
 
 /// Returns the number of a gauge in the name of its column: the last one of 1 to 4 that stands alone.
 fn number(name: &str) -> Option<u8> {
+    // a repeated name is told apart by a place behind it, which is no number of a gauge
+    let name = match name.rsplit_once('#') {
+        Some((repeated, _)) if repeated.ends_with(|sign: char| !sign.is_whitespace()) => repeated,
+        _ => name,
+    };
     let groups = name.split(|sign: char| !sign.is_ascii_digit());
     let mut numbers = groups.rev().filter_map(|digits| digits.parse::<u8>().ok());
     numbers.find(|number| (1..=4).contains(number))

@@ -15,7 +15,7 @@ pub struct Mesh {
     /// Faces of each surface group: node indices, face after face.
     pub surfaces: BTreeMap<String, Vec<usize>>,
     /// Largest distance of a mid-edge node of a second-order brick, which the mesh leaves out, from
-    /// the middle of its straight edge \[m\]; `None` if none was left out.
+    /// its straight edge \[m\]; `None` if none was left out.
     pub straightened_m: Option<f64>,
     /// Whether the mesh covers only the half z >= 0 of the head, marked by a group [`SYMMETRY`].
     pub half: bool,

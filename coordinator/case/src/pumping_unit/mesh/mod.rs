@@ -12,4 +12,4 @@ pub use body::{Mesh, SURFACES, SYMMETRY, VOLUME};
 pub use msh::read;
 pub(super) use msh::read_hashed;
 pub(super) use origin::{Origin, check_hash, check_mass, check_origin, check_rim};
-pub(super) use surface::surface_distance_m;
+pub(super) use surface::surface_distances_m;

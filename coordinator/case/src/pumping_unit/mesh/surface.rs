@@ -1,5 +1,5 @@
 //! Surface of a meshed body: its free faces, and the distance of a point from them.
-use super::body::{Mesh, SYMMETRY};
+use super::body::{Mesh, SYMMETRY, VOLUME};
 use nalgebra::Vector3;
 use protocol::pumping_unit::ElementKind;
 use std::collections::{HashMap, HashSet};
@@ -17,22 +17,24 @@ const BRICK: [[usize; 4]; 6] = [
 /// Corners of the faces of a tetrahedron, in Gmsh's order of nodes; the last one is repeated.
 const TETRAHEDRON: [[usize; 4]; 4] = [[0, 2, 1, 1], [0, 1, 3, 3], [0, 3, 2, 2], [3, 1, 2, 2]];
 
-/// Returns the distance of a point from the surface of the body \[m\], inside or outside; faces between
-/// two elements and those on the plane of a half's symmetry are not part of the surface. Curved faces are
-/// taken as the plane triangles between their corners.
-pub(in super::super) fn surface_distance_m(mesh: &Mesh, point: [f64; 3]) -> f64 {
-    let [x, y, z] = point;
-    let point = Vector3::new(x, y, if mesh.half { z.abs() } else { z });
+/// Returns the distance of each point from the surface of the body \[m\], inside or outside; faces between two
+/// elements and those on the plane of a half's symmetry are not part of the surface. Curved faces are taken as the
+/// plane triangles between their corners.
+pub(in super::super) fn surface_distances_m(mesh: &Mesh, points: &[[f64; 3]]) -> Vec<f64> {
     let place = |node: usize| Vector3::from(mesh.nodes_m.get(node).copied().unwrap_or_default());
     let faces = free_faces(mesh);
     let triangles = faces
         .iter()
-        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
-    let squares = triangles.map(|corners| {
-        let triangle = corners.map(place);
-        (closest(&triangle, &point) - point).norm_squared()
-    });
-    squares.fold(f64::INFINITY, f64::min).sqrt()
+        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+        .map(|corners| corners.map(place));
+    let triangles: Vec<[Vector3<f64>; 3]> = triangles.collect();
+    let distance = |&[x, y, z]: &[f64; 3]| {
+        let point = Vector3::new(x, y, if mesh.half { z.abs() } else { z });
+        let squares = triangles.iter();
+        let squares = squares.map(|triangle| (closest(triangle, &point) - point).norm_squared());
+        squares.fold(f64::INFINITY, f64::min).sqrt()
+    };
+    points.iter().map(distance).collect()
 }
 
 /// Returns the corners of the faces that belong to one element only and not to the plane of symmetry.
@@ -42,8 +44,8 @@ fn free_faces(mesh: &Mesh) -> Vec<[usize; 4]> {
         ElementKind::Tetrahedron => &TETRAHEDRON,
     };
     let mut free: HashMap<[usize; 4], Option<[usize; 4]>> = HashMap::new();
-    let elements = mesh.volumes.values();
-    for element in elements.flat_map(|group| group.chunks_exact(mesh.kind.nodes())) {
+    let elements = mesh.volumes.get(VOLUME).map_or(&[][..], Vec::as_slice);
+    for element in elements.chunks_exact(mesh.kind.nodes()) {
         for face in corners {
             let face = face.map(|corner| element[corner]);
             let mut key = face;
@@ -111,7 +113,7 @@ mod tests {
         let mut mesh = cubes();
         assert!((mesh.volume_m3() - 2.0).abs() < 1e-12);
         let close = |mesh: &Mesh, point, expected: f64| {
-            let distance = surface_distance_m(mesh, point);
+            let distance = surface_distances_m(mesh, &[point])[0];
             assert!((distance - expected).abs() < 1e-12, "{point:?} {distance}");
         };
         // in the middle, where the faces between the elements do not count

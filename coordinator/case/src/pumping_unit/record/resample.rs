@@ -18,9 +18,9 @@ use protocol::pumping_unit::Sensor;
 pub(super) struct Cycles {
     /// Indices of those cycles of the record that cover the whole turn.
     pub(super) whole: Vec<usize>,
-    /// Mean over the cycles, per gauge and grid angle; `None` where no cycle has a value.
+    /// Mean over the cycles, per channel and grid angle; `None` where no cycle has a value.
     pub(super) mean: Vec<Vec<Option<f64>>>,
-    /// Standard deviation between cycles, per gauge and grid angle.
+    /// Standard deviation between cycles, per channel and grid angle.
     pub(super) spread: Vec<Vec<f64>>,
     /// Number of grid angles at which at least one whole cycle has no value.
     pub(super) gaps: usize,

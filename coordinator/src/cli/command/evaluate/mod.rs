@@ -11,8 +11,8 @@ use crate::cli::{
         terminal,
     },
     run::{
-        folder::RunFolder,
         manifest::{EVALUATE, Manifest, RunIdentity},
+        name::RunName,
         opened::Run,
         session::Session,
     },
@@ -111,8 +111,15 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Individuals>> {
     let path = if let Some(path) = &arguments.run {
         path.clone()
     } else {
-        let replaced = arguments.choice.measured.as_deref();
-        RunFolder::default_path(&case, EVALUATE, &[], replaced, 0)?
+        let name = RunName {
+            case_folder: &arguments.choice.case,
+            case: &case,
+            what: EVALUATE,
+            set: &[],
+            measured: arguments.choice.measured.as_deref(),
+            seed: 0,
+        };
+        name.path()?
     };
     let manifest = Manifest {
         measured,

@@ -18,8 +18,9 @@ use crate::cli::{
     },
     run::{
         bus,
-        folder::{RESULT, RunFolder},
+        folder::RESULT,
         manifest::Manifest,
+        name::RunName,
         opened::Run,
         searches::Searches,
         session::Session,
@@ -119,7 +120,15 @@ fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<SweptFile>, Individua
         path.clone()
     } else {
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
-        RunFolder::default_path(&case, "sweep", &[stem.into_owned()], measured, 0)?
+        let name = RunName {
+            case_folder: &case_folder,
+            case: &case,
+            what: "sweep",
+            set: &[stem.into_owned()],
+            measured,
+            seed: 0,
+        };
+        name.path()?
     };
     let settings = SweptFile {
         file: std::path::absolute(&file)?,

@@ -15,8 +15,9 @@ use crate::cli::{
         terminal,
     },
     run::{
-        folder::{RESULT, RunFolder},
+        folder::RESULT,
         manifest::{Manifest, RunIdentity as _},
+        name::RunName,
         opened::Run,
         orthogonal::{Orthogonal, test},
         searches::Searches,
@@ -185,8 +186,15 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Orthogonal>> {
     } else {
         let what = format!("sweep-{}", settings.array.name().to_lowercase());
         let decides = [settings.arguments() + " " + preset.name + " " + &set.join(" ")];
-        let replaced = arguments.choice.measured.as_deref();
-        RunFolder::default_path(&case, &what, &decides, replaced, arguments.seed)?
+        let name = RunName {
+            case_folder: &arguments.choice.case,
+            case: &case,
+            what: &what,
+            set: &decides,
+            measured: arguments.choice.measured.as_deref(),
+            seed: arguments.seed,
+        };
+        name.path()?
     };
     let manifest = Manifest {
         preset: preset.name.to_owned(),

@@ -13,9 +13,10 @@ use crate::cli::{
     },
     run::{
         bus,
-        folder::{RESULT, RunFolder},
+        folder::RESULT,
         interrupt,
         manifest::{Manifest, RunIdentity as _},
+        name::RunName,
         opened::Run,
         scaling::{ScalingRun, ScalingSettings},
         scaling_remote,
@@ -174,9 +175,16 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<ScalingSettings>> {
     let path = if let Some(path) = &arguments.run {
         path.clone()
     } else {
-        let replaced = arguments.choice.measured.as_deref();
         let decides = [settings.arguments()];
-        RunFolder::default_path(&case, "sweep-scaling", &decides, replaced, arguments.seed)?
+        let name = RunName {
+            case_folder: &arguments.choice.case,
+            case: &case,
+            what: "sweep-scaling",
+            set: &decides,
+            measured: arguments.choice.measured.as_deref(),
+            seed: arguments.seed,
+        };
+        name.path()?
     };
     let manifest = Manifest {
         measured,

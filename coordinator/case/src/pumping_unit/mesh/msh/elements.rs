@@ -4,14 +4,16 @@
 //! incompatible modes bend without locking, so the second order is not needed; that its curved edges become
 //! straight is measured ([`super::super::Mesh::straightened_m`]). Prisms are refused: as bricks of which two
 //! corners are one they are five times too stiff in bending in the plane of their triangles.
+use super::super::body::VOLUME;
 use super::{
     kind::{Block, Shape, Type, known, of_lower_dimension},
     lines::Lines,
     sections::{Sections, Version},
 };
 use crate::error::{CaseError, damaged};
+use nalgebra::Vector3;
 use protocol::pumping_unit::ElementKind;
-use std::path::Path;
+use std::{collections::HashSet, path::Path};
 
 /// Remedy for a mesh with element types that are not allowed.
 const ALLOWED: &str = "mesh all volumes with bricks (Mesh.RecombineAll = 1), or all with 10-node \
@@ -70,7 +72,7 @@ fn flat(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(), CaseError>
         let of = allowed(lines, number)?;
         let tags = usize::try_from(tags).unwrap_or(usize::MAX);
         let physical = if tags > 0 { numbers.get(3) } else { None };
-        let physical = physical.copied().unwrap_or_default();
+        let physical = physical.copied().unwrap_or_default().saturating_abs();
         if sections.blocks.is_empty() || last != (number, physical) {
             let dimension = if matches!(of.shape, Shape::Quadrilateral | Shape::Triangle) {
                 2
@@ -160,9 +162,11 @@ fn linear(path: &Path, line: usize, name: &str) -> CaseError {
 /// Puts the elements of all blocks into the groups of the mesh, as elements of one kind.
 ///
 /// # Errors
-/// Returns an error for bricks beside tetrahedra, and for faces that are none of the volumes'.
+/// Returns an error for bricks beside tetrahedra, for faces that are none of the volumes', for volumes outside the body,
+/// and for second-order bricks whose nodes are in another order.
 pub(super) fn join(path: &Path, sections: &mut Sections) -> Result<(), CaseError> {
     let blocks = std::mem::take(&mut sections.blocks);
+    check_body(path, &blocks)?;
     let first = |wanted: &dyn Fn(Shape) -> bool| blocks.iter().find(|block| wanted(block.of.shape));
     let tetrahedra = first(&|shape| shape == Shape::Tetrahedron);
     let bricks = first(&|shape| shape == Shape::Brick);
@@ -193,15 +197,19 @@ pub(super) fn join(path: &Path, sections: &mut Sections) -> Result<(), CaseError
         }
         for element in block.nodes.chunks_exact(block.of.nodes) {
             if let Some(off) = straightened_m(&mesh.nodes_m, block.of, element) {
-                mesh.straightened_m = Some(mesh.straightened_m.unwrap_or(0.0).max(off));
+                if off.share > MOST_CURVED {
+                    return Err(misplaced(path, block, off.share));
+                }
+                mesh.straightened_m = Some(mesh.straightened_m.unwrap_or(0.0).max(off.distance_m));
             }
         }
-        let groups = if block.is_volume() {
-            &mut mesh.volumes
-        } else {
-            &mut mesh.surfaces
-        };
+        // of the volumes, the body alone
         for group in &block.groups {
+            let groups = match (block.is_volume(), group.as_str()) {
+                (false, _) => &mut mesh.surfaces,
+                (true, VOLUME) => &mut mesh.volumes,
+                (true, _) => continue,
+            };
             let elements = groups.entry(group.clone()).or_default();
             for element in block.nodes.chunks_exact(block.of.nodes) {
                 elements.extend(corners(block.of.shape, element));
@@ -209,6 +217,71 @@ pub(super) fn join(path: &Path, sections: &mut Sections) -> Result<(), CaseError
         }
     }
     Ok(())
+}
+
+/// Share of an edge's length by which its mid-edge node may lie beside it; more is another order of nodes.
+const MOST_CURVED: f64 = 0.25;
+
+fn misplaced(path: &Path, block: &Block, share: f64) -> CaseError {
+    damaged(
+        path,
+        format!(
+            "line {}: {}: a mid-edge node lies {:.0} % of the edge's length beside it: the nodes are not in Gmsh's \
+             order",
+            block.line,
+            block.of.name,
+            100.0 * share
+        ),
+        "let Gmsh write the file, or give the nodes in its order",
+    )
+}
+
+/// Checks that every volume element belongs to the body, and once.
+fn check_body(path: &Path, blocks: &[Block]) -> Result<(), CaseError> {
+    let mut body = HashSet::new();
+    let volumes = || blocks.iter().filter(|block| block.is_volume());
+    let key = |element: &[usize]| {
+        let mut nodes = element.to_vec();
+        nodes.sort_unstable();
+        nodes
+    };
+    let is_body = |block: &&Block| block.groups.iter().any(|group| group == VOLUME);
+    for block in volumes().filter(is_body) {
+        for element in block.nodes.chunks_exact(block.of.nodes) {
+            if !body.insert(key(element)) {
+                return Err(damaged(
+                    path,
+                    format!(
+                        "line {}: an element of group `{VOLUME}` is defined twice, in the block that begins there",
+                        block.line
+                    ),
+                    "remove duplicate elements (Gmsh: Mesh > Remove duplicate elements)",
+                ));
+            }
+        }
+    }
+    let mut others = volumes().filter(|block| !is_body(block));
+    let outside = others.find_map(|block| {
+        let elements = block.nodes.chunks_exact(block.of.nodes);
+        let outside = elements.filter(|element| !body.contains(&key(element)));
+        Some((block, outside.count())).filter(|(_, count)| *count > 0)
+    });
+    match outside {
+        // without any, the missing group is the fault
+        Some((block, count)) if !body.is_empty() => Err(damaged(
+            path,
+            format!(
+                "line {}: {count} volume elements of the block that begins there do not belong to group `{VOLUME}`{}",
+                block.line,
+                match block.groups.as_slice() {
+                    [] => String::new(),
+                    groups => format!(", but to {}", groups.join(", ")),
+                }
+            ),
+            "put all volumes of the head into one physical group, steel, and mesh nothing else",
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// Returns the nodes of an element that the mesh keeps: all of a tetrahedron and its face, the corners of
@@ -238,20 +311,31 @@ const EDGES: [[usize; 2]; 12] = [
     [6, 7],
 ];
 
-/// Returns the largest distance of a mid-edge node that the mesh leaves out from the middle of its straight
-/// edge \[m\]; `None` for an element of which nothing is left out.
-fn straightened_m(nodes_m: &[[f64; 3]], of: Type, element: &[usize]) -> Option<f64> {
+/// Distance of a mid-edge node from its straight edge.
+#[derive(Clone, Copy, Debug, Default)]
+struct Straightened {
+    distance_m: f64,
+    /// Share of the edge's length.
+    share: f64,
+}
+
+/// Returns the largest distance of a mid-edge node that the mesh leaves out from the straight line through the ends of its
+/// edge; `None` for an element of which nothing is left out.
+fn straightened_m(nodes_m: &[[f64; 3]], of: Type, element: &[usize]) -> Option<Straightened> {
     if of.shape != Shape::Brick || of.order != 2 {
         return None;
     }
     let place = |at: usize| {
         let node = element.get(at).and_then(|node| nodes_m.get(*node));
-        node.copied().unwrap_or_default()
+        Vector3::from(node.copied().unwrap_or_default())
     };
     let off = EDGES.iter().zip(8..).map(|(&[from, to], middle)| {
         let (from, to, middle) = (place(from), place(to), place(middle));
-        let parts = [0, 1, 2].map(|axis| middle[axis] - 0.5 * (from[axis] + to[axis]));
-        parts.iter().map(|x| x * x).sum::<f64>().sqrt()
+        let edge = to - from;
+        let length = edge.norm().max(f64::MIN_POSITIVE);
+        let distance_m = edge.cross(&(middle - from)).norm() / length;
+        let share = distance_m / length;
+        Straightened { distance_m, share }
     });
-    Some(off.fold(0.0, f64::max))
+    off.max_by(|a, b| a.distance_m.total_cmp(&b.distance_m))
 }

@@ -67,7 +67,9 @@ pub(super) fn entities(
         for _ in 0..count {
             let numbers = lines.numbers::<f64>(skipped + 1)?;
             let number = |at: usize| numbers.get(at).copied().unwrap_or_default();
-            let tags = numbers.iter().skip(skipped + 1).copied().map(integer);
+            // Gmsh negates the tag where the orientation is reversed
+            let tags = numbers.iter().skip(skipped + 1);
+            let tags = tags.map(|tag| integer(tag.abs()));
             let many = usize::try_from(integer(number(skipped))).unwrap_or(0);
             groups.insert((dimension, integer(number(0))), tags.take(many).collect());
         }

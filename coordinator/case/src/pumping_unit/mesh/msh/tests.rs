@@ -189,6 +189,71 @@ fn second_order_bricks_are_read_by_their_corners() {
     assert_eq!(first_order.straightened_m, None);
 }
 
+/// Checks that a body in a second group is read once, that elements outside the body or defined twice are refused, as are
+/// nodes in another order, and that the sign of a physical tag is its orientation alone.
+#[test]
+fn every_volume_element_belongs_to_the_body_once() {
+    let blocks = [PIN_A, PIN_B, ROPE, FLOOR, TETRAHEDRON];
+    // entity 2 of the flat format is the group `all`
+    let both: Block = (3, 9, 11, TETRAHEDRON.3);
+    let whole = read_flat(&blocks, &NODES, 1.0).unwrap();
+    let twice = read_flat(&[PIN_A, PIN_B, ROPE, FLOOR, TETRAHEDRON, both], &NODES, 1.0);
+    assert_eq!(twice.unwrap(), whole);
+    let negative = PIN_A.3;
+    let text_of = |tag: i64| {
+        let mut text = format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{}$Nodes\n10\n",
+            names("floor")
+        );
+        for (at, [x, y, z]) in (1..).zip(NODES) {
+            writeln!(text, "{at} {x} {y} {z}").unwrap();
+        }
+        text += "$EndNodes\n$Elements\n4\n";
+        let words = |nodes: &[usize]| {
+            let words: Vec<String> = nodes.iter().map(ToString::to_string).collect();
+            words.join(" ")
+        };
+        writeln!(text, "1 9 2 {tag} 7 {}", words(negative)).unwrap();
+        writeln!(text, "2 9 2 2 7 {}", words(PIN_B.3)).unwrap();
+        writeln!(text, "3 9 2 3 7 {}", words(ROPE.3)).unwrap();
+        writeln!(text, "4 11 2 1 7 {}", words(TETRAHEDRON.3)).unwrap();
+        text + "$EndElements\n"
+    };
+    assert_eq!(read_text(&text_of(-1), 1.0), read_text(&text_of(1), 1.0));
+    let message = read_flat(&[PIN_A, PIN_B, ROPE, TETRAHEDRON, TETRAHEDRON], &NODES, 1.0);
+    let message = message.unwrap_err();
+    assert!(
+        message.contains("line 32: an element of group `steel` is defined twice"),
+        "{message}"
+    );
+    let mut nodes = NODES.to_vec();
+    nodes.push([-1.0, 0.0, 0.0]);
+    nodes.extend([[-0.5, 0.5, 0.0], [-0.5, 0.0, 0.0], [-0.5, 0.0, 0.5]]);
+    let loose: Block = (3, 9, 11, &[1, 3, 11, 4, 7, 12, 13, 8, 14, 9]);
+    let message = read_flat(&[PIN_A, PIN_B, ROPE, TETRAHEDRON, loose], &nodes, 1.0).unwrap_err();
+    for part in [
+        "1 volume elements of the block",
+        "do not belong to group `steel`",
+        "help: put all volumes",
+    ] {
+        assert!(message.contains(part), "{part}\n{message}");
+    }
+    // the order of Abaqus and VTK, which has the upper edges before the vertical ones
+    let vtk: Block = (
+        3,
+        1,
+        17,
+        &[
+            1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 14, 10, 17, 19, 20, 18, 11, 13, 15, 16,
+        ],
+    );
+    let message = read_flat(&[LEFT, RIGHT, TOP, vtk], &CUBE, 1.0).unwrap_err();
+    assert!(
+        message.contains("the nodes are not in Gmsh's order"),
+        "{message}"
+    );
+}
+
 /// Checks that prisms beside bricks, triangles on them and files that end in an element are refused with line and
 /// remedy.
 #[test]
