@@ -66,6 +66,7 @@ pub(super) fn read(
         let (mesh, hash) = mesh::read_hashed(&path, mesh_unit_m(document, flexible)?)?;
         mesh::check_rim(&path, &mesh, &file.back_head)?;
         if unreduced {
+            clip_stations(&mut read.head, &mesh, &file.back_head);
             read.head.mass_kg = mesh.volume_m3() * flexible.density_kg_m3;
         } else {
             let outdated = mesh::check_hash(&path, &hash, &read.provenance, &modes_file).err();
@@ -83,10 +84,7 @@ pub(super) fn read(
                 mesh::check_origin(&modes_file, mesh::Origin::Source, Some(&source), stated).err();
         }
         let visible = mesh.straightened_m.filter(|off_m| *off_m > 1e-6);
-        read.notes = visible.map(|off_m| straightened(path.clone(), off_m));
-        if unreduced {
-            clip_stations(&mut read.head, &mesh, &file.back_head);
-        }
+        read.notes = visible.map(|off_m| straightened(path, off_m));
         read.source_blake3 = Some(source);
         read.mesh = Some((mesh, hash));
     }
@@ -354,8 +352,7 @@ fn with_stations(arc_deg: Vec<f64>) -> ModalHead {
     }
 }
 
-/// Restricts the stations of a head to the angles that the rope surface of its mesh spans, with a station at an end of
-/// the surface that cuts them off.
+/// Restricts the stations of a head to the angles that the rope surface of its mesh spans, in equal steps.
 fn clip_stations(head: &mut ModalHead, mesh: &mesh::Mesh, arc: &BackHead) {
     /// Distance of the last station from the end of the surface \[deg\].
     const INSIDE_DEG: f64 = 1e-6;
@@ -374,15 +371,28 @@ fn clip_stations(head: &mut ModalHead, mesh: &mesh::Mesh, arc: &BackHead) {
     let span = angles.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], angle| {
         [low.min(angle), high.max(angle)]
     });
-    let mut arc_deg = head.arc_deg.clone();
-    arc_deg.retain(|psi| *psi >= span[0] - ROUNDING_DEG && *psi <= span[1] + ROUNDING_DEG);
-    if span[0] > first + ROUNDING_DEG {
-        arc_deg.insert(0, span[0] + INSIDE_DEG);
+    let is_cut = [
+        span[0] > first + ROUNDING_DEG,
+        span[1] < last - ROUNDING_DEG,
+    ];
+    if is_cut == [false, false] {
+        return;
     }
-    if span[1] < last - ROUNDING_DEG {
-        arc_deg.push(span[1] - INSIDE_DEG);
-    }
-    arc_deg.dedup_by(|b, a| *b <= *a);
+    let from = if is_cut[0] {
+        span[0] + INSIDE_DEG
+    } else {
+        first
+    };
+    let to = if is_cut[1] {
+        span[1] - INSIDE_DEG
+    } else {
+        last
+    };
+    // the dynamics need equal steps; the present ones are kept about as long
+    let pitch = (last - first) / (head.arc_deg.len().max(2) - 1) as f64;
+    let steps = whole(((to - from) / pitch).round()).max(1);
+    let station = |at| from + (to - from) * at as f64 / steps as f64;
+    let arc_deg: Vec<f64> = (0..=steps).map(station).collect();
     *head = ModalHead {
         damping_ratio: head.damping_ratio,
         stress: head.stress,
@@ -421,4 +431,50 @@ fn source_hash(mesh: &str, file: &CaseFile, read: &ReadHead) -> String {
         take(&[flexible.mesh_unit_m]);
     }
     hasher.finalize().to_hex().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    /// Checks that stations lie on the rope surface, in equal steps of about a degree, wherever the surface ends, also
+    /// across the angle where the arc tangent jumps.
+    #[test]
+    fn stations_end_where_the_rope_surface_ends() {
+        let arc = BackHead {
+            radius_m: 2.0,
+            center_x_m: 0.5,
+            center_y_m: -0.5,
+            rope_anchor_deg: 130.0,
+        };
+        let stations = |from: f64, to: f64| {
+            let place = |at: u32| {
+                let angle = (from + (to - from) * f64::from(at) / 100.0).to_radians();
+                [0.5 + 2.0 * angle.cos(), -0.5 + 2.0 * angle.sin(), 0.0]
+            };
+            let mesh = mesh::Mesh {
+                nodes_m: (0..=100).map(place).collect(),
+                surfaces: BTreeMap::from([("rope_surface".to_owned(), (0..=100).collect())]),
+                ..mesh::Mesh::default()
+            };
+            let mut head = with_stations((118..=220).map(f64::from).collect());
+            clip_stations(&mut head, &mesh, &arc);
+            assert_eq!(head.influence.psi_deg, head.arc_deg);
+            assert_eq!(head.influence.normal_mpa_per_n.len(), head.arc_deg.len());
+            head.arc_deg
+        };
+        assert_eq!(stations(118.0, 220.0).len(), 103);
+        assert_eq!(stations(100.0, 250.0), stations(118.0, 220.0));
+        let cut = stations(121.6, 214.3);
+        let (first, last) = (cut[0], *cut.last().unwrap());
+        assert!((first - 121.6).abs() < 1e-5 && (last - 214.3).abs() < 1e-5);
+        assert_eq!(cut.len(), 94);
+        let steps: Vec<f64> = cut.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        assert!(
+            steps.iter().all(|step| (step - steps[0]).abs() < 1e-9),
+            "{steps:?}"
+        );
+        assert!((stations(121.6, 250.0).last().unwrap() - 220.0).abs() < 1e-9);
+    }
 }

@@ -14,6 +14,7 @@ mod rig;
 mod scaling;
 mod started;
 mod swept;
+mod tutorial;
 
 use oscillator::case_folder::{CROSSTALK, HIDDEN, NOISE_MM};
 use rig::{Rig, number};
