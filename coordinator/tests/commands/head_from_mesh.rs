@@ -197,7 +197,7 @@ fn refuses_other_gauges(folder: &Path, case_file: &Path) {
                 "density_kg_m3 = 7850.0                                 # steel",
                 "mesh_unit_m = 0.001\ndensity_kg_m3 = 7850.0 # steel",
             ),
-            "the mean distance of the group `rope_surface` from the head's centre",
+            "the distance of the group `rope_surface` from the head's centre",
         ),
     ] {
         fs::write(case_file, wrong).unwrap();
