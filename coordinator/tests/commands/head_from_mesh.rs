@@ -48,6 +48,23 @@ fn printed(words: &[&str], folder: &Path) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
+/// Calibrates the case of a folder with three points and returns the result.
+fn calibrated(folder: &Path) -> Value {
+    let calibrate = [
+        "calibrate",
+        "case",
+        "--preset",
+        "random",
+        "--set",
+        "points=3",
+        "--run",
+        "a",
+        "--output",
+        "json",
+    ];
+    serde_json::from_str(&printed(&calibrate, folder)).unwrap()
+}
+
 /// Checks that mesh and gauges alone make the tables, which a calibration then uses, and that `case check` says what
 /// moving a gauge changes.
 #[test]
@@ -86,19 +103,7 @@ fn mesh_and_gauges_alone_make_a_case_that_calibrates() {
     ] {
         assert!(summary.contains(part), "{part}: {summary}");
     }
-    let calibrate = [
-        "calibrate",
-        "case",
-        "--preset",
-        "random",
-        "--set",
-        "points=3",
-        "--run",
-        "a",
-        "--output",
-        "json",
-    ];
-    let result: Value = serde_json::from_str(&printed(&calibrate, folder)).unwrap();
+    let result = calibrated(folder);
     let machine = result["machine"].as_array().unwrap();
     let stroke = machine
         .iter()
@@ -130,19 +135,7 @@ fn position_and_torque_are_terms_of_the_objective() {
     let text = fs::read_to_string(&case_file).unwrap();
     let terms = "position_weight_mpa2_per_m2 = 250.0\ntorque_weight_mpa2_per_kn2_m2 = 0.5\noffset = \"free\"";
     fs::write(&case_file, text.replace("offset = \"free\"", terms)).unwrap();
-    let calibrate = [
-        "calibrate",
-        "case",
-        "--preset",
-        "random",
-        "--set",
-        "points=3",
-        "--run",
-        "a",
-        "--output",
-        "json",
-    ];
-    let result: Value = serde_json::from_str(&printed(&calibrate, folder)).unwrap();
+    let result = calibrated(folder);
     for which in ["recommended", "optimised"] {
         let mse = |channel: &str, key: &str| {
             let value = &result["channels"][channel][which][key];

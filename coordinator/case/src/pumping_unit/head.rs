@@ -167,12 +167,7 @@ impl Provenance {
 /// Returns an error for ragged tables, frequencies or stations that do not ascend, values out of range, and
 /// an influence table that does not cover the modes' arc.
 pub(super) fn read(modes: &Path, influence: &Path) -> Result<(ModalHead, Provenance), CaseError> {
-    let bytes = file::read(
-        modes,
-        "the modes of the back head, `flexible_head.modes_file`",
-    )?;
-    let read: ModesFile = document::json(modes, &bytes)?;
-    check_modes(modes, &read)?;
+    let read = modes_file(modes)?;
     let influence = read_influence(influence, &read.arc_deg)?;
     let provenance = Provenance::new(&read);
     let head = ModalHead {
@@ -191,17 +186,23 @@ pub(super) fn read(modes: &Path, influence: &Path) -> Result<(ModalHead, Provena
     Ok((head, provenance))
 }
 
+/// Reads and checks a modes file.
+fn modes_file(path: &Path) -> Result<ModesFile, CaseError> {
+    let bytes = file::read(
+        path,
+        "the modes of the back head, `flexible_head.modes_file`",
+    )?;
+    let read: ModesFile = document::json(path, &bytes)?;
+    check_modes(path, &read)?;
+    Ok(read)
+}
+
 /// Returns the damping ratio and the stations of a modes file, with which its head is reduced again.
 ///
 /// # Errors
 /// As [`read`], for the modes file.
 pub(super) fn reduction_settings(modes: &Path) -> Result<(f64, Vec<f64>), CaseError> {
-    let bytes = file::read(
-        modes,
-        "the modes of the back head, `flexible_head.modes_file`",
-    )?;
-    let read: ModesFile = document::json(modes, &bytes)?;
-    check_modes(modes, &read)?;
+    let read = modes_file(modes)?;
     Ok((read.damping_ratio, read.arc_deg))
 }
 
