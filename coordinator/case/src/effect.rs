@@ -9,12 +9,12 @@ use super::{
     prior::interval,
 };
 use protocol::announce::EffectDescriptor;
-use protocol::case::{EffectSetting, Scale, Unknown};
-use serde::Deserialize;
+use protocol::case::{Case, EffectSetting, Scale, Unknown};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// `[[effects]]` table of a case file.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CaseEffect {
     /// Identifier of the effect, as `pivot_friction`.
@@ -27,7 +27,7 @@ pub struct CaseEffect {
 }
 
 /// Parameter of an effect.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CaseParameter {
     /// Value of the parameter, in `unit`.
@@ -41,7 +41,7 @@ pub struct CaseParameter {
 }
 
 /// Provenance of an effect: the diagnosis that named it.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
     /// Content hash of the case, including the records in which the effect was found.
@@ -61,6 +61,31 @@ pub struct Provenance {
 }
 
 impl CaseEffect {
+    /// Returns the effects of a case, without intervals of confidence and provenance, which a case does not hold.
+    pub fn all_of(case: &Case) -> Vec<Self> {
+        let effects = case.effects.iter().zip(&case.effect_units);
+        let one = |(setting, units): (&EffectSetting, &Vec<String>)| {
+            let parameters = setting.parameters.iter().zip(units);
+            let parameters = parameters.map(|((name, value), unit)| {
+                let own = |unknown: &&Unknown| unknown.of_effect() == Some((&setting.id, name));
+                let searched = case.unknowns.iter().find(own);
+                let parameter = CaseParameter {
+                    value: *value,
+                    unit: unit.clone(),
+                    ci95: None,
+                    search: searched.map(|unknown| [unknown.lower, unknown.upper]),
+                };
+                (name.clone(), parameter)
+            });
+            Self {
+                id: setting.id.clone(),
+                parameters: parameters.collect(),
+                provenance: None,
+            }
+        };
+        effects.map(one).collect()
+    }
+
     /// Returns the effect in the form that is sent to workers.
     pub fn setting(&self) -> EffectSetting {
         let parameters = self.parameters.iter();

@@ -36,7 +36,7 @@ pub use diagnose::DiagnoseEntry;
 pub use effect::{CaseEffect, CaseParameter, Provenance};
 pub use effect_text::{append_effects, write_effects, write_starts};
 pub use error::CaseError;
-pub use gene_file::{read_genes, write_genes};
+pub use gene_file::{GeneFile, read_genes, write_genes};
 pub use load::{check, load, load_with_notes};
 pub use loaded::Loaded;
 pub use measured::require_record;

@@ -1,7 +1,11 @@
 //! Loaded case, with its notes, separate cycles and effects.
-use super::{diagnose::DiagnoseEntry, effect::CaseEffect, note::Note};
+use super::{
+    diagnose::DiagnoseEntry,
+    effect::{CaseEffect, CaseParameter},
+    note::Note,
+};
 use discrepancy::record::Record;
-use protocol::case::Case;
+use protocol::case::{Case, Unknown};
 use serde::Deserialize;
 
 /// Origin of a case's records.
@@ -42,15 +46,44 @@ impl Loaded {
             provenance.and_then(|p| p.dataset.as_deref()) == Some(dataset)
         };
         self.effects.retain(|effect| !found(effect));
+        self.apply_effects();
+        self
+    }
+
+    /// Gives the case the effects of a gene file: effects that it lacks are added, and parameters that are not
+    /// searched take the file's values. Parameters that are searched stay as they are, since the values of the
+    /// gene file include them.
+    pub fn take_effects(&mut self, effects: &[CaseEffect]) {
+        for effect in effects {
+            let Some(own) = self.effects.iter_mut().find(|own| own.id == effect.id) else {
+                self.effects.push(effect.clone());
+                continue;
+            };
+            for (name, parameter) in &effect.parameters {
+                let is_searched = |own: &CaseParameter| own.search.is_some();
+                if own.parameters.get(name).is_none_or(|own| !is_searched(own)) {
+                    let parameter = CaseParameter {
+                        search: None,
+                        ..parameter.clone()
+                    };
+                    own.parameters.insert(name.clone(), parameter);
+                }
+            }
+        }
+        self.apply_effects();
+    }
+
+    /// Sets the effects and their unknowns in the case to those of `effects`.
+    fn apply_effects(&mut self) {
+        let earlier = std::mem::take(&mut self.case.effects);
+        let of_effect = |unknown: &Unknown| {
+            let effect = unknown.of_effect();
+            effect.is_some_and(|(id, _)| earlier.iter().any(|own| own.id == id))
+        };
+        self.case.unknowns.retain(|unknown| !of_effect(unknown));
         self.case.effects = self.effects.iter().map(CaseEffect::setting).collect();
         self.case.effect_units = self.effects.iter().map(CaseEffect::units).collect();
-        let left = &self.case.effects;
-        self.case
-            .unknowns
-            .retain(|unknown| match unknown.of_effect() {
-                None => true,
-                Some((id, _)) => left.iter().any(|effect| effect.id == id),
-            });
-        self
+        let added = self.effects.iter().flat_map(CaseEffect::genes);
+        self.case.unknowns.extend(added);
     }
 }

@@ -1,12 +1,13 @@
 //! Tests that the shipped case loads and that its figures agree with its README.
 use case::pumping_unit::{self as unit, RecordFacts, mesh};
-use case::{self, Loaded, Overrides};
+use case::{self, CaseEffect, CaseParameter, GeneFile, Loaded, Overrides};
 use protocol::{
-    case::{Case, ChannelRecord, Offset, Scale, Term, Unknown},
+    case::{Case, ChannelRecord, Offset, Term},
     pumping_unit::{Coefficient, Machine, Sensor},
     unit::Unit,
 };
 use std::{
+    collections::BTreeMap,
     fs,
     path::{Path, PathBuf},
 };
@@ -308,63 +309,124 @@ fn assert_refused(file: &Path, case: &Case, fault: &str, expected: &str) {
     assert!(message.contains("\nhelp: "), "{message}");
 }
 
-/// Checks that searched effect parameters, including zero and negative values, survive writing and reading a
-/// gene file bit for bit, and that a file without them leaves the values of the case.
+/// Checks that gene files carry the effects with which they were found: searched parameters, including zero and
+/// negative values, survive writing and reading bit for bit, a case that lacks an effect is given it or
+/// refused, and a file of version 0.1, which states no effects, leaves the values of the case.
 #[test]
-fn gene_files_hold_parameters_of_effects() {
+fn gene_files_carry_their_effects() {
     let folder = shipped();
-    let mut case = case::load(&folder, &Overrides::default()).unwrap();
-    let sizes = [("drift_1", -0.3, 0.1 + 0.2), ("drift_3", 0.5, -1.0 / 3.0)];
-    for (parameter, recommended, _) in sizes {
-        let name = format!("gauge_drift.{parameter}");
-        let bounds = [-1.0, 1.0];
-        let unknown = Unknown::new(name, "MPa/rev", Scale::Linear, recommended, bounds);
-        case.unknowns.push(unknown);
-    }
+    let loaded = case::load_with_notes(&folder, &Overrides::default()).unwrap();
+    let plain = loaded.case.clone();
+    let parameter = |value, search| CaseParameter {
+        value,
+        unit: "MPa/rev".to_owned(),
+        ci95: None,
+        search,
+    };
+    let drift = CaseEffect {
+        id: "gauge_drift".to_owned(),
+        parameters: BTreeMap::from([
+            ("drift_1".to_owned(), parameter(-0.3, Some([-1.0, 1.0]))),
+            ("drift_2".to_owned(), parameter(1.0 / 7.0, None)),
+            ("drift_3".to_owned(), parameter(0.5, Some([-1.0, 1.0]))),
+        ]),
+        provenance: None,
+    };
+    let with = |effects: &[CaseEffect]| {
+        let mut with = loaded.clone();
+        with.take_effects(effects);
+        with.case
+    };
+    let case = with(&[drift.clone()]);
+    let names = case.unknowns[10..].iter().map(|own| own.name.as_str());
+    assert_eq!(
+        names.collect::<Vec<_>>(),
+        ["gauge_drift.drift_1", "gauge_drift.drift_3"]
+    );
     let mut values = case.start();
-    for (place, (_, _, value)) in (10..).zip(sizes) {
-        values[place] = value;
-    }
+    values[10] = 0.1 + 0.2;
+    values[11] = -1.0 / 3.0;
     let scratch = tempfile::tempdir().unwrap();
     let file = scratch.path().join("genes.toml");
-    let text = case::write_genes(&case, &values, "a test");
+    let text = case::write_genes(&case, &values, &[drift.clone()], "a test");
     fs::write(&file, &text).unwrap();
-    let back = case::read_genes(&file, &case).unwrap();
     let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
-    assert_eq!(bits(&back), bits(&values));
+    let read = |case: &Case| GeneFile::read(&file).unwrap().values(case);
+    assert_eq!(bits(&read(&case).unwrap()), bits(&values));
+    assert_eq!(CaseEffect::all_of(&case), [drift.clone()]);
+
+    let refused = read(&plain).unwrap_err().to_string();
+    assert!(
+        refused.contains("`effects[0].id` = \"gauge_drift\""),
+        "{refused}"
+    );
+    let given = with(GeneFile::read(&file).unwrap().effects());
+    assert_eq!(bits(&read(&given).unwrap()), bits(&values));
+    // a parameter that is not searched takes the file's value
+    let mut other = drift.clone();
+    other.parameters.get_mut("drift_2").unwrap().value = 0.25;
+    let stale = with(&[other.clone()]);
+    let refused = read(&stale).unwrap_err().to_string();
+    let place = "`effects[0].parameters.drift_2`";
+    assert!(
+        refused.contains(place) && refused.contains("0.25"),
+        "{refused}"
+    );
+    let taken = with(&[other, drift.clone()]);
+    assert_eq!(taken, case);
+
     let older = case::read_genes(&folder.join("recommended.toml"), &case).unwrap();
     assert_eq!(bits(&older), bits(&case.start()));
+    let lines = case::write_genes(&case, &values, &[], "version 0.1");
+    assert!(lines.contains("\"gauge_drift.drift_3\" = {"), "{lines}");
+    fs::write(&file, &lines).unwrap();
+    assert_eq!(bits(&read(&case).unwrap()), bits(&values));
 
     let faults = [
         (
-            text.replace("gauge_drift.drift_3", "gauge_drift.drft_3"),
+            lines.as_str(),
+            "gauge_drift.drift_3\"",
+            "gauge_drift.drft_3\"",
             "did you mean `gauge_drift.drift_3`?",
         ),
         (
-            text.replace("gauge_drift.drift_3", "a.b"),
+            &lines,
+            "gauge_drift.drift_3",
+            "a.b",
             "kc, cc, gauge_drift.drift_1, gauge_drift.drift_3",
         ),
-        (text.replace("MPa/rev", "MPa"), "`gauge_drift.drift_1.unit`"),
+        (&lines, "MPa/rev", "MPa", "`gauge_drift.drift_1.unit`"),
         (
-            text.replace("value = -3.333333333333333e-1", "value = nan"),
+            &lines,
+            "value = -3.333333333333333e-1",
+            "value = nan",
             "`gauge_drift.drift_3.value` = NaN",
         ),
         (
-            text.replace("\"gauge_drift.drift_1\"", "gauge_drift.drift_1"),
+            &lines,
+            "\"gauge_drift.drift_1\"",
+            "gauge_drift.drift_1",
             "unknown field `drift_1`",
         ),
+        (
+            &text,
+            "MPa/rev",
+            "MPa",
+            "`effects[0].parameters.drift_1.unit`",
+        ),
+        (
+            &text,
+            "id = \"gauge_drift\"",
+            "id = \"gauge drift\"",
+            "`effects[0].id`",
+        ),
+        (&text, "[[effects]]", "[[effect]]", "[[effect]]"),
     ];
-    for (fault, expected) in faults {
+    for (text, from, to, expected) in faults {
+        let fault = text.replace(from, to);
         assert_ne!(fault, text, "{expected}");
         assert_refused(&file, &case, &fault, expected);
     }
-    case.unknowns.truncate(10);
-    fs::write(&file, &text).unwrap();
-    let message = case::read_genes(&file, &case).unwrap_err().to_string();
-    assert!(
-        message.contains("an unknown of the case: kb1, "),
-        "{message}"
-    );
 }
 
 /// Checks nodes and elements of the mesh against the crate mshio, and its volume against the mass of the

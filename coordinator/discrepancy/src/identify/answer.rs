@@ -2,6 +2,7 @@
 use crate::estimate::nuisances::NuisanceEstimate;
 use crate::record::measured::Curves;
 use crate::record::noise::NoiseSource;
+use crate::thresholds::NOISE_RATIO_LIMIT;
 use serde::{Deserialize, Serialize};
 
 /// Identifiability of a model's unknowns from a record.
@@ -9,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub struct IdentificationResult {
     /// Fitted values of the unknowns \[declared units\], in the case's order.
     pub genes: Vec<f64>,
-    /// Estimates of all fitted unknowns.
+    /// Estimates of all fitted unknowns; without intervals unless [`Self::has_intervals`].
     pub unknowns: Vec<UnknownEstimate>,
     /// Eigenvectors of the Fisher information of the unknowns, best determined first.
     pub directions: Vec<Direction>,
@@ -27,6 +28,14 @@ pub struct IdentificationResult {
     pub noise: NoiseSource,
     /// Further remarks for the user.
     pub notes: Vec<String>,
+}
+
+impl IdentificationResult {
+    /// Returns whether unknowns have intervals: not where the fit leaves a multiple of the noise, because a
+    /// model that lacks something has values of its own.
+    pub fn has_intervals(&self) -> bool {
+        self.is_noise || self.left.sqrt() < NOISE_RATIO_LIMIT
+    }
 }
 
 /// Estimate of an unknown, with its profile likelihood.
@@ -91,6 +100,8 @@ pub enum IntervalEnd {
     Fails,
     /// The maximum number of computed points is reached before the profile has risen by 3.84.
     GivenUp,
+    /// The profile was not followed, because the fit leaves a multiple of the noise.
+    NotFollowed,
 }
 
 /// Eigenvector of the Fisher information: a combination of unknowns that is determined independently of all

@@ -3,6 +3,8 @@ use super::answer::{Determination, IntervalEnd, UnknownEstimate};
 use super::information::correlation;
 use super::profile::ProfileStep;
 use super::profiles::Profiles;
+use crate::model::fit::Fit;
+use search::space::Axis;
 
 /// Absolute correlation above which two unknowns are reported as correlated.
 const TRADES: f64 = 0.7;
@@ -12,6 +14,22 @@ pub(super) fn estimates(walked: &Profiles) -> Vec<UnknownEstimate> {
     (0..walked.fit.model.space.dimension())
         .map(|k| estimate(walked, k))
         .collect()
+}
+
+/// Returns the values of all unknowns of a fit, without intervals.
+pub(super) fn values(fit: &Fit) -> Vec<UnknownEstimate> {
+    let axes = fit.model.space.axes().iter().zip(fit.x());
+    let value = |(axis, x): (&Axis, &f64)| UnknownEstimate {
+        name: axis.unknown.name.clone(),
+        unit: axis.unknown.unit.clone(),
+        value: axis.value(*x),
+        interval: [None; 2],
+        ends: [IntervalEnd::NotFollowed; 2],
+        seen: Determination::NotSeen,
+        correlated: Vec::new(),
+        profile: Vec::new(),
+    };
+    axes.map(value).collect()
 }
 
 fn estimate(walked: &Profiles, k: usize) -> UnknownEstimate {

@@ -3,7 +3,7 @@
 //!
 //! The metric, the tolerances of the instruments and the numerical error are those of a diagnosis. Missing
 //! effects are not considered: where the fit leaves more than noise, the intervals are widened, and a
-//! diagnosis should follow.
+//! diagnosis should come first. Where it leaves a multiple of the noise there are none.
 pub mod answer;
 mod band;
 mod estimate;
@@ -28,7 +28,9 @@ use crate::estimate::spread::coloured;
 use crate::inputs::Inputs;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::experiments::Experiments;
+use crate::model::fit::Fit;
 use crate::model::unknowns::DefaultPrior;
+use crate::thresholds::NOISE_RATIO_LIMIT;
 use protocol::case::Channel;
 use settings::FREE;
 
@@ -60,15 +62,32 @@ pub async fn identify<L: Laboratory>(
     let Some(fit) = experiments.fit(start, FREE).await? else {
         return Ok(None);
     };
-    let walked = profiles::walk(&mut experiments, fit).await?;
-    let fit = &walked.fit;
+    let (fit, others) = profiles::restarted(&mut experiments, fit).await?;
+    // less than the noise that was stated is nothing to explain
+    let is_noise = |fit: &Fit| {
+        fit.chi_squared() <= base.noise() || base.explains(fit, inputs.thresholds.adequacy)
+    };
+    let left = |fit: &Fit| fit.chi_squared() / base.noise();
+    if !is_noise(&fit) && left(&fit).sqrt() >= NOISE_RATIO_LIMIT {
+        let instruments = base.instruments_beyond_tolerance();
+        return Ok(Some(IdentificationResult {
+            genes: fit.model.genes(fit.x()),
+            unknowns: estimate::values(&fit),
+            directions: Vec::new(),
+            nuisances: Vec::new(),
+            bands: Vec::new(),
+            further: Vec::new(),
+            left: left(&fit),
+            is_noise: false,
+            noise: base.known(),
+            notes: [&base.notes[..], instruments.as_slice()].concat(),
+        }));
+    }
+    let walked = profiles::walk(&mut experiments, fit, others).await?;
+    let (fit, spread) = (&walked.fit, &walked.spread);
     let mut shown = experiments.for_stage(Stage::Show);
     let sights = band::sights(&mut shown, &walked, conditions).await?;
-    let spread = &walked.spread;
     let coloured: Vec<String> = spread.largest_growth().map(coloured).into_iter().collect();
-    // less than the noise that was stated is nothing to explain
-    let is_noise =
-        fit.chi_squared() <= base.noise() || base.explains(fit, inputs.thresholds.adequacy);
     Ok(Some(IdentificationResult {
         genes: fit.model.genes(fit.x()),
         unknowns: estimate::estimates(&walked),
@@ -84,8 +103,8 @@ pub async fn identify<L: Laboratory>(
             (inputs, &base.record),
             conditions,
         ),
-        left: fit.chi_squared() / base.noise(),
-        is_noise,
+        left: left(fit),
+        is_noise: is_noise(fit),
         noise: base.known(),
         notes: [
             &base.notes[..],

@@ -52,13 +52,12 @@ impl Profiles {
     }
 }
 
-/// Follows the profiles of all unknowns from a fit to their ends.
+/// Follows the profiles of all unknowns from a fit to their ends; `others` are fits in other minima.
 pub(super) async fn walk<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: Fit,
+    others: Vec<Fit>,
 ) -> Result<Profiles, L::Error> {
-    let mut others = restarted(experiments, fit.clone()).await?;
-    let fit = others.pop().unwrap_or(fit);
     let metric = &experiments.on.metric;
     let mut walked = begin(metric, fit, &others);
     follow(experiments, &mut walked).await?;
@@ -120,12 +119,12 @@ fn begin(metric: &Metric, fit: Fit, others: &[Fit]) -> Profiles {
 }
 
 /// Refits from points at which poorly determined unknowns are reset to their recommended values, individually
-/// and all together, to find other local minima that the record cannot distinguish. Returns all fits, the
-/// best one last.
-async fn restarted<L: Laboratory>(
+/// and all together, to find other local minima that the record cannot distinguish. Returns the best fit, and
+/// the others.
+pub(super) async fn restarted<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: Fit,
-) -> Result<Vec<Fit>, L::Error> {
+) -> Result<(Fit, Vec<Fit>), L::Error> {
     /// Half-width of the 95 % interval above which an unknown counts as poorly determined (scaled
     /// coordinate).
     const HARDLY: f64 = 0.05;
@@ -150,9 +149,10 @@ async fn restarted<L: Laboratory>(
     };
     let fits = experiments.fits(starts, settings).await?;
     let mut all: Vec<Fit> = fits.into_iter().flatten().collect();
-    all.push(fit);
+    all.push(fit.clone());
     all.sort_by(|a, b| b.search.cost().total_cmp(&a.search.cost()));
-    Ok(all)
+    let best = all.pop().unwrap_or(fit);
+    Ok((best, all))
 }
 
 /// Computes profile points until every side has ended.

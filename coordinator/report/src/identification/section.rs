@@ -15,8 +15,10 @@ fn seen(subject: &IdentificationInput<'_>) -> Section {
         Block::Lead(words::lead(subject)),
         Block::List(words::grounds(subject)),
         Block::Table(table::unknowns(subject)),
-        Block::Figure(chart::profiles(subject)),
     ];
+    if subject.identified.has_intervals() {
+        blocks.push(Block::Figure(chart::profiles(subject)));
+    }
     if subject.origin.synthetic {
         blocks.push(Block::Text(SYNTHETIC.to_owned()));
     }

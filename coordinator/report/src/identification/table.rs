@@ -7,22 +7,28 @@ use crate::words::{condition_name, interval_cell};
 use discrepancy::identify::{Direction, FurtherMeasurement};
 
 /// Builds the table of the unknowns: value, 95 % interval, sides on which the interval is unbounded, and
-/// correlated unknowns.
+/// correlated unknowns; values alone where there are no intervals.
 pub(super) fn unknowns(subject: &IdentificationInput<'_>) -> Table {
+    let has_intervals = subject.identified.has_intervals();
     let rows = subject.identified.unknowns.iter().map(|own| {
         let trades = own.correlated.iter().take(3);
         let trades = trades.map(|(name, c)| format!("{name} ({})", fixed(*c, 2)));
-        let cells = [
-            quantity(own.value, &own.unit),
-            interval_cell(own),
-            open_ends(own),
-            trades.collect::<Vec<_>>().join(", "),
-        ];
+        let mut cells = vec![quantity(own.value, &own.unit)];
+        if has_intervals {
+            cells.extend([
+                interval_cell(own),
+                open_ends(own),
+                trades.collect::<Vec<_>>().join(", "),
+            ]);
+        }
         match subject.unknown(&own.name) {
             Some(unknown) => Row::of(unknown, cells),
             None => Row::new(own.name.as_str(), cells),
         }
     });
+    if !has_intervals {
+        return Table::new("Values of the fit", ["", "fitted"], rows.collect());
+    }
     Table::new(
         "What the record says of each unknown",
         ["", "likeliest", "95 % interval", "open ends", "trades off with"],

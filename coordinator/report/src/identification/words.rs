@@ -1,12 +1,16 @@
 //! Sentences of an identification report.
 use super::subject::IdentificationInput;
 use crate::number::fixed;
-use crate::words::join_words;
+use crate::words::{join_words, no_intervals};
 use discrepancy::identify::{Determination, IntervalEnd, UnknownEstimate};
 use discrepancy::record::noise::NoiseSource;
 
-/// Returns the summary sentence: number of unknowns determined, and names of those that are not.
+/// Returns the summary sentence: number of unknowns determined, and names of those that are not; the remedy
+/// where the fit leaves a multiple of the noise.
 pub(super) fn lead(subject: &IdentificationInput<'_>) -> String {
+    if !subject.identified.has_intervals() {
+        return no_intervals(subject.identified.left.sqrt());
+    }
     let all = &subject.identified.unknowns;
     let named = |wanted: Determination| -> Vec<String> {
         let own = all.iter().filter(|own| own.seen == wanted);
@@ -52,14 +56,20 @@ pub(super) fn grounds(subject: &IdentificationInput<'_>) -> Vec<String> {
         "The fit leaves {} times the noise",
         fixed(identified.left.sqrt(), 2)
     );
-    let mut all = vec![if identified.is_noise {
-        format!("{left}: noise alone may leave that.")
-    } else {
-        format!(
+    let mut all = if identified.is_noise {
+        vec![format!("{left}: noise alone may leave that.")]
+    } else if identified.has_intervals() {
+        vec![format!(
             "{left}, which is more than noise: the model lacks something. Intervals are as wide as that makes them; \
              `horsehead diagnose CASE` comes first, and an effect that is missing may move every value here."
-        )
-    }];
+        )]
+    } else {
+        vec![
+            "`horsehead diagnose CASE` names what is missing; `horsehead identify CASE --genes DIAGNOSIS/calibrated.toml` \
+             then gives intervals with it."
+                .to_owned(),
+        ]
+    };
     let noise = match identified.noise {
         NoiseSource::Measured => None,
         NoiseSource::Stated => Some(
@@ -82,6 +92,7 @@ pub(super) fn open_ends(own: &UnknownEstimate) -> String {
         IntervalEnd::Bound => Some(format!("open {side} to the bound")),
         IntervalEnd::Fails => Some(format!("simulations fail {side}")),
         IntervalEnd::GivenUp => Some(format!("profile abandoned {side}")),
+        IntervalEnd::NotFollowed => None,
     });
     said.collect::<Vec<_>>().join(", ")
 }

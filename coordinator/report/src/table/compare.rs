@@ -162,6 +162,7 @@ const HEAD: [&str; 5] = [
 
 /// Builds the table rows of the recommended and optimised gene values.
 fn gene_rows(calibration: &Calibration) -> Vec<Row> {
+    let intervals = words::intervals(calibration);
     let mut rows = Vec::new();
     let (mut group, kind) = ("", kind::of(&calibration.case));
     let genes = calibration.case.unknowns.iter().enumerate();
@@ -181,20 +182,15 @@ fn gene_rows(calibration: &Calibration) -> Vec<Row> {
         if words::at_bound(gene, after).is_some() {
             optimised.push_str(" *");
         }
-        let said = calibration
-            .identifiability
-            .iter()
-            .find(|own| own.name == gene.name);
+        let said = intervals.iter().find(|own| own.name == gene.name);
         let cells = [
             unit(&gene.unit),
             significant(before),
             optimised,
             ratio(after, before),
         ];
-        rows.push(Row::of(
-            gene,
-            cells.into_iter().chain(said.map(words::interval_cell)),
-        ));
+        let cells = cells.into_iter().chain(said.map(words::interval_cell));
+        rows.push(Row::of(gene, cells));
     }
     rows
 }
@@ -217,7 +213,8 @@ pub fn table_3(calibration: &Calibration) -> Table {
     let marked =
         (!bounds.is_empty()).then(|| format!("* at a bound of the search: {}.", bounds.join(", ")));
     let mut table = Table::new(title, HEAD, gene_rows(calibration)).with_notes(marked);
-    if !calibration.identifiability.is_empty() {
+    table = table.with_notes(words::lacks_intervals(calibration));
+    if !words::intervals(calibration).is_empty() {
         table.head.push("what the record says, 95 %".to_owned());
         let of = match case.objective.others.len() {
             0 => "the record".to_owned(),

@@ -5,7 +5,8 @@ use super::name::{calibrated, capitalised, channel_title, condition_name, is_fit
 use super::outcome::verdict;
 use crate::data::{Calibration, ConditionResult, is_determined};
 use crate::number::{fixed, percent, quantity, ratio, significant, squared};
-use discrepancy::identify::Determination;
+use discrepancy::identify::{Determination, UnknownEstimate};
+use discrepancy::thresholds::NOISE_RATIO_LIMIT;
 use protocol::case::{Case, Channel, Scale, Term, Unknown};
 use protocol::job::{ChannelScore, Verdict};
 
@@ -149,11 +150,6 @@ pub(crate) fn absolute_worse(case: &Case, result: &ConditionResult) -> Option<St
     })
 }
 
-/// Largest ratio of residual to noise at which a fit counts as free of model error: calibrations against
-/// records of the shipped machine without a hidden effect leave 1.1 to 1.3 times the noise, those against the
-/// shipped record 4.9 to 6.0 times.
-const NOISE_RATIO_LIMIT: f64 = 1.5;
-
 /// Ratio of an unknown to its recommended value, or its inverse, above which the unknown is reported as far
 /// off.
 const FAR: f64 = 30.0;
@@ -202,6 +198,29 @@ fn times_noise(calibration: &Calibration) -> Option<(&Channel, f64)> {
     let left = left.filter(|(channel, _)| case.objective.names(&channel.name));
     let left = left.filter_map(|(channel, gap)| Some((channel, gap.over_noise()?)));
     left.max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Returns why the unknowns of a calibration have no intervals; `None` if they have.
+pub(crate) fn lacks_intervals(calibration: &Calibration) -> Option<String> {
+    let (_, most) = times_noise(calibration)?;
+    (most >= NOISE_RATIO_LIMIT).then(|| no_intervals(most))
+}
+
+/// Returns the estimates of the unknowns whose intervals are shown: none where the fit leaves a multiple of the
+/// noise.
+pub fn intervals(calibration: &Calibration) -> &[UnknownEstimate] {
+    match lacks_intervals(calibration) {
+        Some(_) => &[],
+        None => &calibration.identifiability,
+    }
+}
+
+/// Returns the sentence on the missing intervals of a fit that leaves a multiple of the noise.
+pub(crate) fn no_intervals(times_noise: f64) -> String {
+    format!(
+        "{} times the noise is left: the model lacks something, and no unknown has an interval before that is found.",
+        fixed(times_noise, 1)
+    )
 }
 
 /// States that the fit leaves no more than noise; `None` if it leaves more, or the noise is unknown.

@@ -8,9 +8,10 @@ mod gene;
 mod name;
 mod outcome;
 
+pub use calibration::intervals;
 pub(super) use calibration::{
-    absolute_worse, channels, complete_objective, headline, model_error, noise_level, rivals,
-    square_after, warnings,
+    absolute_worse, channels, complete_objective, headline, lacks_intervals, model_error,
+    no_intervals, noise_level, rivals, square_after, warnings,
 };
 pub(super) use gene::{at_bound, bound, interval_cell};
 pub(super) use name::{

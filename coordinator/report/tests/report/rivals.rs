@@ -1,6 +1,47 @@
-//! Test of what a report says about fits of other families.
+//! Tests of what a report says about the uncertainty of the identified values: intervals, and fits of other families.
 use crate::sample;
+use discrepancy::identify::{Determination, IntervalEnd, UnknownEstimate};
 use report::{self, RivalFit, table};
+
+/// Checks that unknowns have intervals where the fit leaves about as much as the noise, and none where it leaves
+/// a multiple of it.
+#[test]
+fn a_fit_that_leaves_a_multiple_of_the_noise_has_no_intervals() {
+    let mut data = sample::calibration(40);
+    let [first, ..] = &data.case.unknowns[..] else {
+        unreachable!("unknowns")
+    };
+    data.identifiability = vec![UnknownEstimate {
+        name: first.name.clone(),
+        unit: first.unit.clone(),
+        value: 7.8e8,
+        interval: [Some(5.25e8), Some(9.75e8)],
+        ends: [IntervalEnd::Rises; 2],
+        seen: Determination::Both,
+        correlated: Vec::new(),
+        profile: Vec::new(),
+    }];
+    let case = data.case.clone();
+    let gaps = data.conditions[0].optimised.gaps(&case, 0);
+    let fitted = gaps.filter(|(channel, _)| case.objective.names(&channel.name));
+    let ratios = fitted.filter_map(|(_, gap)| gap.over_noise());
+    let most = ratios.fold(0.0, f64::max);
+    for (times, expected) in [(1.3, true), (4.0, false)] {
+        let mut data = data.clone();
+        for channel in &mut data.case.channels {
+            if let Some(record) = &mut channel.record {
+                let noise = &mut record.spread;
+                noise.iter_mut().for_each(|one| *one *= most / times);
+            }
+        }
+        let page = report::text(&report::calibration(&data), false);
+        assert_eq!(page.contains("525000000 to 975000000") || page.contains("5.25e8"), expected, "{page}");
+        assert_eq!(page.contains("what the record says, 95 %"), expected);
+        let reason = "4.0 times the noise is left: the model lacks something, and no unknown has an interval";
+        assert_eq!(page.contains(reason), !expected, "{page}");
+        assert_eq!(report::words::intervals(&data).is_empty(), !expected);
+    }
+}
 
 #[test]
 fn a_rival_fit_stands_beside_the_best_with_all_its_values() {

@@ -1,5 +1,5 @@
 //! Arguments that name a case folder and its measured records, and loading of that case.
-use crate::cli::output::terminal;
+use crate::cli::{output::terminal, run::manifest::Start};
 use case::{Overrides, load_with_notes};
 use clap::Args;
 use discrepancy::record::Record;
@@ -49,23 +49,44 @@ impl CaseChoice {
     pub(crate) fn load(&self) -> anyhow::Result<LoadedCase> {
         load_case(&self.case, self.measured.as_deref())
     }
+
+    /// Reads the case that the arguments name, and the gene file to start at if one is given; the case takes the
+    /// effects of the gene file. Prints notes on both to standard error.
+    pub(crate) fn load_at(
+        &self,
+        genes: Option<&Path>,
+    ) -> anyhow::Result<(LoadedCase, Option<Start>)> {
+        load_case_at(&self.case, self.measured.as_deref(), genes)
+    }
 }
 
 /// Reads a case folder, with the measured records of another folder in place of its own if one is given;
 /// prints notes on the records to standard error.
 pub(crate) fn load_case(folder: &Path, measured: Option<&Path>) -> anyhow::Result<LoadedCase> {
+    load_case_at(folder, measured, None).map(|(case, _)| case)
+}
+
+/// Reads a case folder as [`load_case`], and a gene file whose effects the case takes.
+pub(crate) fn load_case_at(
+    folder: &Path,
+    measured: Option<&Path>,
+    genes: Option<&Path>,
+) -> anyhow::Result<(LoadedCase, Option<Start>)> {
     let overrides = Overrides {
         measured: measured.map(Path::to_owned),
     };
-    let loaded = load_with_notes(folder, &overrides)?;
+    let mut loaded = load_with_notes(folder, &overrides)?;
+    let start = genes.map(|file| Start::read(file, &mut loaded));
+    let start = start.transpose()?;
     let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
     terminal::note(&notes);
     let measured = measured.unwrap_or(folder).display().to_string();
-    Ok(LoadedCase {
+    let case = LoadedCase {
         case: loaded.case,
         measured,
         synthetic: loaded.synthetic,
         notes,
         cycles: loaded.cycles,
-    })
+    };
+    Ok((case, start))
 }

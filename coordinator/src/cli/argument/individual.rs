@@ -1,6 +1,5 @@
 //! Arguments that select the parameter values to simulate and the working condition.
 use crate::cli::output::problem::Problem;
-use case::read_genes;
 use clap::Args;
 use protocol::case::Case;
 use std::path::Path;
@@ -22,12 +21,9 @@ pub(crate) struct IndividualChoice {
 }
 
 impl IndividualChoice {
-    /// Returns the chosen values of the case's unknowns, in the case's order.
-    pub(crate) fn genes(&self, case: &Case) -> anyhow::Result<Vec<f64>> {
-        Ok(match self.genes.as_str() {
-            "recommended" => case.start(),
-            file => read_genes(Path::new(file), case)?,
-        })
+    /// Returns the path of the gene file; `None` for the recommended values.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        (self.genes != "recommended").then(|| Path::new(&self.genes))
     }
 
     /// Returns the index of the chosen working condition in the case.

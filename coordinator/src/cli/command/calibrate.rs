@@ -163,14 +163,14 @@ fn check_table(
 
 /// Creates the run of the requested calibration, or opens it to resume.
 fn begin(arguments: &Arguments) -> anyhow::Result<Calibration> {
+    let (loaded, start) = arguments.choice.load_at(arguments.genes.as_deref())?;
     let LoadedCase {
         case,
         measured,
         synthetic,
         notes,
         ..
-    } = arguments.choice.load()?;
-    let start = Start::read(arguments.genes.as_deref(), &case)?;
+    } = loaded;
     let space = searched(&case, start.as_ref())?;
     let preset = preset(&arguments.preset).context("the catalogue has lost a preset")?;
     require_record(&arguments.choice.case, &case, case.objective.condition)?;

@@ -47,10 +47,10 @@ pub(super) struct Arguments {
 
 /// Simulates the chosen individual, prints the results, and writes the report if a folder was given.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let loaded = arguments.choice.load()?;
+    let (loaded, start) = arguments.choice.load_at(arguments.individual.file())?;
     let case = &loaded.case;
     let condition = arguments.individual.condition(case)?;
-    let genes = arguments.individual.genes(case)?;
+    let genes = start.map_or_else(|| case.start(), |start| start.genes);
     if let Some(folder) = &arguments.out {
         check_out(folder)?;
     }

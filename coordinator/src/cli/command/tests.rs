@@ -60,6 +60,7 @@ fn started(case: &Case) -> Start {
     Start {
         file: "found.toml".into(),
         genes: case.unknowns.iter().map(|gene| 2.0 * gene.start).collect(),
+        effects: Vec::new(),
     }
 }
 
@@ -333,7 +334,7 @@ fn calibrated_parameters_come_back_from_their_file_bit_for_bit() {
         .map(|(n, gene)| gene.start * (1.0 + f64::from(n) / 7.0))
         .collect();
     let file = scratch.path().join("calibrated.toml");
-    std::fs::write(&file, write_genes(&case, &values, "a test")).unwrap();
+    std::fs::write(&file, write_genes(&case, &values, &[], "a test")).unwrap();
     let back = read_genes(&file, &case).unwrap();
     for (value, back) in values.iter().zip(&back) {
         assert_eq!(value.to_bits(), back.to_bits());

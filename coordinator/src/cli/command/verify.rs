@@ -1,7 +1,7 @@
 //! `horsehead verify`: scores the parameters found by a run under a condition that took no part in the fit.
 use crate::cli::{
     argument::{
-        case::load_case,
+        case::load_case_at,
         individual::condition,
         output::OutputChoice,
         workers::{cores, worker_count},
@@ -53,10 +53,6 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let started = Instant::now();
     let run = Calibration::open(&arguments.run)?;
-    let case = match &arguments.measured {
-        Some(measured) => load_case(&run.manifest.case_folder, Some(measured))?.case,
-        None => run.case.clone(),
-    };
     let parameters = run.folder.file(GENES);
     if !parameters.exists() {
         return Err(Problem {
@@ -68,7 +64,15 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
         .into());
     }
-    let best = read_genes(&parameters, &case)?;
+    let (case, best) = match arguments.measured.as_deref() {
+        Some(measured) => {
+            let folder = &run.manifest.case_folder;
+            let (loaded, start) = load_case_at(folder, Some(measured), Some(&parameters))?;
+            let start = start.context("the gene file was not read")?;
+            (loaded.case, start.genes)
+        }
+        None => (run.case.clone(), read_genes(&parameters, &run.case)?),
+    };
     let condition = condition(&case, Some(&arguments.condition))?;
     require_record(&run.manifest.case_folder, &case, condition)?;
     let wanted = CompareRequest {

@@ -14,6 +14,7 @@ use crate::cli::{
         tables,
     },
 };
+use case::CaseEffect;
 use discrepancy::identify::UnknownEstimate;
 use dispatch::account::{self, JobCost};
 use dispatch::journal;
@@ -69,7 +70,8 @@ pub(crate) fn show(run: &Run, found: &Found, wall_s: f64, output: Output) -> any
         "Calibrated parameters of {}: preset {}, seed {}, log {}",
         run.case.name, run.manifest.preset, run.manifest.seed, calibration.origin.digest
     );
-    folder.write_genes(&run.case, &found.calibrated.best.genes, &about)?;
+    let effects = CaseEffect::all_of(&run.case);
+    folder.write_genes(&run.case, &found.calibrated.best.genes, &effects, &about)?;
     let mut files = report::write_calibration(folder.path(), &calibration)?;
     files.extend(tables::calibration(run)?);
     files.extend([GENES, RESULT].map(|name| folder.file(name)));
@@ -77,7 +79,7 @@ pub(crate) fn show(run: &Run, found: &Found, wall_s: f64, output: Output) -> any
     let mut object = result_object(run, found, wall_s, files.collect());
     object
         .unknowns
-        .add_identifiability(&calibration.identifiability);
+        .add_identifiability(report::words::intervals(&calibration));
     object.machine = report::checks(&calibration);
     let rivals = calibration.rivals.iter();
     object.rivals = rivals

@@ -12,7 +12,7 @@ use crate::cli::{
     },
 };
 use ::report::{diagnosis as report, text};
-use case::{Loaded, append_effects, write_starts};
+use case::{CaseEffect, Loaded, Overrides, append_effects, load_with_notes, write_starts};
 use std::path::Path;
 
 /// Finished diagnosis with the data that its output files need.
@@ -39,17 +39,18 @@ impl DiagnosisOutput<'_> {
         })
     }
 
-    /// Writes the fitted parameters of the final model as a gene file: simulating them with the found effects
-    /// in the case reproduces the diagnosis's "after" curves.
+    /// Writes the fitted parameters and effects of the final model as a gene file: simulating them reproduces the diagnosis's "after" curves.
     fn write_genes(&self) -> anyhow::Result<()> {
         let Some(fit) = &self.found.diagnosed.diagnosis.after else {
             return Ok(());
         };
         let about = format!("Parameters of {}", self.run.folder.path().display());
         let genes = fit.model.genes(fit.x());
+        let found = report::effects(&self.subject()?);
+        let effects = [&self.loaded.effects[..], &found].concat();
         self.run
             .folder
-            .write_genes(&self.loaded.case, &genes, &about)
+            .write_genes(&self.loaded.case, &genes, &effects, &about)
     }
 
     /// Writes the result files of the diagnosis into the run folder and returns the object for `--output
@@ -82,11 +83,17 @@ impl DiagnosisOutput<'_> {
     /// gets its fitted value as starting value. Does nothing if the diagnosis found neither.
     pub(crate) fn add(&self, file: &Path) -> anyhow::Result<()> {
         let subject = self.subject()?;
-        let (new, starts) = (report::effects(&subject), report::starts(&subject));
+        let (mut new, starts) = (report::effects(&subject), report::starts(&subject));
         if new.is_empty() && starts.is_empty() {
             return Ok(());
         }
         if !new.is_empty() {
+            // effects that the run has from a gene file, and the case not yet
+            let manifest = &self.run.manifest;
+            let stated = load_with_notes(&manifest.case_folder, &Overrides::default())?.effects;
+            let taken = manifest.start.iter().flat_map(|start| &start.effects);
+            let lacking = |taken: &&CaseEffect| stated.iter().all(|own| own.id != taken.id);
+            new.splice(..0, taken.filter(lacking).cloned());
             append_effects(file, &new)?;
         }
         if !starts.is_empty() {

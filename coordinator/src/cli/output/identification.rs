@@ -9,6 +9,7 @@ use crate::cli::{
     },
 };
 use ::report::{identification as report, text};
+use case::CaseEffect;
 
 /// Writes the result files of a finished identifiability analysis and prints its result.
 ///
@@ -22,8 +23,12 @@ pub(crate) fn show(
 ) -> anyhow::Result<()> {
     let subject = subject(run, found, wall_s)?;
     let about = format!("Parameters of {}", run.folder.path().display());
-    run.folder
-        .write_genes(&run.case, &found.identified.genes, &about)?;
+    run.folder.write_genes(
+        &run.case,
+        &found.identified.genes,
+        &CaseEffect::all_of(&run.case),
+        &about,
+    )?;
     let files = report::write(run.folder.path(), &subject)?;
     for page in files.iter().take(1) {
         terminal::tell(&format!("open {}", page.display()));

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::cli::output::{problem::Problem, terminal};
 use anyhow::Context as _;
-use case::write_genes;
+use case::{CaseEffect, write_genes};
 use dispatch::journal::{self, JournalSnapshot};
 use protocol::{case::Case, event::Event};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -157,15 +157,16 @@ impl RunFolder {
         self.write(name, &text)
     }
 
-    /// Writes values of a case's unknowns as a gene file into the run folder; the line `about` states their
-    /// source.
+    /// Writes values of a case's unknowns as a gene file into the run folder, with the effects with which they
+    /// were found; the line `about` states their source.
     pub(crate) fn write_genes(
         &self,
         case: &Case,
         genes: &[f64],
+        effects: &[CaseEffect],
         about: &str,
     ) -> anyhow::Result<()> {
-        self.write(GENES, &write_genes(case, genes, about))?;
+        self.write(GENES, &write_genes(case, genes, effects, about))?;
         if let Some((name, text)) = case::kind::of(case).gene_file(case, genes) {
             self.write(name, &text)?;
         }

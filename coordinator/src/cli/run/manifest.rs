@@ -3,7 +3,7 @@ use super::{
     bus,
     command_line::{command_line, quote, quote_path},
 };
-use case::read_genes;
+use case::{CaseEffect, GeneFile, Loaded, Note};
 use protocol::case::Case;
 use search::{
     space::{Space, SpaceError},
@@ -152,6 +152,9 @@ pub(crate) struct Start {
     pub(crate) file: PathBuf,
     /// Starting value of each unknown, in the case's order [declared units].
     pub(crate) genes: Vec<f64>,
+    /// Effects of the gene file, which the case of the run has too.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) effects: Vec<CaseEffect>,
 }
 
 impl Start {
@@ -160,18 +163,49 @@ impl Start {
         Ok(format!("genes-{}", bus::short_hash(&self.genes)?))
     }
 
-    /// Reads the starting values of a run from a gene file; returns `None` if no file is given.
+    /// Reads a gene file; gives the case the effects of the file, with a note on each effect that only one of both
+    /// has.
     ///
     /// # Errors
-    /// As [`read_genes`].
-    pub(crate) fn read(file: Option<&Path>, case: &Case) -> anyhow::Result<Option<Self>> {
-        let read = |file: &Path| -> anyhow::Result<Self> {
-            Ok(Self {
-                file: std::path::absolute(file)?,
-                genes: read_genes(file, case)?,
-            })
+    /// As [`GeneFile::read`] and [`GeneFile::values`].
+    pub(crate) fn read(file: &Path, loaded: &mut Loaded) -> anyhow::Result<Self> {
+        let stated = GeneFile::read(file)?;
+        let effects = stated.effects();
+        let ids = |effects: &[CaseEffect]| -> Vec<String> {
+            effects.iter().map(|effect| effect.id.clone()).collect()
         };
-        file.map(read).transpose()
+        let (of_case, of_file) = (ids(&loaded.effects), ids(effects));
+        let mut note = |text| {
+            loaded.notes.push(Note {
+                path: file.to_owned(),
+                text,
+            });
+        };
+        let only = |those: &[String], others: &[String]| -> Vec<String> {
+            let mut those = those.to_vec();
+            those.retain(|id| !others.contains(id));
+            those
+        };
+        let added = only(&of_file, &of_case);
+        if !added.is_empty() {
+            note(format!(
+                "its values were found with {}, which the case lacks: added for this run",
+                added.join(", ")
+            ));
+        }
+        let missing = only(&of_case, &of_file);
+        if !missing.is_empty() {
+            note(format!(
+                "does not state {}, which the case has: the case's own values are used",
+                missing.join(", ")
+            ));
+        }
+        loaded.take_effects(effects);
+        Ok(Self {
+            file: std::path::absolute(file)?,
+            genes: stated.values(&loaded.case)?,
+            effects: effects.to_vec(),
+        })
     }
 }
 

@@ -184,7 +184,10 @@ impl<S: RunIdentity> Run<S> {
         let overrides = Overrides {
             measured: manifest.replaced_records().map(ToOwned::to_owned),
         };
-        let loaded = self.as_begun(load_with_notes(&manifest.case_folder, &overrides)?)?;
+        let mut loaded = self.as_begun(load_with_notes(&manifest.case_folder, &overrides)?)?;
+        if let Some(start) = &manifest.start {
+            loaded.take_effects(&start.effects);
+        }
         let changes = differences(&self.case, &loaded.case);
         if !changes.is_empty() {
             return Err(self.changed(&changes).into());

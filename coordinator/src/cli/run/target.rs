@@ -56,11 +56,12 @@ impl Target {
         let overrides = Overrides {
             measured: measured.clone(),
         };
-        let loaded = load_with_notes(&case, &overrides)?;
+        let mut loaded = load_with_notes(&case, &overrides)?;
         require_record(&case, &loaded.case, loaded.case.objective.condition)?;
         let is_given = genes.is_some();
         let genes = genes.map(ToOwned::to_owned).or(own);
-        let start = Start::read(genes.as_deref(), &loaded.case)?;
+        let start = genes.map(|file| Start::read(&file, &mut loaded));
+        let start = start.transpose()?;
         if let Some(start) = start.as_ref().filter(|_| is_given) {
             words = vec![start.word()?];
         }

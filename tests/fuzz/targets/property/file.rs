@@ -2,7 +2,7 @@
 //! writes its input bytes into the given folder.
 use super::wire::crc32;
 use case::{
-    Overrides,
+    CaseEffect, Overrides,
     pumping_unit::{count_samples, mesh, read_card},
     read_genes, write_genes,
 };
@@ -78,7 +78,7 @@ pub fn are_genes_or_refused(folder: &Path, case: &Case, bytes: &[u8]) {
     let bits = |genes: &[f64]| genes.iter().map(|gene| gene.to_bits()).collect::<Vec<_>>();
     match read_genes(&file(folder, "genes.toml", bytes), case) {
         Ok(genes) => {
-            let text = write_genes(case, &genes, "fuzzing");
+            let text = write_genes(case, &genes, &CaseEffect::all_of(case), "fuzzing");
             let again = read_genes(&file(folder, "again.toml", text.as_bytes()), case);
             let again = again.expect("what was written can be read");
             assert_eq!(bits(&again), bits(&genes));

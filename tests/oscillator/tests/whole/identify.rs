@@ -89,8 +89,15 @@ fn what_lacks_something_is_sent_to_the_diagnosis_first() {
     let object = identified(&rig, &run);
     assert_eq!(object["diagnose_first"], true, "{object}");
     assert!(number(&object["times_noise"]) > 1.5, "{object}");
+    let unknowns = object["unknowns"].as_object().unwrap();
+    for (name, own) in unknowns {
+        let bounds = [&own["ci95"], &own["seen"], &own["profile"][0]];
+        assert!(bounds.iter().all(|bound| bound.is_null()), "{name}: {own}");
+    }
     let text = rig.run(&["report", &run]);
     assert!(text.contains("horsehead diagnose"), "{text}");
+    assert!(text.contains("no unknown has an interval"), "{text}");
+    assert!(!text.contains("95 %"), "{text}");
 }
 
 /// Checks that prior knowledge in the case narrows the intervals in every accepted form, and that wrong forms

@@ -18,11 +18,23 @@ fn the_steps_of_the_tutorial_follow_each_other() {
     assert_eq!(diagnosed, "runs/case-diagnose-seed1");
     let case = || fs::read_to_string(rig.file("case/case.toml")).unwrap();
     assert!(!case().contains("dry_friction"));
+    let genes = format!("{diagnosed}/calibrated.toml");
+    // the values of a diagnosis take the effect with which they were found
+    let simulate = || rig.json(&["simulate", "CASE", "--genes", &genes])["objective"].clone();
+    let with_effect = simulate();
+    let plain = rig.json(&[
+        "simulate",
+        "CASE",
+        "--genes",
+        &format!("{first}/calibrated.toml"),
+    ]);
+    let [less, more] = [&with_effect, &plain["objective"]].map(|value| value.as_f64().unwrap());
+    assert!(less < 0.5 * more, "{less} against {more}");
     // the same run, which then belongs to a case that has its effect
     assert_eq!(run_of(&["diagnose", &first, "--add"]), diagnosed);
     assert!(case().contains("id = \"dry_friction\""));
     assert_eq!(run_of(&["diagnose", &first]), diagnosed);
-    let genes = format!("{diagnosed}/calibrated.toml");
+    assert_eq!(simulate(), with_effect, "the same effect in the case");
     let after = run_of(&["calibrate", "CASE", "--genes", &genes]);
     let hash = after.strip_prefix("runs/case-quick-genes-").unwrap();
     let hash = hash.strip_suffix("-with-dry-friction-seed1").unwrap();

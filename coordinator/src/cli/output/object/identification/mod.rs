@@ -27,8 +27,8 @@ pub(crate) struct IdentifyOutput {
     further: Vec<FurtherMeasurement>,
     /// Root mean square of the residual divided by that of the measurement noise [1].
     times_noise: f64,
-    /// Whether the residual exceeds the measurement noise: the confidence intervals are then widened, and a
-    /// diagnosis should be run first.
+    /// Whether the residual exceeds the measurement noise: the confidence intervals are then widened, or absent where
+    /// it is a multiple, and a diagnosis should be run first.
     diagnose_first: bool,
     assumed_noise: bool,
     notes: Vec<String>,
@@ -43,12 +43,13 @@ struct UnknownOutput {
     value: f64,
     unit: String,
     /// 95 % confidence interval of the unknown; null for an open end, and null as a whole if both ends are
-    /// open.
+    /// open, or if the fit leaves a multiple of the noise.
     ci95: Option<[Option<f64>; 2]>,
-    seen: Determination,
+    /// Sides on which the record bounds the unknown; null if the fit leaves a multiple of the noise.
+    seen: Option<Determination>,
     correlated_with: Vec<CorrelationOutput>,
     /// Reason why the likelihood profile of the unknown ends, for each side: `rises`, `bound`, `fails`,
-    /// `given_up`.
+    /// `given_up`, `not_followed`.
     ends: [discrepancy::identify::IntervalEnd; 2],
     /// Likelihood profile of the unknown: pairs of its value and the increase of -2 ln L over the minimum,
     /// with all other unknowns refitted.
@@ -61,13 +62,13 @@ struct CorrelationOutput {
     correlation: f64,
 }
 
-fn unknown(own: &UnknownEstimate) -> UnknownOutput {
+fn unknown(own: &UnknownEstimate, has_intervals: bool) -> UnknownOutput {
     let correlated = own.correlated.iter();
     UnknownOutput {
         value: own.value,
         unit: own.unit.clone(),
         ci95: (own.seen != Determination::NotSeen).then_some(own.interval),
-        seen: own.seen,
+        seen: has_intervals.then_some(own.seen),
         correlated_with: correlated
             .map(|(name, correlation)| CorrelationOutput {
                 name: name.clone(),
@@ -92,7 +93,7 @@ pub(crate) fn object(
         run: subject.origin.run.clone(),
         case: case.name.clone(),
         unknowns: unknowns
-            .map(|own| (own.name.clone(), unknown(own)))
+            .map(|own| (own.name.clone(), unknown(own, identified.has_intervals())))
             .collect(),
         directions: identified.directions.clone(),
         prediction: bands
