@@ -108,7 +108,6 @@ fn what_a_case_has_wrong_is_said_by_file_and_field() {
             "did you mean `out.csv`",
         ),
         ("entry = \"shell\"", "entry = \"a b\"", "model.entry"),
-        ("name = \"x\"", "name = \"z\"", "\"x\" is not allowed"),
         (
             "[model]\n",
             "[model]\nreference_tolerance = -1.0\n",
@@ -136,6 +135,24 @@ fn what_a_case_has_wrong_is_said_by_file_and_field() {
             "{words}: {said}"
         );
     }
+}
+
+/// Checks that a misspelt field of a template is shown where it stands, and not in `case.toml`.
+#[test]
+fn a_misspelt_field_is_shown_in_its_template() {
+    let rig = Rig::new();
+    rig.shell_case(GOOD, "");
+    fs::write(rig.file("case/in.tpl"), "xx 1\nx {xx}\n").unwrap();
+    let said = rig.refused(&["case", "check", "case"]);
+    for words in [
+        "in.tpl: `line 2` = \"xx\"",
+        "2 | x {xx}",
+        "  |    ^^",
+        "did you mean `x`?",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    assert!(!said.contains("case.toml"), "{said}");
 }
 
 #[test]

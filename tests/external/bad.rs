@@ -101,8 +101,71 @@ fn a_run_in_which_everything_fails_stops_and_says_why() {
         "--run",
         "run",
     ]);
-    let last = said.lines().rev().take(12).collect::<Vec<_>>().join("\n");
-    assert!(last.contains("no such mesh"), "{said}");
+    assert_eq!(said.matches("no such mesh").count(), 1, "{said}");
+    assert!(
+        said.contains("all failed; last failure: /bin/sh ended with status 1"),
+        "{said}"
+    );
+    assert!(said.contains("help: correct the program"), "{said}");
+}
+
+/// Checks that the failure of a program is said once, with its last lines and a remedy, and that failures in a search
+/// that goes on are said at its end.
+#[test]
+fn a_program_that_fails_is_quoted_once() {
+    let program = "echo in $PWD/model.py >&2\necho syntax error >&2\nexit 1\n";
+    let said = failure(&Rig::shell(program, ""));
+    assert_eq!(said.matches("syntax error").count(), 1, "{said}");
+    // the folder is another one in every run
+    assert!(said.contains("in model.py\n"), "{said}");
+    assert!(
+        said.contains("help: correct the program, or the files"),
+        "{said}"
+    );
+    assert!(!said.contains("tries again"), "{said}");
+
+    let program = "read name x < in.txt\n\
+        case $x in 1*) printf 'y\\n1\\n2\\n4\\n' > out.csv;; *) echo diverged >&2; exit 1;; esac\n";
+    let rig = Rig::shell(program, "");
+    let ended = rig.run(&[
+        "calibrate",
+        "case",
+        "--preset",
+        "random",
+        "--set",
+        "points=12",
+    ]);
+    let said = String::from_utf8_lossy(&ended.stderr);
+    assert!(ended.status.success(), "{said}");
+    let note = said
+        .split_once("simulations could not be computed: ")
+        .unwrap()
+        .1;
+    assert!(note.contains("diverged"), "{said}");
+    assert_eq!(said.matches("diverged").count(), 1, "{said}");
+}
+
+/// Checks that an abscissa in milliseconds is named as such, although the program did not fail.
+#[test]
+fn an_abscissa_in_another_unit_is_named() {
+    let rig = Rig::shell("printf 't,y\\n0,1\\n1000,2\\n2000,4\\n' > out.csv\n", "");
+    let path = rig.file("case/case.toml");
+    let case = fs::read_to_string(&path).unwrap();
+    let case = case.replace(
+        "source = { file = \"out.csv\"",
+        "source = { file = \"out.csv\", at = \"t\"",
+    );
+    fs::write(&path, case).unwrap();
+    let times: String = (0..5)
+        .map(|k| format!("{},{k}\n", 0.5 * f64::from(k)))
+        .collect();
+    fs::write(rig.file("case/record.csv"), format!("time,y\n{times}")).unwrap();
+    rig.done(&["allow", "case"]);
+    let said = failure(&rig);
+    assert!(
+        said.contains("1000 times as far") && said.contains("ms for s"),
+        "{said}"
+    );
 }
 
 #[test]

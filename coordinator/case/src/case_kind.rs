@@ -6,7 +6,7 @@ use crate::{
     source::RecordFolder,
     summary::{self, CaseSummary},
 };
-use discrepancy::thresholds::Thresholds;
+use discrepancy::{baseline::discretisation_check::FinerModel, thresholds::Thresholds};
 use protocol::{case::Case, job::Numerics, wire::WireError};
 
 /// Kind of model, as seen by the code that reads cases; every method but `name` has a default for a generic
@@ -78,7 +78,7 @@ pub trait ModelKind: Sync {
         &self,
         _: &Case,
         _: &Thresholds,
-    ) -> Result<(Numerics, Vec<Numerics>), WireError> {
+    ) -> Result<(Numerics, Vec<FinerModel>), WireError> {
         Ok((Numerics::FROM_CASE, Vec::new()))
     }
 }

@@ -123,6 +123,24 @@ impl Document {
         ))
     }
 
+    /// Builds the error for a word of a text that is no TOML, with its source line.
+    pub fn place(&self, at: usize, word: &str, allowed: &str, help: &str) -> CaseError {
+        let line = 1 + self
+            .text
+            .get(..at)
+            .unwrap_or_default()
+            .matches('\n')
+            .count();
+        CaseError::Field {
+            path: self.path.as_path().into(),
+            field: format!("line {line}").into(),
+            value: format!("\"{word}\"").into(),
+            allowed: allowed.into(),
+            excerpt: self.excerpt(at..at + word.len()).into(),
+            help: help.into(),
+        }
+    }
+
     /// Returns the byte range of a field in the text of the TOML file.
     fn span(&self, way: &[DocumentStep<'_>]) -> Option<Range<usize>> {
         let root = DeTable::parse(&self.text).ok()?;

@@ -3,6 +3,10 @@ use report::Section;
 use report::document::section_markup;
 use std::{
     collections::BTreeMap,
+    fmt,
+    hash::{BuildHasher as _, RandomState},
+    num::ParseIntError,
+    str::FromStr,
     sync::Arc,
     time::{Duration, Instant},
 };
@@ -23,10 +27,37 @@ pub struct Rendered {
     pub title: String,
     /// HTML element of the section.
     pub html: String,
-    /// Position in the journal at which the section last changed (bytes).
-    pub position: u64,
     /// Number of the publication in which the section last changed.
     pub revision: u64,
+}
+
+/// Version of a page: which board published it, and the number of the publication. Readers that come back state
+/// it, and are sent what has changed since; from another board, such as that of another dashboard or of a run that
+/// took the place of a deleted one, they are sent everything.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Version {
+    /// Number of the board, unique among all dashboards.
+    pub board: u64,
+    /// Number of the publication.
+    pub revision: u64,
+}
+
+impl fmt::Display for Version {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(to, "{:x}-{}", self.board, self.revision)
+    }
+}
+
+impl FromStr for Version {
+    type Err = ParseIntError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let (board, revision) = text.split_once('-').unwrap_or_default();
+        Ok(Self {
+            board: u64::from_str_radix(board, 16)?,
+            revision: revision.parse()?,
+        })
+    }
 }
 
 /// State of a page at one time.
@@ -38,8 +69,8 @@ pub struct PageState {
     pub run: String,
     /// State of the run in a word or two, such as `running`.
     pub state: String,
-    /// Position in the journal that the page shows (bytes).
-    pub position: u64,
+    /// Version of the page.
+    pub version: Version,
     /// Sections in page order.
     pub sections: Vec<Arc<Rendered>>,
 }
@@ -51,21 +82,27 @@ pub type PageReader = watch::Receiver<Arc<PageState>>;
 #[derive(Debug)]
 pub struct Board {
     shown: watch::Sender<Arc<PageState>>,
-    revision: u64,
+    version: Version,
     published: BTreeMap<String, Instant>,
 }
 
 impl Board {
     /// Creates an empty page.
     pub fn new(title: &str, run: &str) -> Self {
+        // the random state of a hash map differs from process to process, and from map to map
+        let version = Version {
+            board: RandomState::new().hash_one(run),
+            revision: 0,
+        };
         let first = PageState {
             title: title.to_owned(),
             run: run.to_owned(),
+            version,
             ..PageState::default()
         };
         Self {
             shown: watch::Sender::new(Arc::new(first)),
-            revision: 0,
+            version,
             published: BTreeMap::new(),
         }
     }
@@ -75,18 +112,12 @@ impl Board {
         self.shown.subscribe()
     }
 
-    /// Publishes the sections of the page at a position of the journal. Large sections that changed a short
+    /// Publishes the sections of the page. Large sections that changed a short
     /// time ago are kept as they are, unless `last` states that no further publication follows.
-    pub fn publish(
-        &mut self,
-        (title, state): (&str, &str),
-        position: u64,
-        sections: &[Section],
-        last: bool,
-    ) {
-        self.revision += 1;
+    pub fn publish(&mut self, (title, state): (&str, &str), sections: &[Section], last: bool) {
+        self.version.revision += 1;
         let before = self.shown.borrow().clone();
-        let now = Instant::now();
+        let (now, version) = (Instant::now(), self.version);
         let shown: Vec<&Section> = sections
             .iter()
             .filter(|section| !section.blocks.is_empty())
@@ -108,8 +139,7 @@ impl Board {
                         id: section.id.to_owned(),
                         title: section.title.to_owned(),
                         html,
-                        position,
-                        revision: self.revision,
+                        revision: version.revision,
                     })
                 }
             }
@@ -118,7 +148,7 @@ impl Board {
             title: title.to_owned(),
             run: before.run.clone(),
             state: state.to_owned(),
-            position,
+            version,
             sections: sections.collect(),
         };
         self.shown.send_replace(Arc::new(snapshot));
@@ -150,21 +180,21 @@ mod tests {
         let reader = board.reader();
         board.publish(
             ("Calibration", "running"),
-            10,
             &[section("a", "1"), section("b", "1")],
             false,
         );
         board.publish(
             ("Calibration", "running"),
-            20,
             &[section("a", "1"), section("b", "2")],
             false,
         );
         let seen = reader.borrow().clone();
         let revisions: Vec<_> = seen.sections.iter().map(|one| one.revision).collect();
-        let positions: Vec<_> = seen.sections.iter().map(|one| one.position).collect();
-        assert_eq!((revisions, positions), (vec![1, 2], vec![10, 20]));
-        assert_eq!(seen.position, 20);
+        assert_eq!(revisions, [1, 2]);
+        assert_eq!(seen.version.revision, 2);
+        assert_eq!(seen.version.to_string().parse(), Ok(seen.version));
+        let other = Board::new("Calibration", "runs/a").reader();
+        assert_ne!(other.borrow().version.board, seen.version.board);
     }
 
     #[test]
@@ -173,10 +203,10 @@ mod tests {
         let reader = board.reader();
         let large = |mark: &str| section("large", &mark.repeat(3 * LARGE));
         let shown = || reader.borrow().sections[0].html.contains('y');
-        board.publish(("", ""), 1, &[large("x")], false);
-        board.publish(("", ""), 2, &[large("y")], false);
+        board.publish(("", ""), &[large("x")], false);
+        board.publish(("", ""), &[large("y")], false);
         assert!(!shown());
-        board.publish(("", ""), 3, &[large("y")], true);
+        board.publish(("", ""), &[large("y")], true);
         assert!(shown());
     }
 }

@@ -2,7 +2,7 @@
 //! they change.
 //!
 //! A [`Board`] holds the sections of one page; its owner publishes new ones, and [`serve`] sends those that
-//! have changed to every reader as server-sent events, whose id is a position in the run's journal. A slow
+//! have changed to every reader as server-sent events, whose id is the version of the page. A slow
 //! reader skips what was replaced meanwhile. The server reads no run and knows no model; every request is
 //! answered from memory, and none changes anything.
 mod access;
@@ -11,5 +11,5 @@ mod page;
 mod server;
 
 pub use access::allowed_hosts;
-pub use board::{Board, PageReader, PageState, Rendered};
+pub use board::{Board, PageReader, PageState, Rendered, Version};
 pub use server::{Pages, serve};

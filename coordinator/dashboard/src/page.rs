@@ -21,7 +21,7 @@ pub(super) fn page(snapshot: &PageState, above: Option<&str>) -> String {
                 // replaced by nothing: browsers ask for one by themselves
                 link rel="icon" href="data:,";
             }
-            body data-live="events" data-position=(snapshot.position) {
+            body data-live="events" data-version=(snapshot.version) {
                 header {
                     p.kind {
                         @if let Some(above) = above { a href=(above) { "All runs" } " · " }

@@ -1,16 +1,16 @@
 //! Routes of the server, and the stream of changed sections.
 use super::{
     access::{Access, guard},
-    board::{PageReader, PageState, Rendered},
+    board::{PageReader, PageState, Rendered, Version},
     page,
 };
 use axum::{
     Router,
     extract::{Path, Query, State},
-    http::{HeaderMap, HeaderName, StatusCode, header},
+    http::{HeaderMap, HeaderName, StatusCode, Uri, header},
     middleware,
     response::{
-        Html, IntoResponse, Response,
+        Html, IntoResponse, Redirect, Response,
         sse::{Event, KeepAlive, Sse},
     },
     routing::get,
@@ -59,6 +59,7 @@ pub async fn serve<P: Pages>(
         .route("/", get(start::<P>))
         .route("/events", get(start_events::<P>))
         .route("/individual/{number}", get(start_individual::<P>))
+        .route("/runs/{name}", get(with_slash))
         .route("/runs/{name}/", get(run::<P>))
         .route("/runs/{name}/events", get(run_events::<P>))
         .route("/runs/{name}/individual/{number}", get(run_individual::<P>))
@@ -104,6 +105,14 @@ async fn run<P: Pages>(State(pages): State<Arc<P>>, Path(name): Path<String>) ->
     }
 }
 
+/// Leads from `/runs/NAME` to `/runs/NAME/`, below which the addresses on the page lie.
+async fn with_slash(uri: Uri) -> Redirect {
+    let query = uri
+        .query()
+        .map_or_else(String::new, |query| format!("?{query}"));
+    Redirect::permanent(&format!("{}/{query}", uri.path()))
+}
+
 async fn start_individual<P: Pages>(
     State(pages): State<Arc<P>>,
     Path(number): Path<u64>,
@@ -145,15 +154,15 @@ async fn run_events<P: Pages>(
     }
 }
 
-/// Answers a request for events: those after the position that a reconnecting browser states, or that the page
+/// Answers a request for events: those after the version that a reconnecting browser states, or that the page
 /// states in its first request.
 fn answer(reader: PageReader, query: &BTreeMap<String, String>, headers: &HeaderMap) -> Response {
     let known = headers
         .get(LAST_EVENT_ID)
         .and_then(|value| value.to_str().ok());
     let known = known.or_else(|| query.get("after").map(String::as_str));
-    let known = known.and_then(|text| text.parse().ok()).unwrap_or(0);
-    Sse::new(events(reader, known))
+    let known = known.and_then(|text| text.parse().ok());
+    Sse::new(events(reader, known.unwrap_or_default()))
         .keep_alive(KeepAlive::default())
         .into_response()
 }
@@ -161,8 +170,8 @@ fn answer(reader: PageReader, query: &BTreeMap<String, String>, headers: &Header
 /// What one reader of a page has been sent.
 struct Reading {
     page: PageReader,
-    /// Position in the journal that the reader's page shows (bytes).
-    known: u64,
+    /// Version that the reader's page shows.
+    known: Version,
     /// Revision of each section that was sent.
     sent: BTreeMap<String, u64>,
     /// Header of the page as it was sent last.
@@ -171,9 +180,9 @@ struct Reading {
     first: bool,
 }
 
-/// Returns the stream of a page's changes: at first the sections that changed at or after a position of the
-/// journal, then each section as it changes. Sections that change faster than the reader takes them are skipped.
-fn events(page: PageReader, known: u64) -> impl Stream<Item = Result<Event, Infallible>> {
+/// Returns the stream of a page's changes: at first the sections that changed after the known version, then each
+/// section as it changes. Sections that change faster than the reader takes them are skipped.
+fn events(page: PageReader, known: Version) -> impl Stream<Item = Result<Event, Infallible>> {
     let reading = Reading {
         page,
         known,
@@ -200,9 +209,9 @@ fn events(page: PageReader, known: u64) -> impl Stream<Item = Result<Event, Infa
 }
 
 impl Reading {
-    /// Collects the events that bring the reader's page up to date.
+    /// Collects the events that bring the reader's page up to date. The last one alone carries the version: a reader
+    /// whose connection is cut before has not seen all of it.
     fn collect(&mut self, snapshot: &PageState) {
-        let id = snapshot.position.to_string();
         let sections = snapshot.sections.iter();
         let order: Vec<_> = sections.map(|own| [&own.id, &own.title]).collect();
         let header = serde_json::json!({
@@ -212,25 +221,86 @@ impl Reading {
             "sections": order,
         })
         .to_string();
+        let mut events = Vec::new();
         for section in &snapshot.sections {
-            if self.is_new(section) {
+            if self.is_new(section, snapshot.version.board) {
                 self.sent.insert(section.id.clone(), section.revision);
                 let data = serde_json::json!({ "id": section.id, "html": section.html });
-                let event = Event::default().event("section").id(id.as_str());
-                self.waiting.push_back(event.data(data.to_string()));
+                events.push(Event::default().event("section").data(data.to_string()));
             }
         }
         if header != self.header {
-            let event = Event::default().event("header").id(id.as_str());
-            self.waiting.push_back(event.data(header.as_str()));
+            events.push(Event::default().event("header").data(header.as_str()));
             self.header = header;
+        }
+        let last = events.pop();
+        let last = last.map(|last| last.id(snapshot.version.to_string()));
+        self.waiting.extend(events.into_iter().chain(last));
+    }
+
+    fn is_new(&self, section: &Rendered, board: u64) -> bool {
+        match self.sent.get(&section.id) {
+            Some(revision) => *revision != section.revision,
+            None => self.known.board != board || section.revision > self.known.revision,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::board::Board;
+    use report::{Block, Section};
+
+    fn section(id: &'static str, text: &str) -> Section {
+        Section {
+            id,
+            title: id,
+            blocks: vec![Block::Text(text.to_owned())],
         }
     }
 
-    fn is_new(&self, section: &Rendered) -> bool {
-        match self.sent.get(&section.id) {
-            Some(revision) => *revision != section.revision,
-            None => section.position >= self.known,
-        }
+    /// Returns the events that a reader gets who knows a version.
+    fn sent(page: &PageReader, known: Version) -> Vec<String> {
+        let mut reading = Reading {
+            page: page.clone(),
+            known,
+            sent: BTreeMap::new(),
+            header: String::new(),
+            waiting: VecDeque::new(),
+            first: true,
+        };
+        let snapshot = page.borrow().clone();
+        reading.collect(&snapshot);
+        let events = reading.waiting.iter();
+        events.map(|event| format!("{event:?}")).collect()
+    }
+
+    /// Checks that a reader whose connection is cut in the middle of a batch gets all of it again, and that one who comes
+    /// from another board gets everything. Regressions: all events of a batch carried its version; versions were
+    /// positions in the journal, which begins anew where a run is deleted and begun again.
+    #[test]
+    fn nothing_is_missed_after_a_cut() {
+        let mut board = Board::new("Calibration", "runs/a");
+        let page = board.reader();
+        let both = [section("a", "1"), section("b", "1")];
+        board.publish(("Calibration", "running"), &both, false);
+        let first = page.borrow().version;
+        let all = sent(&page, Version::default());
+        assert_eq!(all.len(), 3, "two sections and the header");
+        let with_version: Vec<bool> = all
+            .iter()
+            .map(|one| one.contains(&first.to_string()))
+            .collect();
+        assert_eq!(with_version, [false, false, true]);
+        let both = [section("a", "1"), section("b", "2")];
+        board.publish(("Calibration", "running"), &both, false);
+        assert_eq!(sent(&page, first).len(), 2, "what changed, and the header");
+        assert_eq!(sent(&page, page.borrow().version).len(), 1);
+        let elsewhere = Version {
+            board: first.board + 1,
+            revision: 1000,
+        };
+        assert_eq!(sent(&page, elsewhere).len(), 3);
     }
 }

@@ -1,5 +1,5 @@
 //! Output folder of a report: `report.html`, `tables.txt`, `figures/*.svg`, and data as CSV.
-use super::document::{Report, page, text};
+use super::document::{Report, TerminalStyle, page, text};
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
@@ -34,7 +34,11 @@ pub enum ReportError {
 pub(super) fn write_report(folder: &Path, report: &Report) -> Result<Vec<PathBuf>, ReportError> {
     let mut written = vec![
         write(folder, "report.html", &page(report))?,
-        write(folder, "tables.txt", &text(report, false))?,
+        write(
+            folder,
+            "tables.txt",
+            &text(report, TerminalStyle::default()),
+        )?,
     ];
     let figures = folder.join("figures");
     for figure in report.figures() {

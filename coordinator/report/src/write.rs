@@ -1,7 +1,7 @@
 //! Assembly and output of calibration and simulation reports with their data.
 use super::csv;
 use super::data::{Calibration, ConditionResult, SingleRun};
-use super::document::{Block, Report, SCRIPT, Section, Table, section_text};
+use super::document::{Block, Report, SCRIPT, Section, Table, TerminalStyle, section_text};
 use super::folder::{ReportError, stream, write_report};
 use super::machine_check::MachineCheck;
 use super::{kind, section, table, words};
@@ -37,20 +37,23 @@ pub fn individual(
     section::individual(case, (number, genes), conditions)
 }
 
-/// Renders the tables of a calibration's parameters, errors and machine quantities for a terminal; `styled` if it
-/// supports bold.
-pub fn parameters(calibration: &Calibration, styled: bool) -> String {
+/// Renders the outcome of a calibration in words and the tables of its parameters, errors and machine quantities for
+/// a terminal.
+pub fn parameters(calibration: &Calibration, style: TerminalStyle) -> String {
     let mut section = section::parameters(calibration);
     let checks = section::checks(calibration);
     let machine = section::machine_table(&checks, ["recommended", "optimised"]);
     section.blocks.extend(machine.map(Block::Table));
-    section_text(&section, styled)
+    section
+        .blocks
+        .splice(..0, section::headline(calibration, &checks));
+    section_text(&section, style)
 }
 
 /// Renders quantities of the machine with the recommended and the optimised parameters, and their flags, for a
-/// terminal; `styled` if it supports bold.
-pub fn machine(checks: &[MachineCheck], styled: bool) -> String {
-    section_text(&section::machine(checks), styled)
+/// terminal.
+pub fn machine(checks: &[MachineCheck], style: TerminalStyle) -> String {
+    section_text(&section::machine(checks), style)
 }
 
 /// States that the search found fits of other families with nearly the same objective; `None` if it found none.

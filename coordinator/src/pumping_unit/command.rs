@@ -155,15 +155,15 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let distances_m = source.surface_distances_m();
     let object = output::head::head((case, &name), (&source, &distances_m), &head, &comparison);
     let tables = || {
-        let styled = terminal::styled();
-        let modes = table::text(&head_mode_table(&head, &comparison), styled);
+        let style = terminal::style();
+        let modes = table::text(&head_mode_table(&head, &comparison), style);
         let statics = head_statics(&comparison, &name, machine.run.modes);
         let gauges = head_gauges((&head, wrap.tension_n), &source.gauges, &distances_m);
         let pair = head.twin.iter().zip(&machine.twin_ropes);
         let pair = pair.map(|(twin, ropes)| head_pair(twin, ropes.offset_m));
-        let pair = pair.map(|table| format!("\n{}", table::text(&table, styled)));
+        let pair = pair.map(|table| format!("\n{}", table::text(&table, style)));
         let pair: String = pair.collect();
-        let [statics, gauges] = [statics, gauges].map(|own| table::text(&own, styled));
+        let [statics, gauges] = [statics, gauges].map(|own| table::text(&own, style));
         format!("{modes}\n{statics}\n{gauges}{pair}")
     };
     terminal::print(arguments.output.output, tables, &object)

@@ -169,9 +169,14 @@ fn check_beginning(log: &EvaluationLog, open: &BTreeMap<u64, Proposal>) -> Resul
 
 pub(super) fn all_failed(log: &EvaluationLog) -> StudyError {
     let (how, physics) = log.failures();
+    let of_program = log.entries().any(|entry| match &entry.ending {
+        EvaluationOutcome::Infrastructure(failure) => failure.is_of_program(),
+        EvaluationOutcome::Complete | EvaluationOutcome::Physics(_) => false,
+    });
     StudyError::AllFailed {
         count: log.len(),
         how,
         physics,
+        of_program,
     }
 }

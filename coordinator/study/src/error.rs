@@ -62,6 +62,8 @@ pub enum StudyError {
         how: String,
         /// Most frequent failure of the simulated machine; `None` if all failures have other reasons.
         physics: Option<Identifier>,
+        /// Whether an external program failed.
+        of_program: bool,
     },
     /// An individual that is to be compared could not be evaluated.
     #[error("{what} could not be evaluated: {failure}")]
@@ -81,6 +83,10 @@ pub enum StudyError {
     #[error("interrupted")]
     Interrupted,
 }
+
+/// Remedy for an external program that fails, which it does again with the same input.
+pub const PROGRAM_REMEDY: &str = "correct the program, or the files that it reads and writes; if one of the case's files changes, run \
+    `horsehead allow CASE` again. `horsehead simulate CASE` runs it once";
 
 impl StudyError {
     /// Converts a job failure that would affect every other job into an error; returns none for a failure of
@@ -125,8 +131,16 @@ impl StudyError {
                 "`horsehead simulate CASE` shows how the recommended individual ends; narrower \
                  bounds in the case, or another --seed, may help"
             }
-            Self::AllFailed { physics: None, .. } => {
-                "no job could be computed: the messages of the workers show the reason"
+            Self::AllFailed {
+                of_program: true, ..
+            } => PROGRAM_REMEDY,
+            Self::Unavailable { failure, .. } if failure.is_of_program() => PROGRAM_REMEDY,
+            Self::AllFailed { .. } => "the same command tries again",
+            Self::Unavailable {
+                failure: Failure::Deadline { .. },
+                ..
+            } => {
+                "the limit is `deadline_s` of the case, or `wall_s` of the program's entry in the list of allowed programs"
             }
             Self::Unavailable { .. } => "the same command tries again",
             Self::WrongKind { .. } => {

@@ -33,7 +33,7 @@ pub use calibrate::{Calibrated, calibrate};
 pub use compare::{CompareRequest, Compared, ComparedCurves, PICTURES, compare};
 pub use diagnose::{DiagnosisResult, diagnose_on};
 pub use dispatch::scheduler::Completed;
-pub use error::{EvaluatorError, StudyError};
+pub use error::{EvaluatorError, PROGRAM_REMEDY, StudyError};
 pub use evaluate::{EvaluationRequest, Scored, evaluate};
 pub use evaluator::answer;
 pub use evaluator::{Evaluator, WorkerStatus, WorkersSnapshot};

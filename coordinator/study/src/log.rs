@@ -135,8 +135,8 @@ impl EvaluationLog {
         self.entries.insert(entry.id, entry);
     }
 
-    /// Returns the failures by frequency, for example `12 x load not lifted, 3 x budget`, and the most
-    /// frequent physical failure.
+    /// Returns the failures by frequency, for example `12 x load not lifted, 3 x budget` (a single kind
+    /// without its count), and the most frequent physical failure.
     pub(super) fn failures(&self) -> (String, Option<Identifier>) {
         let mut counts: BTreeMap<String, (usize, Option<Identifier>)> = BTreeMap::new();
         for entry in self.entries() {
@@ -150,10 +150,13 @@ impl EvaluationLog {
         }
         let mut ranked: Vec<_> = counts.into_iter().collect();
         ranked.sort_by_key(|(_, (count, _))| std::cmp::Reverse(*count));
-        let words: Vec<String> = ranked
-            .iter()
-            .map(|(words, (count, _))| format!("{count} x {words}"))
-            .collect();
+        let words: Vec<String> = match ranked.as_slice() {
+            [(words, _)] => vec![words.clone()],
+            several => several
+                .iter()
+                .map(|(words, (count, _))| format!("{count} x {words}"))
+                .collect(),
+        };
         (
             words.join(", "),
             ranked.iter().find_map(|(_, (_, physics))| *physics),

@@ -13,9 +13,9 @@ pub enum Failure {
         /// Files left in the run's folder when it was terminated.
         left: FailureFiles,
     },
-    /// The slot process that computed the job exited or was killed.
+    /// The process or the program that computed the job exited, was killed, or wrote nothing usable.
     Crashed {
-        /// Exit status or signal of the slot process, in words.
+        /// How the process ended, as a clause with its subject.
         how: String,
         /// Files left in the run's folder when the process ended.
         left: FailureFiles,
@@ -41,6 +41,12 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// Returns whether an external program failed, which left its files: repeated with the same input it fails
+    /// again.
+    pub fn is_of_program(&self) -> bool {
+        matches!(self, Self::Crashed { left, .. } if !left.is_empty())
+    }
+
     /// Creates a [`Failure::Misconfigured`] from the field of the case or job and the description of the
     /// error.
     pub fn misconfigured(field: impl Into<String>, problem: impl Into<String>) -> Self {
@@ -89,9 +95,7 @@ impl fmt::Display for Failure {
             Self::Deadline { limit_ms, .. } => {
                 write!(to, "it ran longer than {:.1} s", *limit_ms as f64 / 1000.0)
             }
-            Self::Crashed { how, .. } => {
-                write!(to, "the process that computed the job ended: {how}")
-            }
+            Self::Crashed { how, .. } => to.write_str(how),
             Self::Lost { workers } => write!(to, "{workers} workers were lost over it"),
             Self::Refused { reason } => write!(to, "the worker refused the job: {reason}"),
             Self::Misconfigured { field, problem } => write!(to, "{field}: {problem}"),

@@ -174,6 +174,25 @@ pub(super) fn evaluate_equations(
     equations.iter().map(sum).collect()
 }
 
+/// Ratio from which an abscissa that runs farther than a channel's counts as written in another unit, if hardly any of its
+/// points lie within the channel's: seconds and milliseconds differ by 1000, hours and seconds by 3600, degrees and
+/// radians by 57.3.
+const OTHER_UNIT: f64 = 50.0;
+/// Number of abscissa points within a channel's range from which the abscissa fits the channel in any case.
+const ENOUGH: usize = 3;
+
+/// Returns the ratio of the length of an abscissa to that of a channel's, if the abscissa seems to be in another unit.
+fn other_unit(at: &[f64], places: &[f64]) -> Option<f64> {
+    let (first, last) = (places.first()?, places.last()?);
+    let within = at.iter().filter(|own| (first..=last).contains(own)).count();
+    let ratio = length(at) / length(places);
+    (places.len() > ENOUGH && within < ENOUGH && ratio >= OTHER_UNIT).then_some(ratio)
+}
+
+fn length(points: &[f64]) -> f64 {
+    points.last().unwrap_or(&0.0) - points.first().unwrap_or(&0.0)
+}
+
 /// Interpolates a curve (abscissa points `at`, ordinates `values`) linearly at the abscissa points `places`.
 fn resample(file: &str, at: &[f64], values: &[f64], places: &[f64]) -> Result<Vec<f64>, String> {
     if at.len() != values.len() || at.is_empty() {
@@ -189,12 +208,23 @@ fn resample(file: &str, at: &[f64], values: &[f64], places: &[f64]) -> Result<Ve
         ));
     }
     let (first, last) = (at[0], at[at.len() - 1]);
+    if let Some(factor) = other_unit(at, places) {
+        return Err(format!(
+            "the abscissa in {file} runs from {first} to {last}, {factor} times as far as that of the channel: it may be in \
+             another unit, as ms for s; write it in the unit of the channel's `abscissa`"
+        ));
+    }
     // the last digit of a place that was written as text is not held against it
     let slack = 1e-9 * (last - first).abs();
     let value = |place: &f64| {
         if *place < first - slack || *place > last + slack {
             return Err(format!(
-                "the abscissa in {file} runs from {first} to {last}, but the channel needs a value at {place}"
+                "the abscissa in {file} runs from {first} to {last}, but the channel needs a value at {place}{}",
+                if length(places) >= OTHER_UNIT * length(at) {
+                    ": it may be in another unit, as s for ms"
+                } else {
+                    ""
+                }
             ));
         }
         let above = at
@@ -221,6 +251,18 @@ mod tests {
         assert_eq!(found, [0.0, 1.0, 3.0, 4.0]);
         let error = resample("f", &at, &values, &[3.5]).unwrap_err();
         assert!(error.contains("from 0 to 3"), "{error}");
+        let seconds: Vec<f64> = (0..50).map(|k| 0.2 * f64::from(k)).collect();
+        let milliseconds: Vec<f64> = seconds.iter().map(|s| 1000.0 * s).collect();
+        let error = resample("f", &milliseconds, &seconds, &seconds).unwrap_err();
+        assert!(
+            error.contains("1000 times as far") && error.contains("ms for s"),
+            "{error}"
+        );
+        let error = resample("f", &seconds, &seconds, &milliseconds).unwrap_err();
+        assert!(
+            error.contains("needs a value at 200: it may be in another unit, as s for ms"),
+            "{error}"
+        );
         resample("f", &[1.0, 1.0], &[0.0, 0.0], &[1.0]).unwrap_err();
         resample("f", &[], &[], &[1.0]).unwrap_err();
         assert_eq!(resample("f", &[1.0], &[5.0], &[1.0]).unwrap(), [5.0]);

@@ -161,7 +161,10 @@ pub(super) fn describe_status(status: ExitStatus, scratch: &Scratch) -> String {
 /// Formats the last lines of a program's output as the end of a message.
 pub(super) fn output_tail(scratch: &Scratch) -> String {
     let text = tail(&scratch.output_path()).unwrap_or_default();
+    // the folder is another one in every run, and names the files in it
+    let folder = format!("{}/", scratch.work().display());
     let text: String = text
+        .replace(&folder, "")
         .chars()
         .filter(|letter| !letter.is_control() || *letter == '\n')
         .collect();

@@ -172,10 +172,10 @@ impl Drop for Child {
 fn describe_status(status: ExitStatus, memory_mib: u64) -> String {
     match (status.signal(), status.code()) {
         (Some(6), _) if memory_mib > 0 => format!(
-            "ended by signal 6: a bug, or more memory than the {memory_mib} MiB that a slot may \
+            "was ended by signal 6: a bug, or more memory than the {memory_mib} MiB that a slot may \
              have (--slot-memory)"
         ),
-        (Some(signal), _) => format!("ended by signal {signal}"),
+        (Some(signal), _) => format!("was ended by signal {signal}"),
         (None, Some(code)) => format!("ended with status {code}"),
         (None, None) => "ended without a status".to_owned(),
     }

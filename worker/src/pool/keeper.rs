@@ -143,7 +143,7 @@ impl Keeper {
         });
         if let Err(error) = given {
             let end = self.child.take().map_or_else(String::new, Child::ended);
-            let how = format!("the slot's process does not accept the job: {error} {end}");
+            let how = format!("the slot's process does not accept the job: {error}; it {end}");
             self.finish(Some(Outcome::Failed(Failure::crashed(how))), 0);
         }
     }
@@ -176,7 +176,8 @@ impl Keeper {
             Some(FromSlot::Ready) => {}
             Some(FromSlot::Done { outcome, cpu_us }) => self.finish(Some(*outcome), cpu_us),
             None => {
-                let how = self.child.take().map_or_else(String::new, Child::ended);
+                let end = self.child.take().map_or_else(String::new, Child::ended);
+                let how = format!("the process that computed the job {end}");
                 self.finish(Some(Outcome::Failed(Failure::crashed(how))), 0);
             }
         }

@@ -102,6 +102,37 @@ impl Assembly<'_> {
         self.field_error(way, format!("\"{name}\""), allowed, &help)
     }
 
+    /// Returns the error for an unknown name in a template, with its place there.
+    fn unknown_in(
+        &self,
+        template: &Path,
+        text: &str,
+        (name, allowed): (&str, &str),
+        names: &[&str],
+    ) -> CaseError {
+        let near = nearest(name, names.iter().copied());
+        let help = near.map_or("correct the name".to_owned(), |near| {
+            format!("did you mean `{near}`?")
+        });
+        let template = Document::new(self.folder.join(template), text.to_owned());
+        // the marker of a PEST template ends its first line, `ptf ~`
+        let first = text.lines().next().unwrap_or_default().trim_end();
+        let marker = first
+            .chars()
+            .next_back()
+            .filter(|_| first.starts_with("ptf"));
+        let begins_field = |letter: char| letter == '{' || Some(letter) == marker;
+        let is_field = |at: &usize| {
+            let before = text[..*at].trim_end().chars().next_back();
+            before.is_some_and(begins_field)
+        };
+        let lower = text.to_ascii_lowercase();
+        let name_lower = name.to_ascii_lowercase();
+        let mut places = lower.match_indices(&name_lower).map(|(at, _)| at);
+        let at = places.find(is_field);
+        template.place(at.unwrap_or(0), name, allowed, &help)
+    }
+
     /// Returns the name, factor and offset with which each unknown of the case is written to the program's
     /// input files.
     fn parameters(&self, case: &Case) -> Result<Vec<Parameter>, CaseError> {
@@ -220,6 +251,12 @@ impl Assembly<'_> {
                     let allowed =
                         "a field with the name of an unknown, or of a value of the conditions";
                     let known: Vec<&str> = known.iter().map(String::as_str).collect();
+                    let template = input.template.as_ref().or(input.braces.as_ref());
+                    if let (Some(path), InputFormat::Pest(text) | InputFormat::Braces(text)) =
+                        (template, &form)
+                    {
+                        return Err(self.unknown_in(path, text, (name, allowed), &known));
+                    }
                     return Err(self.unknown(&way("file"), name, allowed, &known));
                 }
             }

@@ -4,7 +4,7 @@ use crate::{
     case_kind::ModelKind, error::CaseError, loaded::Loaded, source::RecordFolder,
     summary::CaseSummary,
 };
-use discrepancy::thresholds::Thresholds;
+use discrepancy::{baseline::discretisation_check::FinerModel, thresholds::Thresholds};
 use protocol::{case::Case, job::Numerics, pumping_unit::Machine, wire::WireError};
 
 /// Kind of model for pumping units with double horse heads.
@@ -35,7 +35,7 @@ impl ModelKind for PumpingUnitKind {
         &self,
         case: &Case,
         thresholds: &Thresholds,
-    ) -> Result<(Numerics, Vec<Numerics>), WireError> {
+    ) -> Result<(Numerics, Vec<FinerModel>), WireError> {
         numerics(case, thresholds)
     }
 

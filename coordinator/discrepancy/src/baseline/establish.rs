@@ -191,12 +191,11 @@ async fn constrain_instruments<L: Laboratory>(
         let own = &one.nuisance;
         (x.abs() > BEYOND).then(|| {
             format!(
-                "{}.{} {:.1} times its tolerance of {:.2e} {}",
+                "{}.{} {:.1} times its tolerance of {}",
                 own.id,
                 own.parameter,
                 x.abs(),
-                own.deviation,
-                own.unit
+                own.tolerance()
             )
         })
     });

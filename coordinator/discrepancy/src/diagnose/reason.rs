@@ -1,13 +1,10 @@
 //! Verbal results of a diagnosis: reason of the verdict and further remarks.
 use crate::baseline::base::Baseline;
-use crate::baseline::discretisation_check::Preflight;
+use crate::baseline::discretisation_check::{FINE_ENOUGH, Preflight};
 use crate::diagnose::diagnosis::Diagnosis;
 use crate::inputs::Inputs;
 use crate::model::fit::Fit;
 use crate::verdict::{TestValidity, Verdict};
-
-/// Ratio of numerical error to the record's standard error above which the result contains a remark.
-const FINE_ENOUGH: f64 = 1.0 / 3.0;
 
 /// Findings that contradict the hypothesis that the residual is noise alone, from which the verdict follows.
 #[derive(Debug)]
@@ -95,10 +92,20 @@ pub(crate) fn remarks(inputs: &Inputs, diagnosis: &mut Diagnosis) {
     };
     let ratio = check.map_or(0.0, Preflight::ratio);
     if ratio > FINE_ENOUGH {
+        let checks = [&diagnosis.preflight_after, &diagnosis.preflight];
+        let coarsest = checks
+            .into_iter()
+            .flatten()
+            .find_map(|check| check.coarsest.as_ref());
+        let finest = inputs.finer.first().map(|finest| &finest.settings);
+        let settings = coarsest.or(finest).filter(|settings| !settings.is_empty());
+        let remedy = settings.map_or_else(String::new, |settings| {
+            format!("; {settings} in case.toml lowers it, and simulations take longer")
+        });
         diagnosis.notes.push(format!(
             "numerical error: a finer model changes the curves of {of} by {ratio:.2} standard errors of the \
              record (target: one third); this counts as noise in every test, but sizes may be wrong by as \
-             much; a finer discretisation in case.toml lowers it"
+             much{remedy}"
         ));
     }
     let added = diagnosis.rounds.iter().any(|round| round.added.is_some());

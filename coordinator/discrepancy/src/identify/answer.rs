@@ -2,7 +2,6 @@
 use crate::estimate::nuisances::NuisanceEstimate;
 use crate::record::measured::Curves;
 use crate::record::noise::NoiseSource;
-use crate::thresholds::NOISE_RATIO_LIMIT;
 use serde::{Deserialize, Serialize};
 
 /// Identifiability of a model's unknowns from a record.
@@ -10,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct IdentificationResult {
     /// Fitted values of the unknowns \[declared units\], in the case's order.
     pub genes: Vec<f64>,
-    /// Estimates of all fitted unknowns; without intervals unless [`Self::has_intervals`].
+    /// Estimates of all fitted unknowns.
     pub unknowns: Vec<UnknownEstimate>,
     /// Eigenvectors of the Fisher information of the unknowns, best determined first.
     pub directions: Vec<Direction>,
@@ -20,6 +19,9 @@ pub struct IdentificationResult {
     pub bands: Vec<Band>,
     /// Further measurements that would determine unknowns, most informative first.
     pub further: Vec<FurtherMeasurement>,
+    /// Whether unknowns have intervals: not where the fit leaves a multiple of the noise, because a model that lacks
+    /// something has values of its own.
+    pub has_intervals: bool,
     /// Squared residual of the fit divided by that expected of noise alone.
     pub left: f64,
     /// Whether the residual may be noise alone.
@@ -28,14 +30,6 @@ pub struct IdentificationResult {
     pub noise: NoiseSource,
     /// Further remarks for the user.
     pub notes: Vec<String>,
-}
-
-impl IdentificationResult {
-    /// Returns whether unknowns have intervals: not where the fit leaves a multiple of the noise, because a
-    /// model that lacks something has values of its own.
-    pub fn has_intervals(&self) -> bool {
-        self.is_noise || self.left.sqrt() < NOISE_RATIO_LIMIT
-    }
 }
 
 /// Estimate of an unknown, with its profile likelihood.

@@ -24,15 +24,20 @@ pub use linear_estimate::glance;
 
 use crate::baseline::establish::establish;
 use crate::estimate::nuisances::nuisance_estimates;
-use crate::estimate::spread::coloured;
+use crate::estimate::spread::{Spread, coloured};
 use crate::inputs::Inputs;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::unknowns::DefaultPrior;
+use crate::record::noise::NoiseSource;
 use crate::thresholds::NOISE_RATIO_LIMIT;
 use protocol::case::Channel;
 use settings::FREE;
+
+/// Growth of intervals by colour of the residual from which it counts as structure: of 200 white residuals of a straight
+/// line one grows by a factor of 1.7, of noise with a correlation of 0.8 from sample to sample by a factor of 3.
+const STRUCTURED: f64 = 2.0;
 
 /// Fits the record of the calibrated condition and determines the identifiability of its unknowns.
 /// `conditions` are the channels of every condition of the case, in its order. Returns `None` where no fit
@@ -68,7 +73,13 @@ pub async fn identify<L: Laboratory>(
         fit.chi_squared() <= base.noise() || base.explains(fit, inputs.thresholds.adequacy)
     };
     let left = |fit: &Fit| fit.chi_squared() / base.noise();
-    if !is_noise(&fit) && left(&fit).sqrt() >= NOISE_RATIO_LIMIT {
+    // white residuals above a stated noise are noise that was stated wrongly
+    let spread = Spread::of(&base.record.metric, &fit);
+    let is_structure = base.known() != NoiseSource::Stated
+        || spread
+            .largest_growth()
+            .is_some_and(|growth| growth > STRUCTURED);
+    if is_structure && !is_noise(&fit) && left(&fit).sqrt() >= NOISE_RATIO_LIMIT {
         let instruments = base.instruments_beyond_tolerance();
         return Ok(Some(IdentificationResult {
             genes: fit.model.genes(fit.x()),
@@ -77,6 +88,7 @@ pub async fn identify<L: Laboratory>(
             nuisances: Vec::new(),
             bands: Vec::new(),
             further: Vec::new(),
+            has_intervals: false,
             left: left(&fit),
             is_noise: false,
             noise: base.known(),
@@ -103,6 +115,7 @@ pub async fn identify<L: Laboratory>(
             (inputs, &base.record),
             conditions,
         ),
+        has_intervals: true,
         left: left(fit),
         is_noise: is_noise(fit),
         noise: base.known(),

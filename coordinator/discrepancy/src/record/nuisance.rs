@@ -23,6 +23,18 @@ pub struct Nuisance {
     pub assumed: bool,
 }
 
+impl Nuisance {
+    /// Returns the standard deviation of the error with its unit, as `0.5 %` or `0.02 deg`.
+    pub fn tolerance(&self) -> String {
+        // the shortest decimal number of three digits
+        let short = |value: f64| format!("{value:.2e}").parse().unwrap_or(value);
+        match self.unit.as_str() {
+            "" | "1" => format!("{} %", short(100.0 * self.deviation)),
+            unit => format!("{} {unit}", short(self.deviation)),
+        }
+    }
+}
+
 /// Way in which a nuisance parameter acts on the compared curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Acts {

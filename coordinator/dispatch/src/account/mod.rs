@@ -357,7 +357,7 @@ mod tests {
         let nothing = account.jobs["nothing"];
         assert_eq!((nothing.results, nothing.machine_failed), (4, 0));
         assert_eq!((nothing.median_s, nothing.longest_s), (2.0, 4.0));
-        let reason = "the process that computed the job ended: signal 9";
+        let reason = "signal 9";
         let given_up = (9, reason.to_owned());
         assert_eq!(account.given_up, [given_up.clone(), given_up]);
         let reasons = account.reasons();

@@ -13,14 +13,28 @@ pub const WORKER_PROGRAM: &str = "HORSEHEAD_WORKER";
 
 /// The worker program was not found.
 #[derive(Debug, thiserror::Error)]
-#[error(
-    "{PROGRAM} is neither beside {} nor on PATH: build both programs with `cargo build --release`, \
-     install it with `cargo install --path worker`, or say where it lies in {WORKER_PROGRAM}",
-    beside.display()
-)]
-pub struct LocateError {
-    /// Folder of the running program, in which the worker program was expected.
-    beside: PathBuf,
+#[non_exhaustive]
+pub enum LocateError {
+    /// The worker program was not found where it is searched.
+    #[error(
+        "{PROGRAM} is neither beside {} nor on PATH: build both programs with `cargo build --release`, \
+         install it with `cargo install --path worker`, or say where it lies in {WORKER_PROGRAM}",
+        beside.display()
+    )]
+    NotFound {
+        /// Folder of the running program, in which the worker program was expected.
+        beside: PathBuf,
+    },
+    /// The environment variable [`WORKER_PROGRAM`] names no file.
+    #[error(
+        "there is no file {}, which the environment variable {WORKER_PROGRAM} names: correct it, or remove it so that \
+         {PROGRAM} beside this program is used",
+        path.display()
+    )]
+    Named {
+        /// Path that the variable states.
+        path: PathBuf,
+    },
 }
 
 /// Returns the path of the worker program: that in [`WORKER_PROGRAM`], else in the folder of this program
@@ -30,7 +44,14 @@ pub struct LocateError {
 /// [`LocateError`] with the remedy.
 pub fn worker_program() -> Result<PathBuf, LocateError> {
     if let Some(path) = env::var_os(WORKER_PROGRAM).filter(|path| !path.is_empty()) {
-        return Ok(path.into());
+        let path = PathBuf::from(path);
+        // a name without a folder is searched on PATH when it is started
+        let is_path = path.components().count() > 1;
+        return if is_path && !path.is_file() {
+            Err(LocateError::Named { path })
+        } else {
+            Ok(path)
+        };
     }
     let this = env::current_exe().unwrap_or_default();
     let folder = this.parent().unwrap_or(Path::new(""));
@@ -39,7 +60,7 @@ pub fn worker_program() -> Result<PathBuf, LocateError> {
     } else {
         folder
     };
-    nearest(folder, &env::var_os("PATH").unwrap_or_default()).ok_or_else(|| LocateError {
+    nearest(folder, &env::var_os("PATH").unwrap_or_default()).ok_or_else(|| LocateError::NotFound {
         beside: folder.to_owned(),
     })
 }
@@ -69,7 +90,7 @@ mod tests {
             std::fs::write(&program, "").unwrap();
             assert_eq!(found(), Some(program));
         }
-        let words = LocateError {
+        let words = LocateError::NotFound {
             beside: beside.path().to_owned(),
         };
         assert!(words.to_string().contains("cargo build --release"));

@@ -95,9 +95,12 @@ pub enum Notice {
 }
 
 impl Notice {
-    /// Returns whether the notice requires no action by the user.
+    /// Returns whether the notice requires no action by the user, or the outcome of a job says the same.
     pub const fn is_routine(&self) -> bool {
-        matches!(self, Self::Joined { .. } | Self::Left { .. })
+        matches!(
+            self,
+            Self::Joined { .. } | Self::Left { .. } | Self::GivenUp { .. }
+        )
     }
 }
 

@@ -101,7 +101,11 @@ fn draw(canvas: &mut Canvas, channel: &BeforeAfter<'_>, (left, top): (f64, f64),
     if let Some(after) = &channel.after {
         panel.curve(canvas, &points(channel.at, after), AFTER);
     }
-    panel.left_axis(canvas, true, &with_unit("value", &channel.unit));
+    panel.left_axis(
+        canvas,
+        true,
+        &with_unit("measured and simulated", &channel.unit),
+    );
     panel.lower_axis(canvas, false, "");
     residuals(canvas, channel, (left, top + HEIGHT + GAP), width);
     let heading = TextStyle::new(12.0, INK).bold();

@@ -85,7 +85,7 @@ pub(crate) fn closing(of: &GapComparison<'_>) -> Option<Figure> {
     }
     let rows = of.at.iter().zip(of.measured.iter().zip(of.spread));
     let mut strips = vec![Strip {
-        title: with_unit("value", &unit(of.unit)),
+        title: with_unit("measured and simulated", &unit(of.unit)),
         height: 170.0,
         curves,
         band: rows.map(|(&x, (m, s))| (x, m - s, m + s)).collect(),

@@ -245,7 +245,7 @@ fn column(canvas: &mut Canvas, measured: &Measured, side: &Side, first: bool) {
     panel.band(canvas, &measured.band, BAND);
     panel.curve(canvas, &measured.mean, MEASURED);
     panel.curve(canvas, &side.simulated, SIMULATED);
-    panel.left_axis(canvas, first, &title("value"));
+    panel.left_axis(canvas, first, &title("measured and simulated"));
     panel.lower_axis(canvas, false, "");
     if side.simulated.len() < 2 {
         panel.remark(canvas, "no simulated curve: the run failed before it");

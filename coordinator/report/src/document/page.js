@@ -139,16 +139,25 @@ var horsehead = { parts: [] };
       if (!wanted[section.id]) { section.remove(); }
     });
   }
+  // a browser opens few connections to one server: a page that nobody sees gives its own back
+  var source = null;
+  function leave() {
+    if (source) { source.close(); source = null; }
+  }
   function follow() {
+    leave();
+    if (document.hidden) { return; }
     var lost = document.getElementById("lost");
-    var source = new EventSource("events?after=" + document.body.dataset.position);
+    source = new EventSource("events?after=" + document.body.dataset.version);
     source.addEventListener("open", function () { lost.hidden = true; });
     source.addEventListener("error", function () {
       lost.hidden = false;
       // a refusal ends the source for good, where a broken connection is tried again by the browser
-      if (source.readyState === EventSource.CLOSED) { setTimeout(follow, 2000); }
+      if (source && source.readyState === EventSource.CLOSED) { setTimeout(follow, 2000); }
     });
-    function received(event) { document.body.dataset.position = event.lastEventId; }
+    function received(event) {
+      if (event.lastEventId) { document.body.dataset.version = event.lastEventId; }
+    }
     source.addEventListener("section", function (event) {
       var section = JSON.parse(event.data);
       replace(section.id, section.html);
@@ -184,6 +193,9 @@ var horsehead = { parts: [] };
       // the token is in a cookie by now, and need not stand in the address
       if (location.search) { history.replaceState(null, "", location.pathname + location.hash); }
       follow();
+      document.addEventListener("visibilitychange", function () {
+        if (document.hidden) { leave(); } else { follow(); }
+      });
       individuals();
     }
   });

@@ -7,6 +7,9 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 /// Style sheet of every page, for light and dark screens, phones and print.
 pub const STYLE: &str = include_str!("style.css");
 
+/// Tag by which a page is recognised as one of this program.
+pub const GENERATOR: &str = r#"<meta name="generator" content="Horsehead">"#;
+
 /// Script of every page: sorts and filters tables, and replaces sections in the pages of a dashboard.
 pub(crate) const SCRIPT: &str = include_str!("page.js");
 
@@ -18,6 +21,7 @@ pub fn page(report: &Report) -> String {
         html lang="en" {
             head {
                 meta charset="utf-8";
+                meta name="generator" content="Horsehead";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (title) }
                 style { (PreEscaped(STYLE)) }
@@ -57,15 +61,32 @@ pub fn section_markup(section: &Section) -> Markup {
     }
 }
 
+/// Renders a sentence; words between backticks become code.
+pub(super) fn sentence(text: &str) -> Markup {
+    let parts: Vec<&str> = text.split('`').collect();
+    // a last backtick without another one stands for itself
+    let whole = if parts.len() % 2 == 1 {
+        parts.len()
+    } else {
+        parts.len() - 2
+    };
+    html! {
+        @for (place, part) in parts[..whole].iter().enumerate() {
+            @if place % 2 == 1 { code { (part) } } @else { (part) }
+        }
+        @if whole < parts.len() { (parts[whole..].join("`")) }
+    }
+}
+
 fn markup(block: &Block) -> Markup {
     match block {
-        Block::Lead(sentence) => html! { p.verdict { (sentence) } },
+        Block::Lead(text) => html! { p.verdict { (sentence(text)) } },
         Block::Heading(text, remark) => html! {
             h3 { (text) @if !remark.is_empty() { span.role { (remark) } } }
         },
-        Block::Text(text) => html! { p { (text) } },
-        Block::List(items) => html! { ul { @for item in items { li { (item) } } } },
-        Block::Warning(all) => html! { div.warning { @for one in all { p { (one) } } } },
+        Block::Text(text) => html! { p { (sentence(text)) } },
+        Block::List(items) => html! { ul { @for item in items { li { (sentence(item)) } } } },
+        Block::Warning(all) => html! { div.warning { @for one in all { p { (sentence(one)) } } } },
         Block::Facts(facts) => html! { dl.facts { @for fact in facts { (fact_markup(fact)) } } },
         Block::Code(lines) => html! { pre { code { (lines) } } },
         Block::Table(table) => table_markup(table),

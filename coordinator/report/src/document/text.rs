@@ -1,16 +1,25 @@
 //! Plain-text output for the terminal and for `tables.txt`: the whole report without its images.
 use super::block::{Block, Report, Section};
 use super::table::{Label, Row, Table};
-use comfy_table::{Cell, CellAlignment, LineStyle, presets};
+use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, presets};
 
-/// Renders the whole report as text; `styled` if the terminal supports bold.
-pub fn text(report: &Report, styled: bool) -> String {
+/// Capabilities of the terminal or file for which text is rendered; by default those of a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TerminalStyle {
+    /// Whether heads and group names of tables are set in bold by escape sequences.
+    pub bold: bool,
+    /// Number of columns into which tables are fitted by wrapping their cells; `None` for as many as they need.
+    pub width: Option<u16>,
+}
+
+/// Renders the whole report as text.
+pub fn text(report: &Report, style: TerminalStyle) -> String {
     let mut whole = String::from(report.outcome);
     if !whole.is_empty() {
         whole.push('\n');
     }
     for (index, section) in report.sections.iter().enumerate() {
-        let body = section_text(section, styled);
+        let body = section_text(section, style);
         // the first section needs no heading: what it says is what the report says
         if index > 0 && !body.is_empty() {
             whole += &["\n", &section.title.to_uppercase(), "\n"].concat();
@@ -21,20 +30,20 @@ pub fn text(report: &Report, styled: bool) -> String {
 }
 
 /// Renders the blocks of one section, without its heading.
-pub(crate) fn section_text(section: &Section, styled: bool) -> String {
-    all(&section.blocks, styled)
+pub(crate) fn section_text(section: &Section, style: TerminalStyle) -> String {
+    all(&section.blocks, style)
 }
 
 /// Renders blocks one below the other, with an empty line before headings, code, tables and collapsible
 /// blocks.
-fn all(blocks: &[Block], styled: bool) -> String {
+fn all(blocks: &[Block], style: TerminalStyle) -> String {
     let mut text = String::new();
     for block in blocks {
         let apart = matches!(
             block,
             Block::Heading(..) | Block::Code(_) | Block::Table(_) | Block::Folded(..)
         );
-        let own = one(block, styled);
+        let own = one(block, style);
         if apart && !text.is_empty() && !own.is_empty() {
             text.push('\n');
         }
@@ -43,7 +52,7 @@ fn all(blocks: &[Block], styled: bool) -> String {
     text
 }
 
-fn one(block: &Block, styled: bool) -> String {
+fn one(block: &Block, style: TerminalStyle) -> String {
     match block {
         Block::Lead(line) | Block::Text(line) | Block::Code(line) | Block::Heading(line, "") => {
             format!("{line}\n")
@@ -56,8 +65,8 @@ fn one(block: &Block, styled: bool) -> String {
             let lines = facts.map(|fact| format!("{}: {}", fact.name, fact.value));
             items(&lines.collect::<Vec<_>>(), "  ")
         }
-        Block::Table(table) => set_table(table, styled),
-        Block::Folded(_, blocks) => all(blocks, styled),
+        Block::Table(table) => set_table(table, style),
+        Block::Folded(_, blocks) => all(blocks, style),
         Block::Figure(_) | Block::Markup(_) | Block::Script(_) => String::new(),
     }
 }
@@ -69,7 +78,7 @@ fn items(lines: &[String], mark: &str) -> String {
 }
 
 /// Renders a table with its title and notes.
-pub fn set_table(table: &Table, styled: bool) -> String {
+pub fn set_table(table: &Table, style: TerminalStyle) -> String {
     let alignment = |column: usize| {
         if table.is_prose(column) {
             CellAlignment::Left
@@ -78,6 +87,10 @@ pub fn set_table(table: &Table, styled: bool) -> String {
         }
     };
     let mut grid = comfy_table::Table::new();
+    if let Some(width) = style.width {
+        grid.set_content_arrangement(ContentArrangement::Dynamic);
+        grid.set_width(width);
+    }
     // rules above, below and under the head only, as in print
     grid.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
     grid.set_header(table.head.iter().enumerate().map(|(column, head)| {
@@ -103,7 +116,7 @@ pub fn set_table(table: &Table, styled: bool) -> String {
     }
     let notes = items(&table.notes, "  ");
     let grid = grid.trim_fmt();
-    let grid = if styled {
+    let grid = if style.bold {
         bold_heads(&grid, table)
     } else {
         grid

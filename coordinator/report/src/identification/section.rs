@@ -16,7 +16,7 @@ fn seen(subject: &IdentificationInput<'_>) -> Section {
         Block::List(words::grounds(subject)),
         Block::Table(table::unknowns(subject)),
     ];
-    if subject.identified.has_intervals() {
+    if subject.identified.has_intervals {
         blocks.push(Block::Figure(chart::profiles(subject)));
     }
     if subject.origin.synthetic {

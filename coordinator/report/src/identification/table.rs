@@ -9,7 +9,7 @@ use discrepancy::identify::{Direction, FurtherMeasurement};
 /// Builds the table of the unknowns: value, 95 % interval, sides on which the interval is unbounded, and
 /// correlated unknowns; values alone where there are no intervals.
 pub(super) fn unknowns(subject: &IdentificationInput<'_>) -> Table {
-    let has_intervals = subject.identified.has_intervals();
+    let has_intervals = subject.identified.has_intervals;
     let rows = subject.identified.unknowns.iter().map(|own| {
         let trades = own.correlated.iter().take(3);
         let trades = trades.map(|(name, c)| format!("{name} ({})", fixed(*c, 2)));

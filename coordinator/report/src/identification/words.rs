@@ -8,7 +8,7 @@ use discrepancy::record::noise::NoiseSource;
 /// Returns the summary sentence: number of unknowns determined, and names of those that are not; the remedy
 /// where the fit leaves a multiple of the noise.
 pub(super) fn lead(subject: &IdentificationInput<'_>) -> String {
-    if !subject.identified.has_intervals() {
+    if !subject.identified.has_intervals {
         return no_intervals(subject.identified.left.sqrt());
     }
     let all = &subject.identified.unknowns;
@@ -58,7 +58,7 @@ pub(super) fn grounds(subject: &IdentificationInput<'_>) -> Vec<String> {
     );
     let mut all = if identified.is_noise {
         vec![format!("{left}: noise alone may leave that.")]
-    } else if identified.has_intervals() {
+    } else if identified.has_intervals {
         vec![format!(
             "{left}, which is more than noise: the model lacks something. Intervals are as wide as that makes them; \
              `horsehead diagnose CASE` comes first, and an effect that is missing may move every value here."

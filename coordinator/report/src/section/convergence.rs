@@ -4,8 +4,8 @@ use crate::chart::panel::{Panel, spread};
 use crate::chart::scale::AxisScale;
 use crate::color::{BAND, GREY, INK, VERMILLION};
 use crate::data::{Calibration, HistoryPoint};
-use crate::document::{Figure, Section, figures};
-use crate::number::{count, percent, significant};
+use crate::document::{Block, Figure, Section, figures};
+use crate::number::{count, duration, percent, significant};
 use crate::words;
 use crate::words::objective_heading;
 use support::quantile;
@@ -14,11 +14,29 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
     let recommended = words::complete_objective(calibration);
     let searched = !calibration.history.is_empty();
     let drawn = searched.then(|| chart(calibration, recommended));
+    let mut blocks = figures(drawn);
+    // a search that goes on has no end
+    if searched && !calibration.finish.is_empty() {
+        blocks.insert(0, Block::Text(work(calibration)));
+    }
     Section {
         id: "convergence",
         title: "Convergence of the population",
-        blocks: figures(drawn),
+        blocks,
     }
+}
+
+/// Describes the work of a search and why it ended.
+fn work(calibration: &Calibration) -> String {
+    let history = &calibration.history;
+    let failed = history.iter().filter(|point| !point.complete).count();
+    format!(
+        "{} evaluations, {} of which did not complete, in {}. The search ended because {}.",
+        count(history.len() as u64),
+        count(failed as u64),
+        duration(calibration.wall_s),
+        calibration.finish
+    )
 }
 
 const LEFT: f64 = 62.0;

@@ -30,6 +30,7 @@ pub(super) use machine::{
 pub use machine::{checks, condition_checks, flags};
 pub(super) use parameters::calibration as parameters;
 use summary::changes;
+pub(super) use summary::headline;
 pub use worker::{hosts, jobs, slot_time};
 
 /// Builds all sections of a calibration report, in page order.
@@ -37,50 +38,56 @@ pub(super) fn calibration(all: &Calibration) -> Vec<Section> {
     let mut sections = vec![
         summary::calibration(all),
         changes(all),
-        parameters::calibration(all),
         agreement::calibration(all),
-        gap::calibration(all),
         curves::calibration(all),
+    ];
+    let own = kind::of(&all.case).sections("the optimised", all.optimum().as_ref());
+    sections.extend(own);
+    sections.extend([
+        parameters::calibration(all),
+        gap::calibration(all),
         convergence::calibration(all),
         gene::calibration(all),
         individual::calibration(all),
         worker::calibration(all),
         slowest::calibration(all),
-    ];
-    let own = kind::of(&all.case).sections("the optimised", all.optimum().as_ref());
-    sections.extend(own);
-    sections.extend([notes::calibration(all), origin::calibration(all)]);
+        notes::calibration(all),
+        origin::calibration(all),
+    ]);
     sections
 }
 
 /// Builds the sections of a calibration that goes on, in page order: without those about its end.
 pub(super) fn running_calibration(all: &Calibration) -> Vec<Section> {
     let mut sections = vec![
-        convergence::calibration(all),
+        summary::running(all),
         agreement::calibration(all),
-        gap::calibration(all),
-        parameters::calibration(all),
-        gene::calibration(all),
-        individual::calibration(all),
         curves::calibration(all),
-        slowest::calibration(all),
     ];
     let own = kind::of(&all.case).sections("the best", all.optimum().as_ref());
     sections.extend(own);
-    sections.push(notes::calibration(all));
+    sections.extend([
+        parameters::calibration(all),
+        gap::calibration(all),
+        convergence::calibration(all),
+        gene::calibration(all),
+        individual::calibration(all),
+        slowest::calibration(all),
+        notes::calibration(all),
+    ]);
     sections
 }
 
 /// Builds all sections of a simulation report, in page order.
 pub(super) fn simulation(run: &SingleRun) -> Vec<Section> {
-    let mut sections = vec![
-        summary::simulation(run),
-        parameters::simulation(run),
-        curves::simulation(run),
-        derivative::simulation(run),
-    ];
+    let mut sections = vec![summary::simulation(run), curves::simulation(run)];
     let own = kind::of(&run.case).sections(&run.genes_name, Some(&run.shown()));
     sections.extend(own);
-    sections.extend([notes::simulation(run), origin::simulation(run)]);
+    sections.extend([
+        parameters::simulation(run),
+        derivative::simulation(run),
+        notes::simulation(run),
+        origin::simulation(run),
+    ]);
     sections
 }

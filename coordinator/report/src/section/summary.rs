@@ -3,18 +3,19 @@ use super::machine;
 use crate::chart;
 use crate::data::{Calibration, SingleRun};
 use crate::document::{Block, Section, figures};
-use crate::number::{count, duration, significant};
+use crate::machine_check::MachineCheck;
+use crate::number::significant;
 use crate::words;
 
 /// Builds the first screen: the change of the objective in one sentence, the fitted channels before and after, and
 /// what the fit leaves.
 pub(super) fn calibration(calibration: &Calibration) -> Section {
-    let mut blocks = vec![Block::Lead(words::headline(calibration))];
+    let checks = machine::checks(calibration);
+    let mut blocks = headline(calibration, &checks);
     let fitted = calibration.calibrated();
     blocks.extend(figures(
         fitted.and_then(|result| chart::fitted(&calibration.case, result)),
     ));
-    let checks = machine::checks(calibration);
     blocks.extend(machine::blocks(&checks, ["recommended", "optimised"]));
     blocks.extend(words::rivals(calibration).map(|said| Block::Warning(vec![said])));
     blocks.extend(words::model_error(calibration).map(|said| Block::Warning(vec![said])));
@@ -25,18 +26,28 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
     section(blocks)
 }
 
-/// Builds the section on what changed: the errors by condition and channel, the work of the search, and warnings.
+/// Builds the first section of a calibration that goes on: the agreement of the best individual so far.
+pub(super) fn running(calibration: &Calibration) -> Section {
+    let checks = machine::checks(calibration);
+    let lead = words::agreement(calibration, &checks).map(Block::Lead);
+    let mut blocks: Vec<Block> = lead.into_iter().collect();
+    blocks.extend(machine::blocks(&checks, ["recommended", "best"]));
+    section(blocks)
+}
+
+/// Returns the change of the fit in an engineer's quantities, then that of the objective; the latter alone where the
+/// former cannot be told.
+pub(crate) fn headline(calibration: &Calibration, checks: &[MachineCheck]) -> Vec<Block> {
+    let objective = words::headline(calibration);
+    match words::agreement(calibration, checks) {
+        Some(agreement) => vec![Block::Lead(agreement), Block::Text(objective)],
+        None => vec![Block::Lead(objective)],
+    }
+}
+
+/// Builds the section on what changed: the errors by condition and channel, and warnings.
 pub(super) fn changes(calibration: &Calibration) -> Section {
     let mut blocks = conditions(calibration);
-    let history = &calibration.history;
-    let failed = history.iter().filter(|point| !point.complete).count();
-    blocks.push(Block::Text(format!(
-        "{} evaluations, {} of which did not complete, in {}. The search ended because {}.",
-        count(history.len() as u64),
-        count(failed as u64),
-        duration(calibration.wall_s),
-        calibration.finish
-    )));
     let warnings = words::warnings(calibration);
     if !warnings.is_empty() {
         blocks.push(Block::Warning(warnings));

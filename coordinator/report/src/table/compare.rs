@@ -4,16 +4,34 @@ use crate::document::{Row, Table};
 use crate::kind;
 use crate::number::{MISSING, percent, ratio, significant, squared, unit};
 use crate::words::{self, condition_name};
-use protocol::case::Case;
+use protocol::case::{Case, Channel, Offset};
 use protocol::job::{ChannelScore, Verdict};
 
 /// Definitions of the error measures, printed below every table of errors.
-const DEFINITIONS: [&str; 3] = [
+const DEFINITIONS: [&str; 2] = [
     "Relative error: mean absolute error over the mean absolute deviation of the measured curve from \
      its own mean.",
     "RMSE / half-range: root of the mean squared error over half the measured range.",
-    "Offset: measured minus simulated mean; sensors have no absolute zero.",
 ];
+
+/// Returns the definition of the offset, and whether the objective removes it.
+fn offset_definition(case: &Case, scored: &[usize]) -> String {
+    let channels = scored.iter().filter_map(|&at| case.channels.get(at));
+    let is_free = |channel: &&Channel| channel.offset == Offset::Free;
+    let (free, fixed): (Vec<_>, Vec<_>) = channels.partition(is_free);
+    let removed = match (free.is_empty(), fixed.is_empty()) {
+        (true, _) => "it counts as error, because the channels have an absolute zero".to_owned(),
+        (false, true) => "it is removed, because the channels have no absolute zero".to_owned(),
+        (false, false) => {
+            let names: Vec<String> = fixed.iter().map(|channel| channel.title.clone()).collect();
+            format!(
+                "it is removed, except from {}",
+                words::join_words(&names, "and")
+            )
+        }
+    };
+    format!("Offset: measured minus simulated mean; {removed}.")
+}
 
 /// Returns the indices of the case's channels that have a score under the condition or belong to the objective,
 /// channels of the objective first.
@@ -228,10 +246,12 @@ pub fn table_3(calibration: &Calibration) -> Table {
              by what is left; `horsehead identify RUN` says it with profiles."
         )]);
     }
-    table = table.with_notes(DEFINITIONS);
+    table = table.with_notes(DEFINITIONS.map(str::to_owned));
     if let Some(result) = calibration.calibrated() {
         table.rows.extend(agreement(case, result));
-        table = table.with_notes(remarks(case, result));
+        table = table
+            .with_notes([offset_definition(case, &scored(case, result))])
+            .with_notes(remarks(case, result));
     }
     table
 }
@@ -287,7 +307,8 @@ pub fn table_4(case: &Case, result: &ConditionResult) -> Table {
     let name = condition_name(case, result.condition);
     let title = format!("The same parameters under condition {name}, {role}");
     Table::new(title, HEAD, agreement(case, result))
-        .with_notes(DEFINITIONS)
+        .with_notes(DEFINITIONS.map(str::to_owned))
+        .with_notes([offset_definition(case, &scored(case, result))])
         .with_notes(remarks(case, result))
 }
 

@@ -4,6 +4,7 @@ use super::gene::{at_bound, bound};
 use super::name::{calibrated, capitalised, channel_title, condition_name, is_fitted, join_words};
 use super::outcome::verdict;
 use crate::data::{Calibration, ConditionResult, is_determined};
+use crate::machine_check::MachineCheck;
 use crate::number::{fixed, percent, quantity, ratio, significant, squared};
 use discrepancy::identify::{Determination, UnknownEstimate};
 use discrepancy::thresholds::NOISE_RATIO_LIMIT;
@@ -48,6 +49,70 @@ pub(crate) fn headline(calibration: &Calibration) -> String {
             change(before, after, &unit)
         ),
     }
+}
+
+/// Maximum number of fitted channels that the first sentence of a report names, those with the largest error first.
+const MOST_CHANNELS: usize = 4;
+
+/// Describes the agreement with the record under the calibrated condition in an engineer's quantities: root mean square
+/// and peak-to-peak error of the fitted channels, and quantities of the machine. `None` if a simulation or a score is
+/// missing.
+pub(crate) fn agreement(calibration: &Calibration, checks: &[MachineCheck]) -> Option<String> {
+    let case = &calibration.case;
+    let result = calibration.calibrated()?;
+    let mut pairs: Vec<(&Channel, &ChannelScore, &ChannelScore)> = Vec::new();
+    for after in &result.optimised.evaluation.channels {
+        let before = score(&result.recommended.evaluation.channels, after.channel)?;
+        let channel = case.channels.get(after.channel)?;
+        if is_fitted(case, after.channel) {
+            pairs.push((channel, before, after));
+        }
+    }
+    pairs.sort_by(|a, b| b.2.mse.total_cmp(&a.2.mse));
+    let more = pairs.len().saturating_sub(MOST_CHANNELS);
+    pairs.truncate(MOST_CHANNELS);
+    if pairs.is_empty() {
+        return None;
+    }
+    let list = |one: &dyn Fn(&(&Channel, &ChannelScore, &ChannelScore)) -> String| {
+        join_words(&pairs.iter().map(one).collect::<Vec<_>>(), "and")
+    };
+    let errors = list(&|(channel, before, after)| {
+        let unit = &channel.unit;
+        let (before, after) = (
+            significant(before.mse.sqrt()),
+            quantity(after.mse.sqrt(), unit),
+        );
+        format!("{after} at {} ({before} before)", channel.title)
+    });
+    let peaks = list(&|(_, before, after)| {
+        let [before, after] = [before, after].map(|score| percent(score.peak_to_peak_error));
+        format!("{after} ({before} before)")
+    });
+    let (these, their) = match pairs.len() {
+        1 => ("value is off by", "peak-to-peak"),
+        _ => ("values are off by", "peak-to-peak"),
+    };
+    let rest = match more {
+        0 => String::new(),
+        more => format!(" (the {more} other fitted channels have smaller errors)"),
+    };
+    let name = condition_name(case, result.condition);
+    let machine = checks.iter().filter(|check| check.condition == name);
+    let machine = machine.filter_map(|check| {
+        let measured = check.measured?;
+        let [before, after] =
+            [check.before?, check.after?].map(|value| percent(value / measured - 1.0));
+        Some(format!(
+            "; the {} by {after} ({before} before)",
+            check.quantity
+        ))
+    });
+    let machine: String = machine.collect();
+    Some(format!(
+        "Under condition {name} the simulation misses the record by {errors}, root mean square{rest}; the {their} {these} \
+         {peaks}{machine}."
+    ))
 }
 
 /// Formats the square of a unit with a leading space; empty where there is no unit.
@@ -304,11 +369,15 @@ pub(crate) fn warnings(calibration: &Calibration) -> Vec<String> {
         if let Some(side) = at_bound(gene, value) {
             let mut said = calibration.identifiability.iter();
             let blind = said.any(|own| own.name == gene.name && own.seen == Determination::NotSeen);
+            let (bound, value) = (bound(gene, side), quantity(value, &gene.unit));
+            let near = if bound.ends_with(&value) {
+                String::new()
+            } else {
+                format!(" ({value})")
+            };
             warnings.push(format!(
-                "{} ended at {} ({}): {}.",
+                "{} ended at {bound}{near}: {}.",
                 gene.name,
-                bound(gene, side),
-                quantity(value, &gene.unit),
                 if blind {
                     "near this value the record does not determine it, to first order; another value may fit better"
                 } else {

@@ -10,8 +10,8 @@ mod outcome;
 
 pub use calibration::intervals;
 pub(super) use calibration::{
-    absolute_worse, channels, complete_objective, headline, lacks_intervals, model_error,
-    no_intervals, noise_level, rivals, square_after, warnings,
+    absolute_worse, agreement, channels, complete_objective, headline, lacks_intervals,
+    model_error, no_intervals, noise_level, rivals, square_after, warnings,
 };
 pub(super) use gene::{at_bound, bound, interval_cell};
 pub(super) use name::{

@@ -7,6 +7,7 @@ use discrepancy::validation::compare::DataRole;
 use discrepancy::verdict::Verdict;
 use protocol::case::Channel;
 use protocol::pumping_unit::EFFECT_UNITS;
+use report::document::TerminalStyle;
 use report::{self, diagnosis};
 use roxmltree::Document;
 use std::path::Path;
@@ -26,7 +27,7 @@ fn page(made: &SampleDiagnosis) -> String {
 }
 
 fn text(subject: &diagnosis::DiagnosisInput<'_>) -> String {
-    report::text(&diagnosis::report(subject), false)
+    report::text(&diagnosis::report(subject), TerminalStyle::default())
 }
 
 #[test]

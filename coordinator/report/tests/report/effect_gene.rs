@@ -1,6 +1,7 @@
 //! Tests of genes that are parameters of effects, in tables, figures and sentences.
 use crate::sample;
 use protocol::case::{EffectSetting, Scale, Unknown};
+use report::document::TerminalStyle;
 use report::table;
 
 #[test]
@@ -16,7 +17,7 @@ fn a_parameter_of_an_effect_is_shown_beside_the_coefficients() {
     for (number, point) in (0..).zip(&mut calibration.history) {
         point.genes.push(-899.0 + f64::from(number));
     }
-    let text = table::text(&table::table_3(&calibration), false);
+    let text = table::text(&table::table_3(&calibration), TerminalStyle::default());
     let after = text.split("Effects").nth(1).expect("a group of its own");
     let row = after
         .lines()

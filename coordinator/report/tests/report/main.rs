@@ -9,6 +9,7 @@ mod suspicion;
 
 use protocol::job::{Reached, Verdict};
 use protocol::pumping_unit::{Simulation, failure};
+use report::document::TerminalStyle;
 use report::pumping_unit::{balance, simulation};
 use report::{
     self, Calibration, Figure, SingleRun, chart, table, write_calibration, write_simulation,
@@ -371,7 +372,7 @@ fn a_failed_recommended_run_draws_what_exists_and_says_so() {
     };
     let lengths = simulated(&svg);
     assert_eq!(lengths[lengths.len() - 2..], [210, 720]);
-    let tables = table::text(&table::table_3(&calibration), false);
+    let tables = table::text(&table::table_3(&calibration), TerminalStyle::default());
     assert!(
         tables.contains("Recommended parameters failed: the rope sank"),
         "{tables}"
@@ -474,9 +475,13 @@ fn huge_histories_stay_small() {
 #[test]
 fn terminal_tables_are_styled_only_on_demand() {
     let table = table::table_3(&sample::calibration(10));
-    let plain = table::text(&table, false);
+    let plain = table::text(&table, TerminalStyle::default());
     assert!(!plain.contains('\u{1b}'));
-    assert!(table::text(&table, true).contains('\u{1b}'));
+    let bold = TerminalStyle {
+        bold: true,
+        ..TerminalStyle::default()
+    };
+    assert!(table::text(&table, bold).contains('\u{1b}'));
     for part in [
         "kb56",
         "N·m/deg",
@@ -488,8 +493,8 @@ fn terminal_tables_are_styled_only_on_demand() {
     }
     let run = sample::single();
     let drawn = Simulation::of(&run.curves).unwrap();
-    let single =
-        table::text(&simulation(&run, &drawn), false) + &table::text(&balance(&run, &drawn), false);
+    let single = table::text(&simulation(&run, &drawn), TerminalStyle::default())
+        + &table::text(&balance(&run, &drawn), TerminalStyle::default());
     for part in [
         "gauge 4",
         "stroke",
@@ -562,11 +567,11 @@ fn an_absolute_error_that_rose_behind_a_free_offset_is_said() {
     let said = "the absolute mean squared error (offset not removed) got worse";
     let text = words(&page_of(&calibration));
     assert!(text.contains(said), "{text}");
-    let printed = table::text(&table::table_3(&calibration), false);
+    let printed = table::text(&table::table_3(&calibration), TerminalStyle::default());
     assert!(printed.contains(said) && printed.contains("MSE, absolute (offset not removed)"));
     let after = &mut calibration.conditions[0].optimised.evaluation.channels[0];
     after.mse_fixed_offset = 0.5 * before.mse_fixed_offset;
-    let printed = table::text(&table::table_3(&calibration), false);
+    let printed = table::text(&table::table_3(&calibration), TerminalStyle::default());
     assert!(!printed.contains(said));
 }
 
@@ -593,7 +598,7 @@ fn computed_records_are_not_passed_off_as_measured() {
 #[test]
 fn the_slowest_simulations_are_listed_with_what_they_cost() {
     let calibration = sample::calibration(1000);
-    let text = report::text(&report::calibration(&calibration), false);
+    let text = report::text(&report::calibration(&calibration), TerminalStyle::default());
     let (_, list) = text.split_once("The slowest simulations").expect("a table");
     let (list, note) = list
         .split_once("All 1\u{202f}000 simulations")

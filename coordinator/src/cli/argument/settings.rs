@@ -6,13 +6,12 @@ use search::{
     strategy::{CATALOGUE, Preset, SearchPlan, Settings, SettingsError, definition::PresetSetting},
     test_function::RESONANCE,
 };
-use std::{collections::BTreeMap, fmt::Write as _};
 
 /// Settings that replace those of the preset.
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct SettingsChoice {
-    /// Set one of the preset's settings; may be given several times, or with commas. The long help
-    /// (--help) lists them.
+    /// Set one of the preset's settings, which `horsehead presets NAME` lists; may be given several times, or
+    /// with commas.
     #[arg(
         long,
         value_name = "KEY=VALUE",
@@ -92,69 +91,68 @@ impl SettingsChoice {
     }
 }
 
-/// Converts the error for a rejected setting into a message and a remedy: the nearest known key, or where the
-/// allowed values are listed.
+/// Similarity from which a mistyped key counts as another one: `populaton` is 0.9 like `population` and 0.4
+/// like `points`.
+const ALIKE: f64 = 0.6;
+
+/// Converts the error for a rejected setting into a message and a remedy: the nearest known key, of this preset
+/// or of another one, and the command that lists the settings.
 pub(crate) fn refuse(preset: &Preset, error: SettingsError) -> Problem {
-    let message = format!("preset {}: {error}", preset.name);
-    let help = if let SettingsError::Unknown { key, known } = error {
-        let alike = |one: &&String| strsim::normalized_damerau_levenshtein(&key, one);
-        let near = known.iter().max_by(|a, b| alike(a).total_cmp(&alike(b)));
-        let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
-        format!("{near}it has: {}", known.join(", "))
+    let name = preset.name;
+    let message = format!("preset {name}: {error}");
+    let list = format!("`horsehead presets {name}` lists its settings");
+    let near = if let SettingsError::Unknown { key, .. } = &error {
+        nearest(key, preset)
     } else {
-        "`horsehead calibrate --help` lists what every setting may be".to_owned()
+        None
     };
-    Problem {
-        message,
-        remedy: help,
-    }
+    let remedy = match near {
+        Some((near, own)) if own.name == name => format!("did you mean `{near}`? {list}"),
+        Some((near, _)) => {
+            let has = |preset: &&Preset| preset.settable().iter().any(|one| one.key == near);
+            let others: Vec<&str> = CATALOGUE.iter().filter(has).map(|one| one.name).collect();
+            format!("`{near}` is a setting of {}; {list}", others.join(", "))
+        }
+        None => list,
+    };
+    Problem { message, remedy }
 }
 
-/// Renders the table of all settings for the help text: allowed values, the value in every preset that has
-/// the setting, and its meaning.
-pub(crate) fn table() -> String {
-    // of a function that has everything on which a default of the table depends
+/// Returns the setting whose key is most like the given one, with its preset; a setting of `first` comes before
+/// equal ones of other presets.
+fn nearest<'a>(key: &str, first: &'a Preset) -> Option<(String, &'a Preset)> {
+    let presets = std::iter::once(first).chain(CATALOGUE);
+    let all = presets.flat_map(|preset| {
+        let settable = preset.settable().into_iter();
+        settable.map(move |one| (one.key, preset))
+    });
+    let alike = all.map(|(near, preset)| {
+        let alike = strsim::normalized_damerau_levenshtein(key, &near);
+        (alike, near, preset)
+    });
+    let near = alike.filter(|(alike, ..)| *alike >= ALIKE);
+    // of equals the first
+    let best = near.reduce(|best, one| if one.0 > best.0 { one } else { best })?;
+    Some((best.1, best.2))
+}
+
+/// Returns the table of a preset's settings: key with allowed values, the value in this preset, and the
+/// meaning.
+pub(crate) fn table(preset: &Preset) -> String {
+    // of a function that has everything on which a default depends
     let space = RESONANCE.space();
     let plan = SearchPlan {
         space: &space,
         workers: 1,
     };
-    let mut text = String::new();
-    let mut listed: Vec<String> = Vec::new();
-    for one in CATALOGUE.iter().flat_map(Preset::settable) {
-        if listed.contains(&one.key) {
-            continue;
-        }
-        let allowed = one.setting.allowed();
-        let _infallible = writeln!(
-            text,
-            "  {}={allowed}\n      {}\n      [{}]",
-            one.key,
-            one.setting.meaning,
-            usual(&one.key, &plan)
-        );
-        listed.push(one.key);
-    }
-    text
-}
-
-/// Formats the default values of a setting, grouped by preset, for example `quick 32; paper, window 80`.
-fn usual(key: &str, plan: &SearchPlan<'_>) -> String {
-    let mut by_value: BTreeMap<String, Vec<&str>> = BTreeMap::new();
-    for preset in CATALOGUE {
-        let named = preset.settable();
-        let Some(one) = named.iter().find(|one| one.key == key) else {
-            continue;
+    let usual = (preset.settings)(&plan);
+    let one = |one: PresetSetting| {
+        let value = match one.value(&usual) {
+            _ if one.setting.follows_workers => "by the workers".to_owned(),
+            value => value.unwrap_or_default(),
         };
-        let value = if one.setting.follows_workers {
-            Some("by the workers".to_owned())
-        } else {
-            one.value(&(preset.settings)(plan))
-        };
-        let presets = by_value.entry(value.unwrap_or_default()).or_default();
-        presets.push(preset.name);
-    }
-    let words = by_value.iter();
-    let words = words.map(|(value, presets)| format!("{} {value}", presets.join(", ")));
-    words.collect::<Vec<_>>().join("; ")
+        let (key, allowed, meaning) = (&one.key, one.setting.allowed(), one.setting.meaning);
+        format!("  {key} = {value}\n      {meaning} ({allowed})\n")
+    };
+    preset.settable().into_iter().map(one).collect()
 }

@@ -17,8 +17,6 @@ pub(crate) struct WorkersChoice {
     /// Worker processes to start on this machine; 0 for none [default: one per core].
     #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
     workers: Option<usize>,
-    #[command(flatten)]
-    pub(crate) remote: RemoteChoice,
     /// How long the run waits where its disk is full, or while all that is left are jobs whose workers were lost,
     /// before it ends with what it has, in minutes [default: 10].
     #[arg(long, value_name = "MINUTES", env = "HORSEHEAD_PAUSE_LIMIT", value_parser = clap::value_parser!(u32).range(0..=100_000))]
@@ -34,10 +32,14 @@ pub(crate) struct WorkersChoice {
         env = "HORSEHEAD_DASHBOARD"
     )]
     pub(crate) dashboard: Option<u16>,
+    // the last, because its heading stays in force
+    #[command(flatten)]
+    pub(crate) remote: RemoteChoice,
 }
 
 /// Arguments that let workers of other machines take part, and that launch such workers for the time of a run.
 #[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Workers on other machines")]
 pub(crate) struct RemoteChoice {
     #[command(flatten)]
     pub(crate) door: RemoteAccess,

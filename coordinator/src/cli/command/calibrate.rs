@@ -1,10 +1,10 @@
-//! `horsehead calibrate`: identifies the unknowns of a case and reports the result.
+//! `horsehead calibrate`: fits the unknowns of a case to its records and reports the result.
 use crate::cli::{
     argument::{
         case::{CaseChoice, LoadedCase},
         individuals::Individuals,
         output::OutputChoice,
-        settings::{self, SettingsChoice},
+        settings::SettingsChoice,
         workers::WorkersChoice,
     },
     output::{
@@ -28,26 +28,29 @@ use clap::{Args, builder::PossibleValuesParser};
 use protocol::case::Case;
 use search::{
     space::Space,
-    strategy::{CATALOGUE, Preset, SearchPlan, Settings, build_after, preset},
+    strategy::{CATALOGUE, SearchPlan, Settings, build_after, preset},
 };
 use std::path::{Path, PathBuf};
 use study::Watch as _;
 
-/// Identify the unknowns of a case from its records; the same command resumes.
+/// Fit the unknowns of a case to its records; the same command resumes.
 #[derive(Debug, Args)]
-#[command(
-    after_help = format!("{}\n{EXIT_CODES}", examples()),
-    after_long_help = format!(
-        "{}\nSettings, with what each may be and [what it is in the presets that have it]:\n\
-         {}\n{EXIT_CODES}",
-        examples(),
-        settings::table()
-    )
-)]
+#[command(after_help = format!("\
+Examples:
+  horsehead calibrate cases/cyjs10-5-37hb
+  horsehead calibrate cases/cyjs10-5-37hb --preset paper --set encoding=gray --set population=40
+  horsehead calibrate cases/cyjs10-5-37hb --listen quic/0.0.0.0:7447 --tls keys
+  horsehead calibrate cases/cyjs10-5-37hb --ssh node1,node2
+  horsehead calibrate cases/cyjs10-5-37hb --genes runs/cyjs10-5-37hb-diagnose-seed1/calibrated.toml
+  horsehead calibrate cases/cyjs10-5-37hb --preset l-shade --start individuals.csv
+
+Ctrl-C stops cleanly: results so far are kept, and the same command goes on.
+
+{EXIT_CODES}"))]
 pub(super) struct Arguments {
     #[command(flatten)]
     choice: CaseChoice,
-    /// How to search; see below.
+    /// How to search: one of those that `horsehead presets` lists.
     #[arg(
         long,
         default_value = DEFAULT_PRESET,
@@ -79,29 +82,9 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "L", env = "HORSEHEAD_WINDOW", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     window: Option<u32>,
     #[command(flatten)]
-    workers: WorkersChoice,
-    #[command(flatten)]
     output: OutputChoice,
-}
-
-fn examples() -> String {
-    let line = |preset: &Preset| format!("  {:<14} {}\n", preset.name, preset.summary);
-    let presets: String = CATALOGUE.iter().map(line).collect();
-    format!(
-        "\
-Examples:
-  horsehead calibrate cases/cyjs10-5-37hb
-  horsehead calibrate cases/cyjs10-5-37hb --preset paper --set encoding=gray --set population=40
-  horsehead calibrate cases/cyjs10-5-37hb --listen quic/0.0.0.0:7447 --tls keys
-  horsehead calibrate cases/cyjs10-5-37hb --ssh node1,node2
-  horsehead calibrate cases/cyjs10-5-37hb --genes runs/cyjs10-5-37hb-diagnose-seed1/calibrated.toml
-  horsehead calibrate cases/cyjs10-5-37hb --preset l-shade --start individuals.csv
-
-Presets:
-{presets}
-Ctrl-C stops cleanly: results so far are kept, and the same command goes on.
-"
-    )
+    #[command(flatten)]
+    workers: WorkersChoice,
 }
 
 /// Number of workers assumed for planning when workers of other machines may connect.

@@ -94,9 +94,14 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let end = arguments
             .attached
             .then(|| input_end(move || own.has_ended()));
-        block_on((listener, &token), pages, end)
+        let served = block_on((listener, &token), Arc::clone(&pages), end);
+        pages.close();
+        served
     } else {
-        block_on((listener, &token), Arc::new(FolderPages::begin(path)), None)
+        let pages = Arc::new(FolderPages::begin(path));
+        let served = block_on((listener, &token), Arc::clone(&pages), None);
+        pages.close();
+        served
     }
 }
 

@@ -65,9 +65,9 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
     #[command(flatten)]
-    workers: WorkersChoice,
-    #[command(flatten)]
     output: OutputChoice,
+    #[command(flatten)]
+    workers: WorkersChoice,
 }
 
 /// Runs the diagnosis from the measured records to the report.

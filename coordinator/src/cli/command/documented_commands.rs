@@ -119,7 +119,7 @@ fn typed(word: &str, before: &str) -> String {
         !word.is_empty() && (capital || word.contains('{') || word.starts_with('<'))
     };
     match (placeholder(word), before) {
-        (true, "--preset") => "quick".to_owned(),
+        (true, "--preset" | "presets") => "quick".to_owned(),
         (true, "--set") => "population=40".to_owned(),
         (true, _) => "1".to_owned(),
         (false, _) => word.to_owned(),

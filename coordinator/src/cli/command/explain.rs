@@ -137,7 +137,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 fn text(account: &RunAccount, object: &ExplainOutput) -> String {
-    let shown = |shown: &Table| table::text(shown, terminal::styled()).trim_end().to_owned();
+    let shown = |shown: &Table| table::text(shown, terminal::style()).trim_end().to_owned();
     let several = |count: u64, one: &str| match count {
         1 => format!("1 {one}"),
         _ => format!("{count} {one}s"),

@@ -19,6 +19,7 @@ mod explain;
 mod export;
 mod identify;
 mod keys;
+mod presets;
 mod report;
 mod simulate;
 mod sweep;
@@ -29,12 +30,12 @@ mod workers;
 
 use super::output::{problem, terminal};
 use crate::pumping_unit::{command as head, record};
-use clap::{CommandFactory as _, Parser, Subcommand};
+use clap::{Arg, ArgAction, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// Makes a simulation agree with what was measured on the machine, and finds what it is missing.
 #[derive(Debug, Parser)]
-#[command(name = "horsehead", version, max_term_width = 100, after_help = FIRST_STEPS)]
+#[command(name = "horsehead", version, max_term_width = 100)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -48,7 +49,72 @@ First steps:
   horsehead diagnose cases/cyjs10-5-37hb
   horsehead identify cases/cyjs10-5-37hb
 
+Every option can also be set by an environment variable, as HORSEHEAD_SEED for --seed.
 Exit codes: 0 done, 1 failed, 2 usage or bad input, 130 interrupted.";
+
+/// Commands by their use, in the order in which the help lists them.
+const GROUPS: &[(&str, &[&str])] = &[
+    (
+        "Commands:",
+        &[
+            "case",
+            "record",
+            "head",
+            "simulate",
+            "calibrate",
+            "presets",
+            "verify",
+            "diagnose",
+            "identify",
+            "dashboard",
+            "report",
+            "export",
+        ],
+    ),
+    (
+        "For clusters:",
+        &["sweep", "workers", "keys", "doctor", "explain", "bench"],
+    ),
+    (
+        "For programs:",
+        &["evaluate", "ask-tell", "allow", "completions"],
+    ),
+];
+
+/// Builds the commands with their help: on the first level by their use, everywhere in two columns, without the
+/// variables that set options, whose names follow from the options.
+fn command() -> clap::Command {
+    let command = with_plain_help(Cli::command());
+    let mut list = String::new();
+    for (title, names) in GROUPS {
+        let line = |name: &&str| {
+            let about = command
+                .find_subcommand(name)
+                .and_then(clap::Command::get_about);
+            format!("  {name:<12} {}\n", about.cloned().unwrap_or_default())
+        };
+        let lines: String = names.iter().map(line).collect();
+        list.push_str(&format!("{title}\n{lines}\n"));
+    }
+    command.help_template(format!(
+        "{{about}}\n\n{{usage-heading}} {{usage}}\n\n{list}\
+         Each command says more with --help.\n\n{FIRST_STEPS}\n"
+    ))
+}
+
+/// Makes `--help` print what `-h` does, for a command and all below it.
+fn with_plain_help(command: clap::Command) -> clap::Command {
+    let help = Arg::new("help")
+        .short('h')
+        .long("help")
+        .help("Print this help");
+    command
+        .disable_help_flag(true)
+        .next_help_heading(None::<&str>)
+        .arg(help.action(ArgAction::HelpShort))
+        .mut_args(|arg| arg.hide_env(true))
+        .mut_subcommands(with_plain_help)
+}
 
 /// Defines the enum of the commands and its dispatch to their `run` functions; an expression in brackets is
 /// passed to the command as an additional argument.
@@ -74,6 +140,7 @@ commands! {
     Calibrate: calibrate,
     AskTell: ask_tell,
     Evaluate: evaluate,
+    Presets: presets,
     Sweep: sweep,
     Verify: verify,
     Diagnose: diagnose,
@@ -90,12 +157,13 @@ commands! {
     Doctor: doctor,
     Workers: workers,
     Bench: bench,
-    Completions: completions [&mut Cli::command()],
+    Completions: completions [&mut command()],
 }
 
 /// Runs the `horsehead` command given by the process arguments and returns its exit code.
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    let parsed = command().try_get_matches();
+    let cli = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => match problem::in_plain_words(&error.to_string()) {
             Some(text) if error.use_stderr() => {

@@ -37,6 +37,9 @@ pub(super) struct Arguments {
     /// Folder for the report, the figures and the curves; nothing is written if it is not given.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_OUT")]
     out: Option<PathBuf>,
+    /// Write into a folder that holds other files, a case or a run, and replace files of the same names.
+    #[arg(long, requires = "out", env = "HORSEHEAD_FORCE")]
+    force: bool,
     /// Also differentiate the curves by unknowns separated by commas, parameters of effects as
     /// EFFECT.PARAMETER (whether the case has the effect or not), or `all` that the case has.
     #[arg(long, value_name = "NAMES|all", env = "HORSEHEAD_DERIVATIVES")]
@@ -52,7 +55,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let condition = arguments.individual.condition(case)?;
     let genes = start.map_or_else(|| case.start(), |start| start.genes);
     if let Some(folder) = &arguments.out {
-        check_out(folder)?;
+        check_out(folder, arguments.force)?;
     }
     let columns = match &arguments.derivatives {
         Some(typed) => columns(case, typed)?,
@@ -118,7 +121,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let tables = report::ranges(&run).into_iter();
         let tables = tables.chain(report::agreement(&run));
         let tables = tables.chain(report::derivatives(&run));
-        let texts = tables.map(|table| table::text(&table, terminal::styled()));
+        let texts = tables.map(|table| table::text(&table, terminal::style()));
         texts.collect::<Vec<_>>().join("\n")
     };
     terminal::print(arguments.output.output, tables, &object)?;

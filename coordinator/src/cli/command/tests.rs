@@ -3,7 +3,7 @@ use super::*;
 use crate::cli::{
     argument::{
         individual::condition,
-        settings::{ResolvedSettings, SettingsChoice},
+        settings::{self, ResolvedSettings, SettingsChoice},
     },
     output::problem::Problem,
     run::{
@@ -482,6 +482,14 @@ fn unknown_settings_are_answered_with_the_nearest_and_bad_values_with_what_is_al
     );
     let error = chosen("quick", &[("window", "4")], 1).unwrap_err();
     assert!(error.message.contains("no setting `window`"), "{error:?}");
+    let error = chosen("quick", &[("populaton", "4")], 1).unwrap_err();
+    let remedy = &error.remedy;
+    assert!(
+        remedy.starts_with("`population` is a setting of memetic, hybrid, paper"),
+        "{remedy}"
+    );
+    let error = chosen("quick", &[("xyz", "4")], 1).unwrap_err();
+    assert_eq!(error.remedy, "`horsehead presets quick` lists its settings");
     let line = ["horsehead", "calibrate", "CASE", "--set"];
     let typed = |set: &'static str| Cli::try_parse_from(line.into_iter().chain([set]));
     assert!(typed("population=40,encoding=gray").is_ok() && typed("population").is_err());
@@ -507,23 +515,53 @@ fn what_follows_the_workers_stays_with_the_run() {
 }
 
 #[test]
-fn help_lists_every_setting_of_every_preset_with_its_values() {
-    let mut command = Cli::command();
-    let calibrate = command.find_subcommand_mut("calibrate").unwrap();
-    let help = calibrate.render_long_help().to_string();
-    for named in search::strategy::CATALOGUE
-        .iter()
-        .flat_map(search::strategy::Preset::settable)
-    {
-        let line = format!("  {}={}", named.key, named.setting.allowed());
-        assert!(help.contains(&line), "{line}");
+fn every_setting_of_every_preset_is_listed_with_its_values() {
+    for preset in search::strategy::CATALOGUE {
+        let table = settings::table(preset);
+        for named in preset.settable() {
+            let allowed = format!("({})\n", named.setting.allowed());
+            let lines = table.split_once(&format!("  {} = ", named.key)).unwrap().1;
+            let meaning = lines.lines().nth(1).unwrap();
+            assert!(format!("{meaning}\n").ends_with(&allowed), "{meaning}");
+        }
     }
-    assert!(
-        !calibrate
-            .render_help()
-            .to_string()
-            .contains("special_crossover=")
-    );
+}
+
+/// Checks that the help of the first level lists every command once, and that of a command fits on two screens,
+/// with the options of the network apart.
+#[test]
+fn help_is_short_and_complete() {
+    let mut all = command();
+    let names: Vec<String> = {
+        let all = all.get_subcommands();
+        all.map(|one| one.get_name().to_owned()).collect()
+    };
+    let text = all.render_help().to_string();
+    for name in &names {
+        let lines = text.lines();
+        let own = lines.filter(|line| line.starts_with(&format!("  {name} ")));
+        assert_eq!(own.count(), 1, "{name}: {text}");
+    }
+    let listed: usize = GROUPS.iter().map(|(_, names)| names.len()).sum();
+    assert_eq!(listed, names.len());
+    for title in ["For clusters:", "For programs:"] {
+        assert!(text.contains(title), "{text}");
+    }
+    let help = |words: &[&str]| {
+        let parsed = command().try_get_matches_from(words);
+        parsed.unwrap_err().to_string()
+    };
+    let long = help(&["horsehead", "calibrate", "--help"]);
+    assert!(long.lines().count() <= 100, "{long}");
+    let (own, network) = long.split_once("Workers on other machines:").unwrap();
+    for option in ["--output", "--dashboard", "--pause-limit", "--help"] {
+        assert!(
+            own.contains(option) && !network.contains(option),
+            "{option}"
+        );
+    }
+    assert!(network.contains("--listen") && network.contains("--prologue"));
+    assert_eq!(long, help(&["horsehead", "calibrate", "-h"]));
 }
 
 /// Checks that the remedy for a damaged run folder names the right command, which is read from the journal.

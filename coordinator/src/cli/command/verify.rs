@@ -101,8 +101,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         terminal::tell(&format!("note: {note}"));
     }
     let tables = || {
-        let table = table::text(&table::table_4(&case, &result), terminal::styled());
-        let machine = report::machine(&object.machine, terminal::styled());
+        let table = table::text(&table::table_4(&case, &result), terminal::style());
+        let machine = report::machine(&object.machine, terminal::style());
         format!("{table}\n{machine}")
     };
     terminal::print(arguments.output.output, tables, &object)

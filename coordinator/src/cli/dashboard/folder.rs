@@ -1,16 +1,18 @@
 //! Pages of a folder of runs: a table that compares them, and the page of each.
 use super::{
-    follow::{Followed, is_locked},
+    follow::{Followed, has_grown_lately, is_locked},
     simulator::Simulator,
 };
 use crate::cli::run::folder::{MANIFEST, RESULT, RunFolder};
 use dashboard::{Board, PageReader, Pages};
+use dispatch::journal::{self, Growth, JournalFollower};
 use maud::{Markup, html};
+use protocol::event::Event;
 use report::{
     Block, Section,
     number::{MISSING, count, duration, significant},
 };
-use serde_json::Value;
+use serde_json::{Map, Value};
 use std::{
     collections::BTreeMap,
     fs,
@@ -45,10 +47,10 @@ impl FolderPages {
         let open = Arc::new(());
         let (folder, wanted) = (path.to_owned(), Arc::downgrade(&open));
         thread::spawn(move || {
-            let mut board = board;
+            let (mut board, mut counts) = (board, Counts::default());
             while wanted.strong_count() > 0 {
-                let section = list(&folder);
-                board.publish(("Runs", "folder"), 0, &[section], true);
+                let section = list(&folder, &mut counts);
+                board.publish(("Runs", "folder"), &[section], true);
                 thread::sleep(INTERVAL);
             }
         });
@@ -86,6 +88,15 @@ impl FolderPages {
     }
 }
 
+impl FolderPages {
+    /// Ends the worker of the pages' simulator, and removes its temporary run.
+    pub(crate) fn close(&self) {
+        let mut followed = self.followed.lock().unwrap_or_else(PoisonError::into_inner);
+        followed.clear();
+        self.simulator.close();
+    }
+}
+
 impl Pages for FolderPages {
     fn start(&self) -> PageReader {
         self.index.clone()
@@ -107,10 +118,8 @@ impl Pages for FolderPages {
 /// Run as the table of a folder shows it.
 struct Row {
     name: String,
-    kind: String,
-    case: String,
-    preset: String,
-    seed: Option<u64>,
+    /// Command, preset, seed and case, in words.
+    about: String,
     state: &'static str,
     simulations: Option<u64>,
     outcome: String,
@@ -123,21 +132,38 @@ fn json(file: &Path) -> Option<Value> {
     serde_json::from_str(&fs::read_to_string(file).ok()?).ok()
 }
 
+/// Journals of unfinished runs, whose results are counted as they grow.
+#[derive(Default)]
+struct Counts(BTreeMap<PathBuf, (JournalFollower, u64)>);
+
+impl Counts {
+    /// Returns the number of results in the journal of a run; `None` if it cannot be read.
+    fn of(&mut self, run: &Path) -> Option<u64> {
+        let new = || (JournalFollower::new(&run.join(journal::FILE)), 0);
+        let (follower, count) = self.0.entry(run.to_owned()).or_insert_with(new);
+        loop {
+            let read =
+                follower.read(|_, event| *count += u64::from(matches!(event, Event::Finished(_))));
+            match read.ok()? {
+                Growth::Replaced => *count = 0,
+                Growth::Missing => return None,
+                Growth::Unchanged | Growth::Grown => return Some(*count),
+            }
+        }
+    }
+}
+
 impl Row {
     /// Reads a run folder; `None` if it holds no run.
-    fn read(folder: &Path) -> Option<Self> {
+    fn read(folder: &Path, counts: &mut Counts) -> Option<Self> {
         let name = folder.file_name()?.to_string_lossy().into_owned();
         if !folder.join(MANIFEST).exists() {
             return None;
         }
-        let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
         let Some(manifest) = json(&folder.join(MANIFEST)) else {
             return Some(Self {
                 name,
-                kind: String::new(),
-                case: String::new(),
-                preset: String::new(),
-                seed: None,
+                about: String::new(),
                 state: "damaged",
                 simulations: None,
                 outcome: format!("{MANIFEST} cannot be read"),
@@ -148,34 +174,23 @@ impl Row {
         let result = json(&folder.join(RESULT)).unwrap_or(Value::Null);
         let state = if is_locked(folder) {
             "running"
-        } else if result.is_null() {
-            "stopped"
-        } else {
+        } else if !result.is_null() {
             "finished"
+        } else if has_grown_lately(folder) {
+            "running"
+        } else {
+            "stopped"
         };
-        let objective = result["objective"]["optimised"].as_f64();
-        let first = &result["effects"][0];
-        let effect = first["title"].as_str().or_else(|| first["id"].as_str());
-        let outcome = match (result["verdict"].as_str(), effect) {
-            (Some(verdict), Some(effect)) => format!("{}: {effect}", verdict.replace('_', " ")),
-            (Some(verdict), None) => verdict.replace('_', " "),
-            (None, _) => objective.map_or_else(String::new, significant),
-        };
-        let case = Path::new(manifest["case_folder"].as_str().unwrap_or_default());
-        let case = case.file_name().unwrap_or_default().to_string_lossy();
         let simulations = ["evaluations", "simulations"]
             .iter()
             .find_map(|key| result[key].as_u64());
         Some(Self {
             name,
-            kind: manifest["kind"].as_str().unwrap_or("calibrate").to_owned(),
-            case: case.into_owned(),
-            preset: text(&manifest["preset"]),
-            seed: manifest["seed"].as_u64(),
+            about: about(&manifest),
             state,
-            simulations,
-            outcome,
-            objective,
+            simulations: simulations.or_else(|| counts.of(folder)),
+            outcome: outcome(&result),
+            objective: result["objective"]["optimised"].as_f64(),
             wall_s: result["wall_s"].as_f64(),
         })
     }
@@ -184,17 +199,59 @@ impl Row {
         let missing = || MISSING.to_owned();
         html! {
             tr {
-                th scope="row" { a href=(format!("/runs/{}/", path_segment(&self.name))) { (self.name) } }
-                td { (self.kind) }
-                td { (self.case) }
-                td { (self.preset) }
-                td data-value=[self.seed] { (self.seed.map_or_else(missing, count)) }
-                td { (self.state) }
-                td data-value=[self.simulations] { (self.simulations.map_or_else(missing, count)) }
-                td data-value=[self.wall_s] { (self.wall_s.map_or_else(missing, duration)) }
-                td data-value=[self.objective] { (self.outcome) }
+                th scope="row" {
+                    a href=(format!("/runs/{}/", path_segment(&self.name))) { (self.name) }
+                    div.about { (self.about) }
+                }
+                td data-label="state" { (self.state) }
+                td.prose data-label="result" data-value=[self.objective] { (self.outcome) }
+                td data-label="evaluations" data-value=[self.simulations] { (self.simulations.map_or_else(missing, count)) }
+                td data-label="wall time" data-value=[self.wall_s] { (self.wall_s.map_or_else(missing, duration)) }
             }
         }
+    }
+}
+
+/// Returns the command of a run with preset, seed and case, in words.
+fn about(manifest: &Value) -> String {
+    let case = Path::new(manifest["case_folder"].as_str().unwrap_or_default());
+    let case = case.file_name().unwrap_or_default().to_string_lossy();
+    let text = |key: &str| manifest[key].as_str().filter(|text| !text.is_empty());
+    let mut words = vec![text("kind").unwrap_or("calibrate").to_owned()];
+    words.extend(text("preset").map(str::to_owned));
+    words.extend(manifest["seed"].as_u64().map(|seed| format!("seed {seed}")));
+    words.extend((!case.is_empty()).then(|| format!("case {case}")));
+    words.join(", ")
+}
+
+/// Returns the result of a finished run in a few words: the verdict and first effect of a diagnosis, the objective of a
+/// calibration, the number of unknowns that an identification determines.
+fn outcome(result: &Value) -> String {
+    let first = &result["effects"][0];
+    let effect = first["title"].as_str().or_else(|| first["id"].as_str());
+    if let Some(verdict) = result["verdict"].as_str() {
+        let verdict = verdict.replace('_', " ");
+        return effect.map_or_else(|| verdict.clone(), |effect| format!("{verdict}: {effect}"));
+    }
+    let objective = &result["objective"];
+    if let Some(optimised) = objective["optimised"].as_f64() {
+        let recommended = objective["recommended"].as_f64();
+        let before = recommended.map(|before| format!("{} → ", significant(before)));
+        return format!(
+            "objective {}{}",
+            before.unwrap_or_default(),
+            significant(optimised)
+        );
+    }
+    let unknowns = result["unknowns"].as_object();
+    let determined = |all: &Map<String, Value>| {
+        let both = all.values().filter(|own| own["seen"] == "both");
+        format!("{} of {} unknowns determined", both.count(), all.len())
+    };
+    match unknowns {
+        Some(_) if result["diagnose_first"] == true => "the model lacks something".to_owned(),
+        Some(unknowns) => determined(unknowns),
+        None => String::new(),
     }
 }
 
@@ -211,7 +268,7 @@ fn path_segment(name: &str) -> String {
 }
 
 /// Returns the section with the table of the runs of a folder, newest first.
-fn list(folder: &Path) -> Section {
+fn list(folder: &Path, counts: &mut Counts) -> Section {
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
         Err(error) => {
@@ -228,7 +285,7 @@ fn list(folder: &Path) -> Section {
                 .ok()?
                 .modified()
                 .ok();
-            Some((begun, Row::read(&entry.path())?))
+            Some((begun, Row::read(&entry.path(), counts)?))
         })
         .collect();
     runs.sort_by(|(a, one), (b, other)| b.cmp(a).then_with(|| one.name.cmp(&other.name)));
@@ -249,13 +306,14 @@ fn table<T>(runs: &[(T, Row)]) -> Markup {
                 " " span.count {}
             }
             div.scroll {
-                table data-sortable="" {
+                table.cards data-sortable="" {
                     thead {
                         tr {
-                            @for head in ["run", "command", "case", "preset", "seed", "state", "evaluations",
-                                "wall time", "objective or verdict"] {
-                                th scope="col" { (head) }
-                            }
+                            th scope="col" { "run" }
+                            th scope="col" { "state" }
+                            th.prose scope="col" { "result" }
+                            th scope="col" { "evaluations" }
+                            th scope="col" { "wall time" }
                         }
                     }
                     tbody { @for (_, row) in runs { (row.markup()) } }

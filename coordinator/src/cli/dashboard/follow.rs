@@ -368,7 +368,6 @@ impl Shared {
                 }
                 board.publish(
                     (&title, &word),
-                    state.position,
                     &page,
                     ending.report.is_some() || ending.error.is_some(),
                 );
@@ -397,6 +396,8 @@ impl Shared {
             } else {
                 INCOMPLETE.to_owned()
             }
+        } else if has_grown_lately(&self.path) {
+            "running".to_owned()
         } else {
             "stopped".to_owned()
         }
@@ -436,8 +437,7 @@ impl FollowObserver for Observer<'_> {
 }
 
 /// Returns whether a process of this machine has locked the journal in a run folder, or the file that earlier
-/// versions lock, from the kernel's table of locks; a run on another machine counts as running while its journal
-/// grows.
+/// versions lock, from the kernel's table of locks.
 pub(super) fn is_locked(run: &Path) -> bool {
     let journal = run.join(journal::FILE);
     let table = fs::read_to_string("/proc/locks").unwrap_or_default();
@@ -451,6 +451,13 @@ pub(super) fn is_locked(run: &Path) -> bool {
             return true;
         }
     }
+    false
+}
+
+/// Returns whether the journal in a run folder was written a short time ago, by which an unfinished run of another
+/// machine is seen to go on.
+pub(super) fn has_grown_lately(run: &Path) -> bool {
+    let journal = run.join(journal::FILE);
     let changed = fs::metadata(journal).and_then(|file| file.modified());
     let age = changed.map(|at| SystemTime::now().duration_since(at).unwrap_or_default());
     age.is_ok_and(|age| age < Duration::from_secs(10))
@@ -548,6 +555,11 @@ impl RunPages {
     /// Returns whether the page shows the end of the run.
     pub(crate) fn has_ended(&self) -> bool {
         self.0.has_ended()
+    }
+
+    /// Ends the worker of the page's simulator, and removes its temporary run.
+    pub(crate) fn close(&self) {
+        self.0.shared.simulator.close();
     }
 }
 

@@ -6,11 +6,13 @@ use std::{
     collections::BTreeMap,
     sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc},
     thread,
-    time::Duration,
+    time::{Duration, Instant},
 };
 use study::{CompareRequest, PICTURES, StudyError};
 use tokio::sync::oneshot;
 
+/// Longest wait for the end of the worker when the dashboard ends.
+const PATIENCE: Duration = Duration::from_secs(5);
 /// Time after the last request at which the worker process ends.
 const IDLE: Duration = Duration::from_mins(1);
 /// Maximum number of individuals that one temporary run simulates, below the 256 for which a comparison has
@@ -62,6 +64,13 @@ struct Request {
     genes: Vec<f64>,
 }
 
+/// Message to the simulator's thread.
+enum Message {
+    Simulate(Request),
+    /// Ends the worker and removes its temporary run.
+    End,
+}
+
 /// Readers that wait for the result of an individual.
 type Readers = Vec<oneshot::Sender<Result<Simulated, String>>>;
 
@@ -76,24 +85,48 @@ struct Shared {
 /// Simulator of individuals, which starts its worker with the first request and keeps the last results.
 #[derive(Clone)]
 pub(super) struct Simulator {
-    requests: mpsc::SyncSender<Request>,
+    requests: mpsc::SyncSender<Message>,
     shared: Arc<Mutex<Shared>>,
+    /// Receiver whose sender the thread drops at its end.
+    ended: Arc<Mutex<mpsc::Receiver<()>>>,
 }
 
 impl Simulator {
     /// Creates a simulator without a worker.
     pub(super) fn new() -> Self {
-        let (simulator, asked) = Self::without_thread();
+        let (simulator, asked, running) = Self::without_thread();
         let shared = Arc::clone(&simulator.shared);
-        thread::spawn(move || answer(&asked, &shared));
+        thread::spawn(move || {
+            answer(&asked, &shared);
+            drop(running);
+        });
         simulator
     }
 
-    /// Creates a simulator with the requests that its thread is to answer.
-    fn without_thread() -> (Self, mpsc::Receiver<Request>) {
+    /// Ends the worker and removes its temporary run; waits for that, but not longer than [`PATIENCE`].
+    pub(super) fn close(&self) {
+        // a full queue is worked off, or its requests are dropped with their readers
+        let begun = Instant::now();
+        while let Err(mpsc::TrySendError::Full(_)) = self.requests.try_send(Message::End) {
+            if begun.elapsed() > PATIENCE {
+                return;
+            }
+            thread::sleep(Duration::from_millis(50));
+        }
+        let ended = self.ended.lock().unwrap_or_else(PoisonError::into_inner);
+        let _or_late = ended.recv_timeout(PATIENCE);
+    }
+
+    /// Creates a simulator with the messages that its thread is to answer, and the sender to drop at the thread's end.
+    fn without_thread() -> (Self, mpsc::Receiver<Message>, mpsc::Sender<()>) {
         let (requests, asked) = mpsc::sync_channel(MOST_WAITING);
-        let shared = Arc::default();
-        (Self { requests, shared }, asked)
+        let (running, ended) = mpsc::channel();
+        let simulator = Self {
+            requests,
+            shared: Arc::default(),
+            ended: Arc::new(Mutex::new(ended)),
+        };
+        (simulator, asked, running)
     }
 
     /// Returns the kept result of an individual.
@@ -113,9 +146,11 @@ impl Simulator {
             return receiver;
         }
         let is_new = !shared.awaited.contains_key(&key);
-        let request = || Request {
-            case: Arc::clone(case),
-            genes: genes.to_vec(),
+        let request = || {
+            Message::Simulate(Request {
+                case: Arc::clone(case),
+                genes: genes.to_vec(),
+            })
         };
         if is_new && self.requests.try_send(request()).is_err() {
             let message = "too many individuals are waiting to be simulated; choose it again later";
@@ -162,10 +197,14 @@ impl Shared {
     }
 }
 
-/// Answers requests until the simulator is dropped; those for one case in a row share a worker.
-fn answer(asked: &mpsc::Receiver<Request>, shared: &Mutex<Shared>) {
-    let mut next = None;
-    while let Some(first) = next.take().or_else(|| asked.recv().ok()) {
+/// Answers requests until the simulator is closed or dropped; those for one case in a row share a worker.
+fn answer(asked: &mpsc::Receiver<Message>, shared: &Mutex<Shared>) {
+    let (mut next, mut is_open) = (None, true);
+    while is_open {
+        let first = match next.take().map_or_else(|| asked.recv(), Ok) {
+            Ok(Message::Simulate(first)) => first,
+            Ok(Message::End) | Err(_) => return,
+        };
         let (case, key) = (Arc::clone(&first.case), first.case.key(&first.genes));
         if !lock(shared).is_awaited(&key) {
             continue;
@@ -177,12 +216,16 @@ fn answer(asked: &mpsc::Receiver<Request>, shared: &Mutex<Shared>) {
                 let request = match waiting.take() {
                     Some(request) => request,
                     None => match asked.recv_timeout(IDLE) {
-                        Ok(request) => request,
+                        Ok(Message::Simulate(request)) => request,
+                        Ok(Message::End) => {
+                            is_open = false;
+                            return Ok(());
+                        }
                         Err(_) => return Ok(()),
                     },
                 };
                 if request.case.hash != case.hash {
-                    next = Some(request);
+                    next = Some(Message::Simulate(request));
                     return Ok(());
                 }
                 let key = case.key(&request.genes);
@@ -244,7 +287,7 @@ mod tests {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../cases/cyjs10-5-37hb");
         let loaded = case::load(std::path::Path::new(folder), &case::Overrides::default()).unwrap();
         let case = HashedCase::new(&loaded).unwrap();
-        let (simulator, asked) = Simulator::without_thread();
+        let (simulator, asked, _running) = Simulator::without_thread();
         let mut first = simulator.simulate(&case, &[0.0]);
         let same = simulator.simulate(&case, &[0.0]);
         let more = MOST_WAITING - 1;

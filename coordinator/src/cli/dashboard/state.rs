@@ -43,8 +43,6 @@ pub(super) struct Shown {
 pub(super) struct RunState {
     /// Number of changes.
     pub(super) version: u64,
-    /// Offset up to which the journal was read (bytes).
-    pub(super) position: u64,
     pub(super) damage: Vec<String>,
     /// Whether the last coordinator process ended the run regularly.
     pub(super) closed: bool,
@@ -174,10 +172,9 @@ impl FollowObserver for SharedState {
         self.change(|state| state.result(job, finished));
     }
 
-    fn read(&mut self, growth: Growth, position: u64, damage: &[Damage]) {
+    fn read(&mut self, growth: Growth, _position: u64, damage: &[Damage]) {
         if growth == Growth::Grown {
             self.change(|state| {
-                state.position = position;
                 state.damage = describe_damage(damage);
             });
         }

@@ -99,7 +99,7 @@ pub(crate) fn show(run: &Run, found: &Found, wall_s: f64, output: Output) -> any
     for note in flags.into_iter().chain(said.into_iter().flatten()) {
         terminal::tell(&format!("note: {note}"));
     }
-    let tables = || report::parameters(&calibration, terminal::styled());
+    let tables = || report::parameters(&calibration, terminal::style());
     terminal::print(output, tables, &object)
 }
 

@@ -75,7 +75,7 @@ impl DiagnosisOutput<'_> {
     /// Prints the diagnosis in the chosen output format.
     pub(crate) fn print(&self, output: Output, object: &DiagnoseOutput) -> anyhow::Result<()> {
         let subject = self.subject()?;
-        let whole = || text(&report::report(&subject), terminal::styled());
+        let whole = || text(&report::report(&subject), terminal::style());
         terminal::print(output, whole, object)
     }
 

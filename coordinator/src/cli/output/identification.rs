@@ -35,7 +35,7 @@ pub(crate) fn show(
     }
     let object = object(&subject, &found.accounts);
     run.folder.write_json(RESULT, &object)?;
-    let tables = || text(&report::report(&subject), terminal::styled());
+    let tables = || text(&report::report(&subject), terminal::style());
     terminal::print(output, tables, &object)
 }
 

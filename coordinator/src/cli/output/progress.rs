@@ -122,11 +122,7 @@ impl Watch<StageView> for StageDisplay {
 
     fn progress(&mut self, view: &StageView, crew: &dyn Fn() -> WorkersSnapshot) {
         let StageView {
-            stages,
-            stage,
-            done,
-            open,
-            ..
+            stage, done, open, ..
         } = *view;
         let now = Instant::now();
         let pace = self.pace.of(now, view.spent);
@@ -141,11 +137,9 @@ impl Watch<StageView> for StageDisplay {
         }
         self.last = now;
         self.stage = Some(stage);
-        let number = 1 + stages.iter().take_while(|other| **other != stage).count();
         let workers = at_work(&crew());
         let line = format!(
-            "stage {number} of {}: {}  {done} simulations, {open} open  {}{workers}",
-            stages.len(),
+            "{}: {done} simulations, {open} open  {}{workers}",
             stage.name(),
             pace.map_or_else(String::new, |pace| {
                 let left = Duration::from_secs_f64(view.left / pace);

@@ -1,5 +1,7 @@
 //! Terminal output: results on standard output, everything else on standard error.
 use crate::cli::argument::output::Output;
+use report::document::TerminalStyle;
+use rustix::termios::tcgetwinsize;
 use serde::Serialize;
 use std::{
     fmt,
@@ -67,9 +69,17 @@ pub(crate) fn write(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// Returns whether tables may use bold type: only on a terminal, and only if `NO_COLOR` is not set.
-pub(crate) fn styled() -> bool {
-    io::stdout().is_terminal() && !colourless()
+/// Returns how tables are printed: on a terminal fitted into its width, and in bold type unless `NO_COLOR` is set.
+pub(crate) fn style() -> TerminalStyle {
+    let stdout = io::stdout();
+    if !stdout.is_terminal() {
+        return TerminalStyle::default();
+    }
+    let size = tcgetwinsize(&stdout).ok();
+    TerminalStyle {
+        bold: !colourless(),
+        width: size.map(|size| size.ws_col).filter(|width| *width > 0),
+    }
 }
 
 fn colourless() -> bool {

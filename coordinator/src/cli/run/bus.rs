@@ -3,19 +3,23 @@
 use crate::cli::{argument::listening::RemoteAccess, output::problem::Problem};
 use dispatch::journal::{self, JournalError};
 use dispatch::runtime::{Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot};
+use dispatch::scheduler::StopReason;
 use link::LinkError;
 use protocol::{
     case::Case,
     id::{ContentHash, JobId},
-    job::Job,
+    job::{Job, Outcome},
     wire,
 };
 use serde::Serialize;
-use std::{path::PathBuf, time::Duration};
+use std::{collections::BTreeMap, path::PathBuf, time::Duration};
 use study::{Completed, Evaluator, EvaluatorError, JobNumbers, WorkerStatus, WorkersSnapshot};
 
 /// Name and version of this program, as recorded in runs and exports.
 pub(crate) const PROGRAM: &str = concat!("horsehead ", env!("CARGO_PKG_VERSION"));
+
+/// Maximum number of reasons for which jobs could not be computed that a session reports.
+const MOST_REASONS: usize = 3;
 
 /// Options for opening the dispatcher.
 pub(crate) struct Options {
@@ -55,6 +59,8 @@ impl Options {
 pub(crate) struct Bus {
     dispatch: Dispatch,
     journal: PathBuf,
+    /// Number of jobs that could not be computed, by reason.
+    failures: BTreeMap<String, usize>,
 }
 
 impl Bus {
@@ -77,12 +83,28 @@ impl Bus {
         let dispatch = Dispatch::open(options)
             .await
             .map_err(|error| refuse(&error))?;
-        Ok(Self { dispatch, journal })
+        Ok(Self {
+            dispatch,
+            journal,
+            failures: BTreeMap::new(),
+        })
     }
 
     /// Returns the number of results recorded in the journal by earlier sessions.
     pub(crate) const fn recorded(&self) -> usize {
         self.dispatch.recorded()
+    }
+
+    /// Returns a sentence for each reason for which jobs could not be computed, at most [`MOST_REASONS`].
+    pub(crate) fn failures(&self) -> Vec<String> {
+        let mut all: Vec<_> = self.failures.iter().collect();
+        all.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
+        let all = all.into_iter().take(MOST_REASONS);
+        all.map(|(reason, count)| match count {
+            1 => format!("one simulation could not be computed: {reason}"),
+            _ => format!("{count} simulations could not be computed: {reason}"),
+        })
+        .collect()
     }
 
     /// Shuts down all workers of the run and waits for the local ones to exit.
@@ -112,7 +134,12 @@ impl Evaluator for Bus {
     }
 
     async fn next(&mut self) -> Result<Completed, EvaluatorError> {
-        self.dispatch.next().await.map_err(|error| explain(&error))
+        let completed = self.dispatch.next().await;
+        let completed = completed.map_err(|error| explain(&error))?;
+        if let Outcome::Failed(failure) = &completed.outcome {
+            *self.failures.entry(failure.to_string()).or_default() += 1;
+        }
+        Ok(completed)
     }
 
     fn numbers(&self) -> Result<JobNumbers, EvaluatorError> {
@@ -207,9 +234,13 @@ fn without_source_places(text: &str) -> String {
 
 /// Converts an error of the dispatcher during a run to an evaluator error, which has no remedy.
 pub(crate) fn explain(error: &DispatchError) -> EvaluatorError {
+    let of_program = match error {
+        DispatchError::Stopped(StopReason::EverythingFails { last, .. }) => last.is_of_program(),
+        _ => false,
+    };
     EvaluatorError {
         message: without_source_places(&error.to_string()),
-        help: None,
+        help: of_program.then(|| study::PROGRAM_REMEDY.to_owned()),
     }
 }
 

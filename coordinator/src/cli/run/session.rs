@@ -91,8 +91,12 @@ impl Session {
             let done = work(&mut bus, &mut stop).await;
             // while the run is still locked
             let remembered = run.save(self.wall_s(run));
+            let failures = bus.failures();
             let closed = bus.close().await;
             let done = done?;
+            for failure in failures {
+                terminal::tell(&format!("note: {failure}"));
+            }
             remembered?;
             closed?;
             Ok(done)

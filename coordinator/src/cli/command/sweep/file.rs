@@ -52,9 +52,9 @@ pub(super) struct FileArguments {
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
     #[command(flatten)]
-    workers: WorkersChoice,
-    #[command(flatten)]
     output: OutputChoice,
+    #[command(flatten)]
+    workers: WorkersChoice,
 }
 
 /// Runs the sweep that a grid file or a table of individuals defines.
@@ -169,7 +169,7 @@ fn search(
     let shown = runs(&run.case, &searches.factors, &tried);
     terminal::print(
         output.output,
-        || table::text(&shown, terminal::styled()),
+        || table::text(&shown, terminal::style()),
         &object,
     )
 }

@@ -93,9 +93,9 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
     #[command(flatten)]
-    workers: WorkersChoice,
-    #[command(flatten)]
     output: OutputChoice,
+    #[command(flatten)]
+    workers: WorkersChoice,
 }
 
 fn arrays() -> impl clap::builder::TypedValueParser<Value = Array> {
@@ -233,6 +233,6 @@ fn show(run: &Run<Orthogonal>, tested: &TestResult, output: OutputChoice) -> any
     run.folder.write_json(RESULT, &object)?;
     let page = files.first().map(|page| page.display().to_string());
     terminal::tell(&format!("open {}", page.unwrap_or_default()));
-    let tables = || text(&report::report(&subject), terminal::styled());
+    let tables = || text(&report::report(&subject), terminal::style());
     terminal::print(output.output, tables, &object)
 }

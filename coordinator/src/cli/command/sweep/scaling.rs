@@ -71,8 +71,6 @@ pub(super) struct Arguments {
     /// Numbers of remote workers to measure with [default: one for each host of --ssh or --hosts].
     #[arg(long, value_name = "N,..", value_delimiter = ',', env = "HORSEHEAD_NODES", value_parser = clap::value_parser!(u64).range(1..=1000))]
     nodes: Vec<u64>,
-    #[command(flatten)]
-    remote: RemoteChoice,
     /// Numbers of sleeping sessions; 0 for none.
     #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "64,512", env = "HORSEHEAD_SLEEPING", value_parser = clap::value_parser!(u64).range(0..=990))]
     sleeping: Vec<u64>,
@@ -90,6 +88,8 @@ pub(super) struct Arguments {
     run: Option<PathBuf>,
     #[command(flatten)]
     output: OutputChoice,
+    #[command(flatten)]
+    remote: RemoteChoice,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -243,6 +243,6 @@ fn show(
     run.folder.write_json(RESULT, scaled)?;
     let page = files.first().map(|page| page.display().to_string());
     terminal::tell(&format!("open {}", page.unwrap_or_default()));
-    let tables = || text(&report::report(&subject), terminal::styled());
+    let tables = || text(&report::report(&subject), terminal::style());
     terminal::print(output.output, tables, scaled)
 }

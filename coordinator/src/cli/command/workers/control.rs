@@ -268,5 +268,5 @@ fn table(workers: &[WorkerReport]) -> String {
     if rows.is_empty() {
         return "no worker takes part\n".to_owned();
     }
-    text(&Table::new("Workers", head, rows), terminal::styled())
+    text(&Table::new("Workers", head, rows), terminal::style())
 }

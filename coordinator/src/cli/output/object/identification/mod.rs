@@ -93,7 +93,7 @@ pub(crate) fn object(
         run: subject.origin.run.clone(),
         case: case.name.clone(),
         unknowns: unknowns
-            .map(|own| (own.name.clone(), unknown(own, identified.has_intervals())))
+            .map(|own| (own.name.clone(), unknown(own, identified.has_intervals)))
             .collect(),
         directions: identified.directions.clone(),
         prediction: bands

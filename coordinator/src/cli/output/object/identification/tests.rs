@@ -8,6 +8,7 @@ use discrepancy::{
     record::noise::NoiseSource,
 };
 use protocol::case::Case;
+use report::document::TerminalStyle;
 use report::{Origin, identification::report};
 use std::path::Path;
 
@@ -66,6 +67,7 @@ fn identified(case: &Case) -> IdentificationResult {
                 sd_then: 0.1,
             }],
         }],
+        has_intervals: true,
         left: 2.0,
         is_noise: false,
         noise: NoiseSource::Stated,
@@ -122,7 +124,7 @@ fn fields_are_a_contract() {
     );
     assert_eq!(said["diagnose_first"], true);
     assert_eq!(said["assumed_noise"], true);
-    let page = report::text(&report(&subject), false);
+    let page = report::text(&report(&subject), TerminalStyle::default());
     for words in [
         "sees 1 of 4 unknowns",
         "at least",
