@@ -6,6 +6,7 @@ use super::{
 };
 use oscillator::{case_folder, effect::Effects};
 use rustix::process::Signal;
+use serde_json::Value;
 use std::{
     fs,
     io::{Read as _, Write as _},
@@ -75,7 +76,8 @@ fn a_folder_shows_finished_stopped_damaged_foreign_and_deleted_runs() {
     damage(&site);
     fs::create_dir(site.path("runs/empty")).unwrap();
 
-    let (_server, url) = site.dashboard("runs");
+    fs::create_dir(site.path("temporary")).unwrap();
+    let (server, url) = site.dashboard("runs");
     browser.open(&url);
     browser.wait_for(
         "all runs are listed",
@@ -89,6 +91,8 @@ fn a_folder_shows_finished_stopped_damaged_foreign_and_deleted_runs() {
     for text in [&objective, &format!("named: {title}"), "stopped"] {
         assert!(table.contains(text), "{text}: {table}");
     }
+    every_row_is_complete(&browser);
+    fits_every_window(&browser);
     browser.picture((1200, 600), &picture("folder"));
     browser.script("document.querySelector('a[href=\"/runs/good/\"]').click()");
     browser.wait_for_state("finished");
@@ -105,8 +109,114 @@ fn a_folder_shows_finished_stopped_damaged_foreign_and_deleted_runs() {
     browser.picture((1200, 1100), &picture("diagnosis"));
 
     shows_runs_in_trouble(&browser, &site, &url);
+    rests_while_it_is_hidden(&browser, &site, &url);
     assert_eq!(browser.console(), Vec::<String>::new());
     refuses_requests(&url);
+    leaves_nothing(&browser, &site, server, &url);
+}
+
+/// Checks that runs that have ended are not called running, that calibrations show their result, and stopped runs the
+/// number of their evaluations.
+fn every_row_is_complete(browser: &Browser) {
+    let cell = |run: &str, label: &str| {
+        browser.text(&format!(
+            "#runs tr:has(a[href='/runs/{run}/']) td[data-label='{label}']"
+        ))
+    };
+    // a run of another machine is seen by its journal, which counts as growing for ten seconds
+    browser.wait_for(
+        "the killed run is stopped",
+        "return document.querySelector(\"#runs tr:has(a[href='/runs/stopped/']) td[data-label='state']\")\
+         .textContent === 'stopped'",
+    );
+    for (run, state) in [("good", "finished"), ("named", "finished")] {
+        assert_eq!(cell(run, "state"), state, "{run}");
+    }
+    for run in ["good", "named", "stopped"] {
+        let evaluations = cell(run, "evaluations");
+        let digits: String = evaluations.chars().filter(char::is_ascii_digit).collect();
+        assert!(digits.parse::<u64>().unwrap() > 10, "{run}: {evaluations}");
+    }
+    let result = cell("good", "result");
+    assert!(
+        result.starts_with("objective ") && result.contains(" → "),
+        "{result}"
+    );
+    assert!(
+        cell("named", "wall time").contains(" s"),
+        "{}",
+        cell("named", "wall time")
+    );
+}
+
+/// Checks that no cell of the list is cut off and no name wrapped to many lines, in a wide window, a middle one and on a
+/// phone.
+fn fits_every_window(browser: &Browser) {
+    // as long as the names of runs become
+    browser.script(
+        "const name = document.querySelector('#runs tbody a'); window.short = name.textContent; \
+         name.textContent = 'cyjs10-5-37hb-quick-genes-0123abcd-with-stuffing-box-friction-seed1';",
+    );
+    for (width, lines) in [(1200, 2), (800, 3), (390, 3)] {
+        browser.picture((width, 700), &picture(&format!("folder-{width}")));
+        let cut = browser.script(
+            "const right = document.documentElement.clientWidth; \
+             return [...document.querySelectorAll('#runs td, #runs th a')] \
+             .filter(cell => cell.offsetParent && cell.getBoundingClientRect().right > right + 1) \
+             .map(cell => cell.textContent);",
+        );
+        assert_eq!(cut, Value::Array(Vec::new()), "at {width}");
+        let wrapped = browser.script(
+            "const name = document.querySelector('#runs tbody a'); \
+             return Math.round(name.getBoundingClientRect().height / parseFloat(getComputedStyle(name).lineHeight));",
+        );
+        assert!(
+            wrapped.as_u64().unwrap() <= lines,
+            "{wrapped} lines at {width}"
+        );
+    }
+    browser.script("document.querySelector('#runs tbody a').textContent = window.short;");
+}
+
+/// Checks that a page that is not visible gives its connection back, and catches up when it is looked at again.
+/// Regression: each page kept its connection, and a browser opens six to one server, so that a seventh page never loaded.
+fn rests_while_it_is_hidden(browser: &Browser, site: &Site, url: &str) {
+    browser.open(url);
+    let rows = "document.querySelectorAll('#runs tbody tr').length";
+    browser.wait_for("the runs are listed", &format!("return {rows} > 0"));
+    let before = browser.script(&format!("return {rows}")).as_u64().unwrap();
+    let hide = |hidden: bool| {
+        browser.script(&format!(
+            "Object.defineProperty(document, 'hidden', {{ value: {hidden}, configurable: true }}); \
+             document.dispatchEvent(new Event('visibilitychange'));"
+        ));
+    };
+    hide(true);
+    copy(&site.path("runs/good"), &site.path("runs/copy"));
+    // longer than the interval at which the folder is read
+    std::thread::sleep(Duration::from_secs(4));
+    assert_eq!(browser.script(&format!("return {rows}")), before);
+    hide(false);
+    browser.wait_for(
+        "the copy is listed",
+        &format!("return {rows} === {}", before + 1),
+    );
+}
+
+/// Checks that an individual is simulated, and that nothing of it stays in the temporary folder when the dashboard ends.
+fn leaves_nothing(browser: &Browser, site: &Site, server: Process, url: &str) {
+    browser.open(&below(url, "runs/good/"));
+    browser.wait_for_state("finished");
+    browser.script("document.querySelector('tr[data-individual]').click()");
+    browser.wait_for(
+        "an individual is simulated",
+        "return document.querySelector('#individual section') !== null",
+    );
+    let left = || fs::read_dir(site.path("temporary")).unwrap().count();
+    assert!(left() > 0, "the individual is simulated in a temporary run");
+    server.signal(Signal::INT);
+    wait_until("the temporary run is removed", LIMIT, || left() == 0);
+    drop(server);
 }
 
 /// Begins a run and kills its coordinator after some results.
@@ -176,6 +286,23 @@ fn shows_runs_in_trouble(browser: &Browser, site: &Site, url: &str) {
     fs::remove_dir_all(site.path("runs/stopped")).unwrap();
     browser.wait_for_state("deleted");
     assert!(!browser.text("#convergence").is_empty());
+    // another run takes its place, under the page that is open
+    let words = [
+        "calibrate",
+        "case",
+        "--preset",
+        "descent",
+        "--run",
+        "runs/stopped",
+    ];
+    site.run(&words);
+    browser.wait_for_state("finished");
+    let objective = shown(&site.result("runs/stopped")["objective"]["optimised"]);
+    assert!(
+        browser.text("#summary").contains(&objective),
+        "{}",
+        browser.text("#summary")
+    );
 }
 
 /// Checks the answers to requests that pages of other sites could make, or that would change something.
@@ -199,6 +326,10 @@ fn refuses_requests(url: &str) {
         (
             "GET /runs/empty/?TOKEN HTTP/1.1\r\nHost: ADDRESS\r\n\r\n",
             "404",
+        ),
+        (
+            "GET /runs/good?TOKEN HTTP/1.1\r\nHost: ADDRESS\r\n\r\n",
+            "308",
         ),
         ("GET / HTTP/1.1\r\nHost: ADDRESS\r\n\r\n", "403"),
         (

@@ -44,6 +44,11 @@ impl Site {
             .args(words)
             .current_dir(self.folder.path())
             .env("XDG_STATE_HOME", self.path("state"));
+        // a test that looks at what is left makes it
+        let temporary = self.path("temporary");
+        if temporary.exists() {
+            command.env("TMPDIR", temporary);
+        }
         if let Some(worker) = &self.worker {
             command.env("HORSEHEAD_WORKER", worker);
         }

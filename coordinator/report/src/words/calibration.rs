@@ -55,7 +55,7 @@ pub(crate) fn headline(calibration: &Calibration) -> String {
 const MOST_CHANNELS: usize = 4;
 
 /// Describes the agreement with the record under the calibrated condition in an engineer's quantities: root mean square
-/// and peak-to-peak error of the fitted channels, and quantities of the machine. `None` if a simulation or a score is
+/// and peak-to-peak error of the fitted channels, and the first quantity of the machine. `None` if a simulation or a score is
 /// missing.
 pub(crate) fn agreement(calibration: &Calibration, checks: &[MachineCheck]) -> Option<String> {
     let case = &calibration.case;
@@ -98,17 +98,18 @@ pub(crate) fn agreement(calibration: &Calibration, checks: &[MachineCheck]) -> O
         more => format!(" (the {more} other fitted channels have smaller errors)"),
     };
     let name = condition_name(case, result.condition);
-    let machine = checks.iter().filter(|check| check.condition == name);
-    let machine = machine.filter_map(|check| {
+    // the first quantity of the machine is what it is judged by
+    let machine = checks.iter().find(|check| check.condition == name);
+    let machine = machine.and_then(|check| {
         let measured = check.measured?;
-        let [before, after] =
-            [check.before?, check.after?].map(|value| percent(value / measured - 1.0));
+        let of = |value: Option<f64>| Some(percent(value? / measured - 1.0));
+        let (before, after) = (of(check.before)?, of(check.after)?);
         Some(format!(
             "; the {} by {after} ({before} before)",
             check.quantity
         ))
     });
-    let machine: String = machine.collect();
+    let machine = machine.unwrap_or_default();
     Some(format!(
         "Under condition {name} the simulation misses the record by {errors}, root mean square{rest}; the {their} {these} \
          {peaks}{machine}."
