@@ -309,21 +309,15 @@ fn assert_refused(file: &Path, case: &Case, fault: &str, expected: &str) {
     assert!(message.contains("\nhelp: "), "{message}");
 }
 
-/// Checks that gene files carry the effects with which they were found: searched parameters, including zero and
-/// negative values, survive writing and reading bit for bit, a case that lacks an effect is given it or
-/// refused, and a file of version 0.1, which states no effects, leaves the values of the case.
-#[test]
-fn gene_files_carry_their_effects() {
-    let folder = shipped();
-    let loaded = case::load_with_notes(&folder, &Overrides::default()).unwrap();
-    let plain = loaded.case.clone();
+/// Returns an effect with two searched parameters and a fixed one.
+fn drift() -> CaseEffect {
     let parameter = |value, search| CaseParameter {
         value,
         unit: "MPa/rev".to_owned(),
         ci95: None,
         search,
     };
-    let drift = CaseEffect {
+    CaseEffect {
         id: "gauge_drift".to_owned(),
         parameters: BTreeMap::from([
             ("drift_1".to_owned(), parameter(-0.3, Some([-1.0, 1.0]))),
@@ -331,100 +325,122 @@ fn gene_files_carry_their_effects() {
             ("drift_3".to_owned(), parameter(0.5, Some([-1.0, 1.0]))),
         ]),
         provenance: None,
-    };
-    let with = |effects: &[CaseEffect]| {
-        let mut with = loaded.clone();
-        with.take_effects(effects);
-        with.case
-    };
-    let case = with(&[drift.clone()]);
+    }
+}
+
+/// Returns the shipped case with effects of a gene file.
+fn with(effects: &[CaseEffect]) -> Case {
+    let mut with = case::load_with_notes(&shipped(), &Overrides::default()).unwrap();
+    with.take_effects(effects);
+    with.case
+}
+
+/// Returns values of the case with [`drift`], the effect's own zero or negative among them.
+fn drifting(case: &Case) -> Vec<f64> {
+    let mut values = case.start();
+    values[10] = 0.1 + 0.2;
+    values[11] = -1.0 / 3.0;
+    values
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|v| v.to_bits()).collect()
+}
+
+/// Checks that gene files carry the effects with which they were found: searched parameters survive writing and
+/// reading bit for bit, and a case that lacks an effect, or has another size of it, is given it or refused.
+#[test]
+fn gene_files_carry_their_effects() {
+    let case = with(&[drift()]);
     let names = case.unknowns[10..].iter().map(|own| own.name.as_str());
     assert_eq!(
         names.collect::<Vec<_>>(),
         ["gauge_drift.drift_1", "gauge_drift.drift_3"]
     );
-    let mut values = case.start();
-    values[10] = 0.1 + 0.2;
-    values[11] = -1.0 / 3.0;
+    assert_eq!(CaseEffect::all_of(&case), [drift()]);
+    let values = drifting(&case);
     let scratch = tempfile::tempdir().unwrap();
     let file = scratch.path().join("genes.toml");
-    let text = case::write_genes(&case, &values, &[drift.clone()], "a test");
+    let text = case::write_genes(&case, &values, &[drift()], "a test");
     fs::write(&file, &text).unwrap();
-    let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
     let read = |case: &Case| GeneFile::read(&file).unwrap().values(case);
     assert_eq!(bits(&read(&case).unwrap()), bits(&values));
-    assert_eq!(CaseEffect::all_of(&case), [drift.clone()]);
 
-    let refused = read(&plain).unwrap_err().to_string();
-    assert!(
-        refused.contains("`effects[0].id` = \"gauge_drift\""),
-        "{refused}"
-    );
+    let refused = read(&with(&[])).unwrap_err().to_string();
+    let place = "`effects[0].id` = \"gauge_drift\"";
+    assert!(refused.contains(place), "{refused}");
     let given = with(GeneFile::read(&file).unwrap().effects());
     assert_eq!(bits(&read(&given).unwrap()), bits(&values));
     // a parameter that is not searched takes the file's value
-    let mut other = drift.clone();
+    let mut other = drift();
     other.parameters.get_mut("drift_2").unwrap().value = 0.25;
-    let stale = with(&[other.clone()]);
-    let refused = read(&stale).unwrap_err().to_string();
+    let refused = read(&with(std::slice::from_ref(&other)))
+        .unwrap_err()
+        .to_string();
     let place = "`effects[0].parameters.drift_2`";
     assert!(
         refused.contains(place) && refused.contains("0.25"),
         "{refused}"
     );
-    let taken = with(&[other, drift.clone()]);
-    assert_eq!(taken, case);
+    assert_eq!(with(&[other, drift()]), case);
 
-    let older = case::read_genes(&folder.join("recommended.toml"), &case).unwrap();
+    for (from, to, expected) in [
+        ("MPa/rev", "MPa", "`effects[0].parameters.drift_1.unit`"),
+        (
+            "id = \"gauge_drift\"",
+            "id = \"gauge drift\"",
+            "`effects[0].id`",
+        ),
+        ("[[effects]]", "[[effect]]", "[[effect]]"),
+    ] {
+        let fault = text.replace(from, to);
+        assert_ne!(fault, text, "{expected}");
+        assert_refused(&file, &case, &fault, expected);
+    }
+}
+
+/// Checks that a file of version 0.1, which states no effects, leaves the case's values or has lines for the effects'
+/// parameters.
+#[test]
+fn gene_files_of_version_0_1_are_read() {
+    let case = with(&[drift()]);
+    let older = case::read_genes(&shipped().join("recommended.toml"), &case).unwrap();
     assert_eq!(bits(&older), bits(&case.start()));
+    let values = drifting(&case);
     let lines = case::write_genes(&case, &values, &[], "version 0.1");
     assert!(lines.contains("\"gauge_drift.drift_3\" = {"), "{lines}");
+    let scratch = tempfile::tempdir().unwrap();
+    let file = scratch.path().join("genes.toml");
     fs::write(&file, &lines).unwrap();
-    assert_eq!(bits(&read(&case).unwrap()), bits(&values));
-
-    let faults = [
+    assert_eq!(
+        bits(&case::read_genes(&file, &case).unwrap()),
+        bits(&values)
+    );
+    for (from, to, expected) in [
         (
-            lines.as_str(),
-            "gauge_drift.drift_3\"",
-            "gauge_drift.drft_3\"",
+            "drift_3\"",
+            "drft_3\"",
             "did you mean `gauge_drift.drift_3`?",
         ),
         (
-            &lines,
             "gauge_drift.drift_3",
             "a.b",
             "kc, cc, gauge_drift.drift_1, gauge_drift.drift_3",
         ),
-        (&lines, "MPa/rev", "MPa", "`gauge_drift.drift_1.unit`"),
+        ("MPa/rev", "MPa", "`gauge_drift.drift_1.unit`"),
         (
-            &lines,
             "value = -3.333333333333333e-1",
             "value = nan",
             "`gauge_drift.drift_3.value` = NaN",
         ),
         (
-            &lines,
             "\"gauge_drift.drift_1\"",
             "gauge_drift.drift_1",
             "unknown field `drift_1`",
         ),
-        (
-            &text,
-            "MPa/rev",
-            "MPa",
-            "`effects[0].parameters.drift_1.unit`",
-        ),
-        (
-            &text,
-            "id = \"gauge_drift\"",
-            "id = \"gauge drift\"",
-            "`effects[0].id`",
-        ),
-        (&text, "[[effects]]", "[[effect]]", "[[effect]]"),
-    ];
-    for (text, from, to, expected) in faults {
-        let fault = text.replace(from, to);
-        assert_ne!(fault, text, "{expected}");
+    ] {
+        let fault = lines.replace(from, to);
+        assert_ne!(fault, lines, "{expected}");
         assert_refused(&file, &case, &fault, expected);
     }
 }

@@ -135,14 +135,13 @@ impl StudyError {
                 of_program: true, ..
             } => PROGRAM_REMEDY,
             Self::Unavailable { failure, .. } if failure.is_of_program() => PROGRAM_REMEDY,
-            Self::AllFailed { .. } => "the same command tries again",
             Self::Unavailable {
                 failure: Failure::Deadline { .. },
                 ..
             } => {
                 "the limit is `deadline_s` of the case, or `wall_s` of the program's entry in the list of allowed programs"
             }
-            Self::Unavailable { .. } => "the same command tries again",
+            Self::AllFailed { .. } | Self::Unavailable { .. } => "the same command tries again",
             Self::WrongKind { .. } => {
                 "the worker has another version: install the version of this program on its host"
             }

@@ -123,7 +123,8 @@ impl Assembly<'_> {
             .filter(|_| first.starts_with("ptf"));
         let begins_field = |letter: char| letter == '{' || Some(letter) == marker;
         let is_field = |at: &usize| {
-            let before = text[..*at].trim_end().chars().next_back();
+            let before = text.get(..*at).unwrap_or_default().trim_end();
+            let before = before.chars().next_back();
             before.is_some_and(begins_field)
         };
         let lower = text.to_ascii_lowercase();

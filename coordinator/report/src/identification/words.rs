@@ -88,11 +88,10 @@ pub(super) fn grounds(subject: &IdentificationInput<'_>) -> Vec<String> {
 pub(super) fn open_ends(own: &UnknownEstimate) -> String {
     let sides = ["below", "above"].into_iter().zip(own.ends);
     let said = sides.filter_map(|(side, end)| match end {
-        IntervalEnd::Rises => None,
+        IntervalEnd::Rises | IntervalEnd::NotFollowed => None,
         IntervalEnd::Bound => Some(format!("open {side} to the bound")),
         IntervalEnd::Fails => Some(format!("simulations fail {side}")),
         IntervalEnd::GivenUp => Some(format!("profile abandoned {side}")),
-        IntervalEnd::NotFollowed => None,
     });
     said.collect::<Vec<_>>().join(", ")
 }
