@@ -90,7 +90,8 @@ fn every_command_of_the_page_can_be_typed_after_the_other() {
             assert!(case.contains(from), "{from}");
             case = case.replacen(from, to, 1);
         }
-        case
+        // a third of what it would take: the commands are followed, and not how far a diagnosis comes
+        case + "\n[diagnose]\nsimulations = 800\n"
     });
     let diagnosed = result(folder.path(), "cyjs10-5-37hb-diagnose-seed1");
     assert_eq!(
@@ -103,9 +104,11 @@ fn every_command_of_the_page_can_be_typed_after_the_other() {
 fn stated(page: &str, before: &str, after: &str) -> f64 {
     let rest = page.split_once(before).map(|(_, rest)| rest);
     let number = rest.and_then(|rest| Some(rest.split_once(after)?.0));
-    let number =
-        number.unwrap_or_else(|| panic!("the page does not state `{before}NUMBER{after}`"));
-    number.replace(',', "").parse().unwrap()
+    assert!(
+        number.is_some(),
+        "the page does not state `{before}NUMBER{after}`"
+    );
+    number.unwrap().replace(',', "").parse().unwrap()
 }
 
 /// Follows the page on the shipped machine, which takes about ten minutes: `cargo test --release -p tests --test
@@ -175,8 +178,6 @@ fn commands_are_found_with_those_that_are_left_out() {
     let (own, others) = commands(page);
     assert_eq!(own, ["calibrate X", "verify Y"]);
     assert_eq!(others, 3);
-    assert_eq!(
-        stated("a friction of 1,207 N.", "friction of ", " N"),
-        1207.0
-    );
+    let force = stated("a friction of 1,207 N.", "friction of ", " N");
+    assert!((force - 1207.0).abs() < 1e-9, "{force}");
 }

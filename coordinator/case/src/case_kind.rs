@@ -6,7 +6,7 @@ use crate::{
     source::RecordFolder,
     summary::{self, CaseSummary},
 };
-use discrepancy::{baseline::discretisation_check::FinerModel, thresholds::Thresholds};
+use discrepancy::thresholds::Thresholds;
 use protocol::{case::Case, job::Numerics, wire::WireError};
 
 /// Kind of model, as seen by the code that reads cases; every method but `name` has a default for a generic
@@ -78,8 +78,17 @@ pub trait ModelKind: Sync {
         &self,
         _: &Case,
         _: &Thresholds,
-    ) -> Result<(Numerics, Vec<FinerModel>), WireError> {
+    ) -> Result<(Numerics, Vec<Numerics>), WireError> {
         Ok((Numerics::FROM_CASE, Vec::new()))
+    }
+
+    /// Returns the lines of the case file, as `key = value` with dotted keys, that make the case as fine as the
+    /// finest settings of [`Self::diagnosis_numerics`]; empty where a case file cannot state them.
+    ///
+    /// # Errors
+    /// As [`Self::diagnosis_numerics`].
+    fn finer_settings(&self, _: &Case, _: &Thresholds) -> Result<Vec<String>, WireError> {
+        Ok(Vec::new())
     }
 }
 

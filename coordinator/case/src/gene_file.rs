@@ -95,6 +95,13 @@ impl GeneFile {
         &self.content.effects
     }
 
+    /// Returns whether the file states values of an effect.
+    pub fn states(&self, id: &str) -> bool {
+        let mut lines = self.content.values.keys();
+        self.content.effects.iter().any(|effect| effect.id == id)
+            || lines.any(|name| name.split_once('.').is_some_and(|(effect, _)| effect == id))
+    }
+
     /// Returns the values of a case's unknowns in the case's units and order. Values may lie outside the bounds,
     /// which only limit the search. Every unknown needs an entry, except parameters of effects: without an
     /// entry these keep the case's value, so that files written before an effect was added stay usable.
@@ -277,7 +284,11 @@ pub fn write_genes(case: &Case, values: &[f64], effects: &[CaseEffect], about: &
             effect.parameters.get_mut(name)
         });
         if let Some(parameter) = parameter {
-            parameter.value = *value;
+            if parameter.value.to_bits() != value.to_bits() {
+                // the interval belonged to the other value
+                parameter.ci95 = None;
+                parameter.value = *value;
+            }
             continue;
         }
         let name = toml_edit::Key::new(&unknown.name)

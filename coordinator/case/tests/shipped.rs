@@ -1,6 +1,7 @@
 //! Tests that the shipped case loads and that its figures agree with its README.
 use case::pumping_unit::{self as unit, RecordFacts, mesh};
 use case::{self, CaseEffect, CaseParameter, GeneFile, Loaded, Overrides};
+use discrepancy::thresholds::Thresholds;
 use protocol::{
     case::{Case, ChannelRecord, Offset, Term},
     pumping_unit::{Coefficient, Machine, Sensor},
@@ -330,7 +331,8 @@ fn drift() -> CaseEffect {
 
 /// Returns the shipped case with effects of a gene file.
 fn with(effects: &[CaseEffect]) -> Case {
-    let mut with = case::load_with_notes(&shipped(), &Overrides::default()).unwrap();
+    let loaded = case::load_with_notes(&shipped(), &Overrides::default());
+    let mut with = loaded.expect("the shipped case");
     with.take_effects(effects);
     with.case
 }
@@ -397,6 +399,50 @@ fn gene_files_carry_their_effects() {
         assert_ne!(fault, text, "{expected}");
         assert_refused(&file, &case, &fault, expected);
     }
+}
+
+/// Checks that the settings which make the case as fine as the numerical check are keys of its file, under which the ropes
+/// keep their lengths.
+#[test]
+fn finer_settings_can_be_written_into_the_case() {
+    let case = with(&[]);
+    let thresholds = Thresholds::default();
+    let lines = case::kind::of(&case)
+        .finer_settings(&case, &thresholds)
+        .unwrap();
+    let mut text = fs::read_to_string(shipped().join("case.toml")).unwrap();
+    for line in &lines {
+        let (key, value) = line.split_once(" = ").unwrap();
+        let (table, key) = key.split_once('.').unwrap();
+        let (before, rest) = text.split_once(&format!("\n[{table}]")).unwrap();
+        let (own, rest) = rest.split_once(&format!("\n{key} = ")).unwrap();
+        let (_, rest) = rest.split_once('\n').unwrap();
+        text = format!("{before}\n[{table}]{own}\n{key} = {value}\n{rest}");
+    }
+    let scratch = tempfile::tempdir().unwrap();
+    for part in ["", "back_head", "measured"] {
+        let to = scratch.path().join(part);
+        fs::create_dir_all(&to).unwrap();
+        for entry in fs::read_dir(shipped().join(part)).unwrap() {
+            let entry = entry.unwrap();
+            if entry.file_type().unwrap().is_file() {
+                fs::copy(entry.path(), to.join(entry.file_name())).unwrap();
+            }
+        }
+    }
+    fs::write(scratch.path().join("case.toml"), &text).unwrap();
+    let finer = case::load(scratch.path(), &Overrides::default()).unwrap();
+    let [coarse, finer] = [&case, &finer].map(|case| Machine::of(case).unwrap());
+    let lengths = |machine: &Machine| {
+        let ropes = &machine.ropes;
+        [ropes.back_cylinders, ropes.front_cylinders]
+            .map(|count| count as f64 * ropes.cylinder_length_m)
+    };
+    for (coarse, finer) in lengths(&coarse).iter().zip(lengths(&finer)) {
+        assert!((coarse - finer).abs() < 1e-9, "{coarse} {finer}");
+    }
+    assert!(finer.ropes.cylinder_length_m < 0.6 * coarse.ropes.cylinder_length_m);
+    assert!(finer.run.longest_step_s < 0.6 * coarse.run.longest_step_s);
 }
 
 /// Checks that a file of version 0.1, which states no effects, leaves the case's values or has lines for the effects'

@@ -1,6 +1,5 @@
 //! Inputs of a diagnosis, with its thresholds.
 use crate::baseline::budget::cost_with_derivatives;
-use crate::baseline::discretisation_check::FinerModel;
 use crate::laboratory::Stage;
 use crate::model::inactive_unknowns::InactiveUnknowns;
 use crate::record::measured::Record;
@@ -30,7 +29,7 @@ pub struct Inputs {
     pub usual: Numerics,
     /// Finer numerical settings to check the discretisation error: first everything refined, then one
     /// refinement at a time, for use where the first does not complete.
-    pub finer: Vec<FinerModel>,
+    pub finer: Vec<Numerics>,
     /// Name of the global search preset that finds the narrow minimum of the misfit if there is no start.
     pub global_search: &'static str,
     /// Seed of the global search.

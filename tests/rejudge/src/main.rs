@@ -36,7 +36,6 @@ fn main() -> anyhow::Result<()> {
     let case = loaded.case;
     let thresholds = Thresholds::default();
     let (usual, finer) = case::kind::of(&case).diagnosis_numerics(&case, &thresholds)?;
-    let finer = finer.into_iter().map(|finer| finer.numerics);
     let numerics: Vec<_> = std::iter::once(usual).chain(finer).collect();
     let model = if cli.table.is_file() {
         read(&cli.table)?

@@ -1,7 +1,6 @@
 //! Trials: synthetic records of a linearised model, their diagnoses, and the rates of names.
 use crate::linear::{LinearLaboratory, LinearModel};
 use anyhow::Context as _;
-use discrepancy::baseline::discretisation_check::FinerModel;
 use discrepancy::diagnose::{Diagnosis, Inputs, Limit, diagnose};
 use discrepancy::record::Record;
 use discrepancy::thresholds::Thresholds;
@@ -204,7 +203,7 @@ impl<'a> Rig<'a> {
             library: self.model.library.clone(),
             start: Some(point),
             usual: self.numerics.first().cloned().unwrap_or_default(),
-            finer: self.numerics.iter().skip(1).map(finer).collect(),
+            finer: self.numerics.iter().skip(1).cloned().collect(),
             global_search: "least-squares",
             seed: 1,
             thresholds: self.thresholds.clone(),
@@ -313,12 +312,4 @@ pub fn rows(times: f64) -> Vec<Trial> {
         }
     }
     rows
-}
-
-/// Returns a finer discretisation that no case file states.
-fn finer(numerics: &Numerics) -> FinerModel {
-    FinerModel {
-        numerics: numerics.clone(),
-        settings: String::new(),
-    }
 }

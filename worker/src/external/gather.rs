@@ -220,7 +220,7 @@ fn resample(file: &str, at: &[f64], values: &[f64], places: &[f64]) -> Result<Ve
         if *place < first - slack || *place > last + slack {
             return Err(format!(
                 "the abscissa in {file} runs from {first} to {last}, but the channel needs a value at {place}{}",
-                if length(places) >= OTHER_UNIT * length(at) {
+                if at.len() > ENOUGH && length(places) >= OTHER_UNIT * length(at) {
                     ": it may be in another unit, as s for ms"
                 } else {
                     ""

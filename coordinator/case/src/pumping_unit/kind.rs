@@ -4,7 +4,7 @@ use crate::{
     case_kind::ModelKind, error::CaseError, loaded::Loaded, source::RecordFolder,
     summary::CaseSummary,
 };
-use discrepancy::{baseline::discretisation_check::FinerModel, thresholds::Thresholds};
+use discrepancy::thresholds::Thresholds;
 use protocol::{case::Case, job::Numerics, pumping_unit::Machine, wire::WireError};
 
 /// Kind of model for pumping units with double horse heads.
@@ -31,11 +31,19 @@ impl ModelKind for PumpingUnitKind {
         (format!("conditions[{condition}].record_file"), remedy)
     }
 
+    fn finer_settings(
+        &self,
+        case: &Case,
+        thresholds: &Thresholds,
+    ) -> Result<Vec<String>, WireError> {
+        super::numerics::finer_settings(case, thresholds)
+    }
+
     fn diagnosis_numerics(
         &self,
         case: &Case,
         thresholds: &Thresholds,
-    ) -> Result<(Numerics, Vec<FinerModel>), WireError> {
+    ) -> Result<(Numerics, Vec<Numerics>), WireError> {
         numerics(case, thresholds)
     }
 

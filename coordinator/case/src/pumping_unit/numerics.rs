@@ -1,5 +1,5 @@
 //! Numerical settings (discretisation in space and time) of the simulations of a diagnosis.
-use discrepancy::{baseline::discretisation_check::FinerModel, thresholds::Thresholds};
+use discrepancy::thresholds::Thresholds;
 use protocol::{
     case::Case,
     job::Numerics,
@@ -16,7 +16,7 @@ use protocol::{
 pub(super) fn numerics(
     case: &Case,
     thresholds: &Thresholds,
-) -> Result<(Numerics, Vec<FinerModel>), WireError> {
+) -> Result<(Numerics, Vec<Numerics>), WireError> {
     let machine = Machine::of(case)?;
     let available = machine.modal_head.frequencies_hz.len();
     let usual = Discretisation {
@@ -38,32 +38,33 @@ pub(super) fn numerics(
         cylinder_length_m: usual.cylinder_length_m,
         ..finest
     };
-    let ropes = &machine.ropes;
-    // a rope keeps its length
-    let count = |cylinders: usize| (cylinders as f64 / thresholds.refinement).round();
-    let of_cylinders = format!(
-        "`ropes.cylinder_length_m = {}`, `ropes.back_cylinders = {}` and `ropes.front_cylinders = {}`",
-        ropes.cylinder_length_m * thresholds.refinement,
-        count(ropes.back_cylinders),
-        count(ropes.front_cylinders),
-    );
-    let of_rest = format!(
-        "`run.longest_step_s = {}`, `run.lead_in_deg = {}` and `run.modes = {}`",
-        0.5 * machine.run.longest_step_s,
-        machine.run.lead_in_deg + 180.0,
-        (machine.run.modes + 2).min(available),
-    );
-    let finer = [
-        (finest, format!("{of_cylinders}, {of_rest}")),
-        (cylinders, of_cylinders),
-        (rest, of_rest),
-    ];
-    let finer = finer.map(|(discretisation, settings)| {
-        let numerics = discretisation.numerics()?;
-        Ok(FinerModel { numerics, settings })
-    });
+    let finer = [finest, cylinders, rest].map(|one| one.numerics());
     Ok((
         usual.numerics()?,
         finer.into_iter().collect::<Result<_, _>>()?,
     ))
+}
+
+/// Returns the lines of the case file that make the case as fine as the finest of [`numerics`]. A rope keeps its length.
+///
+/// # Errors
+/// As [`numerics`].
+pub(super) fn finer_settings(
+    case: &Case,
+    thresholds: &Thresholds,
+) -> Result<Vec<String>, WireError> {
+    let machine = Machine::of(case)?;
+    let (ropes, run) = (&machine.ropes, &machine.run);
+    let available = machine.modal_head.frequencies_hz.len();
+    let count = |cylinders: usize| (cylinders as f64 / thresholds.refinement).round();
+    Ok(vec![
+        format!(
+            "ropes.cylinder_length_m = {}",
+            ropes.cylinder_length_m * thresholds.refinement
+        ),
+        format!("ropes.back_cylinders = {}", count(ropes.back_cylinders)),
+        format!("ropes.front_cylinders = {}", count(ropes.front_cylinders)),
+        format!("run.longest_step_s = {}", 0.5 * run.longest_step_s),
+        format!("run.modes = {}", (run.modes + 2).min(available)),
+    ])
 }

@@ -14,19 +14,6 @@ use crate::record::whitened::WhitenedRecord;
 use nalgebra::DVector;
 use protocol::job::Numerics;
 
-/// Largest difference to a finer model, in standard errors of the record, that needs no remark.
-pub(crate) const FINE_ENOUGH: f64 = 1.0 / 3.0;
-
-/// Finer discretisation of a model.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct FinerModel {
-    /// Numerical settings of the simulations with the finer discretisation.
-    pub numerics: Numerics,
-    /// Lines of the case file that make the case as fine, such as `` `run.longest_step_s = 0.03` ``; empty where
-    /// a case file cannot state it.
-    pub settings: String,
-}
-
 /// Difference between the curves of a model and those of a finer discretisation of it.
 #[derive(Clone, Debug)]
 pub struct Preflight {
@@ -41,9 +28,6 @@ pub struct Preflight {
     pub standard_error: Vec<f64>,
     /// Spectral coefficients, by channel, of the part of the difference that recalibration cannot absorb.
     pub left: Spectra,
-    /// Settings of the single refinement that changes the curves most; `None` where the difference needs no
-    /// remark, or nothing can be refined alone.
-    pub coarsest: Option<String>,
     /// Whether the simulation with all refinements completed; otherwise the difference is the sum over the
     /// single refinements that completed.
     pub whole: bool,
@@ -55,6 +39,12 @@ impl Preflight {
     pub fn ratio(&self) -> f64 {
         let each = self.rms_left.iter().zip(&self.standard_error);
         each.map(|(left, error)| left / error).fold(0.0, f64::max)
+    }
+
+    /// Returns whether the difference is so large that sizes may be wrong by it: more than a third of a standard
+    /// error.
+    pub fn is_rough(&self) -> bool {
+        self.ratio() > 1.0 / 3.0
     }
 }
 
@@ -70,25 +60,11 @@ pub async fn check<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
     absorbing: &Fit,
-    finer: &[FinerModel],
+    finer: &[Numerics],
 ) -> Result<Option<Preflight>, L::Error> {
     let on = experiments.on;
     let changed = changed(experiments, (fit, &fit.curves), finer).await?;
-    let Some((difference, whole)) = changed else {
-        return Ok(None);
-    };
-    let mut check = preflight(on, absorbing, difference, whole);
-    if check.ratio() > FINE_ENOUGH && finer.len() > 2 {
-        let parts = &finer[1..];
-        let alone = differences(experiments, (fit, &fit.curves), parts).await?;
-        let ratios = parts.iter().zip(alone).filter_map(|(part, difference)| {
-            let ratio = preflight(on, absorbing, difference?, false).ratio();
-            Some((ratio, &part.settings))
-        });
-        let coarsest = ratios.max_by(|a, b| a.0.total_cmp(&b.0));
-        check.coarsest = coarsest.map(|(_, settings)| settings.clone());
-    }
-    Ok(Some(check))
+    Ok(changed.map(|(difference, whole)| preflight(on, absorbing, difference, whole)))
 }
 
 /// Returns the change of a fit's curves by a finer model on a record, and whether the finer model completed
@@ -99,7 +75,7 @@ pub async fn check<L: Laboratory>(
 pub(crate) async fn changed<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     (fit, curves): (&Fit, &Curves),
-    finer: &[FinerModel],
+    finer: &[Numerics],
 ) -> Result<Option<(Curves, bool)>, L::Error> {
     if finer.is_empty() {
         return Ok(Some((difference(curves, curves, 1.0), true)));
@@ -124,11 +100,11 @@ pub(crate) async fn changed<L: Laboratory>(
 async fn differences<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     (fit, coarse): (&Fit, &Curves),
-    finer: &[FinerModel],
+    finer: &[Numerics],
 ) -> Result<Vec<Option<Curves>>, L::Error> {
     let record = &experiments.on.record;
     let point = fit.point();
-    let experiment = |finer: &FinerModel| point.experiment(record.condition, &finer.numerics);
+    let experiment = |numerics: &Numerics| point.experiment(record.condition, numerics);
     let batch = finer.iter().map(experiment).collect();
     let seen = curves(experiments.lab, experiments.stage, record, batch).await?;
     let less = |mut fine: Curves| {
@@ -149,7 +125,6 @@ fn preflight(on: &WhitenedRecord, absorbing: &Fit, difference: Curves, whole: bo
         standard_error: metric.standard_error(),
         difference,
         left,
-        coarsest: None,
         whole,
     }
 }

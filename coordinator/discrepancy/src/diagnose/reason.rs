@@ -1,6 +1,5 @@
 //! Verbal results of a diagnosis: reason of the verdict and further remarks.
 use crate::baseline::base::Baseline;
-use crate::baseline::discretisation_check::{FINE_ENOUGH, Preflight};
 use crate::diagnose::diagnosis::Diagnosis;
 use crate::inputs::Inputs;
 use crate::model::fit::Fit;
@@ -90,22 +89,12 @@ pub(crate) fn remarks(inputs: &Inputs, diagnosis: &mut Diagnosis) {
         (Some(after), _) => ("the answer", Some(after)),
         (None, before) => ("the recalibrated model", before.as_ref()),
     };
-    let ratio = check.map_or(0.0, Preflight::ratio);
-    if ratio > FINE_ENOUGH {
-        let checks = [&diagnosis.preflight_after, &diagnosis.preflight];
-        let coarsest = checks
-            .into_iter()
-            .flatten()
-            .find_map(|check| check.coarsest.as_ref());
-        let finest = inputs.finer.first().map(|finest| &finest.settings);
-        let settings = coarsest.or(finest).filter(|settings| !settings.is_empty());
-        let remedy = settings.map_or_else(String::new, |settings| {
-            format!("; {settings} in case.toml lowers it, and simulations take longer")
-        });
+    if let Some(check) = check.filter(|check| check.is_rough()) {
+        let ratio = check.ratio();
         diagnosis.notes.push(format!(
             "numerical error: a finer model changes the curves of {of} by {ratio:.2} standard errors of the \
              record (target: one third); this counts as noise in every test, but sizes may be wrong by as \
-             much{remedy}"
+             much"
         ));
     }
     let added = diagnosis.rounds.iter().any(|round| round.added.is_some());

@@ -4,7 +4,6 @@ use crate::by_curves::ByCurves;
 use crate::by_sample::{SAMPLES, SIZES, record, times};
 use crate::case::{effect, size};
 use crate::trial::{diagnoses, now, say};
-use discrepancy::baseline::discretisation_check::FinerModel;
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::record::{Acts, Curves, Nuisance, Record};
 use discrepancy::thresholds::Thresholds;
@@ -141,7 +140,7 @@ fn diagnosed_without(records: Vec<Record>, without: &[&str]) -> Diagnosis {
         library: library(),
         start: Some(vec![TRUTH[0] + 0.004, TRUTH[1] - 0.02]),
         usual: Numerics::FROM_CASE,
-        finer: vec![FinerModel::default()],
+        finer: vec![Numerics::FROM_CASE],
         global_search: "quick",
         seed: 1,
         thresholds: Thresholds {

@@ -8,7 +8,6 @@ use crate::by_curves::ByCurves;
 use crate::case;
 use crate::trial::now;
 use crate::truth::recorded;
-use discrepancy::baseline::discretisation_check::FinerModel;
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::laboratory::Stage;
 use discrepancy::model::experiments::Experiments;
@@ -180,7 +179,7 @@ fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
         library: library(),
         start: None,
         usual: Numerics::FROM_CASE,
-        finer: vec![FinerModel::default()],
+        finer: vec![Numerics::FROM_CASE],
         global_search: "quick",
         seed: 1,
         thresholds: Thresholds {

@@ -114,7 +114,7 @@ fn figure_markup(figure: &Figure) -> Markup {
     html! {
         figure id=(format!("figure-{}", figure.name)) {
             div.scroll { (PreEscaped(&figure.svg)) }
-            figcaption { (figure.caption) }
+            figcaption { (sentence(&figure.caption)) }
         }
     }
 }
@@ -136,7 +136,7 @@ fn table_markup(table: &Table) -> Markup {
                     tbody { @for row in &table.rows { (row_markup(table, row)) } }
                 }
             }
-            @for note in &table.notes { p.note { (note) } }
+            @for note in &table.notes { p.note { (sentence(note)) } }
         }
     }
 }

@@ -51,7 +51,7 @@ pub(crate) fn headline(calibration: &Calibration) -> String {
     }
 }
 
-/// Maximum number of fitted channels that the first sentence of a report names, those with the largest error first.
+/// Maximum number of fitted channels that the first sentence of a report names, those with the largest relative error first.
 const MOST_CHANNELS: usize = 4;
 
 /// Describes the agreement with the record under the calibrated condition in an engineer's quantities: root mean square
@@ -68,7 +68,7 @@ pub(crate) fn agreement(calibration: &Calibration, checks: &[MachineCheck]) -> O
             pairs.push((channel, before, after));
         }
     }
-    pairs.sort_by(|a, b| b.2.mse.total_cmp(&a.2.mse));
+    pairs.sort_by(|a, b| b.2.relative_error.total_cmp(&a.2.relative_error));
     let more = pairs.len().saturating_sub(MOST_CHANNELS);
     pairs.truncate(MOST_CHANNELS);
     if pairs.is_empty() {
@@ -89,13 +89,13 @@ pub(crate) fn agreement(calibration: &Calibration, checks: &[MachineCheck]) -> O
         let [before, after] = [before, after].map(|score| percent(score.peak_to_peak_error));
         format!("{after} ({before} before)")
     });
-    let (these, their) = match pairs.len() {
-        1 => ("value is off by", "peak-to-peak"),
-        _ => ("values are off by", "peak-to-peak"),
+    let peak = match pairs.len() {
+        1 => "the peak-to-peak value is off by",
+        _ => "the peak-to-peak values are off by",
     };
     let rest = match more {
         0 => String::new(),
-        more => format!(" (the {more} other fitted channels have smaller errors)"),
+        more => format!(" (of {more} more fitted channels the relative errors are smaller)"),
     };
     let name = condition_name(case, result.condition);
     // the first quantity of the machine is what it is judged by
@@ -111,7 +111,7 @@ pub(crate) fn agreement(calibration: &Calibration, checks: &[MachineCheck]) -> O
     });
     let machine = machine.unwrap_or_default();
     Some(format!(
-        "Under condition {name} the simulation misses the record by {errors}, root mean square{rest}; the {their} {these} \
+        "Under condition {name} the simulation misses the record by {errors}, root mean square{rest}; {peak} \
          {peaks}{machine}."
     ))
 }

@@ -34,7 +34,9 @@ fn a_fit_that_leaves_a_multiple_of_the_noise_has_no_intervals() {
         for channel in &mut data.case.channels {
             if let Some(record) = &mut channel.record {
                 let noise = &mut record.spread;
-                noise.iter_mut().for_each(|one| *one *= most / times);
+                for one in noise.iter_mut() {
+                    *one *= most / times;
+                }
             }
         }
         let page = report::text(&report::calibration(&data), TerminalStyle::default());

@@ -381,7 +381,6 @@ fn preflight() -> Preflight {
         rms_left: each(0.05),
         standard_error: each(0.1),
         left: Vec::new(),
-        coarsest: None,
         whole: true,
     }
 }

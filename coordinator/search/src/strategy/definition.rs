@@ -128,7 +128,6 @@ impl Preset {
         let Some(found) = named.iter().find(|one| one.key == key) else {
             return Err(SettingsError::Unknown {
                 key: key.to_owned(),
-                known: named.into_iter().map(|one| one.key).collect(),
             });
         };
         let value = found.setting.parse(text);

@@ -25,8 +25,6 @@ pub enum SettingsError {
     Unknown {
         /// Key given by the user, which no setting has.
         key: String,
-        /// Keys of all settings of the preset.
-        known: Vec<String>,
     },
     /// Setting of a part that the search omits for this case.
     #[error(

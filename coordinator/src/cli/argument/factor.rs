@@ -35,7 +35,7 @@ pub(crate) fn set(
 ) -> Result<(), Problem> {
     for key in keys(factor) {
         let set = preset.set(settings, key, &factor.levels[level]);
-        set.map_err(|error| refuse(preset, error))?;
+        set.map_err(|error| refuse(preset, &error))?;
     }
     Ok(())
 }

@@ -52,7 +52,7 @@ impl SettingsChoice {
         let mut settings = usual.clone();
         for (key, value) in &self.set {
             let set = preset.set(&mut settings, key, value);
-            set.map_err(|error| refuse(preset, error))?;
+            set.map_err(|error| refuse(preset, &error))?;
         }
         let differs = |one: &PresetSetting| {
             let (usual, value) = (one.value(&usual), one.value(&settings));
@@ -97,11 +97,11 @@ const ALIKE: f64 = 0.6;
 
 /// Converts the error for a rejected setting into a message and a remedy: the nearest known key, of this preset
 /// or of another one, and the command that lists the settings.
-pub(crate) fn refuse(preset: &Preset, error: SettingsError) -> Problem {
+pub(crate) fn refuse(preset: &Preset, error: &SettingsError) -> Problem {
     let name = preset.name;
     let message = format!("preset {name}: {error}");
     let list = format!("`horsehead presets {name}` lists its settings");
-    let near = if let SettingsError::Unknown { key, .. } = &error {
+    let near = if let SettingsError::Unknown { key, .. } = error {
         nearest(key, preset)
     } else {
         None

@@ -14,16 +14,16 @@ use std::path::{Path, PathBuf};
 use support::atomic_file;
 
 /// Let this machine start the program of a case.
-///
-/// A case of the kind `command` only names an entry of an allow list that each machine keeps for itself: what
-/// is started, with which arguments and within what limits stands in that list alone. This command shows the
-/// entry that the case needs, with every file that the program would find in its folder, and writes it. When
-/// the case's files change, review and allow them again.
 #[derive(Debug, Args)]
 #[command(after_help = format!("\
 Examples:
   horsehead allow my-model
   horsehead allow my-model --dry-run
+
+A case of the kind `command` only names an entry of an allow list that each machine keeps for
+itself: what is started, with which arguments and within what limits stands in that list alone.
+This command shows the entry that the case needs, with every file that the program would find in
+its folder, and writes it. When the case's files change, review and allow them again.
 
 The list is $HORSEHEAD_ALLOW, else horsehead/allow.toml in $XDG_CONFIG_HOME or ~/.config. It may
 be edited: limits of time, memory and output, variables of the environment, runs at a time.

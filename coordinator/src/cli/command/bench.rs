@@ -52,7 +52,7 @@ Examples:
         #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
         tls: Option<PathBuf>,
         /// Number of jobs to run.
-        #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..))]
+        #[arg(long, value_name = "N", default_value_t = 10_000, env = "HORSEHEAD_JOBS", value_parser = clap::value_parser!(u64).range(1..))]
         jobs: u64,
         /// Bytes of each result: a score has about 300, one with its residual 10,000.
         #[arg(long, value_name = "N", default_value_t = 10_000, env = "HORSEHEAD_RESULT_BYTES", value_parser = clap::value_parser!(u32).range(..=10_000_000))]

@@ -85,8 +85,7 @@ const GROUPS: &[(&str, &[&str])] = &[
 /// variables that set options, whose names follow from the options.
 fn command() -> clap::Command {
     let command = with_plain_help(Cli::command());
-    let mut list = String::new();
-    for (title, names) in GROUPS {
+    let group = |(title, names): &(&str, &[&str])| {
         let line = |name: &&str| {
             let about = command
                 .find_subcommand(name)
@@ -94,8 +93,9 @@ fn command() -> clap::Command {
             format!("  {name:<12} {}\n", about.cloned().unwrap_or_default())
         };
         let lines: String = names.iter().map(line).collect();
-        list.push_str(&format!("{title}\n{lines}\n"));
-    }
+        format!("{title}\n{lines}\n")
+    };
+    let list: String = GROUPS.iter().map(group).collect();
     command.help_template(format!(
         "{{about}}\n\n{{usage-heading}} {{usage}}\n\n{list}\
          Each command says more with --help.\n\n{FIRST_STEPS}\n"

@@ -38,7 +38,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_OUT")]
     out: Option<PathBuf>,
     /// Write into a folder that holds other files, a case or a run, and replace files of the same names.
-    #[arg(long, requires = "out", env = "HORSEHEAD_FORCE")]
+    #[arg(long, env = "HORSEHEAD_FORCE")]
     force: bool,
     /// Also differentiate the curves by unknowns separated by commas, parameters of effects as
     /// EFFECT.PARAMETER (whether the case has the effect or not), or `all` that the case has.

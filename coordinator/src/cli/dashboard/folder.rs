@@ -14,7 +14,7 @@ use report::{
 };
 use serde_json::{Map, Value};
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     fs,
     path::{Path, PathBuf},
     sync::{Arc, Mutex, PoisonError},
@@ -48,8 +48,11 @@ impl FolderPages {
         let (folder, wanted) = (path.to_owned(), Arc::downgrade(&open));
         thread::spawn(move || {
             let (mut board, mut counts) = (board, Counts::default());
+            // to count results takes a while where there are long journals
+            board.publish(("Runs", "folder"), &[list(&folder, None)], true);
             while wanted.strong_count() > 0 {
-                let section = list(&folder, &mut counts);
+                let section = list(&folder, Some(&mut counts));
+                counts.forget_others();
                 board.publish(("Runs", "folder"), &[section], true);
                 thread::sleep(INTERVAL);
             }
@@ -61,6 +64,13 @@ impl FolderPages {
             simulator: Simulator::new(),
             _open: open,
         }
+    }
+
+    /// Ends the worker of the pages' simulator, and removes its temporary run.
+    pub(crate) fn close(&self) {
+        let mut followed = self.followed.lock().unwrap_or_else(PoisonError::into_inner);
+        followed.clear();
+        self.simulator.close();
     }
 
     /// Returns a reader of a run's page, which is followed from now on; `None` if the folder has no such run.
@@ -85,15 +95,6 @@ impl FolderPages {
         let reader = own.reader();
         followed.insert(name.to_owned(), (own, Instant::now()));
         Some(reader)
-    }
-}
-
-impl FolderPages {
-    /// Ends the worker of the pages' simulator, and removes its temporary run.
-    pub(crate) fn close(&self) {
-        let mut followed = self.followed.lock().unwrap_or_else(PoisonError::into_inner);
-        followed.clear();
-        self.simulator.close();
     }
 }
 
@@ -134,13 +135,24 @@ fn json(file: &Path) -> Option<Value> {
 
 /// Journals of unfinished runs, whose results are counted as they grow.
 #[derive(Default)]
-struct Counts(BTreeMap<PathBuf, (JournalFollower, u64)>);
+struct Counts {
+    journals: BTreeMap<PathBuf, (JournalFollower, u64)>,
+    /// Runs that were counted since [`Counts::forget_others`].
+    counted: BTreeSet<PathBuf>,
+}
 
 impl Counts {
+    /// Closes the journals of runs that were not counted since the last call.
+    fn forget_others(&mut self) {
+        let counted = std::mem::take(&mut self.counted);
+        self.journals.retain(|run, _| counted.contains(run));
+    }
+
     /// Returns the number of results in the journal of a run; `None` if it cannot be read.
     fn of(&mut self, run: &Path) -> Option<u64> {
         let new = || (JournalFollower::new(&run.join(journal::FILE)), 0);
-        let (follower, count) = self.0.entry(run.to_owned()).or_insert_with(new);
+        self.counted.insert(run.to_owned());
+        let (follower, count) = self.journals.entry(run.to_owned()).or_insert_with(new);
         loop {
             let read =
                 follower.read(|_, event| *count += u64::from(matches!(event, Event::Finished(_))));
@@ -155,7 +167,7 @@ impl Counts {
 
 impl Row {
     /// Reads a run folder; `None` if it holds no run.
-    fn read(folder: &Path, counts: &mut Counts) -> Option<Self> {
+    fn read(folder: &Path, counts: Option<&mut Counts>) -> Option<Self> {
         let name = folder.file_name()?.to_string_lossy().into_owned();
         if !folder.join(MANIFEST).exists() {
             return None;
@@ -188,7 +200,7 @@ impl Row {
             name,
             about: about(&manifest),
             state,
-            simulations: simulations.or_else(|| counts.of(folder)),
+            simulations: simulations.or_else(|| counts?.of(folder)),
             outcome: outcome(&result),
             objective: result["objective"]["optimised"].as_f64(),
             wall_s: result["wall_s"].as_f64(),
@@ -249,7 +261,9 @@ fn outcome(result: &Value) -> String {
         format!("{} of {} unknowns determined", both.count(), all.len())
     };
     match unknowns {
-        Some(_) if result["diagnose_first"] == true => "the model lacks something".to_owned(),
+        Some(unknowns) if unknowns.values().all(|own| own["seen"].is_null()) => {
+            "the model lacks something".to_owned()
+        }
         Some(unknowns) => determined(unknowns),
         None => String::new(),
     }
@@ -268,7 +282,7 @@ fn path_segment(name: &str) -> String {
 }
 
 /// Returns the section with the table of the runs of a folder, newest first.
-fn list(folder: &Path, counts: &mut Counts) -> Section {
+fn list(folder: &Path, mut counts: Option<&mut Counts>) -> Section {
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
         Err(error) => {
@@ -285,7 +299,7 @@ fn list(folder: &Path, counts: &mut Counts) -> Section {
                 .ok()?
                 .modified()
                 .ok();
-            Some((begun, Row::read(&entry.path(), counts)?))
+            Some((begun, Row::read(&entry.path(), counts.as_deref_mut())?))
         })
         .collect();
     runs.sort_by(|(a, one), (b, other)| b.cmp(a).then_with(|| one.name.cmp(&other.name)));

@@ -87,13 +87,16 @@ impl DiagnosisOutput<'_> {
         if new.is_empty() && starts.is_empty() {
             return Ok(());
         }
+        // effects that the run has from a gene file, and the case not yet
+        let manifest = &self.run.manifest;
+        let overrides = Overrides {
+            measured: manifest.replaced_records().map(ToOwned::to_owned),
+        };
+        let stated = load_with_notes(&manifest.case_folder, &overrides)?.effects;
+        let taken = manifest.start.iter().flat_map(|start| &start.effects);
+        let lacking = |taken: &&CaseEffect| stated.iter().all(|own| own.id != taken.id);
+        new.splice(..0, taken.filter(lacking).cloned());
         if !new.is_empty() {
-            // effects that the run has from a gene file, and the case not yet
-            let manifest = &self.run.manifest;
-            let stated = load_with_notes(&manifest.case_folder, &Overrides::default())?.effects;
-            let taken = manifest.start.iter().flat_map(|start| &start.effects);
-            let lacking = |taken: &&CaseEffect| stated.iter().all(|own| own.id != taken.id);
-            new.splice(..0, taken.filter(lacking).cloned());
             append_effects(file, &new)?;
         }
         if !starts.is_empty() {

@@ -32,7 +32,7 @@ fn check_vacant(folder: &Path) -> Result<(), Problem> {
     } else if is_empty || is_own {
         return Ok(());
     } else {
-        "holds files that this program has not written"
+        "holds other files, or a report of an earlier version"
     };
     Err(Problem {
         message: format!("{} {what}", folder.display()),
@@ -64,7 +64,7 @@ mod tests {
         let own = report::page(&report::Report::new(String::new(), "", []));
         for (name, content, refused) in [
             ("report.html", own.as_str(), None),
-            ("report.html", "<h1>mine</h1>", Some("has not written")),
+            ("report.html", "<h1>mine</h1>", Some("holds other files")),
             ("report.html", own.as_str(), None),
             (MANIFEST, "{}", Some("folder of a run")),
             ("case.toml", "", Some("case folder")),

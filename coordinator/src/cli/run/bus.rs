@@ -59,8 +59,8 @@ impl Options {
 pub(crate) struct Bus {
     dispatch: Dispatch,
     journal: PathBuf,
-    /// Number of jobs that could not be computed, by reason.
-    failures: BTreeMap<String, usize>,
+    /// Number of jobs that could not be computed and the first of their reasons, by the first line of the reason.
+    failures: BTreeMap<String, (usize, String)>,
 }
 
 impl Bus {
@@ -95,16 +95,24 @@ impl Bus {
         self.dispatch.recorded()
     }
 
-    /// Returns a sentence for each reason for which jobs could not be computed, at most [`MOST_REASONS`].
+    /// Returns a sentence for each of the most frequent reasons for which jobs could not be computed, and one on the
+    /// others.
     pub(crate) fn failures(&self) -> Vec<String> {
-        let mut all: Vec<_> = self.failures.iter().collect();
-        all.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
-        let all = all.into_iter().take(MOST_REASONS);
-        all.map(|(reason, count)| match count {
+        let mut all: Vec<_> = self.failures.values().collect();
+        all.sort_by_key(|(count, _)| std::cmp::Reverse(*count));
+        let (most, others) = all.split_at(all.len().min(MOST_REASONS));
+        let sentence = |(count, reason): &&(usize, String)| match count {
             1 => format!("one simulation could not be computed: {reason}"),
             _ => format!("{count} simulations could not be computed: {reason}"),
-        })
-        .collect()
+        };
+        let mut sentences: Vec<String> = most.iter().map(sentence).collect();
+        let others: usize = others.iter().map(|(count, _)| count).sum();
+        if others > 0 {
+            sentences.push(format!(
+                "{others} more could not be computed for other reasons"
+            ));
+        }
+        sentences
     }
 
     /// Shuts down all workers of the run and waits for the local ones to exit.
@@ -137,7 +145,10 @@ impl Evaluator for Bus {
         let completed = self.dispatch.next().await;
         let completed = completed.map_err(|error| explain(&error))?;
         if let Outcome::Failed(failure) = &completed.outcome {
-            *self.failures.entry(failure.to_string()).or_default() += 1;
+            let reason = failure.to_string();
+            // what a program printed may differ from run to run
+            let first = reason.lines().next().unwrap_or_default().to_owned();
+            self.failures.entry(first).or_insert((0, reason)).0 += 1;
         }
         Ok(completed)
     }
@@ -234,10 +245,10 @@ fn without_source_places(text: &str) -> String {
 
 /// Converts an error of the dispatcher during a run to an evaluator error, which has no remedy.
 pub(crate) fn explain(error: &DispatchError) -> EvaluatorError {
-    let of_program = match error {
-        DispatchError::Stopped(StopReason::EverythingFails { last, .. }) => last.is_of_program(),
-        _ => false,
-    };
+    let of_program = matches!(
+        error,
+        DispatchError::Stopped(StopReason::EverythingFails { last, .. }) if last.is_of_program()
+    );
     EvaluatorError {
         message: without_source_places(&error.to_string()),
         help: of_program.then(|| study::PROGRAM_REMEDY.to_owned()),

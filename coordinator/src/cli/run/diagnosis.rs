@@ -6,7 +6,10 @@ use super::{
 };
 use crate::cli::output::problem::Problem;
 use case::Loaded;
-use discrepancy::{diagnose::Inputs, model::InactiveUnknowns, thresholds::Thresholds};
+use discrepancy::{
+    baseline::discretisation_check::Preflight, diagnose::Inputs, model::InactiveUnknowns,
+    thresholds::Thresholds,
+};
 use protocol::{announce::EffectDescriptor, case::Case};
 use search::space::Space;
 use serde::{Deserialize, Serialize};
@@ -91,6 +94,22 @@ pub(crate) async fn diagnose<E: Evaluator>(
     };
     let diagnosed = study::diagnose_on(evaluator, &inputs, watch, stop).await?;
     let off = off.into_iter().map(|off| off.candidate);
+    let mut notes = notes;
+    let result = &diagnosed.diagnosis;
+    let check = result
+        .preflight_after
+        .as_ref()
+        .or(result.preflight.as_ref());
+    if check.is_some_and(Preflight::is_rough) {
+        let finer = case::kind::of(&loaded.case).finer_settings(&loaded.case, &own.thresholds)?;
+        if !finer.is_empty() {
+            let lines: Vec<String> = finer.iter().map(|line| format!("`{line}`")).collect();
+            notes.push(format!(
+                "what lowers the numerical error, at the cost of longer simulations: {} in case.toml",
+                lines.join(", ")
+            ));
+        }
+    }
     Ok(Found {
         notes,
         diagnosed,

@@ -163,50 +163,58 @@ impl Start {
         Ok(format!("genes-{}", bus::short_hash(&self.genes)?))
     }
 
-    /// Reads a gene file; gives the case the effects of the file, with a note on each effect that only one of both
-    /// has.
+    /// Reads a gene file and gives the case the effects of the file, with a note on each that the file adds, changes or
+    /// does not state.
     ///
     /// # Errors
     /// As [`GeneFile::read`] and [`GeneFile::values`].
     pub(crate) fn read(file: &Path, loaded: &mut Loaded) -> anyhow::Result<Self> {
         let stated = GeneFile::read(file)?;
-        let effects = stated.effects();
-        let ids = |effects: &[CaseEffect]| -> Vec<String> {
-            effects.iter().map(|effect| effect.id.clone()).collect()
-        };
-        let (of_case, of_file) = (ids(&loaded.effects), ids(effects));
-        let mut note = |text| {
-            loaded.notes.push(Note {
-                path: file.to_owned(),
-                text,
-            });
-        };
-        let only = |those: &[String], others: &[String]| -> Vec<String> {
-            let mut those = those.to_vec();
-            those.retain(|id| !others.contains(id));
-            those
-        };
-        let added = only(&of_file, &of_case);
-        if !added.is_empty() {
-            note(format!(
-                "its values were found with {}, which the case lacks: added for this run",
-                added.join(", ")
-            ));
-        }
-        let missing = only(&of_case, &of_file);
-        if !missing.is_empty() {
-            note(format!(
-                "does not state {}, which the case has: the case's own values are used",
-                missing.join(", ")
-            ));
-        }
-        loaded.take_effects(effects);
+        let before = loaded.effects.clone();
+        loaded.take_effects(stated.effects());
+        let texts = effect_notes(&stated, &before, &loaded.effects);
+        loaded.notes.extend(texts.into_iter().map(|text| Note {
+            path: file.to_owned(),
+            text,
+        }));
         Ok(Self {
             file: std::path::absolute(file)?,
             genes: stated.values(&loaded.case)?,
-            effects: effects.to_vec(),
+            effects: stated.effects().to_vec(),
         })
     }
+}
+
+/// Describes what a gene file changed in the effects of a case, and which of them it does not state.
+fn effect_notes(stated: &GeneFile, before: &[CaseEffect], after: &[CaseEffect]) -> Vec<String> {
+    let mut notes = Vec::new();
+    for effect in after {
+        let Some(own) = before.iter().find(|own| own.id == effect.id) else {
+            notes.push(format!(
+                "its values were found with {}, which the case lacks: added for this run",
+                effect.id
+            ));
+            continue;
+        };
+        if !stated.states(&effect.id) {
+            notes.push(format!(
+                "does not state {}, which the case has: the case's own values are used",
+                effect.id
+            ));
+        }
+        for (name, parameter) in &effect.parameters {
+            let own = own.parameters.get(name).map(|own| own.value);
+            if own.is_none_or(|own| own.to_bits() != parameter.value.to_bits()) {
+                let own =
+                    own.map_or_else(String::new, |own| format!(", in place of the case's {own}"));
+                notes.push(format!(
+                    "its values were found with {}.{name} = {} {}{own}",
+                    effect.id, parameter.value, parameter.unit
+                ));
+            }
+        }
+    }
+    notes
 }
 
 impl<S> Manifest<S> {

@@ -84,6 +84,8 @@ impl<S: RunIdentity> Run<S> {
             return Err(run.changed(&changes).into());
         }
         run.manifest.wall_s = earlier.manifest.wall_s;
+        // of the case and the gene file as they were
+        run.manifest.notes = earlier.manifest.notes;
         Ok(run)
     }
 

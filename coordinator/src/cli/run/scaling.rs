@@ -153,7 +153,7 @@ impl ScalingSettings {
         let mut chosen = (preset.settings)(&SearchPlan { space, workers });
         if let Some(population) = population {
             let set = preset.set(&mut chosen, "population", &population.to_string());
-            set.map_err(|error| settings::refuse(preset, error))?;
+            set.map_err(|error| settings::refuse(preset, &error))?;
         }
         Ok(chosen)
     }

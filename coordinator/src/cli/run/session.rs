@@ -93,10 +93,15 @@ impl Session {
             let remembered = run.save(self.wall_s(run));
             let failures = bus.failures();
             let closed = bus.close().await;
-            let done = done?;
-            for failure in failures {
-                terminal::tell(&format!("note: {failure}"));
+            let is_stopped = |error: &anyhow::Error| {
+                matches!(error.downcast_ref(), Some(StudyError::Interrupted))
+            };
+            if done.as_ref().map_or_else(is_stopped, |_| true) {
+                for failure in failures {
+                    terminal::tell(&format!("note: {failure}"));
+                }
             }
+            let done = done?;
             remembered?;
             closed?;
             Ok(done)

@@ -143,6 +143,12 @@ impl Target {
             let kept = pairs.filter(|(gene, _)| left.contains(gene));
             kept.map(|(_, value)| value).collect()
         };
+        if let Some(start) = &self.start {
+            // they were told of a case that had the additions
+            let of_start =
+                |path: &Path| std::path::absolute(path).is_ok_and(|path| path == start.file);
+            self.loaded.notes.retain(|note| !of_start(&note.path));
+        }
         self.start = self.start.map(|start| Start {
             genes: kept(start.genes),
             ..start
