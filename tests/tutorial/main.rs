@@ -93,11 +93,10 @@ fn every_command_of_the_page_can_be_typed_after_the_other() {
         // a third of what it would take: the commands are followed, and not how far a diagnosis comes
         case + "\n[diagnose]\nsimulations = 800\n"
     });
-    let diagnosed = result(folder.path(), "cyjs10-5-37hb-diagnose-seed1");
-    assert_eq!(
-        diagnosed["effects"][0]["id"], "stuffing_box_friction",
-        "{diagnosed}"
-    );
+    // every run has the folder that the page names
+    for run in ["quick", "diagnose"] {
+        result(folder.path(), &format!("cyjs10-5-37hb-{run}-seed1"));
+    }
 }
 
 /// Returns the number on the page between two texts; commas between thousands are left out.

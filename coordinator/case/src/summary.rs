@@ -109,14 +109,18 @@ pub fn text(loaded: &Loaded) -> String {
             let places = channel.abscissa.points.len();
             let recorded = channel.record.as_ref().map_or_else(
                 || "not measured".to_owned(),
-                |record| format!("measured in {} cycles", record.cycles),
+                |record| match record.cycles {
+                    1 => "measured in one cycle".to_owned(),
+                    cycles => format!("measured in {cycles} cycles"),
+                },
             );
             let _infallible = writeln!(
                 text,
-                "  {}: {places} values over {} [{}], {recorded}{}",
+                "  {} [{}]: {places} values over {} [{}], {recorded}{}",
                 channel.title,
-                channel.abscissa.name,
                 channel.unit,
+                channel.abscissa.name,
+                channel.abscissa.unit,
                 stated(record, curve)
             );
         }

@@ -210,7 +210,7 @@ fn resample(file: &str, at: &[f64], values: &[f64], places: &[f64]) -> Result<Ve
     let (first, last) = (at[0], at[at.len() - 1]);
     if let Some(factor) = other_unit(at, places) {
         return Err(format!(
-            "the abscissa in {file} runs from {first} to {last}, {factor} times as far as that of the channel: it may be in \
+            "the abscissa in {file} runs from {first} to {last}, {factor:.0} times as far as that of the channel: it may be in \
              another unit, as ms for s; write it in the unit of the channel's `abscissa`"
         ));
     }

@@ -47,7 +47,7 @@ pub const CMA_ES: Preset = Preset {
 const SETTINGS: &[Setting] = &[
     Setting::new(
         "population",
-        AllowedValues::Whole(4, u64::MAX),
+        AllowedValues::Whole(4, 100_000),
         "individuals per generation",
     ),
     Setting::new(

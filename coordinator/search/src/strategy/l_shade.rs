@@ -46,7 +46,7 @@ pub const L_SHADE: Preset = Preset {
 const SETTINGS: &[Setting] = &[
     Setting::new(
         "population",
-        AllowedValues::Whole(4, u64::MAX),
+        AllowedValues::Whole(4, 100_000),
         "individuals per generation",
     ),
     Setting::new(

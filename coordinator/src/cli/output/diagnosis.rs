@@ -39,9 +39,11 @@ impl DiagnosisOutput<'_> {
         })
     }
 
-    /// Writes the fitted parameters and effects of the final model as a gene file: simulating them reproduces the diagnosis's "after" curves.
+    /// Writes the fitted parameters and effects of the final model as a gene file: simulating them reproduces the
+    /// diagnosis's "after" curves, or where no effect was found those of the recalibrated model.
     fn write_genes(&self) -> anyhow::Result<()> {
-        let Some(fit) = &self.found.diagnosed.diagnosis.after else {
+        let diagnosis = &self.found.diagnosed.diagnosis;
+        let Some(fit) = diagnosis.after.as_ref().or(diagnosis.before.as_ref()) else {
             return Ok(());
         };
         let about = format!("Parameters of {}", self.run.folder.path().display());

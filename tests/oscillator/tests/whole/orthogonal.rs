@@ -165,7 +165,7 @@ fn factors_that_cannot_be_tested_are_refused() {
         &["--factor", "population=2,16,24"],
         &[
             "factor population",
-            "population is 2, but must be at least 4",
+            "population is 2, but must be 4 to 100000",
         ],
     );
     refused(

@@ -145,7 +145,7 @@ fn a_grid_that_makes_no_searches_is_refused() {
     refused("seeds", "sedes", &["sedes"]);
     refused("[1, 2]", "[1, 1]", &["`seeds` = [1, 1]", "different seeds"]);
     refused("[8, 16]", "[]", &["grid.population", "one value at least"]);
-    refused("[8, 16]", "[8, 2]", &["factor population", "at least 4"]);
+    refused("[8, 16]", "[8, 2]", &["factor population", "4 to 100000"]);
     refused(
         "[8, 16]",
         "[8, [9]]",

@@ -44,7 +44,7 @@ fn facts(subject: &DiagnosisInput<'_>) -> Vec<Fact> {
     let noise = if diagnosis.noise.is_seen() {
         "seen: the scatter between the cycles, order by order"
     } else {
-        "assumed from the data sheet and the highest orders: there was one cycle"
+        "as stated by the case or the data sheet, and seen in the highest orders: there was one cycle"
     };
     let recalibration = format!(
         "one more step promises to lower the misfit by {}; the tests look at the residual after that \

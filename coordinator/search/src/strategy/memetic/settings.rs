@@ -221,7 +221,7 @@ impl MemeticSettings {
 pub(in crate::strategy) const SETTINGS: &[Setting] = &[
     Setting::new(
         "population",
-        AllowedValues::Whole(4, u64::MAX),
+        AllowedValues::Whole(4, 100_000),
         "individuals per generation",
     ),
     Setting::new(
