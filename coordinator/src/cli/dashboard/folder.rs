@@ -320,7 +320,7 @@ fn table<T>(runs: &[(T, Row)]) -> Markup {
                 " " span.count {}
             }
             div.scroll {
-                table.cards data-sortable="" {
+                table.stacked data-sortable="" {
                     thead {
                         tr {
                             th scope="col" { "run" }
