@@ -172,10 +172,10 @@ fn the_numbers_of_the_page_are_those_that_come_out() {
 
 #[test]
 fn commands_are_found_with_those_that_are_left_out() {
-    let page = "# T\n\n    cargo build && target/release/horsehead calibrate X\n\ntext `horsehead no`\n\n    \
-                horsehead verify Y\n    horsehead calibrate X --ssh a,b\n    cargo install x\n";
+    let page = "# T\n\n    cargo build && target/release/horsehead calibrate X\n\ntext `horsehead report Z`\n\n    \
+                horsehead verify Y --condition Z\n    horsehead calibrate X --ssh a,b\n    cargo install x\n";
     let (own, others) = commands(page);
-    assert_eq!(own, ["calibrate X", "verify Y"]);
+    assert_eq!(own, ["calibrate X", "verify Y --condition Z"]);
     assert_eq!(others, 3);
     let force = stated("a friction of 1,207 N.", "friction of ", " N");
     assert!((force - 1207.0).abs() < 1e-9, "{force}");
