@@ -243,7 +243,7 @@ async fn a_comparison_that_cannot_be_made_names_the_individual() {
         error.to_string(),
         "the recommended individual at 5rpm could not be evaluated: it ran longer than 1.5 s"
     );
-    assert_eq!(error.help().unwrap(), "the same command tries again");
+    assert!(error.help().unwrap().contains("`deadline_s` of the case"));
 }
 
 /// Checks that a request for derivatives by an unknown parameter is reported as invalid input, since
@@ -354,7 +354,7 @@ async fn a_search_that_begins_with_failures_goes_on_until_there_are_too_many() {
     let error = one_by_one(|_, id, _| failing_below(100, id)).await;
     assert_eq!(
         error.unwrap_err().to_string(),
-        "all of the first 8 individuals failed: 8 x load not lifted"
+        "all of the first 8 individuals failed: load not lifted"
     );
 }
 

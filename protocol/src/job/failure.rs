@@ -3,6 +3,11 @@ use super::failure_files::FailureFiles;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
+/// Words before the last lines that a failed program printed, at the end of [`Failure::Crashed`].
+pub const LAST_OUTPUT: &str = "; its last output:";
+/// End of [`Failure::Crashed`] for a program that printed nothing.
+pub const NO_OUTPUT: &str = "; it printed nothing";
+
 /// Reason why a job could not be done.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Failure {
@@ -41,10 +46,10 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// Returns whether an external program failed, which left its files: repeated with the same input it fails
-    /// again.
+    /// Returns whether an external program failed, whose last output the failure quotes: repeated with the same input
+    /// it fails again.
     pub fn is_of_program(&self) -> bool {
-        matches!(self, Self::Crashed { left, .. } if !left.is_empty())
+        matches!(self, Self::Crashed { how, .. } if how.contains(LAST_OUTPUT) || how.contains(NO_OUTPUT))
     }
 
     /// Creates a [`Failure::Misconfigured`] from the field of the case or job and the description of the

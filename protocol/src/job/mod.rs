@@ -23,7 +23,7 @@ mod verdict;
 pub use channels::Observation;
 pub use curves::Curves;
 pub use derivative::{Column, Derivative, MAX_COLUMNS, Per, to_single_precision};
-pub use failure::{Failure, UnexpectedAnswer};
+pub use failure::{Failure, LAST_OUTPUT, NO_OUTPUT, UnexpectedAnswer};
 pub use failure_files::{FailureFiles, TruncatedFile};
 pub use identifier::Identifier;
 pub use score::{ChannelScore, Evaluation};

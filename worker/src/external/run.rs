@@ -3,7 +3,7 @@
 use super::{own_folder, scratch::Scratch};
 use crate::process_tree;
 use exchange::allow::AllowEntry;
-use protocol::job::Failure;
+use protocol::job::{Failure, LAST_OUTPUT, NO_OUTPUT};
 use rustix::process::{WaitOptions, getpid, set_child_subreaper, wait};
 use std::{
     env,
@@ -176,9 +176,9 @@ pub(super) fn output_tail(scratch: &Scratch) -> String {
         .get(lines.len().saturating_sub(LINES)..)
         .unwrap_or_default();
     if last.is_empty() {
-        "; it printed nothing".to_owned()
+        NO_OUTPUT.to_owned()
     } else {
-        format!("; its last output:\n  {}", last.join("\n  "))
+        format!("{LAST_OUTPUT}\n  {}", last.join("\n  "))
     }
 }
 

@@ -62,6 +62,16 @@ impl Table {
         (!self.rows.is_empty()).then_some(self)
     }
 
+    /// Returns the width of the widest cell of a column, without the head (columns of a terminal).
+    pub(super) fn widest_cell(&self, column: usize) -> u16 {
+        let cells = self.rows.iter().filter_map(|row| match row {
+            Row::Group(_) => None,
+            Row::Values(_, cells) => cells.get(column),
+        });
+        let widest = cells.map(|cell| cell.chars().count()).max();
+        u16::try_from(widest.unwrap_or_default()).unwrap_or(u16::MAX)
+    }
+
     /// Returns whether a column holds text instead of numbers; text columns are left-aligned and may wrap.
     pub(super) fn is_prose(&self, column: usize) -> bool {
         const LONGEST_NUMBER: usize = 32;

@@ -1,7 +1,9 @@
 //! Plain-text output for the terminal and for `tables.txt`: the whole report without its images.
 use super::block::{Block, Report, Section};
 use super::table::{Label, Row, Table};
-use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, presets};
+use comfy_table::{
+    Cell, CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Width, presets,
+};
 
 /// Capabilities of the terminal or file for which text is rendered; by default those of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -77,6 +79,9 @@ fn items(lines: &[String], mark: &str) -> String {
     lines.collect()
 }
 
+/// Width of the space on both sides of a cell's content (columns).
+const PADDING: u16 = 2;
+
 /// Renders a table with its title and notes.
 pub fn set_table(table: &Table, style: TerminalStyle) -> String {
     let alignment = |column: usize| {
@@ -107,11 +112,24 @@ pub fn set_table(table: &Table, style: TerminalStyle) -> String {
                     Label::Text(text) => format!("  {text}"),
                     Label::Unknown { name, title, .. } => format!("  {name:<5} {title}"),
                 };
+                // wrapping would take away the spaces in front
+                let label = match (style.width, label.strip_prefix("  ")) {
+                    (Some(_), Some(rest)) => format!("\u{a0}\u{a0}{rest}"),
+                    _ => label,
+                };
                 let cells = cells.iter().enumerate();
                 let cells =
                     cells.map(|(column, cell)| Cell::new(cell).set_alignment(alignment(column)));
                 grid.add_row(std::iter::once(Cell::new(label)).chain(cells));
             }
+        }
+    }
+    if style.width.is_some() {
+        let columns = grid.column_iter_mut().skip(1).enumerate();
+        for (column, own) in columns.filter(|(column, _)| !table.is_prose(*column)) {
+            // a number is not broken; a head may be
+            let width = Width::Fixed(table.widest_cell(column) + PADDING);
+            own.set_constraint(ColumnConstraint::LowerBoundary(width));
         }
     }
     let notes = items(&table.notes, "  ");

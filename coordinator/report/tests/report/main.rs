@@ -481,6 +481,17 @@ fn terminal_tables_are_styled_only_on_demand() {
         bold: true,
         ..TerminalStyle::default()
     };
+    // a number is not broken where the terminal is narrow, nor is a line longer than it
+    let narrow = TerminalStyle {
+        width: Some(60),
+        ..TerminalStyle::default()
+    };
+    let text = table::text(&table, narrow);
+    let rows = text.lines().filter(|line| !line.starts_with("  "));
+    let longest = rows.skip(1).map(|line| line.chars().count()).max();
+    assert!(longest.is_some_and(|longest| longest <= 60), "{text}");
+    assert!(text.contains("3.14\u{a0}×\u{a0}10⁸"), "{text}");
+    assert!(text.contains("\u{a0}\u{a0}kb4"), "{text}");
     assert!(table::text(&table, bold).contains('\u{1b}'));
     for part in [
         "kb56",
