@@ -76,6 +76,13 @@ struct Assembly<'a> {
     model: &'a ModelEntry,
 }
 
+/// Returns the remedy for an unknown name: the known one that is most like it, if there is one.
+fn remedy(name: &str, known: &[&str]) -> String {
+    nearest(name, known.iter().copied()).map_or("correct the name".to_owned(), |near| {
+        format!("did you mean `{near}`?")
+    })
+}
+
 impl Assembly<'_> {
     fn field_error(
         &self,
@@ -95,10 +102,7 @@ impl Assembly<'_> {
         allowed: &str,
         names: &[&str],
     ) -> CaseError {
-        let near = nearest(name, names.iter().copied());
-        let help = near.map_or("correct the name".to_owned(), |near| {
-            format!("did you mean `{near}`?")
-        });
+        let help = remedy(name, names);
         self.field_error(way, format!("\"{name}\""), allowed, &help)
     }
 
@@ -110,10 +114,7 @@ impl Assembly<'_> {
         (name, allowed): (&str, &str),
         names: &[&str],
     ) -> CaseError {
-        let near = nearest(name, names.iter().copied());
-        let help = near.map_or("correct the name".to_owned(), |near| {
-            format!("did you mean `{near}`?")
-        });
+        let help = remedy(name, names);
         let template = Document::new(self.folder.join(template), text.to_owned());
         // the marker of a PEST template ends its first line, `ptf ~`
         let first = text.lines().next().unwrap_or_default().trim_end();

@@ -45,7 +45,8 @@ pub(super) fn numerics(
     ))
 }
 
-/// Returns the lines of the case file that make the case as fine as the finest of [`numerics`]. A rope keeps its length.
+/// Returns the lines of the case file that make elements, steps and modes of the case as fine as in the finest of
+/// [`numerics`]. A rope keeps its length; the longer lead-in is left out.
 ///
 /// # Errors
 /// As [`numerics`].
