@@ -46,7 +46,7 @@ impl Document {
     /// Returns an error for a file that is missing, unreadable, empty or not text.
     pub fn read(path: &Path, role: &str) -> Result<Self, CaseError> {
         let bytes = file::read(path, role)?;
-        let text = file::text(path, file::decoded(&bytes).into_owned())?;
+        let text = file::text(path, bytes)?;
         Ok(Self {
             path: path.to_owned(),
             text,

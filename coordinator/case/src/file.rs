@@ -1,7 +1,7 @@
 //! Reading of a case's files as bytes or text, independent of their content.
 use super::error::{CaseError, damaged};
+use exchange::{decoded, is_utf16};
 use std::{
-    borrow::Cow,
     fs, io,
     io::{BufRead, BufReader, Read, Write as _},
     path::Path,
@@ -177,28 +177,14 @@ pub fn too_large(path: &Path) -> CaseError {
     )
 }
 
-/// Converts UTF-16, as spreadsheets write it, to UTF-8; recognised by the byte-order mark, or by zero bytes
-/// in the first two characters. Other bytes are returned unchanged.
-pub fn decoded(bytes: &[u8]) -> Cow<'_, [u8]> {
-    type Unit = fn([u8; 2]) -> u16;
-    let (rest, unit): (&[u8], Unit) = match bytes {
-        [0xff, 0xfe, rest @ ..] => (rest, u16::from_le_bytes),
-        [0xfe, 0xff, rest @ ..] => (rest, u16::from_be_bytes),
-        [1..=255, 0, 1..=255, 0, ..] => (bytes, u16::from_le_bytes),
-        [0, 1..=255, 0, 1..=255, ..] => (bytes, u16::from_be_bytes),
-        _ => return Cow::Borrowed(bytes),
-    };
-    let units = rest.chunks_exact(2).map(|pair| unit([pair[0], pair[1]]));
-    let letters =
-        char::decode_utf16(units).map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER));
-    Cow::Owned(letters.collect::<String>().into_bytes())
-}
-
-/// Converts bytes to text, without a byte-order mark.
+/// Converts bytes in UTF-8 or UTF-16 to text, without a byte-order mark.
 ///
 /// # Errors
 /// Returns an error with the number of the first line that is not UTF-8.
 pub fn text(path: &Path, bytes: Vec<u8>) -> Result<String, CaseError> {
+    if is_utf16(&bytes) {
+        return Ok(decoded(&bytes).into_owned());
+    }
     let text = String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let start = error.as_bytes().get(..valid).unwrap_or_default();

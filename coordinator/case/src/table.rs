@@ -1,8 +1,6 @@
-//! Tables of numbers in CSV files: named columns, finite numbers, rows counted as lines of the file.
-use super::{
-    error::{CaseError, damaged},
-    file::decoded,
-};
+//! Columns of numbers from tables in files: named columns, finite numbers, rows counted as lines of the file.
+use super::error::{CaseError, damaged};
+use exchange::{decoded, table::Table};
 use std::path::Path;
 
 /// Requested columns of a CSV table, in the order of the request.
@@ -43,10 +41,22 @@ impl CsvTable {
         wanted: &[&str],
         optional: &[&str],
     ) -> Result<Self, CaseError> {
-        let bytes = decoded(bytes);
-        let (mut reader, comma) = reader(&bytes);
-        let mut record = csv::ByteRecord::new();
-        let header = header(path, &mut reader, &mut record)?;
+        let table = Table::parse(&decoded(bytes), wanted);
+        let rows: Vec<usize> = (0..table.len()).collect();
+        Self::select(path, &table, &rows, (wanted, optional))
+    }
+
+    /// Takes the requested columns, and the optional ones that the table has, from some rows of a table.
+    ///
+    /// # Errors
+    /// As [`Self::read_with`].
+    pub(crate) fn select(
+        path: &Path,
+        table: &Table,
+        rows: &[usize],
+        (wanted, optional): (&[&str], &[&str]),
+    ) -> Result<Self, CaseError> {
+        let header = &table.names;
         // a name that is all but there is a slip, and what it names must not be left out for it
         let unknown = |column: &&String| {
             let known = |name: &&str| *name == column.as_str();
@@ -66,49 +76,35 @@ impl CsvTable {
             .collect();
         let places = wanted
             .iter()
-            .map(|name| place(path, &header, name, &wanted))
+            .map(|name| place(path, header, name, &wanted))
             .collect::<Result<Vec<usize>, CaseError>>()?;
-        let mut table = Self {
-            columns: vec![Vec::new(); wanted.len()],
-            lines: Vec::new(),
-            names: wanted.iter().map(|&name| name.to_owned()).collect(),
-            others: {
-                let other = |name: &&String| !wanted.contains(&name.as_str());
-                header.iter().filter(other).cloned().collect()
-            },
-        };
-        while advance(path, &mut reader, &mut record)? {
-            let line = record.position().map_or(0, csv::Position::line);
-            if record.len() != header.len() {
-                return Err(CaseError::Cell {
-                    path: path.into(),
-                    row: line,
-                    column: header.last().map_or("", String::as_str).into(),
-                    value: format!("a row of {} cells", record.len()).into(),
-                    allowed: format!("{} cells, as in the header", header.len()).into(),
-                    help: if comma == b',' && record.len() > header.len() {
-                        "a decimal comma cuts a cell in two: write decimal points, or separate the cells by \
-                         semicolons"
-                            .into()
-                    } else {
-                        "the row is cut off or has a stray separator: correct or remove it".into()
-                    },
-                });
-            }
-            for ((column, &at), name) in table.columns.iter_mut().zip(&places).zip(&wanted) {
-                let cell = record.get(at).unwrap_or_default();
-                column.push(number(path, (line, name), cell, comma)?);
-            }
-            table.lines.push(line);
-        }
-        if table.lines.is_empty() {
+        if rows.is_empty() {
             return Err(damaged(
                 path,
                 "the table has a header but no rows",
                 "copy the file again from its source",
             ));
         }
-        Ok(table)
+        let column = |&at: &usize| {
+            let numbers = table.numbers(at, rows);
+            numbers.map_err(|problem| CaseError::Cell {
+                path: path.into(),
+                row: problem.line as u64,
+                column: problem.column.into(),
+                value: problem.found.into(),
+                allowed: problem.allowed.into(),
+                help: problem.remedy.into(),
+            })
+        };
+        Ok(Self {
+            columns: places.iter().map(column).collect::<Result<_, _>>()?,
+            lines: rows.iter().map(|row| table.line(*row) as u64).collect(),
+            names: wanted.iter().map(|&name| name.to_owned()).collect(),
+            others: {
+                let other = |name: &&String| !wanted.contains(&name.as_str());
+                header.iter().filter(other).cloned().collect()
+            },
+        })
     }
 
     /// Reads the requested columns of a table that must have no others.
@@ -149,64 +145,6 @@ impl CsvTable {
             help: help.into(),
         }
     }
-}
-
-/// Returns the column names in the header of a CSV file.
-///
-/// # Errors
-/// A first row that cannot be read.
-pub fn columns(path: &Path, bytes: &[u8]) -> Result<Vec<String>, CaseError> {
-    let bytes = decoded(bytes);
-    header(path, &mut reader(&bytes).0, &mut csv::ByteRecord::new())
-}
-
-/// Returns a CSV reader and its delimiter: a comma, unless the first row has none but has a semicolon or a
-/// tab.
-fn reader(bytes: &[u8]) -> (csv::Reader<&[u8]>, u8) {
-    let first = bytes
-        .split(|byte| *byte == b'\n')
-        .next()
-        .unwrap_or_default();
-    let has = |byte: &&u8| first.contains(*byte);
-    let between = *[b',', b';', b'\t'].iter().find(has).unwrap_or(&b',');
-    let reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .delimiter(between)
-        .trim(csv::Trim::All)
-        .from_reader(bytes);
-    (reader, between)
-}
-
-/// Reads the column names from the first row of a CSV file.
-fn header(
-    path: &Path,
-    reader: &mut csv::Reader<&[u8]>,
-    record: &mut csv::ByteRecord,
-) -> Result<Vec<String>, CaseError> {
-    advance(path, reader, record)?;
-    let name = |cell: &[u8]| {
-        String::from_utf8_lossy(cell)
-            .trim_start_matches(['#', '\u{feff}', ' '])
-            .to_owned()
-    };
-    Ok(record.iter().map(name).collect())
-}
-
-/// Reads the next row of the CSV table; returns false at the end.
-fn advance(
-    path: &Path,
-    reader: &mut csv::Reader<&[u8]>,
-    record: &mut csv::ByteRecord,
-) -> Result<bool, CaseError> {
-    reader.read_byte_record(record).map_err(|error| {
-        let line = error.position().map_or(0, csv::Position::line);
-        damaged(
-            path,
-            format!("line {line} cannot be read as CSV: {error}"),
-            "use commas between cells and no line breaks in quotes",
-        )
-    })
 }
 
 /// Returns the index of a CSV column by its name. A column in `needed` is never suggested as the misspelling
@@ -250,37 +188,6 @@ fn place(
             "remove or rename one of them",
         )),
     }
-}
-
-/// Parses a cell as a finite number; a decimal comma is accepted where the delimiter is not a comma.
-fn number(
-    path: &Path,
-    (line, name): (u64, &str),
-    cell: &[u8],
-    between: u8,
-) -> Result<f64, CaseError> {
-    let text = std::str::from_utf8(cell).unwrap_or_default();
-    let point = if between == b',' {
-        text.parse::<f64>()
-    } else {
-        text.replacen(',', ".", 1).parse::<f64>()
-    };
-    let problem = match point {
-        Ok(value) if value.is_finite() => return Ok(value),
-        Ok(_) => "interpolate the value or remove the row: lost samples are allowed, NaN is not",
-        Err(_) if cell.is_empty() => {
-            "remove the row: lost samples are allowed, empty cells are not"
-        }
-        Err(_) => "write a plain number with a decimal point, without its unit",
-    };
-    Err(CaseError::Cell {
-        path: path.into(),
-        row: line,
-        column: name.into(),
-        value: format!("`{}`", clip(&String::from_utf8_lossy(cell), 40)).into(),
-        allowed: "a finite number".into(),
-        help: problem.into(),
-    })
 }
 
 /// Truncates a text to at most `limit` characters, for messages.

@@ -11,6 +11,8 @@ pub mod object;
 pub mod pest;
 mod problem;
 pub mod table;
+mod text;
 
 pub use number::number;
 pub use problem::Problem;
+pub use text::{decoded, is_utf16, utf8_or_latin1};

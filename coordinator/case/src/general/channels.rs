@@ -8,7 +8,7 @@ use super::{
         spread::mean_and_spread,
     },
     file::{AbscissaEntry, ChannelEntry, ConditionEntry, HeldOutEntry, PointsEntry},
-    record,
+    record::{self, Tables},
 };
 use protocol::case::{Abscissa, Channel, ChannelRecord, Offset};
 use std::path::{Path, PathBuf};
@@ -80,7 +80,8 @@ pub(super) fn read(
     conditions: &[ConditionEntry],
     place: &RecordSources<'_>,
 ) -> Result<Vec<ReadChannel>, CaseError> {
-    let read = |(index, entry): (usize, &ChannelEntry)| {
+    let mut tables = Tables::default();
+    let mut read = |(index, entry): (usize, &ChannelEntry)| {
         let way = [
             DocumentStep::Key("channels"),
             DocumentStep::Index(index),
@@ -96,9 +97,9 @@ pub(super) fn read(
             index,
             entry,
         };
-        source.read(conditions, place)
+        source.read(conditions, place, &mut tables)
     };
-    entries.iter().enumerate().map(read).collect()
+    entries.iter().enumerate().map(&mut read).collect()
 }
 
 /// `[[channels]]` table of the case file with its index, for reading and checking it.
@@ -126,6 +127,7 @@ impl ChannelReader<'_> {
         &self,
         conditions: &[ConditionEntry],
         place: &RecordSources<'_>,
+        tables: &mut Tables,
     ) -> Result<ReadChannel, CaseError> {
         let entry = self.entry;
         let names = conditions.iter().map(|condition| condition.name.as_str());
@@ -157,7 +159,7 @@ impl ChannelReader<'_> {
             abscissa: points,
             mut cycles,
             weights,
-        } = self.places_and_cycles(place)?;
+        } = self.places_and_cycles(place, tables)?;
         let file = entry.record.as_ref().map(|record| &record.file);
         let missing = file
             .filter(|file| place.may_omit(file, &entry.condition))
@@ -250,7 +252,9 @@ impl ChannelReader<'_> {
     fn places_and_cycles(
         &self,
         place: &RecordSources<'_>,
+        tables: &mut Tables,
     ) -> Result<record::ChannelData, CaseError> {
+        let offset = self.entry.offset.unwrap_or(place.offset);
         let read = match (&self.entry.record, &self.entry.abscissa.points) {
             (Some(entry), None) => {
                 let role = format!(
@@ -263,7 +267,7 @@ impl ChannelReader<'_> {
                 } else {
                     place.of(&entry.file)
                 };
-                record::read(&path, entry, &role)?
+                record::read(tables, &path, (entry, offset), &role)?
             }
             (None, Some(points)) => record::ChannelData {
                 abscissa: self.spaced(*points)?,
@@ -290,7 +294,7 @@ impl ChannelReader<'_> {
             }
         };
         self.check_period(&read.abscissa)?;
-        let least = match self.entry.offset.unwrap_or(place.offset) {
+        let least = match offset {
             Offset::Fixed => 1,
             Offset::Free => 2,
         };

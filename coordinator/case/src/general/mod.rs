@@ -77,7 +77,6 @@ mod file;
 mod objective;
 mod read;
 mod record;
-mod rows;
 mod unknowns;
 
 pub use read::read;

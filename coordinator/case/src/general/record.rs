@@ -1,14 +1,18 @@
 //! Reading of a channel's record: a table of abscissa points and values, cycle by cycle.
 use super::{
     super::{
-        error::{CaseError, contradiction},
+        error::{CaseError, contradiction, damaged},
         file,
         table::CsvTable,
     },
     file::RecordEntry,
-    rows,
 };
-use std::path::Path;
+use exchange::{decoded, table::Table};
+use protocol::case::Offset;
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
 /// Measured record of a channel, as read from its file.
 #[derive(Debug)]
@@ -21,31 +25,110 @@ pub(super) struct ChannelData {
     pub(super) weights: Vec<f64>,
 }
 
-/// Reads a record.
+/// Tables of a case's records: a file that holds the records of many channels is read once.
+#[derive(Debug, Default)]
+pub(super) struct Tables(BTreeMap<(PathBuf, Vec<String>), SplitTable>);
+
+/// Table of records.
+#[derive(Debug)]
+struct SplitTable {
+    table: Table,
+    /// Rows that have the same text in the column by which the case selects them; all rows under an empty text otherwise.
+    rows: BTreeMap<String, Vec<usize>>,
+}
+
+impl Tables {
+    /// Reads the columns of a record that its entry names.
+    fn columns(
+        &mut self,
+        path: &Path,
+        entry: &RecordEntry,
+        role: &str,
+    ) -> Result<CsvTable, CaseError> {
+        let selected = entry.rows.as_ref();
+        let named = [Some(&entry.at), Some(&entry.column)].into_iter();
+        let named = named.chain([entry.cycle.as_ref(), entry.weight.as_ref()]);
+        let named: Vec<&str> = named.flatten().map(String::as_str).collect();
+        let needed = named.iter().copied();
+        let needed = needed.chain(selected.map(|rows| rows.column.as_str()));
+        let needed: Vec<&str> = needed.collect();
+        let key = (
+            path.to_owned(),
+            needed.iter().map(|&name| name.to_owned()).collect(),
+        );
+        let split = match self.0.entry(key) {
+            std::collections::btree_map::Entry::Occupied(known) => known.into_mut(),
+            std::collections::btree_map::Entry::Vacant(new) => {
+                let bytes = if file::is_packed(path) {
+                    file::read_gzip(path, role)?
+                } else {
+                    file::read(path, role)?
+                };
+                let table = Table::parse(&decoded(&bytes), &needed);
+                let column = selected.map(|rows| &rows.column);
+                new.insert(SplitTable {
+                    rows: rows_by(path, &table, column)?,
+                    table,
+                })
+            }
+        };
+        let word = selected.map_or("", |rows| rows.is.as_str());
+        match split.rows.get(word) {
+            Some(rows) => CsvTable::select(path, &split.table, rows, (&named, &[])),
+            None => Err(damaged(
+                path,
+                format!(
+                    "no row has `{word}` in column `{}`",
+                    selected.map_or("", |rows| &rows.column)
+                ),
+                "correct the word in `rows`, or add the rows",
+            )),
+        }
+    }
+}
+
+/// Returns the rows of a table by their text in a column; all of them under an empty text if there is no such column.
+fn rows_by(
+    path: &Path,
+    table: &Table,
+    column: Option<&String>,
+) -> Result<BTreeMap<String, Vec<usize>>, CaseError> {
+    let mut rows: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    let Some(column) = column else {
+        rows.insert(String::new(), (0..table.len()).collect());
+        return Ok(rows);
+    };
+    let Some(at) = table.column(column) else {
+        return Err(CaseError::Column {
+            path: path.into(),
+            column: column.as_str().into(),
+            found: table.names.join(", ").into(),
+            help: "`rows` names a column of words".into(),
+        });
+    };
+    for row in 0..table.len() {
+        let word = table.cell(row, at);
+        match rows.get_mut(word) {
+            Some(own) => own.push(row),
+            None => drop(rows.insert(word.to_owned(), vec![row])),
+        }
+    }
+    Ok(rows)
+}
+
+/// Reads a record whose values have an absolute zero or not.
 ///
 /// # Errors
 /// Returns an error for a missing file or column, cells that are not numbers, abscissa points that do not
 /// ascend or differ between cycles, cycle numbers that are not whole or decrease, weights that are not
-/// positive, and unweighted values that are all equal.
-pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<ChannelData, CaseError> {
-    let packed = path.extension().is_some_and(|end| end == "gz");
-    let bytes = if packed {
-        file::read_gzip(path, role)?
-    } else {
-        file::read(path, role)?
-    };
-    let bytes = match &entry.rows {
-        Some(rows) => rows::of(path, &bytes, &rows.column, &rows.is)?,
-        None => bytes,
-    };
-    let named = [entry.at.as_str(), entry.column.as_str()].into_iter();
-    let more = entry
-        .cycle
-        .as_deref()
-        .into_iter()
-        .chain(entry.weight.as_deref());
-    let named: Vec<&str> = named.chain(more).collect();
-    let table = CsvTable::read(path, &bytes, &named)?;
+/// positive, and unweighted values that are all equal, unless they are residuals: zeros with an absolute zero.
+pub(super) fn read(
+    tables: &mut Tables,
+    path: &Path,
+    (entry, offset): (&RecordEntry, Offset),
+    role: &str,
+) -> Result<ChannelData, CaseError> {
+    let table = tables.columns(path, entry, role)?;
     let [at, values, more @ ..] = table.columns.as_slice() else {
         return Ok(ChannelData {
             abscissa: Vec::new(),
@@ -72,8 +155,10 @@ pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<Chann
         check_weights(path, &table, weights, length)?;
     }
     let first = values.first().copied().unwrap_or_default();
+    let is_residual = first == 0.0 && offset == Offset::Fixed;
     // values that are weighted may be those of different things
     if weights.is_none()
+        && !is_residual
         && values.len() > 1
         && values.iter().all(|value| value.total_cmp(&first).is_eq())
     {
@@ -82,7 +167,12 @@ pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<Chann
             format!("column `{}`", entry.column),
             format!("{first} in every row"),
             "a measured quantity must vary",
-            "name the column that holds the measurement, or leave the record out",
+            if first == 0.0 {
+                "name the column that holds the measurement; if the program returns residuals, whose target is 0, state \
+                 offset = \"fixed\""
+            } else {
+                "name the column that holds the measurement, or leave the record out"
+            },
         ));
     }
     let cycles = spans

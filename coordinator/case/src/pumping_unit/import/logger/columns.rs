@@ -1,13 +1,14 @@
 //! Names and units of a table's columns.
 use super::{
     layout::{Cells, Layout},
-    lines::{Lines, text},
+    lines::Lines,
     unit,
 };
 use crate::{
     document::nearest,
     error::{CaseError, damaged},
 };
+use exchange::utf8_or_latin1;
 use serde::{Deserialize, Serialize};
 use std::{collections::HashMap, path::Path};
 
@@ -100,7 +101,8 @@ impl Columns {
         };
         let mut counts: HashMap<String, usize> = HashMap::new();
         for place in 0..width {
-            let cell = |cells: &Cells| text(cells.get(place).unwrap_or_default()).into_owned();
+            let cell =
+                |cells: &Cells| utf8_or_latin1(cells.get(place).unwrap_or_default()).into_owned();
             let name = cell(&header);
             let count = counts.entry(name.clone()).or_default();
             *count += 1;

@@ -1,5 +1,5 @@
 //! Layout of a table in a text file: separators, and the lines that are not data.
-use super::lines::text;
+use exchange::utf8_or_latin1;
 use serde::{Deserialize, Serialize};
 
 /// Separator of the cells of a line.
@@ -144,7 +144,7 @@ impl Layout {
     pub(super) fn number(&self, cell: &[u8]) -> Option<f64> {
         if !cell.is_ascii() {
             // the minus sign of typesetters, and blanks that do not break lines
-            let plain = text(cell)
+            let plain = utf8_or_latin1(cell)
                 .replace(['\u{2212}', '\u{2013}'], "-")
                 .replace(['\u{a0}', '\u{202f}'], " ");
             return plain.is_ascii().then(|| self.number(plain.as_bytes()))?;
@@ -190,7 +190,7 @@ impl Layout {
 
     /// Returns whether a cell stands for a missing value.
     pub(super) fn is_missing(&self, cell: &[u8]) -> bool {
-        let cell = text(cell);
+        let cell = utf8_or_latin1(cell);
         cell.is_empty() || means_missing(&cell) || self.missing.iter().any(|word| *word == cell)
     }
 }
@@ -214,7 +214,7 @@ pub(super) fn is_comment(line: &[u8]) -> bool {
 
 /// Returns the number for which a word stands, as in the column of a switch; `None` for any other word.
 pub(super) fn switch(cell: &[u8]) -> Option<f64> {
-    match text(cell).to_lowercase().as_str() {
+    match utf8_or_latin1(cell).to_lowercase().as_str() {
         "true" | "on" => Some(1.0),
         "false" | "off" => Some(0.0),
         _ => None,

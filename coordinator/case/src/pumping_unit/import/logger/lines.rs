@@ -3,8 +3,8 @@ use crate::{
     error::{CaseError, damaged},
     file,
 };
+use exchange::{decoded, is_utf16, utf8_or_latin1};
 use std::{
-    borrow::Cow,
     io::{BufRead, Cursor, Read},
     path::Path,
 };
@@ -29,11 +29,7 @@ impl<'a> Lines<'a> {
     pub(super) fn open(path: &'a Path) -> Result<Self, CaseError> {
         let mut from = file::open(path, "a file to import")?;
         let start = from.fill_buf().map_err(|source| unreadable(path, source))?;
-        let wide = matches!(start, [0xff, 0xfe, ..] | [0xfe, 0xff, ..])
-            || matches!(
-                start,
-                [1..=255, 0, 1..=255, 0, ..] | [0, 1..=255, 0, 1..=255, ..]
-            );
+        let wide = is_utf16(start);
         // line ends of old Macintosh programs
         let returns = !wide && start.contains(&b'\r') && !start.contains(&b'\n');
         if wide || returns {
@@ -44,13 +40,11 @@ impl<'a> Lines<'a> {
             if bytes.len() as u64 > file::LIMIT {
                 return Err(file::too_large(path));
             }
-            let mut text = file::decoded(&bytes).into_owned();
+            let mut text = decoded(&bytes).into_owned();
             if returns {
-                text.iter_mut()
-                    .filter(|byte| **byte == b'\r')
-                    .for_each(|byte| *byte = b'\n');
+                text = text.replace('\r', "\n");
             }
-            from = Box::new(Cursor::new(text));
+            from = Box::new(Cursor::new(text.into_bytes()));
         }
         Ok(Self {
             path,
@@ -111,14 +105,6 @@ fn unreadable(path: &Path, source: std::io::Error) -> CaseError {
     }
 }
 
-/// Converts bytes to text: UTF-8, or Latin-1 where they are not.
-pub(super) fn text(bytes: &[u8]) -> Cow<'_, str> {
-    std::str::from_utf8(bytes).map_or_else(
-        |_| Cow::Owned(bytes.iter().map(|byte| char::from(*byte)).collect()),
-        Cow::Borrowed,
-    )
-}
-
 /// Reads the whole text of a small file: plain or gzipped, in UTF-8, UTF-16 or Latin-1.
 ///
 /// # Errors
@@ -127,7 +113,7 @@ pub(crate) fn content(path: &Path) -> Result<String, CaseError> {
     let mut lines = Lines::open(path)?;
     let mut all = String::new();
     while let Some((_, line)) = lines.next()? {
-        all.push_str(&text(line));
+        all.push_str(&utf8_or_latin1(line));
         all.push('\n');
     }
     Ok(all)

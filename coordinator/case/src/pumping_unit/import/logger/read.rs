@@ -3,12 +3,13 @@ use super::{
     clock::{self, Clock},
     columns::Columns,
     layout::{Cells, Layout, is_comment, switch},
-    lines::{Lines, text},
+    lines::Lines,
 };
 use crate::{
     error::{CaseError, damaged},
     table::clip,
 };
+use exchange::utf8_or_latin1;
 use std::{
     collections::VecDeque,
     path::{Path, PathBuf},
@@ -323,7 +324,7 @@ impl Wanted<'_> {
             };
             *value = match self.value((number, name), cell) {
                 Err(_) if self.survey => {
-                    let word = text(cell).into_owned();
+                    let word = utf8_or_latin1(cell).into_owned();
                     let known = table.words.iter().any(|(_, other)| *other == word);
                     if !known && table.words.len() < WORDS {
                         table.words.push((number, word));
@@ -360,7 +361,7 @@ impl Wanted<'_> {
             if !written.is_empty() {
                 written.push(' ');
             }
-            written.push_str(&text(cell));
+            written.push_str(&utf8_or_latin1(cell));
         }
         let mut seconds = clock::seconds(format, &written, self.layout).ok_or_else(|| {
             self.fault(
@@ -414,7 +415,7 @@ impl Wanted<'_> {
         self.layout.number(cell).or_else(|| switch(cell)).ok_or_else(|| {
             self.fault(
                 at,
-                format!("`{}`", clip(&text(cell), 40)),
+                format!("`{}`", clip(&utf8_or_latin1(cell), 40)),
                 format!("a number with `{}` as decimal sign", self.layout.decimal),
                 "if it stands for a missing value, add it to `table.missing` in the mapping; if it is a number, \
                  correct `table.decimal` and `table.thousands`; if the data end before it, state \

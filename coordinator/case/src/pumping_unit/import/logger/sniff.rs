@@ -1,10 +1,11 @@
 //! Proposal of the layout of a table from the content of its file.
 use super::{
     layout::{Cells, Delimiter, Layout, is_comment, means_missing},
-    lines::{Lines, text},
+    lines::Lines,
     unit::normal,
 };
 use crate::error::{CaseError, damaged};
+use exchange::utf8_or_latin1;
 use std::{collections::VecDeque, path::Path};
 
 /// First and last lines of a file, from which its layout is proposed.
@@ -77,7 +78,10 @@ impl Sample {
         lines
             .map(|(_, line)| {
                 layout.delimiter.split(line, &mut cells);
-                cells.iter().map(|cell| text(cell).into_owned()).collect()
+                cells
+                    .iter()
+                    .map(|cell| utf8_or_latin1(cell).into_owned())
+                    .collect()
             })
             .collect()
     }
@@ -193,7 +197,7 @@ fn is_value(cell: &[u8]) -> bool {
 
 /// Returns whether a cell is a known word for a missing value.
 fn is_word(cell: &[u8]) -> bool {
-    means_missing(&text(cell))
+    means_missing(&utf8_or_latin1(cell))
 }
 
 /// Returns the cells of a table that look like numbers.
@@ -204,9 +208,9 @@ fn numbers(sample: &Sample, rows: &[u64], delimiter: Delimiter) -> Vec<Vec<Strin
         delimiter.split(line, &mut cells);
         columns.resize_with(columns.len().max(cells.len()), Vec::new);
         for (column, cell) in columns.iter_mut().zip(cells.iter()) {
-            let time = cell.contains(&b':') || text(cell).matches('.').count() > 1;
+            let time = cell.contains(&b':') || utf8_or_latin1(cell).matches('.').count() > 1;
             if is_value(cell) && !time && !cell.contains(&b'/') {
-                column.push(text(cell).into_owned());
+                column.push(utf8_or_latin1(cell).into_owned());
             }
         }
     }
@@ -281,7 +285,9 @@ fn header(sample: &Sample, layout: &mut Layout, width: usize) {
         return;
     }
     let filled = cells.iter().filter(|cell| !cell.is_empty()).count();
-    let units = cells.iter().filter(|cell| normal(&text(cell)).is_some());
+    let units = cells
+        .iter()
+        .filter(|cell| normal(&utf8_or_latin1(cell)).is_some());
     let units = units.count();
     // names with blanks in them cannot be told apart where blanks separate the cells
     if delimiter == Delimiter::Blanks && cells.len() != width {
@@ -387,7 +393,7 @@ mod tests {
                 found.first_line,
                 found.footer_lines,
             );
-            assert_eq!(found, expected, "{}", text(content));
+            assert_eq!(found, expected, "{}", utf8_or_latin1(content));
         }
     }
 
