@@ -114,6 +114,7 @@ impl CaseEffect {
             Some(Unknown {
                 title: format!("{name} of {}", self.id.replace('_', " ")),
                 prior: found.map(|ci95| interval(&unknown, ci95)),
+                is_effect: true,
                 ..unknown
             })
         })

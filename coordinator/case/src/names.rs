@@ -3,14 +3,51 @@ use super::{
     document::{Document, DocumentStep},
     error::CaseError,
 };
+use std::collections::BTreeSet;
 
-/// Checks the names of the case file's tables under the key `list`; `what` is the word for one of these
-/// tables in messages.
+/// Checks the names of the case file's tables under the key `list`, which are typed on command lines and become part of file
+/// names; `what` is the word for one of these tables in messages.
 ///
 /// # Errors
 /// Returns an error for the first name that is empty, duplicate or has characters not allowed on command
 /// lines and in file names, or if the list is empty.
 pub fn check(document: &Document, list: &str, what: &str, names: &[&str]) -> Result<(), CaseError> {
+    check_list(document, (list, what), names, |way, name, is_there| {
+        check_one(document, way, what, name, is_there)
+    })
+}
+
+/// Checks names as [`check`] does, but allows all that other programs write: any printable characters of ASCII except
+/// blanks, commas, quotes, braces, `=`, `#` and `\`, as `pname:k_inst:0_x:1.5` and `density[0]`.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_program_names(
+    document: &Document,
+    list: &str,
+    what: &str,
+    names: &[&str],
+) -> Result<(), CaseError> {
+    let plain = |c: char| c.is_ascii_graphic() && !",\"'`{}=#\\".contains(c);
+    check_list(document, (list, what), names, |way, name, is_there| {
+        if name.is_empty() || !name.chars().all(plain) {
+            return Err(document.field(
+                way,
+                format!("\"{name}\""),
+                "a name without blanks, commas, quotes, braces, `=`, `#` and `\\`",
+                "the name is a key of gene files and is typed on command lines, as `stiffness`",
+            ));
+        }
+        unique(document, way, what, name, is_there)
+    })
+}
+
+fn check_list(
+    document: &Document,
+    (list, what): (&str, &str),
+    names: &[&str],
+    check: impl Fn(&[DocumentStep<'_>], &str, bool) -> Result<(), CaseError>,
+) -> Result<(), CaseError> {
     if names.is_empty() {
         return Err(document.field(
             &[DocumentStep::Key(list)],
@@ -19,13 +56,14 @@ pub fn check(document: &Document, list: &str, what: &str, names: &[&str]) -> Res
             &format!("add a [[{list}]] table"),
         ));
     }
+    let mut seen = BTreeSet::new();
     for (index, name) in names.iter().enumerate() {
         let way = [
             DocumentStep::Key(list),
             DocumentStep::Index(index),
             DocumentStep::Key("name"),
         ];
-        check_one(document, &way, what, name, names[..index].contains(name))?;
+        check(&way, name, !seen.insert(*name))?;
     }
     Ok(())
 }
@@ -51,10 +89,20 @@ pub fn check_one(
             "the name is typed on command lines and becomes part of file names, as `5rpm`",
         ));
     }
+    unique(document, way, what, name, is_there)
+}
+
+fn unique(
+    document: &Document,
+    way: &[DocumentStep<'_>],
+    what: &str,
+    name: &str,
+    is_there: bool,
+) -> Result<(), CaseError> {
     if is_there {
         return Err(document.field(
             way,
-            quoted,
+            format!("\"{name}\""),
             format!("a name that no other {what} has"),
             &format!("duplicate {what}: rename or remove one of the two"),
         ));

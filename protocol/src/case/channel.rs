@@ -29,6 +29,8 @@ pub struct Channel {
     pub weights: Vec<f64>,
     /// Whether the channel's values have an absolute zero, so that a constant difference counts as an error.
     pub offset: Offset,
+    /// Side on which the record limits the channel; `None` where the record is to be met.
+    pub limit: Option<Limit>,
     /// Measured record of the channel used for scoring; `None` if it was not measured.
     pub record: Option<ChannelRecord>,
 }
@@ -43,6 +45,26 @@ impl Channel {
     pub fn weigh(&self, differences: &mut [f64]) {
         for (difference, weight) in differences.iter_mut().zip(&self.weights) {
             *difference *= weight;
+        }
+    }
+}
+
+/// Side on which a record limits a channel: only values beyond the limit count as errors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Limit {
+    /// The record is the greatest value that the channel may have.
+    AtMost,
+    /// The record is the least value that the channel may have.
+    AtLeast,
+}
+
+impl Limit {
+    /// Returns whether a difference, measured minus simulated, keeps the limit.
+    pub fn holds(self, difference: f64) -> bool {
+        match self {
+            Self::AtMost => difference >= 0.0,
+            Self::AtLeast => difference <= 0.0,
         }
     }
 }

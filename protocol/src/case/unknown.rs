@@ -52,6 +52,8 @@ pub struct Unknown {
     /// Name of the suspected cause to which the unknown belongs while it is switched off; unknowns with the
     /// same name are switched on together.
     pub suspect: Option<String>,
+    /// Whether the unknown is a parameter of an effect; its name is then `EFFECT.PARAMETER`.
+    pub is_effect: bool,
 }
 
 /// Scan for a narrow minimum ("valley") of the objective along an unknown: a grid of values along several
@@ -139,6 +141,7 @@ impl Unknown {
             tie: None,
             step: None,
             suspect: None,
+            is_effect: false,
         }
     }
 
@@ -149,6 +152,7 @@ impl Unknown {
 
     /// Returns the names of effect and parameter if the unknown is a parameter of an effect.
     pub fn of_effect(&self) -> Option<(&str, &str)> {
-        self.name.split_once('.')
+        let parts = self.name.split_once('.');
+        parts.filter(|_| self.is_effect)
     }
 }

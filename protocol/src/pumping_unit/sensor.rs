@@ -35,6 +35,7 @@ impl Sensor {
             Self::Torque => (self.name(), "crank torque".to_owned(), "N.m", -3),
         };
         Channel {
+            limit: None,
             name,
             title,
             unit: unit.to_owned(),

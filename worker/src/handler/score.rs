@@ -72,7 +72,7 @@ pub(super) fn evaluation(
             let channels: Vec<&Channel> = case.channels_of(condition).map(|(_, c)| c).collect();
             let columns = seen.columns.iter();
             columns
-                .map(|column| residual_by(&case.objective, &channels, column))
+                .map(|column| residual_by(&case.objective, &channels, &compared, column))
                 .collect()
         } else {
             Vec::new()
@@ -94,12 +94,12 @@ struct Compared<'a> {
     name: &'a str,
     score: ChannelScore,
     /// Residual of the channel: measured minus simulated values after offset removal, times the channel's
-    /// weights.
+    /// weights; 0 where a limit holds.
     residual: Vec<f64>,
 }
 
 /// Compares a channel's simulated curve with its measured record; returns the score and the residual
-/// (measured minus simulated after offset removal), times the weights.
+/// (measured minus simulated after offset removal), times the weights; 0 where a limit holds.
 fn compared(
     at: usize,
     channel: &Channel,
@@ -117,7 +117,10 @@ fn compared(
         Offset::Free => offset,
         Offset::Fixed => 0.0,
     };
-    let plain: Vec<f64> = difference.iter().map(|d| d - removed).collect();
+    let is_kept = |d: f64| channel.limit.is_some_and(|limit| limit.holds(d));
+    let counted = difference.iter().map(|d| d - removed);
+    let counted = counted.map(|d| if is_kept(d) { 0.0 } else { d });
+    let plain: Vec<f64> = counted.collect();
     let weigh = |mut values: Vec<f64>| {
         channel.weigh(&mut values);
         values
@@ -135,7 +138,10 @@ fn compared(
     let score = ChannelScore {
         channel: at,
         mse,
-        mse_fixed_offset: mean_square(&weigh(difference)),
+        mse_fixed_offset: match channel.limit {
+            Some(_) => mse,
+            None => mean_square(&weigh(difference)),
+        },
         offset,
         rmse_over_half_range: mean_square(&plain).sqrt() / (0.5 * range),
         relative_error: plain.iter().map(|x| x.abs()).sum::<f64>() / n / deviation,
@@ -189,8 +195,14 @@ fn residual(objective: &Objective, compared: &[Compared<'_>]) -> Vec<f64> {
 }
 
 /// Computes the derivative of the objective's residual from the derivative of the channels' curves;
-/// `channels` are the channels of those curves, in the same order.
-fn residual_by(objective: &Objective, channels: &[&Channel], by: &Derivative) -> Derivative {
+/// `channels` are the channels of those curves, in the same order, and `compared` those with a record. Where a
+/// limit holds, the derivative is 0.
+fn residual_by(
+    objective: &Objective,
+    channels: &[&Channel],
+    compared: &[Compared<'_>],
+    by: &Derivative,
+) -> Derivative {
     let Derivative::Curves { per, curves } = by else {
         return by.clone();
     };
@@ -223,6 +235,14 @@ fn residual_by(objective: &Objective, channels: &[&Channel], by: &Derivative) ->
             *x = removed - *x;
         }
         channel.weigh(&mut curve);
+        if let (Some(_), Some(at)) = (
+            channel.limit,
+            compared.iter().find(|own| own.name == term.channel),
+        ) {
+            let kept = curve.iter_mut().zip(&at.residual);
+            kept.filter(|(_, residual)| **residual == 0.0)
+                .for_each(|(x, _)| *x = 0.0);
+        }
         all.extend(to_single_precision(curve.into_iter().map(|x| scale * x)));
     }
     Derivative::Curves {
@@ -234,7 +254,10 @@ fn residual_by(objective: &Objective, channels: &[&Channel], by: &Derivative) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use protocol::{case::Abscissa, job::Per};
+    use protocol::{
+        case::{Abscissa, Limit},
+        job::Per,
+    };
 
     fn channel(name: &str, weights: &[f64], offset: Offset) -> Channel {
         Channel {
@@ -252,6 +275,7 @@ mod tests {
             step: None,
             weights: weights.to_vec(),
             offset,
+            limit: None,
             record: None,
         }
     }
@@ -284,6 +308,52 @@ mod tests {
         let fixed = channel("a", &[], Offset::Fixed);
         let (fixed, _) = compared(2, &fixed, &record, &simulated);
         assert!((fixed.mse - 2.5).abs() < 1e-15);
+    }
+
+    /// Checks that only values beyond a limit count, with their derivatives.
+    #[test]
+    fn values_within_a_limit_are_no_errors() {
+        let record = ChannelRecord {
+            cycles: 1,
+            mean: vec![1.0, 3.0, 5.0, 3.0],
+            spread: vec![0.0; 4],
+        };
+        let simulated = [0.0, 1.0, 6.0, 5.0];
+        let objective = Objective {
+            condition: 0,
+            others: Vec::new(),
+            terms: vec![Term {
+                channel: "a".to_owned(),
+                weight: 4.0,
+            }],
+        };
+        for (limit, residual) in [
+            (Limit::AtMost, vec![0.0, 0.0, -1.0, -2.0]),
+            (Limit::AtLeast, vec![1.0, 2.0, 0.0, 0.0]),
+        ] {
+            let mut own = channel("a", &[], Offset::Fixed);
+            own.limit = Some(limit);
+            own.record = Some(record.clone());
+            let (score, found) = compared(0, &own, &record, &simulated);
+            assert_eq!(found, residual);
+            assert!((score.mse - 5.0 / 4.0).abs() < 1e-15);
+            let at = [Compared {
+                name: "a",
+                score,
+                residual: found,
+            }];
+            let derivative = Derivative::Curves {
+                per: Per::Decade,
+                curves: vec![vec![1.0; 4]],
+            };
+            let by = residual_by(&objective, &[&own], &at, &derivative);
+            let expected = residual.iter().map(|r| if *r == 0.0 { 0.0 } else { -1.0 });
+            let expected = Derivative::Curves {
+                per: Per::Decade,
+                curves: vec![expected.collect()],
+            };
+            assert_eq!(by, expected);
+        }
     }
 
     /// Checks that derivatives of the objective's residual equal its change when the curves change, with and
@@ -341,7 +411,8 @@ mod tests {
                 });
                 residual(&objective, &all)
             };
-            let Derivative::Curves { curves, .. } = residual_by(&objective, &channels, &derivative)
+            let Derivative::Curves { curves, .. } =
+                residual_by(&objective, &channels, &[], &derivative)
             else {
                 unreachable!("it has one")
             };
@@ -357,7 +428,7 @@ mod tests {
                 per: Per::Decade,
                 curves: vec![Vec::new(); 3],
             };
-            let none = residual_by(&objective, &channels, &gap);
+            let none = residual_by(&objective, &channels, &[], &gap);
             assert!(matches!(none, Derivative::Missing { .. }));
         }
     }

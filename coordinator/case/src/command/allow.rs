@@ -16,6 +16,8 @@ pub struct EntryProposal {
     pub name: String,
     /// Entry that would be written to the allow list.
     pub entry: AllowEntry,
+    /// Whether the program exists: on this machine, or among the files that the case brings.
+    pub is_there: bool,
     /// Paths of the case's files that are sent to the workers, and of the input files that are filled in for
     /// the program.
     pub files: Vec<String>,
@@ -25,6 +27,8 @@ pub struct EntryProposal {
 ///
 /// # Errors
 /// Returns an error if the case cannot be read, is not of the kind `command`, or proposes no command.
+///
+/// Whether this machine has the program does not matter: the case may be prepared here for others.
 pub fn propose_entry(folder: &Path) -> Result<EntryProposal, CaseError> {
     let overrides = Overrides::default();
     let case = load_with_notes(folder, &overrides)?.case;
@@ -48,14 +52,7 @@ pub fn propose_entry(folder: &Path) -> Result<EntryProposal, CaseError> {
         ));
     };
     let place = resolve_program(program);
-    if !program_exists(&place, folder, &external) {
-        return Err(document.field(
-            &[DocumentStep::Key("model"), DocumentStep::Key("command")],
-            format!("\"{program}\""),
-            "a program on this machine, by name or absolute path, or a file of the case, such as \"./model.sh\"",
-            "there is no such program: install it, or correct the name",
-        ));
-    }
+    let is_there = program_exists(&place, folder, &external);
     let mut entry = AllowEntry::new(place, arguments.to_vec());
     entry.files = Some(external.digest());
     if let Some((program, arguments)) = own.model.version.split_first() {
@@ -70,6 +67,7 @@ pub fn propose_entry(folder: &Path) -> Result<EntryProposal, CaseError> {
     Ok(EntryProposal {
         name: name.to_owned(),
         entry,
+        is_there,
         files: files.chain(filled).collect(),
     })
 }

@@ -170,7 +170,13 @@ impl ChannelReader<'_> {
                 (name, entry.condition.clone())
             });
         self.check_segment(&points)?;
+        let offset = entry.offset.unwrap_or(place.offset);
+        self.check_limit(offset)?;
         let record = (!cycles.is_empty()).then(|| averaged(&cycles));
+        if entry.limit.is_some() {
+            // no measurement of the channel, so that no interval and no discrepancy follows from it
+            cycles.clear();
+        }
         let AbscissaEntry {
             name, unit, period, ..
         } = &entry.abscissa;
@@ -189,7 +195,8 @@ impl ChannelReader<'_> {
                 noise: entry.noise,
                 step: entry.noise.map(|noise| step(noise, &weights)),
                 weights,
-                offset: entry.offset.unwrap_or(place.offset),
+                offset,
+                limit: entry.limit,
                 record,
             },
             cycles,
@@ -219,6 +226,19 @@ impl ChannelReader<'_> {
                 ends[0], ends[1], self.entry.abscissa.unit
             ),
             "give a part with some of the values in it, or hold out the whole channel: held_out = true",
+        ))
+    }
+
+    /// Checks that a channel with a limit has a record and an absolute zero.
+    fn check_limit(&self, offset: Offset) -> Result<(), CaseError> {
+        if self.entry.limit.is_none() || (self.entry.record.is_some() && offset == Offset::Fixed) {
+            return Ok(());
+        }
+        Err(self.field_error(
+            &["limit"],
+            format!("stated for channel `{}`", self.entry.name),
+            "absent, unless the channel has a record and offset = \"fixed\"",
+            "state the limit's values as the record, and offset = \"fixed\"; or remove `limit`",
         ))
     }
 

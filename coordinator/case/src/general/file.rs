@@ -3,7 +3,7 @@ use super::super::{
     diagnose::DiagnoseEntry, effect::CaseEffect, fitted_conditions::FittedConditions,
     loaded::Records, prior::PriorEntry,
 };
-use protocol::case::{Offset, Scale, Tie, Valley};
+use protocol::case::{Limit, Offset, Scale, Tie, Valley};
 use serde::Deserialize;
 use std::path::PathBuf;
 use toml::Table;
@@ -88,6 +88,8 @@ pub(super) struct ChannelEntry {
     /// Treatment of the sensor's zero for this channel: whether absolute values are compared (fixed), or
     /// values after removal of the mean difference (free); the objective's treatment unless stated.
     pub(super) offset: Option<Offset>,
+    /// Side on which the record limits the channel, if it is not to be met.
+    pub(super) limit: Option<Limit>,
     /// Part of the record that is held out from the fits of a diagnosis.
     #[serde(default)]
     pub(super) held_out: HeldOutEntry,

@@ -19,7 +19,7 @@ pub(super) fn read(
     entries: &[UnknownEntry],
 ) -> Result<Vec<Unknown>, CaseError> {
     let all: Vec<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
-    names::check(document, "unknowns", "unknown", &all)?;
+    names::check_program_names(document, "unknowns", "unknown", &all)?;
     let way = |index, field| {
         [
             DocumentStep::Key("unknowns"),
@@ -27,14 +27,6 @@ pub(super) fn read(
             DocumentStep::Key(field),
         ]
     };
-    if let Some(index) = all.iter().position(|name| name.contains('.')) {
-        return Err(document.field(
-            &way(index, "name"),
-            format!("\"{}\"", all[index]),
-            "a name without `.`",
-            "names with `.` are those of effects' parameters: write `_`",
-        ));
-    }
     let unknowns = entries.iter().enumerate().map(|(index, entry)| {
         let mut own = unknown(entry, start(entry, entries, entries.len()));
         if let Some(prior) = entry.prior {
@@ -72,6 +64,7 @@ fn unknown(entry: &UnknownEntry, start: f64) -> Unknown {
             .difference
             .map(|difference| difference_step(entry, difference)),
         suspect: entry.suspect.clone(),
+        is_effect: false,
     }
 }
 

@@ -323,6 +323,7 @@ pub(crate) mod tests {
     /// observation.
     pub(crate) fn recorded(curve: usize) -> Recorded {
         let channel = Channel {
+            limit: None,
             name: format!("channel_{curve}"),
             title: format!("channel {curve}"),
             unit: "N".to_owned(),

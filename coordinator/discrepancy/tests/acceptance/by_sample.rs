@@ -41,6 +41,7 @@ fn channel(curve: usize, noise: Option<f64>) -> Recorded {
         scored: true,
         held_out: false,
         channel: Channel {
+            limit: None,
             name: format!("channel_{curve}"),
             title: format!("channel {curve}"),
             unit: "1".to_owned(),

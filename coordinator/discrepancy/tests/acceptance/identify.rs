@@ -47,6 +47,7 @@ fn curves(x: &[f64]) -> Option<Curves> {
 fn channel(name: &str, condition: usize) -> Channel {
     let point = |k: usize| 360.0 * k as f64 / SAMPLES as f64;
     Channel {
+        limit: None,
         name: name.to_owned(),
         title: name.to_owned(),
         unit: "N".to_owned(),

@@ -76,6 +76,7 @@ pub(crate) fn inputs(
 ) -> Inputs {
     let point = |k: usize| 360.0 * k as f64 / SAMPLES as f64;
     let channel = Channel {
+        limit: None,
         name: "wave".to_owned(),
         title: "wave".to_owned(),
         unit: "N".to_owned(),

@@ -377,6 +377,7 @@ pub(crate) const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
 pub(crate) fn recorded(curve: usize, samples: usize, noise: Option<f64>) -> Recorded {
     let step = 360.0 / samples as f64;
     let channel = Channel {
+        limit: None,
         name: format!("channel_{curve}"),
         title: format!("channel {curve}"),
         unit: "1".to_owned(),

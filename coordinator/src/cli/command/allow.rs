@@ -63,8 +63,22 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let EntryProposal {
         name,
         mut entry,
+        is_there,
         files,
     } = propose_entry(&arguments.case)?;
+    if !is_there {
+        return Err(Problem {
+            message: format!(
+                "{}: there is no such program on this machine: {} (`model.command`)",
+                arguments.case.join("case.toml").display(),
+                entry.program.display()
+            ),
+            remedy: "install it, or correct the name: a program by name or absolute path, or a file of the case, such as \
+                     \"./model.sh\""
+                .to_owned(),
+        }
+        .into());
+    }
     let path = allow::path();
     let mut allowed = allow::read(&path).map_err(|problem| Problem {
         message: problem.to_string(),

@@ -166,7 +166,7 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
         remedy: "nothing was written".to_owned(),
     })?;
     let [parameters, observations] = imported.counts;
-    let object = ImportOutput {
+    let mut object = ImportOutput {
         case: imported.folder.display().to_string(),
         parameters,
         observations,
@@ -178,7 +178,7 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
         case::check(folder, &Overrides::default())?;
         Ok(command::propose_entry(folder)?)
     };
-    let EntryProposal { name, entry, .. } = read(&imported.folder).inspect_err(|_| {
+    let proposal = read(&imported.folder).inspect_err(|_| {
         drop(std::fs::remove_dir_all(&imported.folder));
         terminal::tell(&format!(
             "note: no case was made, and {} was removed again: correct the files beside {}, then import it again",
@@ -186,6 +186,15 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
             control.display()
         ));
     })?;
+    if !proposal.is_there {
+        let note = format!(
+            "this machine has no program `{}`: install it here, or run `horsehead allow` on the machines that have it",
+            proposal.entry.program.display()
+        );
+        terminal::note(std::slice::from_ref(&note));
+        object.notes.push(note);
+    }
+    let EntryProposal { name, entry, .. } = proposal;
     let entry = exchange::allow::Allowed {
         entry: [(name, entry)].into(),
     };

@@ -58,6 +58,7 @@ impl Target {
         };
         let mut loaded = load_with_notes(&case, &overrides)?;
         require_record(&case, &loaded.case, loaded.case.objective.condition)?;
+        require_equalities(&loaded.case)?;
         let is_given = genes.is_some();
         let genes = genes.map(ToOwned::to_owned).or(own);
         let start = genes.map(|file| Start::read(&file, &mut loaded));
@@ -155,6 +156,22 @@ impl Target {
         });
         Ok(self)
     }
+}
+
+/// Checks that no channel of a case is a limit: whether a residual exceeds the noise cannot be asked of values that the
+/// model need not meet.
+fn require_equalities(case: &Case) -> Result<(), Problem> {
+    let mut limits = case.channels.iter().filter(|own| own.limit.is_some());
+    limits.next().map_or(Ok(()), |channel| {
+        Err(Problem {
+            message: format!(
+                "channel `{}` is a limit, which only `calibrate` and `simulate` can use",
+                channel.name
+            ),
+            remedy: "work on a copy of the case without its channels with `limit`, and without their terms of the objective"
+                .to_owned(),
+        })
+    })
 }
 
 /// Opens the calibration in a run folder and checks that it is finished.

@@ -10,8 +10,8 @@ mod report;
 mod template;
 
 pub use control::{
-    Control, FilePair, IncrementKind, IncrementMethod, Observation, Parameter, ParameterGroup,
-    PriorInformation, PriorTerm, Transform,
+    Control, FilePair, IncrementKind, Observation, Parameter, ParameterGroup, PriorInformation,
+    PriorTerm, Side, Transform,
 };
 pub use digits::fit;
 pub use instruction::Instructions;

@@ -1,6 +1,7 @@
 //! Conversion of PEST observations to channels: one channel for each observation group, with the observation
 //! number as abscissa. Observations of zero weight form predicted channels without a measured record.
-use exchange::pest::Control;
+use exchange::pest::{Control, Side};
+use std::collections::{BTreeMap, BTreeSet};
 use toml_edit::{Array, ArrayOfTables, InlineTable, Table, Value, value};
 
 /// Name of the CSV file to which an import writes the observations of a control file.
@@ -10,56 +11,64 @@ const PRIOR: &str = "prior_information";
 
 /// PEST observations that an import converts to one channel.
 #[derive(Debug)]
-pub(super) struct Group {
+pub(super) struct Group<'a> {
+    /// Name of the channel.
     pub(super) name: String,
+    /// Name of the observation group.
+    group: &'a str,
     /// Whether the group's observations have positive weights, so that they form a measured record.
     pub(super) is_measured: bool,
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Vec<Row<'a>>,
 }
 
 /// PEST observation: name, value and weight.
 #[derive(Debug)]
-pub(super) struct Row {
-    name: String,
+pub(super) struct Row<'a> {
+    name: &'a str,
     value: f64,
     weight: f64,
 }
 
 /// Groups the observations and the prior information by channel, in order of first appearance.
-pub(super) fn groups(control: &Control) -> Vec<Group> {
-    let mut all: Vec<Group> = Vec::new();
+pub(super) fn groups(control: &Control) -> Vec<Group<'_>> {
+    let mut all: Vec<Group<'_>> = Vec::new();
+    let mut known: BTreeMap<(&str, bool), usize> = BTreeMap::new();
     let observations = control.observations.iter();
-    let observations = observations.map(|it| (it.group.as_str(), &it.name, it.value, it.weight));
+    let observations = observations.map(|it| (&*it.group, &*it.name, it.value, it.weight));
     let prior = control.prior.iter();
-    let prior = prior.map(|it| (PRIOR, &it.name, it.value, it.weight));
+    let prior = prior.map(|it| (PRIOR, &*it.name, it.value, it.weight));
     for (group, name, value, weight) in observations.chain(prior) {
         let row = Row {
-            name: name.clone(),
+            name,
             value,
             weight,
         };
-        let (channel, is_measured) = (sanitized(group), weight > 0.0);
-        match all
-            .iter_mut()
-            .find(|own| own.name == channel && own.is_measured == is_measured)
-        {
+        let is_measured = weight > 0.0;
+        let at = *known.entry((group, is_measured)).or_insert(all.len());
+        match all.get_mut(at) {
             Some(own) => own.rows.push(row),
             None => all.push(Group {
-                name: channel,
+                name: sanitized(group),
+                group,
                 is_measured,
                 rows: vec![row],
             }),
         }
     }
     // a group of which a part counts is two channels
-    let measured: Vec<String> = all
-        .iter()
-        .filter(|it| it.is_measured)
-        .map(|it| it.name.clone())
-        .collect();
     for group in all.iter_mut().filter(|it| !it.is_measured) {
-        if measured.contains(&group.name) {
+        if known.contains_key(&(group.group, true)) {
             group.name.push_str("_predicted");
+        }
+    }
+    let mut taken: BTreeSet<String> = BTreeSet::new();
+    for group in &mut all {
+        let plain = group.name.clone();
+        for number in 2.. {
+            if taken.insert(group.name.clone()) {
+                break;
+            }
+            group.name = format!("{plain}_{number}");
         }
     }
     all
@@ -75,7 +84,7 @@ fn sanitized(name: &str) -> String {
 }
 
 /// Returns a CSV text with the observations of all groups.
-pub(super) fn table(groups: &[Group]) -> String {
+pub(super) fn table(groups: &[Group<'_>]) -> String {
     let mut text = "channel,number,observation,value,weight\n".to_owned();
     for group in groups {
         for (at, row) in group.rows.iter().enumerate() {
@@ -85,6 +94,11 @@ pub(super) fn table(groups: &[Group]) -> String {
                 weight,
             } = row;
             let number = at + 1;
+            let name = if name.contains([',', '"']) {
+                format!("\"{}\"", name.replace('"', "\"\""))
+            } else {
+                (*name).to_owned()
+            };
             let cells = format!("{},{number},{name},{value},{weight}\n", group.name);
             text.push_str(&cells);
         }
@@ -93,16 +107,19 @@ pub(super) fn table(groups: &[Group]) -> String {
 }
 
 /// Returns the `[[channels]]` tables of the imported case, one for each group of observations.
-pub(super) fn tables(groups: &[Group], condition: &str) -> ArrayOfTables {
+pub(super) fn tables(groups: &[Group<'_>], condition: &str) -> ArrayOfTables {
     groups
         .iter()
         .map(|group| channel(group, condition))
         .collect()
 }
 
-fn channel(group: &Group, condition: &str) -> Table {
+fn channel(group: &Group<'_>, condition: &str) -> Table {
     let mut table = Table::new();
     table.insert("name", value(&group.name));
+    if group.name != group.group {
+        table.insert("title", value(group.group));
+    }
     table.insert("unit", value("1"));
     table.insert("condition", value(condition));
     let mut abscissa = InlineTable::new();
@@ -111,6 +128,13 @@ fn channel(group: &Group, condition: &str) -> Table {
     if group.is_measured {
         // weights are taken for inverse standard deviations
         table.insert("noise", value(1.0));
+        if let Some(side) = Side::of_group(group.group) {
+            let limit = match side {
+                Side::AtMost => "at_most",
+                Side::AtLeast => "at_least",
+            };
+            table.insert("limit", value(limit));
+        }
         let rows = [("column", "channel"), ("is", &group.name)];
         let rows: InlineTable = rows.into_iter().collect();
         let texts = [
@@ -131,11 +155,7 @@ fn channel(group: &Group, condition: &str) -> Table {
         abscissa.insert("points", points.into());
     }
     table.insert("abscissa", value(abscissa));
-    let names: Array = group
-        .rows
-        .iter()
-        .map(|row| Value::from(&row.name))
-        .collect();
+    let names: Array = group.rows.iter().map(|row| Value::from(row.name)).collect();
     let source: InlineTable = [("named", names)].into_iter().collect();
     table.insert("source", value(source));
     table
@@ -143,9 +163,9 @@ fn channel(group: &Group, condition: &str) -> Table {
 
 /// Returns the `[objective]` table, equivalent to PEST's objective: the sum of the squared weighted
 /// residuals.
-pub(super) fn objective(groups: &[Group], condition: &str) -> Table {
+pub(super) fn objective(groups: &[Group<'_>], condition: &str) -> Table {
     let measured = groups.iter().filter(|group| group.is_measured);
-    let term = |group: &Group| {
+    let term = |group: &Group<'_>| {
         let mut term = InlineTable::new();
         term.insert("channel", Value::from(&group.name));
         term.insert("weight", Value::from(group.rows.len() as f64));

@@ -5,7 +5,7 @@ mod copy;
 mod unknowns;
 
 use channels::{Group, OBSERVATIONS};
-use exchange::{Problem, pest::Control};
+use exchange::{Problem, decoded, pest::Control};
 use std::{
     fs, io,
     path::{Path, PathBuf},
@@ -59,14 +59,23 @@ pub fn import(control: &Path, to: Option<&Path>) -> Result<Imported, ImportError
         source,
     };
     let text = fs::read(control).map_err(|source| io(control, source))?;
-    let text = String::from_utf8_lossy(&text);
+    let text = decoded(&text);
     let beside = match control.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         Some(_) | None => Path::new("."),
     };
-    let open =
-        |name: &str| fs::read_to_string(beside.join(name)).map_err(|error| error.to_string());
-    let mut read = Control::parse(&control.display().to_string(), &text, &open)?;
+    let open = |name: &str| {
+        let bytes = fs::read(beside.join(name)).map_err(|error| error.to_string())?;
+        Ok(decoded(&bytes).into_owned())
+    };
+    let read = Control::parse(&control.display().to_string(), &text, &open)?;
+    let mut notes = read.notes.clone();
+    if let Some(line) = read.commands.iter().find(|line| line.contains('\\')) {
+        notes.push(format!(
+            "the model command line `{line}` is that of a Windows program: change `command` in case.toml to one that runs on \
+             the workers"
+        ));
+    }
     let folder = to.map_or_else(|| control.with_extension(""), Path::to_owned);
     if folder.exists() {
         return Err(ImportError::Exists(folder));
@@ -74,8 +83,8 @@ pub fn import(control: &Path, to: Option<&Path>) -> Result<Imported, ImportError
     let name = case_name(control);
     let groups = channels::groups(&read);
     fs::create_dir_all(&folder).map_err(|source| io(&folder, source))?;
-    let written = copy::copy_contents(beside, &folder).and_then(|(files, notes)| {
-        read.notes.extend(notes);
+    let written = copy::copy_contents(beside, &folder).and_then(|(files, not_copied)| {
+        notes.extend(not_copied);
         let file = control.file_name().unwrap_or_default().to_string_lossy();
         let case = text_of(&read, &groups, (&name, &file), &files);
         fs::write(folder.join("case.toml"), case)?;
@@ -93,7 +102,7 @@ pub fn import(control: &Path, to: Option<&Path>) -> Result<Imported, ImportError
     Ok(Imported {
         folder,
         counts: [estimated, counted.map(|group| group.rows.len()).sum()],
-        notes: read.notes,
+        notes,
     })
 }
 
@@ -110,7 +119,7 @@ fn case_name(control: &Path) -> String {
 /// Returns the text of the `case.toml` to which a PEST control file is converted.
 fn text_of(
     control: &Control,
-    groups: &[Group],
+    groups: &[Group<'_>],
     (name, file): (&str, &str),
     files: &[String],
 ) -> String {
@@ -192,6 +201,8 @@ fn plain_path(path: &str) -> String {
 fn command(lines: &[String]) -> Vec<String> {
     let shell = |text: &str| text.contains(['|', '>', '<', '&', ';', '$', '`']);
     match lines {
+        // a path of Windows, whose backslashes are no escapes
+        [one] if one.contains('\\') => one.split_whitespace().map(str::to_owned).collect(),
         [one] if !shell(one) => shlex::split(one).unwrap_or_else(|| vec![one.clone()]),
         more => vec!["/bin/sh".to_owned(), "-c".to_owned(), more.join(" && ")],
     }

@@ -2,6 +2,7 @@
 use exchange::pest::{
     Control, IncrementKind, Parameter, ParameterGroup, PriorInformation, Transform,
 };
+use std::collections::BTreeMap;
 use toml_edit::{Array, ArrayOfTables, InlineTable, Table, Value, value};
 
 /// Number of standard deviations between the lower and the upper bound of a parameter, as PEST++ assumes.
@@ -15,22 +16,37 @@ pub(super) const fn is_searched(transform: &Transform) -> bool {
 /// Returns the `[[unknowns]]` tables of the imported case for the parameters of the control file.
 pub(super) fn tables(control: &Control) -> ArrayOfTables {
     let parameters = control.parameters.iter();
-    parameters
-        .map(|parameter| table(control, parameter))
-        .collect()
+    let named = Named {
+        parameters: parameters.clone().map(|it| (&*it.name, it)).collect(),
+        groups: control.groups.iter().map(|it| (&*it.name, it)).collect(),
+        greatest: parameters.clone().fold(BTreeMap::new(), |mut all, it| {
+            let size = all.entry(&*it.group).or_insert(0.0_f64);
+            *size = size.max(it.initial.abs());
+            all
+        }),
+    };
+    parameters.map(|own| table(&named, own)).collect()
 }
 
-fn table(control: &Control, own: &Parameter) -> Table {
+/// Parameters and groups of a control file by name.
+struct Named<'a> {
+    parameters: BTreeMap<&'a str, &'a Parameter>,
+    groups: BTreeMap<&'a str, &'a ParameterGroup>,
+    /// Greatest magnitude of the initial values of each group.
+    greatest: BTreeMap<&'a str, f64>,
+}
+
+fn table(named: &Named<'_>, own: &Parameter) -> Table {
     let mut table = Table::new();
     table.insert("name", value(&own.name));
     table.insert("unit", value("1"));
-    let logarithmic = is_logarithmic(control, own);
+    let logarithmic = is_logarithmic(named, own);
     table.insert(
         "scale",
         value(if logarithmic { "logarithmic" } else { "linear" }),
     );
     if let Transform::Tied(to) = &own.transform {
-        let other = control.parameters.iter().find(|other| other.name == *to);
+        let other = named.parameters.get(&**to);
         let ratio = other.map_or(1.0, |other| own.initial / other.initial);
         let tie: InlineTable = [("to", Value::from(to)), ("ratio", ratio.into())]
             .into_iter()
@@ -57,19 +73,21 @@ fn table(control: &Control, own: &Parameter) -> Table {
         .map(|(key, number)| (key, Value::from(number)))
         .collect();
     table.insert("prior", value(prior));
-    let group = control.groups.iter().find(|group| group.name == own.group);
-    if let Some(difference) = group.and_then(|group| difference(own, group, logarithmic)) {
+    let group = named.groups.get(&*own.group);
+    let greatest = named.greatest.get(&*own.group).copied().unwrap_or_default();
+    let difference = group.and_then(|group| difference(own, (group, greatest), logarithmic));
+    if let Some(difference) = difference {
         table.insert("difference", value(difference));
     }
     table
 }
 
 /// Returns whether a parameter has a logarithmic scale; a tied parameter takes the scale of its parent.
-fn is_logarithmic(control: &Control, own: &Parameter) -> bool {
+fn is_logarithmic(named: &Named<'_>, own: &Parameter) -> bool {
     match &own.transform {
         Transform::Log => true,
         Transform::Tied(to) => {
-            let other = control.parameters.iter().find(|other| other.name == *to);
+            let other = named.parameters.get(&**to);
             other.is_some_and(|other| other.transform == Transform::Log && own.initial > 0.0)
         }
         Transform::None | Transform::Fixed => false,
@@ -77,12 +95,17 @@ fn is_logarithmic(control: &Control, own: &Parameter) -> bool {
 }
 
 /// Returns the finite-difference step of a parameter at its initial value: relative to the value on a
-/// logarithmic scale, otherwise in the parameter's unit.
-fn difference(own: &Parameter, group: &ParameterGroup, logarithmic: bool) -> Option<f64> {
+/// logarithmic scale, otherwise in the parameter's unit. `greatest` is the greatest magnitude in the group.
+fn difference(
+    own: &Parameter,
+    (group, greatest): (&ParameterGroup, f64),
+    logarithmic: bool,
+) -> Option<f64> {
     let size = own.initial.abs();
     let step = match group.increment_kind {
         IncrementKind::Absolute => group.increment,
-        IncrementKind::Relative | IncrementKind::RelativeToMax => group.increment * size,
+        IncrementKind::Relative => group.increment * size,
+        IncrementKind::RelativeToMax => group.increment * greatest,
     };
     let step = step.max(group.floor);
     let share = if logarithmic { step / size } else { step };

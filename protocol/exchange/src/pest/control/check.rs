@@ -42,22 +42,24 @@ fn names(control: &Control) -> Result<(), Fault> {
         let found = "no command line, or no output file".to_owned();
         return Err((found, "at least one command line and one output file"));
     }
+    let names: Vec<&str> = parameters.iter().map(|it| &*it.name).collect();
+    let observed: Vec<&str> = observations.iter().map(|it| &*it.name).collect();
+    unique(&names, "a name that no other parameter has")?;
+    unique(&observed, "a name that no other observation has")
+}
+
+fn unique(names: &[&str], allowed: &'static str) -> Result<(), Fault> {
     let mut seen = BTreeSet::new();
-    let names = parameters.iter().map(|it| &it.name);
-    for name in names.chain(observations.iter().map(|it| &it.name)) {
-        if !seen.insert(name) {
-            return Err((
-                format!("`{name}` twice"),
-                "a name that no other parameter or observation has",
-            ));
-        }
-    }
-    Ok(())
+    let twice = names.iter().find(|name| !seen.insert(**name));
+    twice.map_or(Ok(()), |name| Err((format!("`{name}` twice"), allowed)))
 }
 
 /// Checks that every parameter group exists and that every tied parameter refers to one that varies.
 fn groups_and_ties(control: &Control) -> Result<(), Fault> {
-    let known = |name: &String| name == "none" || control.groups.iter().any(|it| it.name == *name);
+    let groups: BTreeSet<&String> = control.groups.iter().map(|it| &it.name).collect();
+    let known = |name: &String| name == "none" || groups.contains(name);
+    let varying = control.parameters.iter().filter(|it| it.varies());
+    let varying: BTreeSet<&String> = varying.map(|it| &it.name).collect();
     for parameter in &control.parameters {
         let (name, group) = (&parameter.name, &parameter.group);
         if parameter.varies() && !control.groups.is_empty() && !known(group) {
@@ -65,8 +67,7 @@ fn groups_and_ties(control: &Control) -> Result<(), Fault> {
             return Err((found, "one of the parameter groups"));
         }
         if let Transform::Tied(to) = &parameter.transform {
-            let mut others = control.parameters.iter();
-            if !others.any(|other| other.name == *to && other.varies()) {
+            if !varying.contains(to) {
                 let found = format!("{name} tied to `{to}`");
                 return Err((found, "tied to a parameter that varies"));
             }
@@ -77,10 +78,10 @@ fn groups_and_ties(control: &Control) -> Result<(), Fault> {
 
 /// Checks that prior information refers to existing parameters and that no weight is negative.
 fn equations(control: &Control) -> Result<(), Fault> {
+    let known: BTreeSet<&String> = control.parameters.iter().map(|it| &it.name).collect();
     for prior in &control.prior {
         for term in &prior.terms {
-            let mut parameters = control.parameters.iter();
-            if parameters.all(|it| it.name != term.parameter) {
+            if !known.contains(&term.parameter) {
                 let found = format!("`{}` in prior information {}", term.parameter, prior.name);
                 return Err((found, "a parameter"));
             }

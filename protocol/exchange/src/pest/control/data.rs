@@ -2,13 +2,13 @@
 use super::{
     lines::{Lines, Section},
     model::{
-        Control, FilePair, IncrementKind, IncrementMethod, Observation, Parameter, ParameterGroup,
-        Transform,
+        Control, FilePair, IncrementKind, Observation, Parameter, ParameterGroup, Side, Transform,
     },
     prior,
     rows::{Row, rows},
 };
 use crate::{Problem, problem::clip};
+use std::collections::{BTreeMap, BTreeSet};
 
 const GROUP: [&str; 7] = [
     "pargpnme",
@@ -63,10 +63,7 @@ struct Counts {
 }
 
 pub(super) fn read(lines: &Lines, open: Open<'_>) -> Result<Control, Problem> {
-    let mut control = Control {
-        options: lines.options.clone(),
-        ..Control::default()
-    };
+    let mut control = Control::default();
     for section in &lines.sections {
         let plain = section
             .name
@@ -80,9 +77,9 @@ pub(super) fn read(lines: &Lines, open: Open<'_>) -> Result<Control, Problem> {
             control.notes.push(note);
         }
     }
-    for (name, _) in &lines.options {
+    for (name, line) in &lines.options {
         control.notes.push(format!(
-            "option ++{name} applies to PEST++ only and is ignored"
+            "option ++{name} (line {line}) applies to PEST++ only and is ignored"
         ));
     }
     let counts = if let Some(section) = lines.section("control data") {
@@ -93,6 +90,15 @@ pub(super) fn read(lines: &Lines, open: Open<'_>) -> Result<Control, Problem> {
     };
     let groups = rows(lines, "parameter groups", &GROUP, open)?;
     control.groups = groups.iter().map(group).collect::<Result<_, _>>()?;
+    let differences = groups
+        .iter()
+        .filter(|row| row.word_or("forcen", "switch") != "switch");
+    note_rows(
+        &mut control,
+        differences.collect(),
+        "FORCEN has no effect: differences are one-sided until the search converges, and central then",
+    );
+    unused_columns(&mut control, &groups, &GROUP);
     parameters(lines, counts.as_ref(), open, &mut control)?;
     let observations = rows(lines, "observation data", &OBSERVATION, open)?;
     for row in &observations {
@@ -103,6 +109,8 @@ pub(super) fn read(lines: &Lines, open: Open<'_>) -> Result<Control, Problem> {
             group: row.word_or("obgnme", "obgnme"),
         });
     }
+    unused_columns(&mut control, &observations, &OBSERVATION);
+    observation_groups(lines, open, &mut control)?;
     if let Some(section) = lines.section("model command line") {
         control.commands = section.lines.iter().map(|line| line.text.clone()).collect();
     }
@@ -166,11 +174,12 @@ fn counts(lines: &Lines, section: &Section, control: &mut Control) -> Result<Cou
             "PESTMODE is {mode}: parameters are estimated here, without regularisation"
         ));
     }
-    // PEST++ goes on with what it can do where numbers of its other methods are missing
-    control.iterations = word(6, 0, "NOPTMAX")
-        .ok()
-        .and_then(|word| word.parse().ok())
-        .unwrap_or(0);
+    if let (Some(from), Some(to)) = (section.lines.get(3), section.lines.last()) {
+        control.notes.push(format!(
+            "the settings of PEST's own algorithm (lines {} to {}) and PARCHGLIM have no effect: the presets have theirs",
+            from.number, to.number
+        ));
+    }
     Ok(Counts {
         parameters: count(1, 0, "NPAR")?,
         observations: count(1, 1, "NOBS")?,
@@ -189,34 +198,107 @@ fn keywords(lines: &Lines, control: &mut Control) {
             continue;
         };
         match name.to_lowercase().as_str() {
-            "noptmax" => control.iterations = value.parse().unwrap_or(0),
             "pestmode" if value.eq_ignore_ascii_case("estimation") => {}
-            name => control
-                .notes
-                .push(format!("keyword {name} = {value} has no effect here")),
+            name => control.notes.push(format!(
+                "keyword {name} = {value} (line {}) has no effect here",
+                line.number
+            )),
         }
     }
 }
 
 fn group(row: &Row) -> Result<ParameterGroup, Problem> {
-    let kind = match row.word_or("inctyp", "relative").as_str() {
+    let kind = match row.one_of("inctyp", &["relative", "absolute", "rel_to_max"])? {
         "absolute" => IncrementKind::Absolute,
         "rel_to_max" => IncrementKind::RelativeToMax,
         _ => IncrementKind::Relative,
     };
-    let method = match row.word_or("forcen", "switch").as_str() {
-        "always_2" => IncrementMethod::Two,
-        "always_3" | "always_5" => IncrementMethod::Three,
-        _ => IncrementMethod::Switch,
-    };
+    let _checked = row.one_of(
+        "forcen",
+        &["switch", "switch_5", "always_2", "always_3", "always_5"],
+    )?;
     Ok(ParameterGroup {
         name: row.word("pargpnme")?,
         increment_kind: kind,
         increment: row.number_or("derinc", 0.01)?,
         floor: row.number_or("derinclb", 0.0)?,
-        method,
-        multiplier: row.number_or("derincmul", 2.0)?,
     })
+}
+
+/// Adds a note on rows of the control file that have something in common, if there are any.
+fn note_rows(control: &mut Control, rows: Vec<&Row>, note: &str) {
+    let more = match rows.len() {
+        0 | 1 => String::new(),
+        count => format!(" and {} more", count - 1),
+    };
+    if let Some(first) = rows.first() {
+        control
+            .notes
+            .push(format!("{}, line {}{more}: {note}", first.file, first.line));
+    }
+}
+
+/// Adds a note on the columns of an external table that are not used.
+fn unused_columns(control: &mut Control, rows: &[Row], used: &[&str]) {
+    let unused = |name: &&str| !used.contains(name) && *name != "partied";
+    let names = rows.iter().flat_map(|row| row.columns().filter(unused));
+    let names: BTreeSet<&str> = names.collect();
+    let names: Vec<&str> = names.into_iter().collect();
+    if let Some(row) = rows
+        .iter()
+        .find(|row| row.columns().any(|name| unused(&name)))
+    {
+        control.notes.push(format!(
+            "{}, line 1: columns without effect: {}",
+            row.file,
+            names.join(", ")
+        ));
+    }
+}
+
+/// Reads the observation groups: those with covariance files or targets are noted, as are those that limit the model on one
+/// side.
+fn observation_groups(lines: &Lines, open: Open<'_>, control: &mut Control) -> Result<(), Problem> {
+    let groups = rows(
+        lines,
+        "observation groups",
+        &["obgnme", "gtarg", "covfle"],
+        open,
+    )?;
+    let others = |row: &&Row| row.columns().any(|name| name != "obgnme");
+    let others: Vec<&Row> = groups.iter().filter(others).collect();
+    for row in &others {
+        let more: Vec<String> = ["gtarg", "covfle"]
+            .iter()
+            .filter_map(|name| row.plain(name).ok())
+            .collect();
+        control.notes.push(format!(
+            "{}, line {}: `{}` of observation group `{}` is ignored: its observations count with their weights, as if \
+             independent",
+            row.file,
+            row.line,
+            more.join(" "),
+            row.word("obgnme")?
+        ));
+    }
+    let counted = control.observations.iter().filter(|it| it.weight > 0.0);
+    let limits: BTreeSet<(&str, &str)> = counted
+        .filter_map(|it| {
+            let words = match Side::of_group(&it.group)? {
+                Side::AtMost => "exceeds",
+                Side::AtLeast => "stays below",
+            };
+            Some((it.group.as_str(), words))
+        })
+        .collect();
+    let notes = limits.iter().map(|(name, words)| {
+        let row = groups.iter().find(|row| row.word_or("obgnme", "") == *name);
+        let line = row.map_or_else(String::new, |row| format!("{}, line {}: ", row.file, row.line));
+        format!("{line}observation group `{name}` is one-sided: a residual only where the model {words} the observation")
+    });
+    let notes: Vec<String> = notes.collect();
+    control.notes.extend(notes);
+    Ok(())
 }
 
 /// Reads the parameters of a control file; in the older format the rows after them state to which parameter
@@ -232,19 +314,27 @@ fn parameters(
         .map(|counts| counts.parameters)
         .filter(|count| *count < all.len());
     let ties = behind.map_or_else(Vec::new, |count| all.split_off(count));
-    let tied = |name: &str| {
-        let tie = ties
-            .iter()
-            .find(|row| row.word("parnme").is_ok_and(|own| own == name));
-        tie.and_then(|row| row.word("partrans").ok())
-    };
+    let tied: BTreeMap<String, String> = ties
+        .iter()
+        .filter_map(|row| Some((row.word("parnme").ok()?, row.word("partrans").ok()?)))
+        .collect();
+    let commands = |row: &&Row| row.word_or("dercom", "1") != "1";
+    note_rows(
+        control,
+        all.iter().filter(commands).collect(),
+        "DERCOM has no effect: every derivative is taken from runs of the model command line",
+    );
+    unused_columns(control, &all, &PARAMETER);
     for row in &all {
         let name = row.word("parnme")?;
-        let transform = match row.word_or("partrans", "none").as_str() {
+        let transform = match row.one_of("partrans", &["none", "log", "fixed", "tied"])? {
             "log" => Transform::Log,
             "fixed" => Transform::Fixed,
             "tied" => {
-                let to = tied(&name).or_else(|| row.word("partied").ok());
+                let to = tied
+                    .get(&name)
+                    .cloned()
+                    .or_else(|| row.word("partied").ok());
                 Transform::Tied(to.unwrap_or_default())
             }
             _ => Transform::None,

@@ -22,8 +22,8 @@ pub(super) struct Section {
 pub(super) struct Lines {
     pub(super) file: String,
     pub(super) sections: Vec<Section>,
-    /// Options of PEST++ in the control file, written `++name(value)`, as pairs of name and value.
-    pub(super) options: Vec<(String, String)>,
+    /// Options of PEST++ in the control file, written `++name(value)`, each with its line number.
+    pub(super) options: Vec<(String, usize)>,
 }
 
 impl Lines {
@@ -34,7 +34,7 @@ impl Lines {
             options: Vec::new(),
         };
         let mut begun = false;
-        for (at, line) in text.lines().enumerate() {
+        for (at, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
             let number = at + 1;
             let line = line.split('#').next().unwrap_or_default().trim();
             if line.is_empty() {
@@ -54,7 +54,8 @@ impl Lines {
                 }
                 begun = true;
             } else if let Some(options) = line.strip_prefix("++") {
-                all.options.extend(self::options(options));
+                all.options
+                    .extend(self::options(options).map(|name| (name, number)));
             } else if let Some(name) = line.strip_prefix('*') {
                 let name: Vec<&str> = name.split_whitespace().collect();
                 all.sections.push(Section {
@@ -111,12 +112,11 @@ impl Lines {
     }
 }
 
-/// Parses all `name(value)` options in a line of the control file.
-fn options(line: &str) -> Vec<(String, String)> {
+/// Returns the names of all `name(value)` options in a line of the control file.
+fn options(line: &str) -> impl Iterator<Item = String> + '_ {
     let each = line.split(')').filter_map(|part| part.split_once('('));
-    each.map(|(name, value)| {
+    each.map(|(name, _)| {
         let name = name.trim().trim_start_matches('+').trim();
-        (name.to_lowercase(), value.trim().to_owned())
+        name.to_lowercase()
     })
-    .collect()
 }

@@ -14,8 +14,8 @@ mod rows;
 mod tests;
 
 pub use model::{
-    Control, FilePair, IncrementKind, IncrementMethod, Observation, Parameter, ParameterGroup,
-    PriorInformation, PriorTerm, Transform,
+    Control, FilePair, IncrementKind, Observation, Parameter, ParameterGroup, PriorInformation,
+    PriorTerm, Side, Transform,
 };
 
 use crate::Problem;

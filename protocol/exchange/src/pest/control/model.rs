@@ -17,10 +17,6 @@ pub struct Control {
     pub outputs: Vec<FilePair>,
     /// Prior information on parameters, as linear equations.
     pub prior: Vec<PriorInformation>,
-    /// Maximum number of iterations (NOPTMAX).
-    pub iterations: i64,
-    /// Options of PEST++ (`++name(value)`).
-    pub options: Vec<(String, String)>,
     /// Notes on parts of the control file that were ignored or interpreted differently from their text.
     pub notes: Vec<String>,
 }
@@ -71,10 +67,6 @@ pub struct ParameterGroup {
     pub increment: f64,
     /// Minimum absolute increment (DERINCLB).
     pub floor: f64,
-    /// Number of points of the finite differences (FORCEN).
-    pub method: IncrementMethod,
-    /// Factor on the increment for three-point finite differences (DERINCMUL).
-    pub multiplier: f64,
 }
 
 /// Reference of a finite-difference increment (INCTYP).
@@ -88,17 +80,6 @@ pub enum IncrementKind {
     RelativeToMax,
 }
 
-/// Number of points of a finite difference.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum IncrementMethod {
-    /// Two-point differences at first, three-point differences in later iterations.
-    Switch,
-    /// Two-point (forward) differences.
-    Two,
-    /// Three-point (central) differences.
-    Three,
-}
-
 /// Observation of a PEST control file: measured value and weight of a model output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observation {
@@ -110,6 +91,29 @@ pub struct Observation {
     pub weight: f64,
     /// Name of the observation group that contains the observation.
     pub group: String,
+}
+
+/// Side on which the observations of a group limit the model, by the beginning of the group's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Upper limit: a residual only where the model exceeds the observation (`less..`, `l_..`, `>@..`).
+    AtMost,
+    /// Lower limit: a residual only where the model stays below the observation (`greater..`, `g_..`, `<@..`).
+    AtLeast,
+}
+
+impl Side {
+    /// Returns the side of an observation group; `None` for equalities.
+    pub fn of_group(name: &str) -> Option<Self> {
+        let begins = |words: [&str; 3]| words.iter().any(|word| name.starts_with(word));
+        if begins(["less", "l_", ">@"]) {
+            Some(Self::AtMost)
+        } else if begins(["greater", "g_", "<@"]) {
+            Some(Self::AtLeast)
+        } else {
+            None
+        }
+    }
 }
 
 /// PEST template or instruction file, paired with the model file that is written from it or read by it.

@@ -1,6 +1,6 @@
 //! Rows of a control file's tables: the words of a line, or the cells of a CSV file under its header.
 use super::lines::{Lines, Section};
-use crate::{Problem, number, problem::clip};
+use crate::{Problem, number, problem::clip, table::Table};
 use std::collections::BTreeMap;
 
 /// Row of a table in a control file: its file and line, and its cells by column name.
@@ -23,7 +23,33 @@ impl Row {
         }
     }
 
-    fn problem(&self, found: String, allowed: &str) -> Problem {
+    /// Returns the cell of the named column in lower case, which must be one of some words.
+    ///
+    /// # Errors
+    /// Another word.
+    pub(super) fn one_of(
+        &self,
+        name: &str,
+        words: &[&'static str],
+    ) -> Result<&'static str, Problem> {
+        let Ok(cell) = self.word(name) else {
+            return Ok(words.first().copied().unwrap_or_default());
+        };
+        let known = words.iter().find(|word| **word == cell);
+        known.copied().ok_or_else(|| {
+            let allowed = format!("one of {}", words.join(", "));
+            self.problem(format!("{name} = `{}`", clip(&cell)), &allowed)
+        })
+    }
+
+    /// Returns the names of the columns that have a value.
+    pub(super) fn columns(&self) -> impl Iterator<Item = &str> {
+        let filled = self.cells.iter().filter(|(_, cell)| !cell.is_empty());
+        filled.map(|(name, _)| name.as_str())
+    }
+
+    /// Creates the error for a fault in the row.
+    pub(super) fn problem(&self, found: String, allowed: &str) -> Problem {
         Problem::at(
             &self.file,
             self.line,
@@ -95,7 +121,7 @@ pub(super) fn rows(
     Ok(all)
 }
 
-/// Reads the table rows of the CSV files named by a control file section with the suffix `external`.
+/// Reads the table rows of the files named by a control file section with the suffix `external`.
 fn files(
     lines: &Lines,
     section: &Section,
@@ -103,52 +129,32 @@ fn files(
 ) -> Result<Vec<Row>, Problem> {
     let mut all = Vec::new();
     for line in &section.lines {
-        // behind the name words say how it is read, as `sep ,`
         let mut words = line.text.split_whitespace();
         let file = words.next().unwrap_or_default();
-        if words.next().is_some() {
-            let found = format!("`{}`", clip(&line.text));
-            return Err(lines.problem(line.number, found, "the name of a CSV file alone"));
+        let refused = |found: String, allowed: &str| lines.problem(line.number, found, allowed);
+        // the separator is that of the header, whatever `sep` says
+        let mut missing = None;
+        while let Some(word) = words.next() {
+            let value = words.next();
+            match (word.to_lowercase().as_str(), value) {
+                ("sep", Some(_)) => {}
+                ("missing_value" | "missing_values", Some(value)) => missing = Some(value),
+                _ => {
+                    let allowed = "the name of a table, with `sep` and `missing_value` or without";
+                    return Err(refused(format!("`{}`", clip(&line.text)), allowed));
+                }
+            }
         }
-        let text = open(file).map_err(|error| {
-            lines.problem(
-                line.number,
-                format!("{file}: {error}"),
-                "a file that can be read",
-            )
-        })?;
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .flexible(true)
-            .from_reader(text.as_bytes());
-        let broken = |error: csv::Error| {
-            let at = error.position().map_or(1, csv::Position::line);
-            let at = usize::try_from(at).unwrap_or(1);
-            Problem::at(
-                file,
-                at,
-                error.to_string(),
-                "a table in CSV",
-                "correct the file",
-            )
-        };
-        let names: Vec<String> = reader
-            .headers()
-            .map_err(broken)?
-            .iter()
-            .map(str::to_lowercase)
-            .collect();
-        for record in reader.records() {
-            let record = record.map_err(broken)?;
-            let number = record.position().map_or(1, csv::Position::line);
-            let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            let cells: Vec<&str> = record.iter().collect();
-            all.push(Row::of(
-                file,
-                usize::try_from(number).unwrap_or(1),
-                &names,
-                &cells,
-            ));
+        let text = open(file)
+            .map_err(|error| refused(format!("{file}: {error}"), "a file that can be read"))?;
+        let table = Table::parse(&text, &[]);
+        let names: Vec<String> = table.names.iter().map(|name| name.to_lowercase()).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        for row in 0..table.len() {
+            let cells = (0..names.len()).map(|column| table.cell(row, column));
+            let cells = cells.map(|cell| if Some(cell) == missing { "" } else { cell });
+            let cells: Vec<&str> = cells.collect();
+            all.push(Row::of(file, table.line(row), &names, &cells));
         }
     }
     Ok(all)
