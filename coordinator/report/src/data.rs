@@ -88,7 +88,7 @@ impl Run {
     }
 
     /// Returns the gap (share of the measured variance left unexplained) of each measured channel of a
-    /// condition, with the channel.
+    /// condition, with the channel; a limit is not to be explained.
     pub fn gaps<'a>(&self, case: &'a Case, condition: usize) -> Vec<(&'a Channel, Gap)> {
         let shown = self.shown(case, condition);
         let gap = |(_, channel, record): (usize, &'a Channel, &ChannelRecord)| {
@@ -96,7 +96,9 @@ impl Run {
             let gap = Gap::between(of, shown.channel(channel), channel.is_absolute())?;
             Some((channel, gap))
         };
-        case.measured(condition).filter_map(gap).collect()
+        let measured = case.measured(condition);
+        let met = measured.filter(|(_, channel, _)| channel.limit.is_none());
+        met.filter_map(gap).collect()
     }
 }
 

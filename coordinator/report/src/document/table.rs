@@ -90,15 +90,18 @@ impl Row {
         Self::Values(Label::Text(label.into()), cells.into_iter().collect())
     }
 
-    /// Creates a row for an unknown; a parameter of an effect is labelled by its name alone.
+    /// Creates a row for an unknown; a parameter of an effect, and an unknown without a title, is labelled by its name
+    /// alone.
     pub(crate) fn of(unknown: &Unknown, cells: impl IntoIterator<Item = String>) -> Self {
-        let label = match unknown.of_effect() {
-            Some(_) => Label::Text(unknown.name.clone()),
-            None => Label::Unknown {
+        let has_title = unknown.title != unknown.name || unknown.symbol != unknown.name;
+        let label = if unknown.of_effect().is_none() && has_title {
+            Label::Unknown {
                 name: unknown.name.clone(),
                 title: unknown.title.clone(),
                 symbol: unknown.symbol.clone(),
-            },
+            }
+        } else {
+            Label::Text(unknown.name.clone())
         };
         Self::Values(label, cells.into_iter().collect())
     }

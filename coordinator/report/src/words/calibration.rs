@@ -64,7 +64,7 @@ pub(crate) fn agreement(calibration: &Calibration, checks: &[MachineCheck]) -> O
     for after in &result.optimised.evaluation.channels {
         let before = score(&result.recommended.evaluation.channels, after.channel)?;
         let channel = case.channels.get(after.channel)?;
-        if is_fitted(case, after.channel) {
+        if is_fitted(case, after.channel) && channel.limit.is_none() {
             pairs.push((channel, before, after));
         }
     }
