@@ -68,8 +68,13 @@ pub enum InputFormat {
     Pest(String),
     /// Text template with `{name}` fields.
     Braces(String),
-    /// Dakota parameters file in the given format: `standard`, `aprepro` or `json`.
-    Dakota(String),
+    /// Dakota parameters file.
+    Dakota {
+        /// Format of the file: `standard`, `aprepro` or `json`.
+        form: String,
+        /// Analysis components, texts that are passed on to the driver.
+        components: Vec<String>,
+    },
 }
 
 /// Output file of the program, with the method to read it.
@@ -87,9 +92,13 @@ pub enum OutputFormat {
     /// Text file read by PEST instructions (the text of an `.ins` file); each observation yields a named
     /// value.
     Pest(String),
-    /// Dakota results file, with the names of its functions in the file's order; each function yields a named
-    /// value.
-    Dakota(Vec<String>),
+    /// Dakota results file; each function yields a named value.
+    Dakota {
+        /// Names of the functions in the file's order.
+        functions: Vec<String>,
+        /// Whether the program returns the gradients of the functions where they are requested.
+        gradients: bool,
+    },
     /// Table with columns of numbers under a header.
     Table,
     /// JSON object that contains the values.

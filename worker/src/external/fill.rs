@@ -15,7 +15,20 @@ pub(super) struct Template {
 enum Form {
     Pest(pest::Template),
     Braces(dakota::Template),
-    Dakota(dakota::Form),
+    Dakota(dakota::Form, Vec<String>),
+}
+
+/// What a Dakota parameters file says besides the values.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked<'a> {
+    /// Functions that the results file must contain.
+    pub(super) functions: &'a [String],
+    /// Whether their gradients are requested.
+    pub(super) gradients: bool,
+    /// Name of the program.
+    pub(super) driver: &'a str,
+    /// Number of the evaluation.
+    pub(super) evaluation: u64,
 }
 
 /// Templates of all input files of an external program.
@@ -48,8 +61,7 @@ impl Templates {
     pub(super) fn filled(
         &self,
         values: &[(String, f64)],
-        functions: &[String],
-        evaluation: u64,
+        asked: &Asked<'_>,
     ) -> Result<Vec<(&str, String)>, Problem> {
         let mut texts = BTreeMap::new();
         let mut written = Vec::new();
@@ -72,7 +84,15 @@ impl Templates {
         let fill = |template: &Template| match &template.form {
             Form::Pest(own) => own.fill(&texts),
             Form::Braces(own) => own.fill(&texts),
-            Form::Dakota(form) => Ok(dakota::parameters(*form, &written, functions, evaluation)),
+            Form::Dakota(form, components) => Ok(dakota::parameters(&dakota::Request {
+                form: *form,
+                variables: &written,
+                functions: asked.functions,
+                gradients: asked.gradients,
+                driver: asked.driver,
+                components,
+                evaluation: asked.evaluation,
+            })),
         };
         let files = self.all.iter();
         files
@@ -85,14 +105,15 @@ fn template(fill: &InputFile) -> Result<Template, Problem> {
     let form = match &fill.form {
         InputFormat::Pest(text) => Form::Pest(pest::Template::parse(&fill.file, text)?),
         InputFormat::Braces(text) => Form::Braces(dakota::Template::parse(&fill.file, text)?),
-        InputFormat::Dakota(name) => {
-            Form::Dakota(dakota::Form::named(name).ok_or_else(|| Problem {
+        InputFormat::Dakota { form, components } => {
+            let known = dakota::Form::named(form).ok_or_else(|| Problem {
                 file: fill.file.clone(),
                 line: None,
-                found: format!("form `{name}` of Dakota's parameters"),
+                found: format!("form `{form}` of Dakota's parameters"),
                 allowed: "standard, aprepro or json".to_owned(),
                 remedy: "correct the form of this input in the case".to_owned(),
-            })?)
+            })?;
+            Form::Dakota(known, components.clone())
         }
     };
     Ok(Template {

@@ -15,7 +15,10 @@ pub(super) struct Readings {
 #[derive(Debug)]
 enum Form {
     Pest(pest::Instructions),
-    Dakota(Vec<String>),
+    Dakota {
+        functions: Vec<String>,
+        gradients: bool,
+    },
     Whole,
 }
 
@@ -24,6 +27,8 @@ enum Form {
 pub(super) struct Outputs {
     /// Values by name, extracted by PEST instructions, from Dakota results and by equations.
     pub(super) named: BTreeMap<String, f64>,
+    /// Derivatives of named values by all variables of the parameters file, from Dakota results.
+    gradients: BTreeMap<String, Vec<f64>>,
     /// Text of each output file, in the order of the readings.
     texts: Vec<String>,
     /// Whether the results file itself reports that the run failed (Dakota's `fail`).
@@ -38,7 +43,13 @@ impl Readings {
                 OutputFormat::Pest(text) => {
                     Form::Pest(pest::Instructions::parse(&reading.file, text)?)
                 }
-                OutputFormat::Dakota(functions) => Form::Dakota(functions.clone()),
+                OutputFormat::Dakota {
+                    functions,
+                    gradients,
+                } => Form::Dakota {
+                    functions: functions.clone(),
+                    gradients: *gradients,
+                },
                 OutputFormat::Table | OutputFormat::Object => Form::Whole,
             };
             Ok((reading.file.clone(), form))
@@ -51,10 +62,24 @@ impl Readings {
     /// Returns the names of the functions that Dakota's results files must contain.
     pub(super) fn functions(&self) -> Vec<String> {
         let lists = self.all.iter().filter_map(|(_, form)| match form {
-            Form::Dakota(functions) => Some(functions.clone()),
+            Form::Dakota { functions, .. } => Some(functions.clone()),
             Form::Pest(_) | Form::Whole => None,
         });
         lists.flatten().collect()
+    }
+
+    /// Returns whether the program returns gradients where they are requested.
+    pub(super) fn has_gradients(&self) -> bool {
+        let mut forms = self.all.iter();
+        forms.any(|(_, form)| {
+            matches!(
+                form,
+                Form::Dakota {
+                    gradients: true,
+                    ..
+                }
+            )
+        })
     }
 
     /// Returns the names of the output files that the program must write.
@@ -78,12 +103,14 @@ impl Readings {
                     let values = instructions.read(file, &text);
                     all.named.extend(values.map_err(|error| error.to_string())?);
                 }
-                Form::Dakota(functions) => {
+                Form::Dakota { functions, .. } => {
                     let results = dakota::results(file, &text, functions);
                     match results.map_err(|error| error.to_string())? {
                         dakota::Results::Fail => all.is_fail = true,
-                        dakota::Results::Values { values, .. } => {
+                        dakota::Results::Values { values, gradients } => {
                             all.named.extend(functions.iter().cloned().zip(values));
+                            all.gradients
+                                .extend(functions.iter().cloned().zip(gradients));
                         }
                     }
                 }
@@ -155,6 +182,22 @@ impl Readings {
                 places.len()
             )),
         }
+    }
+}
+
+impl Outputs {
+    /// Returns the derivative of a channel's values by the variable at an index of the parameters file; an empty curve if the
+    /// output files hold no gradients of all of them.
+    pub(super) fn derivative(&self, source: &ChannelSource, variable: usize) -> Vec<f64> {
+        let ChannelSource::Named(names) = source else {
+            return Vec::new();
+        };
+        let of = |name: &String| self.gradients.get(name)?.get(variable).copied();
+        names
+            .iter()
+            .map(of)
+            .collect::<Option<_>>()
+            .unwrap_or_default()
     }
 }
 

@@ -1,7 +1,7 @@
 //! External program prepared for a case, ready to evaluate any number of individuals.
 use super::{
-    fill::Templates,
-    gather::{Readings, evaluate_equations},
+    fill::{Asked, Templates},
+    gather::{Outputs, Readings, evaluate_equations},
     leftover_files,
     run::{self, RunPermit},
     scratch::{self, Scratch},
@@ -9,9 +9,12 @@ use super::{
 use crate::simulator::Model;
 use exchange::allow::AllowEntry;
 use protocol::{
-    case::Case,
+    case::{Case, Channel},
     external::External,
-    job::{Counters, Derivative, Failure, Identifier, Observation, Reached, SimulateSpec, Verdict},
+    job::{
+        Column, Counters, Derivative, Failure, Identifier, Observation, Per, Reached, SimulateSpec,
+        Verdict, to_single_precision,
+    },
 };
 use std::{
     collections::BTreeMap,
@@ -140,9 +143,16 @@ impl Prepared {
         let values = self.values(spec)?;
         let number = self.evaluations.fetch_add(1, Ordering::Relaxed) + 1;
         let functions = self.readings.functions();
+        let program = self.entry.program.file_name();
+        let asked = Asked {
+            functions: &functions,
+            gradients: self.returns_gradients(spec),
+            driver: &program.unwrap_or_default().to_string_lossy(),
+            evaluation: number,
+        };
         let files = self
             .templates
-            .filled(&values, &functions, number)
+            .filled(&values, &asked)
             .map_err(|problem| Failure::misconfigured("model.inputs", problem.to_string()))?;
         let turn = RunPermit::acquire(&self.place, &self.name, &self.entry)
             .map_err(|error| crashed(format!("{}: {error}", self.place.display())))?;
@@ -217,8 +227,44 @@ impl Prepared {
             verdict: Verdict::Complete,
             counters: Counters::default(),
             curves,
-            columns: Derivative::none(&spec.columns),
+            columns: self.columns(spec, &left),
         })
+    }
+
+    /// Returns whether the program is asked for gradients: a job that requests no derivatives needs none.
+    fn returns_gradients(&self, spec: &SimulateSpec) -> bool {
+        !spec.columns.is_empty() && self.readings.has_gradients()
+    }
+
+    /// Returns the requested derivatives, from the gradients by the variables that the program was given: the values of the
+    /// condition, then the unknowns.
+    fn columns(&self, spec: &SimulateSpec, left: &Outputs) -> Vec<Derivative> {
+        if !self.returns_gradients(spec) {
+            return Derivative::none(&spec.columns);
+        }
+        let condition = spec.individual.condition;
+        let stated = self.external.conditions.get(condition).map_or(0, Vec::len);
+        let column = |column: &Column| {
+            let mut unknowns = self.case.unknowns.iter();
+            let found = unknowns.position(|unknown| unknown.name == column.name);
+            let found = found.and_then(|at| Some((at, self.external.parameters.get(at)?)));
+            let Some((at, parameter)) = found else {
+                return Derivative::Missing {
+                    reason: format!("`{}` is no variable of the program", column.name),
+                };
+            };
+            let curve = |(at_channel, _): (usize, &Channel)| {
+                let source = self.external.curves.get(at_channel);
+                let by = source.map(|source| left.derivative(source, stated + at));
+                let by = by.unwrap_or_default().into_iter();
+                to_single_precision(by.map(|by| parameter.factor * by))
+            };
+            Derivative::Curves {
+                per: Per::Unit(self.case.unknowns[at].unit.clone()),
+                curves: self.case.channels_of(condition).map(curve).collect(),
+            }
+        };
+        spec.columns.iter().map(column).collect()
     }
 
     /// Adds the files of the working folder to a failure, and keeps the folder if the program's entry asks

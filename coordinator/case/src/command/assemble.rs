@@ -212,6 +212,12 @@ impl Assembly<'_> {
                     DocumentStep::Key(key),
                 ]
             };
+            if input.dakota.is_none() && !input.components.is_empty() {
+                let allowed = "absent, unless the file is a parameters file of Dakota";
+                let help = "state `dakota` for the file, or remove `components`";
+                let stated = input.components.join(", ");
+                return Err(self.field_error(&way("components"), stated, allowed, help));
+            }
             let (form, names) = match (&input.template, &input.braces, &input.dakota) {
                 (Some(path), None, None) => {
                     let text = self.text(path, "a template that `inputs` names")?;
@@ -234,7 +240,11 @@ impl Assembly<'_> {
                     )
                 }
                 (None, None, Some(form)) if dakota::Form::named(form).is_some() => {
-                    (InputFormat::Dakota(form.clone()), Vec::new())
+                    let form = InputFormat::Dakota {
+                        form: form.clone(),
+                        components: input.components.clone(),
+                    };
+                    (form, Vec::new())
                 }
                 (None, None, Some(form)) => {
                     let allowed = "standard, aprepro or json";
@@ -285,6 +295,11 @@ impl Assembly<'_> {
                     DocumentStep::Key(key),
                 ]
             };
+            if output.gradients && output.dakota.is_none() {
+                let allowed = "absent, unless the file is a results file of Dakota";
+                let help = "state `dakota` for the file, or remove `gradients`";
+                return Err(self.field_error(&way("gradients"), true, allowed, help));
+            }
             let form = match (&output.instructions, &output.dakota) {
                 (Some(path), None) => {
                     let text = self.text(path, "instructions that `outputs` names")?;
@@ -296,7 +311,10 @@ impl Assembly<'_> {
                 }
                 (None, Some(functions)) => {
                     named.extend(functions.iter().cloned());
-                    OutputFormat::Dakota(functions.clone())
+                    OutputFormat::Dakota {
+                        functions: functions.clone(),
+                        gradients: output.gradients,
+                    }
                 }
                 (None, None)
                     if Path::new(&output.file)

@@ -47,6 +47,9 @@ pub(super) struct InputEntry {
     pub(super) template: Option<PathBuf>,
     pub(super) braces: Option<PathBuf>,
     pub(super) dakota: Option<String>,
+    /// Analysis components of a Dakota parameters file.
+    #[serde(default)]
+    pub(super) components: Vec<String>,
 }
 
 /// Output file that the program writes, with the form in which it is read.
@@ -56,6 +59,9 @@ pub(super) struct OutputEntry {
     pub(super) file: String,
     pub(super) instructions: Option<PathBuf>,
     pub(super) dakota: Option<Vec<String>>,
+    /// Whether a Dakota results file holds gradients where they are requested.
+    #[serde(default)]
+    pub(super) gradients: bool,
 }
 
 /// Value that is computed from the parameters alone, without running the program.

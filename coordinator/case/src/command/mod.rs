@@ -19,10 +19,12 @@
 //!     { file = "model.in", template = "model.tpl" },     # PEST template
 //!     { file = "job.txt", braces = "job.txt.in" },       # text with placeholders {name}
 //!     { file = "params.in", dakota = "standard" },       # Dakota parameters file: standard, aprepro, json
+//!     { file = "params.in", dakota = "json", components = ["mesh.exo"] },  # the same with analysis components
 //! ]
 //! outputs = [
 //!     { file = "model.out", instructions = "model.ins" },  # PEST instruction file: named values
 //!     { file = "results.out", dakota = ["w1", "w2"] },     # Dakota results file: named values
+//!     { file = "results.out", dakota = ["w1"], gradients = true },  # the same with their gradients where requested
 //!     { file = "curve.csv" },                              # table with a header
 //!     { file = "curve.json" },                             # JSON object
 //! ]

@@ -6,6 +6,6 @@ mod parameters;
 mod results;
 mod template;
 
-pub use parameters::{Form, parameters};
+pub use parameters::{Form, Request, parameters};
 pub use results::{Results, results};
 pub use template::Template;

@@ -25,60 +25,104 @@ impl Form {
     }
 }
 
-/// Formats a parameters file: variables, one active-set entry per function (requesting values only),
-/// derivative variables, no analysis components, and the number of the evaluation.
-pub fn parameters(
-    form: Form,
-    variables: &[(String, f64)],
-    functions: &[String],
-    evaluation: u64,
-) -> String {
+/// Content of a parameters file.
+#[derive(Clone, Copy, Debug)]
+pub struct Request<'a> {
+    /// Format of the file.
+    pub form: Form,
+    /// Labels and values of the variables.
+    pub variables: &'a [(String, f64)],
+    /// Labels of the response functions.
+    pub functions: &'a [String],
+    /// Whether the gradients of the functions by all variables are requested, in addition to their values.
+    pub gradients: bool,
+    /// Name of the driver to which the analysis components belong.
+    pub driver: &'a str,
+    /// Analysis components, texts that a case passes on to its driver.
+    pub components: &'a [String],
+    /// Number of the evaluation.
+    pub evaluation: u64,
+}
+
+/// Formats a parameters file as Dakota 6.20 does, with an empty list of metadata.
+pub fn parameters(request: &Request<'_>) -> String {
+    let Request {
+        form,
+        variables,
+        functions,
+        driver,
+        components,
+        evaluation,
+        ..
+    } = *request;
+    let active_set = if request.gradients { 3 } else { 1 };
     if form == Form::Json {
         let labelled = |(label, value): &(String, f64)| json!({"label": label, "value": value});
-        let wanted = |label: &String| json!({"label": label, "active_set": 1});
+        let wanted = |label: &String| json!({"label": label, "active_set": active_set});
+        let of_driver = |text: &String| json!({"driver": driver, "component": text});
         let object = json!({
             "variables": variables.iter().map(labelled).collect::<Vec<_>>(),
             "responses": functions.iter().map(wanted).collect::<Vec<_>>(),
-            "derivative_variables": variables.iter().map(|(label, _)| label).collect::<Vec<_>>(),
-            "analysis_components": [],
+            "derivative_variables": (1..=variables.len()).collect::<Vec<_>>(),
+            "analysis_components": components.iter().map(of_driver).collect::<Vec<_>>(),
             "eval_id": evaluation.to_string(),
+            "metadata": [],
         });
         return format!("{object:#}\n");
     }
+    let is_aprepro = form == Form::Aprepro;
     let mut text = String::new();
-    let mut row = |value: String, label: String| {
-        // writing to a text does not fail
-        let _written = match form {
-            Form::Aprepro => writeln!(text, "{{ {label} = {value} }}"),
-            Form::Standard | Form::Json => writeln!(text, "{value:>24} {label}"),
+    // writing to a text does not fail
+    let mut row = |label: &str, value: &str| {
+        let _written = if is_aprepro {
+            writeln!(text, "{:20}{{ {label:<15} = {value:>22} }}", "")
+        } else {
+            writeln!(text, "{:21}{value:>22} {label}", "")
         };
     };
-    let (count, asked) = (variables.len(), functions.len());
-    let own = |aprepro: &str, standard: &str| match form {
-        Form::Aprepro => aprepro.to_owned(),
-        Form::Standard | Form::Json => standard.to_owned(),
+    let name = |standard: &'static str, aprepro: &'static str| {
+        if is_aprepro { aprepro } else { standard }
     };
-    row(count.to_string(), own("DAKOTA_VARS", "variables"));
+    let count = variables.len().to_string();
+    row(name("variables", "DAKOTA_VARS"), &count);
     for (label, value) in variables {
-        row(format!("{value:.15e}"), label.clone());
+        row(label, &scientific(*value));
     }
-    row(asked.to_string(), own("DAKOTA_FNS", "functions"));
-    for (at, label) in functions.iter().enumerate() {
-        row("1".to_owned(), format!("ASV_{}:{label}", at + 1));
+    let asked = functions.len().to_string();
+    row(name("functions", "DAKOTA_FNS"), &asked);
+    for (at, label) in (1..).zip(functions) {
+        row(&format!("ASV_{at}:{label}"), &active_set.to_string());
     }
-    row(
-        count.to_string(),
-        own("DAKOTA_DER_VARS", "derivative_variables"),
-    );
-    for (at, (label, _)) in variables.iter().enumerate() {
-        row((at + 1).to_string(), format!("DVV_{}:{label}", at + 1));
+    row(name("derivative_variables", "DAKOTA_DER_VARS"), &count);
+    for (at, (label, _)) in (1..).zip(variables) {
+        row(&format!("DVV_{at}:{label}"), &at.to_string());
     }
-    row(
-        "0".to_owned(),
-        own("DAKOTA_AN_COMPS", "analysis_components"),
-    );
-    row(evaluation.to_string(), own("DAKOTA_EVAL_ID", "eval_id"));
+    let texts = components.len().to_string();
+    row(name("analysis_components", "DAKOTA_AN_COMPS"), &texts);
+    for (at, component) in (1..).zip(components) {
+        let component = if is_aprepro {
+            // the width is that of the quote in front of the text
+            format!("{:>22}{component}\"", '"')
+        } else {
+            component.clone()
+        };
+        row(&format!("AC_{at}:{driver}"), &component);
+    }
+    row(name("eval_id", "DAKOTA_EVAL_ID"), &evaluation.to_string());
+    row(name("metadata", "DAKOTA_METADATA"), "0");
     text
+}
+
+/// Formats a number with 16 digits and an exponent of two or more, as `std::scientific` does.
+fn scientific(value: f64) -> String {
+    let text = format!("{value:.15e}");
+    let Some((digits, exponent)) = text.split_once('e') else {
+        return text;
+    };
+    let (sign, exponent) = exponent
+        .strip_prefix('-')
+        .map_or(('+', exponent), |positive| ('-', positive));
+    format!("{digits}e{sign}{exponent:0>2}")
 }
 
 #[cfg(test)]
@@ -88,19 +132,60 @@ mod tests {
     #[test]
     fn every_form_says_the_same() {
         let variables = [("k".to_owned(), 2.5), ("c".to_owned(), -1e-3)];
-        let functions = ["w".to_owned()];
-        let of = |form| parameters(form, &variables, &functions, 7);
-        let standard = of(Form::Standard);
-        let rows: Vec<Vec<&str>> = standard
-            .lines()
-            .map(|line| line.split_whitespace().collect())
-            .collect();
-        assert_eq!(rows[0], ["2", "variables"]);
-        assert_eq!((crate::number(rows[1][0]), rows[1][1]), (Some(2.5), "k"));
-        assert_eq!(rows.last().unwrap(), &["7", "eval_id"]);
-        assert_eq!(rows.len(), 1 + 2 + 1 + 1 + 1 + 2 + 1 + 1);
-        assert!(of(Form::Aprepro).contains("{ k = 2.5"));
+        let (functions, components) = (["w".to_owned()], ["mesh 1".to_owned()]);
+        let of = |form| {
+            parameters(&Request {
+                form,
+                variables: &variables,
+                functions: &functions,
+                gradients: form == Form::Json,
+                driver: "drive.py",
+                components: &components,
+                evaluation: 7,
+            })
+        };
+        let standard = "
+                                          2 variables
+                      2.500000000000000e+00 k
+                     -1.000000000000000e-03 c
+                                          1 functions
+                                          1 ASV_1:w
+                                          2 derivative_variables
+                                          1 DVV_1:k
+                                          2 DVV_2:c
+                                          1 analysis_components
+                                     mesh 1 AC_1:drive.py
+                                          7 eval_id
+                                          0 metadata
+";
+        assert_eq!(format!("\n{}", of(Form::Standard)), standard);
+        let aprepro = of(Form::Aprepro);
+        let lines: Vec<&str> = aprepro.lines().collect();
+        for (at, line) in [
+            (
+                0,
+                "                    { DAKOTA_VARS     =                      2 }",
+            ),
+            (
+                2,
+                "                    { c               = -1.000000000000000e-03 }",
+            ),
+            (
+                9,
+                "                    { AC_1:drive.py   =                      \"mesh 1\" }",
+            ),
+            (
+                10,
+                "                    { DAKOTA_EVAL_ID  =                      7 }",
+            ),
+        ] {
+            assert_eq!(lines[at], line);
+        }
         let object: serde_json::Value = serde_json::from_str(&of(Form::Json)).unwrap();
         assert_eq!(object["variables"][1]["value"], -1e-3);
+        assert_eq!(object["responses"][0]["active_set"], 3);
+        assert_eq!(object["analysis_components"][0]["component"], "mesh 1");
+        assert_eq!(object["derivative_variables"], json!([1, 2]));
+        assert_eq!(object["eval_id"], "7");
     }
 }

@@ -16,7 +16,7 @@ pub enum Results {
 }
 
 /// Reads a results file: `value [label]` for each function, then `[ gradient ]`; Hessians (`[[ .. ]]`) are
-/// ignored.
+/// ignored. Labels are compared without regard to case.
 ///
 /// # Errors
 /// Too few or too many values, a label that does not match its function, or a number that is not finite.
@@ -60,7 +60,10 @@ pub fn results(file: &str, text: &str, functions: &[String]) -> Result<Results, 
                 format!("{} values", functions.len()),
             ));
         };
-        if let Some(label) = words.next().filter(|label| label != function) {
+        if let Some(label) = words
+            .next()
+            .filter(|label| !label.eq_ignore_ascii_case(function))
+        {
             return Err(refused(
                 format!("label `{}`", clip(label)),
                 format!("`{function}`"),
@@ -116,7 +119,7 @@ mod tests {
             gradients: vec![vec![1.0, 2.0], vec![3.0, 4.0]],
         };
         assert_eq!(
-            of(" 1.5 w1\n2.0D3\n[ 1 2 ]\n[3 4]\n[[ 1 2 3 4 ]]\n"),
+            of(" 1.5 W1\n2.0D3\n[ 1 2 ]\n[3 4]\n[[ 1 2 3 4 ]]\n"),
             Ok(expected)
         );
         assert_eq!(of(" FAIL: no convergence\n"), Ok(Results::Fail));
