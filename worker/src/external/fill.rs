@@ -47,9 +47,9 @@ impl Templates {
         let mut widths = BTreeMap::new();
         for template in &all {
             if let Form::Pest(own) = &template.form {
-                for (name, width) in own.fields() {
-                    let narrowest = widths.entry(name).or_insert(width);
-                    *narrowest = width.min(*narrowest);
+                for (name, field) in own.fields() {
+                    let narrowest = widths.entry(name).or_insert(field.width);
+                    *narrowest = field.width.min(*narrowest);
                 }
             }
         }

@@ -1,12 +1,13 @@
 //! Assembly of the description of a program that is sent to the workers from the case file's entries. All
 //! names are cross-checked here, so that errors are reported when the case is read and not by a worker.
 use super::{
+    field_width::hidden_step,
     file::{ChannelEntry, CommandCaseFile, InputEntry, ModelEntry, OutputEntry, SourceEntry},
     files,
 };
 use crate::{
-    document::{Document, DocumentStep, nearest},
-    error::CaseError,
+    document::{Document, DocumentStep, nearest, short},
+    error::{CaseError, damaged},
     file,
     source::RecordFolder,
 };
@@ -18,7 +19,10 @@ use protocol::{
         OutputFile, OutputFormat, Parameter,
     },
 };
-use std::{collections::BTreeSet, path::Path};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
 
 /// Assembles the complete description of a case's program.
 ///
@@ -46,7 +50,7 @@ pub(super) fn assemble(
         assembly.check_same_names(index, values, &conditions[0])?;
         known.extend(values.iter().map(|(name, _)| name.clone()));
     }
-    let fills = assembly.input_files(&known)?;
+    let fills = assembly.input_files(&known, (case, &parameters))?;
     let (readings, mut named) = assembly.output_files()?;
     let mut plain: BTreeSet<String> = case.unknowns.iter().map(|own| own.name.clone()).collect();
     plain.extend(conditions.iter().flatten().map(|(name, _)| name.clone()));
@@ -200,7 +204,42 @@ impl Assembly<'_> {
         file::text(&path, file::read(&path, role)?)
     }
 
-    fn input_files(&self, known: &BTreeSet<String>) -> Result<Vec<InputFile>, CaseError> {
+    /// Checks that the fields of a template show the difference steps of the unknowns.
+    fn check_widths(
+        &self,
+        path: &Path,
+        fields: &BTreeMap<String, pest::Field>,
+        (case, parameters): (&Case, &[Parameter]),
+    ) -> Result<(), CaseError> {
+        for (index, parameter) in parameters.iter().enumerate() {
+            let Some(field) = fields.get(&parameter.name.to_lowercase()) else {
+                continue;
+            };
+            let Some(hidden) = hidden_step(case, index, parameter, *field) else {
+                continue;
+            };
+            let (value, moved) = (short(hidden.value), short(hidden.moved));
+            return Err(damaged(
+                &self.folder.join(path),
+                format!(
+                    "line {}: the field of `{}` has {} characters, in which a difference step from {value} to {moved} does \
+                     not show, so that no search sees it",
+                    field.line, parameter.name, field.width
+                ),
+                &format!(
+                    "widen the field to {} characters, including its two markers",
+                    hidden.needed
+                ),
+            ));
+        }
+        Ok(())
+    }
+
+    fn input_files(
+        &self,
+        known: &BTreeSet<String>,
+        written: (&Case, &[Parameter]),
+    ) -> Result<Vec<InputFile>, CaseError> {
         let inputs = self.model.inputs.iter().enumerate();
         let fill = |(index, input): (usize, &InputEntry)| {
             let way = |key| {
@@ -224,10 +263,9 @@ impl Assembly<'_> {
                     let template = pest::Template::parse(&path.to_string_lossy(), &text);
                     let template =
                         template.map_err(|problem| self.problem(&way("template"), &problem))?;
-                    (
-                        InputFormat::Pest(text),
-                        template.fields().into_keys().collect(),
-                    )
+                    let fields = template.fields();
+                    self.check_widths(path, &fields, written)?;
+                    (InputFormat::Pest(text), fields.into_keys().collect())
                 }
                 (None, Some(path), None) => {
                     let text = self.text(path, "a text file that `inputs` names")?;

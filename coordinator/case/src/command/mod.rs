@@ -44,6 +44,7 @@
 //! ```
 mod allow;
 mod assemble;
+mod field_width;
 mod file;
 mod files;
 pub mod import;

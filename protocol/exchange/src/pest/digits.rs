@@ -16,9 +16,12 @@ pub fn fit(value: f64, width: usize) -> Option<String> {
     }
     let rounded = (0..=17_usize).flat_map(|digits| {
         let after = digits.saturating_sub(1);
-        [format!("{value:.digits$}"), format!("{value:.after$e}")]
+        let plain = format!("{value:.digits$}");
+        // the zero before the point is a digit less where there is no room
+        let bare = plain.replacen("0.", ".", usize::from(value.abs() < 1.0));
+        [plain, bare, format!("{value:.after$e}")]
     });
-    let fitting = rounded.filter(|text| text.len() <= width);
+    let fitting = rounded.filter(|text| text.len() <= width && crate::number(text).is_some());
     let off = |text: &String| {
         text.parse::<f64>()
             .map_or(f64::INFINITY, |read| (read - value).abs())
@@ -55,6 +58,9 @@ mod tests {
             (1.0e-7, 6, "1e-7"),
             (123_456_789.0, 6, "1.23e8"),
             (0.0, 3, "0.0"),
+            (0.0123, 6, "0.0123"),
+            (0.0123, 5, ".0123"),
+            (-0.0123, 5, "-.012"),
         ] {
             assert_eq!(
                 fit(value, width).as_deref(),

@@ -16,4 +16,4 @@ pub use control::{
 pub use digits::fit;
 pub use instruction::Instructions;
 pub use report::{ParRow, ReiRow, par, rei};
-pub use template::Template;
+pub use template::{Field, Template};

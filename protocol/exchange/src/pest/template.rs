@@ -21,6 +21,15 @@ pub struct Template {
     parts: Vec<Part>,
 }
 
+/// Field of a template.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// Width of the field including both delimiters (characters).
+    pub width: usize,
+    /// Line number of the field in the template.
+    pub line: usize,
+}
+
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Part {
     Text(String),
@@ -96,14 +105,19 @@ impl Template {
         })
     }
 
-    /// Returns the names of the parameters in the template, each with the width of its narrowest field
-    /// (characters).
-    pub fn fields(&self) -> BTreeMap<String, usize> {
-        let mut fields = BTreeMap::new();
+    /// Returns the names of the parameters in the template, each with its narrowest field.
+    pub fn fields(&self) -> BTreeMap<String, Field> {
+        let mut fields: BTreeMap<String, Field> = BTreeMap::new();
         for part in &self.parts {
-            if let Part::Field { name, width, .. } = part {
-                let narrowest = fields.entry(name.clone()).or_insert(*width);
-                *narrowest = (*narrowest).min(*width);
+            if let Part::Field { name, width, line } = part {
+                let field = Field {
+                    width: *width,
+                    line: *line,
+                };
+                let narrowest = fields.entry(name.clone()).or_insert(field);
+                if field.width < narrowest.width {
+                    *narrowest = field;
+                }
             }
         }
         fields
@@ -151,7 +165,10 @@ mod tests {
     fn fields_are_filled_at_their_own_width() {
         let text = "ptf #\nk = #K     #\nboth #k# and # Q #\n";
         let template = Template::parse("a.tpl", text).unwrap();
-        let fields = [("k".to_owned(), 3), ("q".to_owned(), 5)];
+        let fields = [("k", 3), ("q", 5)].map(|(name, width)| {
+            let field = Field { width, line: 3 };
+            (name.to_owned(), field)
+        });
         assert_eq!(template.fields(), BTreeMap::from(fields));
         let texts = [
             ("k".to_owned(), "2.5".to_owned()),
