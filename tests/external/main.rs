@@ -8,6 +8,7 @@
 mod allowed;
 mod bad;
 mod bench;
+mod field;
 mod joint;
 mod pest;
 mod rig;

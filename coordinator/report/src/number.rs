@@ -46,6 +46,36 @@ fn signed(text: &str) -> String {
 
 /// Formats a value with three significant digits; as a power of ten outside 0.01 to 100 000.
 pub fn significant(value: f64) -> String {
+    digits(value, 3)
+}
+
+/// Formats a value with three significant digits, or with as many as show two digits of a difference, such as the width of an
+/// interval beside which the value stands.
+pub fn precise(value: f64, difference: f64) -> String {
+    /// Digits from which rounding shows.
+    const MOST: i32 = 12;
+    if !(difference.is_finite() && difference != 0.0 && value != 0.0) {
+        return significant(value);
+    }
+    digits(
+        value,
+        (exponent(value) - exponent(difference) + 2).clamp(3, MOST),
+    )
+}
+
+/// Formats an interval with its unit written once, and as many digits that its ends differ.
+pub fn interval([low, high]: [f64; 2], symbol: &str) -> String {
+    if !(low.is_finite() && high.is_finite()) {
+        return MISSING.to_owned();
+    }
+    let [low, high] = [low, high].map(|end| precise(end, high - low));
+    match symbol {
+        "" | "1" => format!("{low} to {high}"),
+        _ => format!("{low} to {high}{NO_BREAK}{}", unit(symbol)),
+    }
+}
+
+fn digits(value: f64, digits: i32) -> String {
     if !value.is_finite() {
         return MISSING.to_owned();
     }
@@ -57,11 +87,11 @@ pub fn significant(value: f64) -> String {
         let mantissa = value / 10_f64.powi(exponent);
         return format!(
             "{}{NO_BREAK}×{NO_BREAK}10{}",
-            fixed(mantissa, 2),
+            fixed(mantissa, usize::try_from(digits - 1).unwrap_or(0)),
             superscript(exponent)
         );
     }
-    let decimals = usize::try_from(2 - exponent).unwrap_or(0);
+    let decimals = usize::try_from(digits - 1 - exponent).unwrap_or(0);
     fixed(value, decimals)
 }
 

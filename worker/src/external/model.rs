@@ -213,7 +213,7 @@ impl Prepared {
         ));
         let condition = spec.individual.condition;
         let channels = self.case.channels_of(condition);
-        let curve = |(at, channel): (usize, &protocol::case::Channel)| {
+        let curve = |(at, channel): (usize, &Channel)| {
             let source = self.external.curves.get(at);
             let source = source
                 .ok_or_else(|| format!("channel {at} has no source in the model's outputs"))?;

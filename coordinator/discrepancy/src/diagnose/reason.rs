@@ -18,9 +18,9 @@ pub(crate) struct Rejection {
     pub(crate) left: Option<String>,
 }
 
-/// Describes the size of the residual that the answer leaves, relative to the noise.
+/// Describes the size of the residual that the answer leaves, as a multiple of the noise's standard deviation.
 pub(crate) fn left(base: &Baseline, after: &Fit) -> String {
-    let ratio = after.chi_squared() / base.noise();
+    let ratio = (after.chi_squared() / base.noise()).sqrt();
     let assumed = !base.known().is_seen();
     if assumed && ratio < 1.0 {
         format!(

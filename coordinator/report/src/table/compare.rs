@@ -2,7 +2,7 @@
 use crate::data::{Calibration, ConditionResult};
 use crate::document::{Row, Table};
 use crate::kind;
-use crate::number::{MISSING, percent, ratio, significant, squared, unit};
+use crate::number::{MISSING, percent, precise, ratio, significant, squared, unit};
 use crate::words::{self, condition_name};
 use protocol::case::{Case, Channel, Offset};
 use protocol::job::{ChannelScore, Verdict};
@@ -196,11 +196,12 @@ fn gene_rows(calibration: &Calibration) -> Vec<Row> {
         let value = |genes: &[f64]| genes.get(index).copied().unwrap_or(f64::NAN);
         let before = value(&calibration.recommended.genes);
         let after = value(&calibration.optimised.genes);
-        let mut optimised = significant(after);
+        let said = intervals.iter().find(|own| own.name == gene.name);
+        let width = said.and_then(|own| Some(own.interval[1]? - own.interval[0]?));
+        let mut optimised = precise(after, width.unwrap_or_default());
         if words::at_bound(gene, after).is_some() {
             optimised.push_str(" *");
         }
-        let said = intervals.iter().find(|own| own.name == gene.name);
         let cells = [
             unit(&gene.unit),
             significant(before),

@@ -1,5 +1,5 @@
 //! Descriptions of an unknown's bounds and interval.
-use crate::number::quantity;
+use crate::number::{interval, quantity};
 use discrepancy::identify::UnknownEstimate;
 use protocol::case::{Scale, Unknown};
 
@@ -34,7 +34,7 @@ pub(crate) fn at_bound(gene: &Unknown, value: f64) -> Option<&'static str> {
 pub(crate) fn interval_cell(own: &UnknownEstimate) -> String {
     let of = |x: f64| quantity(x, &own.unit);
     match own.interval {
-        [Some(low), Some(high)] => format!("{} to {}", of(low), of(high)),
+        [Some(low), Some(high)] => interval([low, high], &own.unit),
         [Some(low), None] => format!("at least {}", of(low)),
         [None, Some(high)] => format!("at most {}", of(high)),
         [None, None] => "not determined by this record".to_owned(),

@@ -69,7 +69,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if !is_there {
         return Err(Problem {
             message: format!(
-                "{}: there is no such program on this machine: {} (`model.command`)",
+                "{}: `model.command` = \"{}\": there is no such program on this machine",
                 arguments.case.join("case.toml").display(),
                 entry.program.display()
             ),

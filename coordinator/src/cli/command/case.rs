@@ -178,13 +178,26 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
         case::check(folder, &Overrides::default())?;
         Ok(command::propose_entry(folder)?)
     };
-    let proposal = read(&imported.folder).inspect_err(|_| {
+    let proposal = read(&imported.folder).map_err(|error| {
         drop(std::fs::remove_dir_all(&imported.folder));
         terminal::tell(&format!(
             "note: no case was made, and {} was removed again: correct the files beside {}, then import it again",
             imported.folder.display(),
             control.display()
         ));
+        // the copies are gone, and the files beside the control file are those to be corrected
+        let beside = control.parent().unwrap_or(Path::new(""));
+        let copied = format!("{}/", imported.folder.display());
+        let own = match beside.to_str() {
+            Some("") | None => String::new(),
+            Some(folder) => format!("{folder}/"),
+        };
+        let text = error.to_string().replace(&copied, &own);
+        let (message, remedy) = text.split_once("\nhelp: ").unwrap_or((&text, ""));
+        Problem {
+            message: message.to_owned(),
+            remedy: remedy.to_owned(),
+        }
     })?;
     if !proposal.is_there {
         let note = format!(

@@ -1,8 +1,8 @@
 //! Tables of the outcome of a diagnosis: parameters of the added effects, and unknowns of the case before and
 //! after adding these effects.
 use crate::diagnosis::subject::DiagnosisInput;
-use crate::diagnosis::words::interval;
 use crate::document::{Row, Table};
+use crate::number::interval;
 use crate::number::{MISSING, quantity, significant};
 use crate::words::at_bound;
 use protocol::announce::{ParameterDescriptor, Role};

@@ -1,6 +1,6 @@
 //! Sentences about effects and generic forces: their names and estimated sizes.
-use super::value::interval;
 use crate::diagnosis::subject::DiagnosisInput;
+use crate::number::interval;
 use crate::number::quantity;
 use crate::words::{join_words, lower};
 use discrepancy::diagnose::Estimate;

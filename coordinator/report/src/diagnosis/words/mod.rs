@@ -10,5 +10,5 @@ mod verdict;
 pub(super) use effect::{effects, generic};
 pub(super) use next::next;
 pub(super) use reliability::{confidence, data_role, gap_numbers, predictive_scores};
-pub(super) use value::{equals, interval, nats, p_value};
+pub(super) use value::{equals, nats, p_value};
 pub(super) use verdict::{outcome, verdict};

@@ -1,9 +1,9 @@
 //! Sentences about the confidence in a diagnosis and its scope.
 use super::effect::named;
-use super::value::{equals, interval, nats, odds, p_value};
+use super::value::{equals, nats, odds, p_value};
 use crate::diagnosis::subject::DiagnosisInput;
 use crate::document::Fact;
-use crate::number::{percent, quantity, significant};
+use crate::number::{interval, percent, quantity, significant};
 use crate::words::condition_name;
 use discrepancy::diagnose::ForceEstimate;
 use discrepancy::record::noise::NoiseSource;

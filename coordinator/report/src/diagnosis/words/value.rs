@@ -1,5 +1,5 @@
 //! Formatting of statistical numbers for sentences and tables.
-use crate::number::{MISSING, fixed, quantity, significant};
+use crate::number::{MISSING, fixed, significant};
 
 /// Formats a p-value; values below 10⁻¹² are given as a bound, since their distribution is not accurate
 /// there.
@@ -23,15 +23,6 @@ pub(in crate::diagnosis) fn equals(p: &str) -> String {
 /// Formats a value in nats with one decimal, without decimals from 1000 on.
 pub(in crate::diagnosis) fn nats(value: f64) -> String {
     fixed(value, usize::from(value.abs() < 999.5))
-}
-
-/// Formats an interval, with its unit written once.
-pub(in crate::diagnosis) fn interval([low, high]: [f64; 2], unit: &str) -> String {
-    if low.is_finite() && high.is_finite() {
-        format!("{} to {}", significant(low), quantity(high, unit))
-    } else {
-        MISSING.to_owned()
-    }
 }
 
 /// Formats evidence in nats as odds, up to a million to one.

@@ -48,11 +48,12 @@ fn blocks(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(), CaseErro
             line: lines.number(),
             of,
             groups: names.collect(),
+            tags: Vec::new(),
             nodes: Vec::new(),
         };
         for _ in 0..count {
             let numbers = lines.numbers::<i64>(of.nodes + 1)?;
-            block.push(lines, sections, &numbers[1..])?;
+            block.push(lines, sections, (numbers[0], &numbers[1..]))?;
         }
         sections.blocks.push(block);
     }
@@ -65,7 +66,7 @@ fn flat(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(), CaseError>
     let mut last = (0, 0);
     for _ in 0..count {
         let numbers = lines.numbers::<i64>(3)?;
-        let [_, number, tags] = [0, 1, 2].map(|at| numbers.get(at).copied().unwrap_or_default());
+        let [tag, number, tags] = [0, 1, 2].map(|at| numbers.get(at).copied().unwrap_or_default());
         if of_lower_dimension(number) {
             continue;
         }
@@ -88,6 +89,7 @@ fn flat(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(), CaseError>
                     .cloned()
                     .into_iter()
                     .collect(),
+                tags: Vec::new(),
                 nodes: Vec::new(),
             });
             last = (number, physical);
@@ -96,7 +98,7 @@ fn flat(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(), CaseError>
             .get(3_usize.saturating_add(tags)..)
             .unwrap_or_default();
         if let Some(mut block) = sections.blocks.pop() {
-            block.push(lines, sections, nodes)?;
+            block.push(lines, sections, (tag, nodes))?;
             sections.blocks.push(block);
         }
     }
@@ -104,13 +106,14 @@ fn flat(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(), CaseError>
 }
 
 impl Block {
-    /// Appends an element by the tags of its nodes.
+    /// Appends an element by its tag and the tags of its nodes.
     fn push(
         &mut self,
         lines: &Lines<'_>,
         sections: &Sections,
-        tags: &[i64],
+        (tag, tags): (i64, &[i64]),
     ) -> Result<(), CaseError> {
+        self.tags.push(tag);
         let wanted = self.of.nodes;
         let tags = tags.get(..wanted).ok_or_else(|| {
             lines.wrong(&format!(
@@ -207,7 +210,10 @@ pub(super) fn join(path: &Path, sections: &mut Sections) -> Result<(), CaseError
         for group in &block.groups {
             let groups = match (block.is_volume(), group.as_str()) {
                 (false, _) => &mut mesh.surfaces,
-                (true, VOLUME) => &mut mesh.volumes,
+                (true, VOLUME) => {
+                    sections.body.extend(&block.tags);
+                    &mut mesh.volumes
+                }
                 (true, _) => continue,
             };
             let elements = groups.entry(group.clone()).or_default();

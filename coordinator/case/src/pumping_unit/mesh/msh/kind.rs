@@ -63,6 +63,8 @@ pub(super) struct Block {
     pub(super) of: Type,
     /// Names of the groups to which the elements belong.
     pub(super) groups: Vec<String>,
+    /// Tag of each element in the file.
+    pub(super) tags: Vec<i64>,
     /// Node indices, element after element.
     pub(super) nodes: Vec<usize>,
 }

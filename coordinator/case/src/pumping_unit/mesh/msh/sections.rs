@@ -28,6 +28,8 @@ pub(super) struct Sections {
     /// Map from the tag of a node in the file to its index in the mesh.
     pub(super) index: BTreeMap<i64, usize>,
     pub(super) mesh: Mesh,
+    /// Tag in the file of each element of the body, in the order of the mesh.
+    pub(super) body: Vec<i64>,
 }
 
 /// Reads the names of the physical groups, one line `dimension tag "name"` each.

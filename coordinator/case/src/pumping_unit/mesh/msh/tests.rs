@@ -365,7 +365,7 @@ fn what_cannot_be_taken_is_named_with_its_line_and_a_remedy() {
         (
             with(3, (3, 1, 11, &[2, 1, 3, 4, 5, 7, 6, 10, 9, 8])),
             &[
-                "element 1 of group `steel` is inside out",
+                "element 4 of group `steel` is inside out",
                 "help: correct the node order",
             ],
         ),

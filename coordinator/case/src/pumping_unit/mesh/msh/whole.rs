@@ -31,6 +31,7 @@ pub(super) fn validated_mesh(path: &Path, sections: Sections) -> Result<Mesh, Ca
         sections.mesh.volumes.get(VOLUME).map_or(0, Vec::len),
     )?;
     let mut mesh = only_used(path, sections.mesh)?;
+    let tag = |at: usize| sections.body.get(at).copied().unwrap_or_default();
     for (group, elements) in &mesh.volumes {
         let inverted = |element: &[usize]| mesh.element_volume_m3(element).is_none();
         let mut elements = elements.chunks_exact(mesh.kind.nodes());
@@ -39,7 +40,7 @@ pub(super) fn validated_mesh(path: &Path, sections: Sections) -> Result<Mesh, Ca
                 path,
                 format!(
                     "element {} of group `{group}` is inside out or has no volume",
-                    at + 1
+                    tag(at)
                 ),
                 "correct the node order of the element or the position of its nodes",
             ));
